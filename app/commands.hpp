@@ -1,0 +1,14 @@
+// Nacre: the commands. Each adds its words to the program; what the user asked for runs after parsing.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+
+namespace nacre {
+
+/// Registers a command; sets `run` to what it does when its name is given. `run` throws Error, UsageError, Interrupted.
+void add_flow_command(CLI::App& program, std::function<void()>& run);
+void add_info_command(CLI::App& program, std::function<void()>& run);
+void add_sample_command(CLI::App& program, std::function<void()>& run);
+
+}  // namespace nacre

@@ -1,0 +1,124 @@
+// Nacre: what all commands share.
+#include "app/common.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "compute/device/error.hpp"
+#include "engine/io/atomic_file.hpp"
+#include "engine/scene/knobs.hpp"
+
+namespace nacre {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+void on_interrupt(int signal) {
+  if (interrupted.exchange(true)) _exit(128 + signal);
+}
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+  command.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  command.add_option("--threads", options.threads, "worker threads (0: all)")->check(CLI::Range(0, 4096));
+  command.add_option("--report", options.report, "write a JSON report to this file");
+  command.add_option("--session", options.session, "take inputs and knobs from a session file");
+  command.add_option("--save-session", options.save_session, "write inputs and knobs to a session file");
+  command.add_option("--set", options.set, "KNOB=VALUE, any knob by name")->take_all();
+  command.add_flag("--quiet", options.quiet, "say nothing but errors");
+}
+
+KnobOptions::KnobOptions(CLI::App& command) {
+  Settings defaults;
+  for (const Knob& knob : knobs(defaults)) {
+    if (std::holds_alternative<bool*>(knob.value)) continue;  // commands give those as flags of their own
+    auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
+    command.add_option(knob.option(), *value, knob.help + (knob.unit.empty() ? "" : " [" + knob.unit + "]"))
+        ->default_str(knob.text())
+        ->group("Knobs: " + knob.group);
+  }
+}
+
+void KnobOptions::apply(Settings& settings, const std::vector<std::string>& set) const {
+  try {
+    for (const auto& [name, value] : values_)
+      if (!value->empty()) set_knob(settings, name, *value);
+    for (const std::string& pair : set) {
+      const auto equals = pair.find('=');
+      if (equals == std::string::npos) throw Error("--set " + pair + " has no '='", "", "write --set KNOB=VALUE");
+      set_knob(settings, pair.substr(0, equals), pair.substr(equals + 1));
+    }
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+}
+
+const std::atomic<bool>& interrupt_flag() { return interrupted; }
+
+void catch_interrupts() {
+  struct sigaction action {};
+  action.sa_handler = on_interrupt;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an Error, not a death
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void say(const CommonOptions& options, const std::string& line) {
+  if (!options.quiet) fmt::print(stderr, "{}\n", line);
+}
+
+void warn(const CommonOptions& options, const std::string& line) {
+  if (!options.quiet) fmt::print(stderr, "warning: {}\n", line);
+}
+
+Progress::Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO)), started_(now()) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::update(std::string_view what, double fraction) {
+  if (!on_ || (now() - last_ < 0.1 && fraction < 1)) return;
+  last_ = now();
+  const double left = fraction > 0.02 ? (last_ - started_) * (1 - fraction) / fraction : 0;
+  const int filled = int(30 * fraction);
+  fmt::print(stderr, "\r\033[K{:<10} [{:#<{}}{:.<{}}] {:3.0f}%{}", what, "", filled, "", 30 - filled, 100 * fraction,
+             left > 0 ? fmt::format("  {:.0f} s left", left) : "");
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void Progress::clear() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+  drawn_ = false;
+}
+
+nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
+                            std::size_t arena_bytes) {
+  nlohmann::json report;
+  report["nacre"] = version;
+  report["command"] = command;
+  report["device"] = {{"backend", device.backend()}, {"name", device.name()}, {"threads", device.threads()}};
+  report["stages"] = nlohmann::json::array();
+  for (const auto& stage : timers.stages())
+    report["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}});
+  std::unique_ptr<Device> host = device.backend() == "cpu" ? nullptr : make_cpu_device();
+  report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()}, {"device_peak_bytes", arena_bytes}};
+  return report;
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  AtomicFile out(file);
+  out.write(text);
+  out.commit();
+}
+
+}  // namespace nacre

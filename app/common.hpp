@@ -1,0 +1,77 @@
+// Nacre: what all commands share: options, interruption, progress, the report's frame.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "compute/device/device.hpp"
+#include "compute/device/stage_timers.hpp"
+#include "engine/scene/settings.hpp"
+
+namespace nacre {
+
+inline constexpr const char* version = NACRE_VERSION;
+
+/// Options that every command takes.
+struct CommonOptions {
+  std::string device = "auto";
+  int threads = 0;
+  bool quiet = false;
+  std::string report, session, save_session;
+  std::vector<std::string> set;
+};
+
+/// The words of a command line were off: exit status 2.
+class UsageError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// Remembers what the knob options of a command line say, to be applied over a session's values.
+class KnobOptions {
+ public:
+  /// Adds one option per knob.
+  explicit KnobOptions(CLI::App& command);
+  /// Applies them and `--set` to `settings`. Throws UsageError for values that are off.
+  void apply(Settings& settings, const std::vector<std::string>& set) const;
+
+ private:
+  std::vector<std::pair<std::string, std::unique_ptr<std::string>>> values_;
+};
+
+/// Set by Ctrl-C. A second Ctrl-C leaves at once.
+const std::atomic<bool>& interrupt_flag();
+void catch_interrupts();
+
+/// A line on stderr, unless --quiet.
+void say(const CommonOptions& options, const std::string& line);
+void warn(const CommonOptions& options, const std::string& line);
+
+/// A bar with the time left on stderr where that is a terminal; nothing otherwise.
+class Progress {
+ public:
+  explicit Progress(bool quiet);
+  ~Progress();
+  void update(std::string_view what, double fraction);
+  void clear();
+
+ private:
+  bool on_;
+  bool drawn_ = false;
+  double started_;
+  double last_ = -1;
+};
+
+/// "nacre", "command", "device", "stages", "memory".
+nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
+                            std::size_t arena_bytes);
+void write_text(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace nacre

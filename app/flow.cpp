@@ -1,0 +1,317 @@
+// Nacre: `nacre flow`: unsteady flow on a surface as picture, frames, video, values.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/common.hpp"
+#include "compute/device/error.hpp"
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/io/reader.hpp"
+#include "engine/io/vtp_writer.hpp"
+#include "engine/picture/colormap.hpp"
+#include "engine/picture/legend.hpp"
+#include "engine/picture/png.hpp"
+#include "engine/picture/video.hpp"
+#include "engine/scene/knobs.hpp"
+#include "engine/scene/prepare.hpp"
+#include "engine/scene/samples.hpp"
+#include "engine/scene/session.hpp"
+#include "engine/scene/vectors_in_time.hpp"
+
+namespace nacre {
+namespace {
+
+struct FlowOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string sample, time, size, image, frames, video, out;
+  int detail = 0;
+  bool no_legend = false, no_time = false;
+};
+
+struct FlowInput {
+  std::string name;
+  std::string array;     ///< the vectors' name
+  VectorsInTime vectors;
+};
+
+std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option) {
+  const auto at = text.find(separator);
+  try {
+    std::size_t used_first = 0, used_second = 0;
+    const double first = std::stod(text, &used_first), second = std::stod(text.substr(at + 1), &used_second);
+    if (at != std::string::npos && used_first == at && used_second == text.size() - at - 1) return {first, second};
+  } catch (const std::logic_error&) {
+  }
+  throw UsageError(fmt::format("{} takes A{}B, not '{}'", option, separator, text));
+}
+
+Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
+  Session session;
+  if (!options.common.session.empty()) session = read_session(options.common.session);
+  if (!options.files.empty() || !options.sample.empty()) {
+    session.inputs.assign(options.files.begin(), options.files.end());
+    session.sample = options.sample;
+  }
+  knobs.apply(session.settings, options.common.set);
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_pair(options.size, 'x', "--size");
+    knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
+  }
+  if (options.no_legend) session.settings.legend = false;
+  if (options.no_time) session.settings.time_stamp = false;
+  if (session.inputs.empty() == session.sample.empty())
+    throw UsageError(session.inputs.empty() ? "no input: give a FILE or --sample NAME; see nacre flow --help"
+                                            : "a FILE or --sample, not both");
+  return session;
+}
+
+FlowInput read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
+  StageTimers::Scope scope(timers, "read");
+  SurfaceSeries series = session.sample.empty() ? open_surface(session.inputs) : make_sample(session.sample, options.detail);
+  for (const std::string& warning : series.warnings) warn(options.common, warning);
+  const Surface first = series.load(0);
+  std::vector<std::string> warnings;
+  PreparedSurface surface = prepare(first, session.settings.crease, &warnings);
+  for (const std::string& warning : warnings) warn(options.common, warning);
+  const VectorChoice choice = choose_vectors(first, session.settings.vectors);
+  say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
+  std::string name = series.name;
+  VectorsInTime vectors(std::move(series), std::move(surface), choice.name, session.settings.color);
+  const VectorStatistics& s = vectors.statistics();
+  if (s.percentile_98 <= 0) warn(options.common, "the vectors are zero everywhere: the texture will stay noise");
+  else if (s.normal_share > 0.5)
+    warn(options.common, fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown", choice.name,
+                                     100 * s.normal_share));
+  if (s.zero_share > 0.5)
+    warn(options.common, fmt::format("{} is zero at {:.0f}% of the points", choice.name, 100 * s.zero_share));
+  return {name, choice.name, std::move(vectors)};
+}
+
+Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
+  Vec3d lower(1e300), upper(-1e300);
+  for (const Triangle& t : surface.triangles)
+    for (int k = 0; k < 3; ++k) {
+      lower = min(lower, surface.points[t[k]]);
+      upper = max(upper, surface.points[t[k]]);
+    }
+  if (std::filesystem::path(settings.camera).extension() != ".json")
+    return fit_camera(settings.camera, lower, upper, settings.width, settings.height);
+  std::ifstream stream(settings.camera);
+  if (!stream) throw Error("cannot read camera " + settings.camera);
+  try {
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    const auto vec = [&](const char* key) {
+      const auto v = json.at(key).get<std::array<double, 3>>();
+      return Vec3d(v[0], v[1], v[2]);
+    };
+    Camera camera = fit_camera("iso", lower, upper, settings.width, settings.height);
+    camera.eye = vec("eye");
+    camera.target = vec("target");
+    camera.up = json.contains("up") ? vec("up") : Vec3d(0, 0, 1);
+    camera.height = json.value("height", camera.height);
+    camera.orthographic = json.value("orthographic", false);
+    return camera;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(settings.camera + " is no camera", error.what(), R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
+  }
+}
+
+/// Draws frames of one run.
+class Painter {
+ public:
+  Painter(FlowPipeline& pipeline, FlowInput& input, const Settings& settings, double frame_time)
+      : pipeline_(pipeline), input_(input), settings_(settings), frame_time_(frame_time),
+        map_(colormap(settings.colormap)), camera_(read_camera(settings, input.vectors.surface())) {
+    if (settings.background == "transparent") transparent_ = true;
+    else background_ = parse_color(settings.background);
+  }
+
+  Image paint(int frame) {
+    const Camera camera = orbit(camera_, settings_.orbit * frame);
+    RenderOptions options;
+    options.camera = camera;
+    options.width = settings_.width;
+    options.height = settings_.height;
+    options.samples = settings_.samples;
+    options.colours = map_.table;
+    options.background = background_;
+    options.transparent = transparent_;
+    std::vector<float> scalar;
+    if (input_.vectors.colored()) {
+      scalar = input_.vectors.scalar(pipeline_.time());
+      options.scalar = scalar;
+      options.low = input_.vectors.color_low();
+      options.high = input_.vectors.color_high();
+    }
+    Image image;
+    image.width = settings_.width;
+    image.height = settings_.height;
+    image.pixels = pipeline_.render(options);
+    if (settings_.legend && input_.vectors.colored())
+      draw_legend(image, map_, options.low, options.high, settings_.color == "speed" ? input_.array : settings_.color);
+    if (settings_.time_stamp && input_.vectors.end() > input_.vectors.start())
+      draw_time(image, pipeline_.time(), "", frame_time_);
+    if (settings_.legend) draw_orientation(image, Vec3f(camera.right()), Vec3f(cross(camera.right(), camera.forward())), Vec3f(camera.forward()));
+    return image;
+  }
+
+ private:
+  static std::array<float, 3> parse_color(const std::string& text) {
+    if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+      throw UsageError("--background takes #rrggbb or transparent, not '" + text + "'");
+    const int rgb = std::stoi(text.substr(1), nullptr, 16);
+    return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
+  }
+
+  FlowPipeline& pipeline_;
+  FlowInput& input_;
+  const Settings& settings_;
+  double frame_time_;
+  const Colormap& map_;
+  Camera camera_;
+  std::array<float, 3> background_{1, 1, 1};
+  bool transparent_ = false;
+};
+
+void write_values(const FlowPipeline& pipeline, const std::filesystem::path& file, double time) {
+  const FlowValues v = pipeline.values();
+  const std::size_t n = v.value.size();
+  const auto vectors = [&](std::string name, const auto& from) {
+    PointArray array{std::move(name), 3, std::vector<float>(3 * n)};
+    for (std::size_t i = 0; i < n; ++i)
+      for (int k = 0; k < 3; ++k) array.values[3 * i + k] = float(from[i][k]);
+    return array;
+  };
+  const std::vector<PointArray> arrays{{"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal),
+                                       vectors("closest_point", v.closest_point)};
+  write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time);
+}
+
+nlohmann::json median_min_max(std::vector<double> seconds) {
+  if (seconds.empty()) return {{"median", 0}, {"min", 0}, {"max", 0}};
+  std::sort(seconds.begin(), seconds.end());
+  return {{"median", seconds[seconds.size() / 2]}, {"min", seconds.front()}, {"max", seconds.back()}};
+}
+
+nlohmann::json embedding_report(const EmbeddingInfo& e) {
+  return {{"kind", "grid"},
+          {"dimensions", {e.dimensions.x, e.dimensions.y, e.dimensions.z}},
+          {"cells", e.cells},
+          {"surface_cells", e.surface_cells},
+          {"bytes", e.bytes},
+          {"dense_bytes", e.dense_bytes},
+          {"sparseness_percent", 100.0 * (1 - double(e.bytes) / std::max<double>(1, double(e.dense_bytes)))},
+          {"closest_point_dimensions", {e.closest_point_dimensions.x, e.closest_point_dimensions.y, e.closest_point_dimensions.z}},
+          {"closest_point_cells", e.closest_point_cells},
+          {"cell_size", e.cell_size}};
+}
+
+void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
+  const Session session = make_session(options, knob_options);
+  const Settings& settings = session.settings;
+  if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
+  const std::unique_ptr<Device> device = make_device(options.common.device, options.common.threads);
+  say(options.common, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));
+  const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
+  pipeline->watch(&interrupt_flag());
+  pipeline->parameters = settings.flow;
+  FlowInput input = read_input(options, session, pipeline->timers());
+  const PreparedSurface& surface = input.vectors.surface();
+
+  double start = input.vectors.start(), end = input.vectors.end();
+  if (!options.time.empty()) {
+    std::tie(start, end) = parse_pair(options.time, ':', "--time");
+    if (end < start) throw UsageError("--time ends before it starts");
+    if (start > input.vectors.end() || end < input.vectors.start())
+      throw Error(fmt::format("--time {} is outside of the data", options.time), "",
+                  fmt::format("use {:g}:{:g}", input.vectors.start(), input.vectors.end()));
+  }
+  const double frame_time = (end - start) / std::max(1, settings.flow.steps);
+  Painter painter(*pipeline, input, settings, frame_time);  // complains about the camera and colours before the work
+  std::unique_ptr<FrameSink> frames, video;
+  if (!options.frames.empty()) frames = make_frame_folder(options.frames);
+  if (!options.video.empty()) video = make_video(options.video, settings.fps);
+
+  Progress progress(options.common.quiet);
+  progress.update("embed", 0);
+  pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
+  FlowVectors vectors;
+  vectors.at = [&](double t, std::span<Vec3f> out) { input.vectors.vectors(t, out); };
+  vectors.start = start;
+  vectors.end = end;
+  vectors.reference_speed = input.vectors.statistics().percentile_98 > 0 ? input.vectors.statistics().percentile_98 : 1;
+  progress.update("warm-up", 0.02);
+  pipeline->start(vectors);
+  std::vector<double> seconds;
+  for (int k = 0; k < settings.flow.steps; ++k) {
+    const auto before = std::chrono::steady_clock::now();
+    pipeline->step();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
+    if (frames || video) {
+      const Image image = painter.paint(k);
+      StageTimers::Scope scope(pipeline->timers(), "write");
+      if (frames) frames->add(image);
+      if (video) video->add(image);
+    }
+    progress.update("step", double(k + 1) / settings.flow.steps);
+    if (interrupt_flag()) throw Interrupted();
+  }
+
+  nlohmann::json outputs = nlohmann::json::array();
+  const auto wrote = [&](const std::string& file) { outputs.push_back(file); };
+  if (!options.image.empty()) {
+    const Image image = painter.paint(std::max(0, settings.flow.steps - 1));
+    StageTimers::Scope scope(pipeline->timers(), "write");
+    write_png(options.image, image);
+    wrote(options.image);
+  }
+  {
+    StageTimers::Scope scope(pipeline->timers(), "write");
+    if (frames) frames->finish(), wrote(options.frames);
+    if (video) video->finish(), wrote(options.video);
+    if (!options.out.empty()) write_values(*pipeline, options.out, pipeline->time()), wrote(options.out);
+  }
+  progress.clear();
+  if (!options.common.report.empty()) {
+    nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
+    report["input"] = {{"name", input.name}, {"vectors", input.array}, {"points", surface.points.size()},
+                       {"triangles", surface.triangles.size()}, {"time", {start, end}},
+                       {"reference_speed", vectors.reference_speed}, {"normal_share", input.vectors.statistics().normal_share},
+                       {"zero_share", input.vectors.statistics().zero_share}};
+    report["parameters"] = knob_values(settings);
+    report["embedding"] = embedding_report(pipeline->embedding());
+    report["flow"] = {{"steps", settings.flow.steps}, {"seconds_per_step", median_min_max(seconds)}};
+    report["outputs"] = outputs;
+    write_text(options.common.report, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  for (const auto& file : outputs) fmt::print("{}\n", file.get<std::string>());
+}
+
+}  // namespace
+
+void add_flow_command(CLI::App& program, std::function<void()>& run) {
+  CLI::App* command = program.add_subcommand("flow", "unsteady flow on a surface: picture, frames, video, values");
+  auto options = std::make_shared<FlowOptions>();
+  command->add_option("FILE", options->files, "surface with vectors; several files are one series");
+  command->add_option("--sample", options->sample, "a built-in data set; `nacre sample` lists them");
+  command->add_option("--detail", options->detail, "triangle edges along the sample's longest side (0: its own)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--time", options->time, "T0:T1 of the data (all of it)");
+  command->add_option("--size", options->size, "WxH of the picture");
+  command->add_option("--image", options->image, "write the last frame as PNG");
+  command->add_option("--frames", options->frames, "write every frame into a folder");
+  command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");
+  command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
+  command->add_flag("--no-legend", options->no_legend, "no colour legend and axes");
+  command->add_flag("--no-time", options->no_time, "no time stamp");
+  add_common_options(*command, options->common);
+  auto knob_options = std::make_shared<KnobOptions>(*command);
+  command->callback([&run, options, knob_options] { run = [options, knob_options] { run_flow(*options, *knob_options); }; });
+}
+
+}  // namespace nacre

@@ -1,0 +1,74 @@
+// Nacre: main: words in, exit status out.
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdio>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "app/commands.hpp"
+#include "app/common.hpp"
+#include "compute/device/error.hpp"
+#include "engine/io/atomic_file.hpp"
+#include "engine/scene/knobs.hpp"
+
+namespace {
+
+enum Status { done = 0, failed = 1, usage = 2, interrupted = 130 };
+
+/// One line, whatever the text.
+int fail(Status status, std::string line) {
+  for (char& c : line)
+    if (c == '\n') c = ' ';
+  fmt::print(stderr, "nacre: {}\n", line);
+  return status;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Nacre: flow on surfaces, and meshes from volumes.", "nacre");
+  program.set_version_flag("--version", std::string("nacre ") + nacre::version);
+  bool knobs = false;
+  program.add_flag("--knobs", knobs, "print the table of knobs");
+  std::function<void()> command;
+  nacre::add_flow_command(program, command);
+  nacre::add_info_command(program, command);
+  nacre::add_sample_command(program, command);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& success) {  // --help, --version
+    return program.exit(success);
+  } catch (const CLI::ParseError& error) {
+    return fail(usage, std::string(error.what()) + "; see nacre --help");
+  }
+  if (knobs) {
+    fmt::print("{}", nacre::knob_table());
+    return done;
+  }
+  if (!command) {
+    fmt::print("{}", program.help());
+    return usage;
+  }
+  command();
+  return done;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  nacre::catch_interrupts();
+  try {
+    return run(argc, argv);
+  } catch (const nacre::Interrupted&) {
+    nacre::remove_unfinished_files();
+    return interrupted;
+  } catch (const nacre::UsageError& error) {
+    return fail(usage, std::string(error.what()));
+  } catch (const std::bad_alloc&) {
+    nacre::remove_unfinished_files();
+    return fail(failed, "out of memory; lower --resolution");
+  } catch (const std::exception& error) {
+    nacre::remove_unfinished_files();
+    return fail(nacre::interrupt_flag() ? interrupted : failed, error.what());
+  }
+}

@@ -1,0 +1,93 @@
+// Nacre: the memory pool of sec. 5.3: one block, permanent data from the head, temporaries from the tail.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "compute/device/array.hpp"
+#include "compute/device/device.hpp"
+#include "compute/device/error.hpp"
+
+namespace nacre {
+
+/// One block of a device. Permanent arrays grow from its head, temporary ones from its tail, so that the two are never
+/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the tail.
+class Arena {
+ public:
+  Arena(Device& device, std::size_t bytes)
+      : device_(device),
+        capacity_(bytes / 256 * 256),
+        block_(static_cast<std::uint8_t*>(device.allocate(capacity_))),
+        tail_(capacity_) {}
+  ~Arena() { device_.deallocate(block_, capacity_); }
+  Arena(const Arena&) = delete;
+  Arena& operator=(const Arena&) = delete;
+
+  /// `count` elements that last until `rewind`. Throws Error when the block is full.
+  template <class T>
+  Array<T> permanent(std::size_t count) {
+    const std::size_t start = head_;
+    require(aligned(count * sizeof(T)));
+    head_ += aligned(count * sizeof(T));
+    note_peak();
+    return {device_, reinterpret_cast<T*>(block_ + start), count};
+  }
+
+  /// `permanent`, filled with a copy of `host`.
+  template <class T>
+  Array<T> permanent_copy(std::span<const T> host) {
+    Array<T> array = permanent<T>(host.size());
+    array.upload(host);
+    return array;
+  }
+
+  /// `count` elements that last until the innermost Scope ends.
+  template <class T>
+  Array<T> temporary(std::size_t count) {
+    require(aligned(count * sizeof(T)));
+    tail_ -= aligned(count * sizeof(T));
+    note_peak();
+    return {device_, reinterpret_cast<T*>(block_ + tail_), count};
+  }
+
+  /// Gives the temporaries made during its life back.
+  class Scope {
+   public:
+    explicit Scope(Arena& arena) : arena_(arena), tail_(arena.tail_) {}
+    ~Scope() { arena_.tail_ = tail_; }
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Arena& arena_;
+    std::size_t tail_;
+  };
+
+  std::size_t mark() const { return head_; }         ///< where the head is now
+  void rewind(std::size_t mark) { head_ = mark; }    ///< drops every permanent array made after `mark`
+  std::size_t free_bytes() const { return tail_ - head_; }
+  std::size_t peak_bytes() const { return peak_; }
+  Device& device() const { return device_; }
+
+ private:
+  static std::size_t aligned(std::size_t bytes) { return (bytes + 255) / 256 * 256; }
+
+  void require(std::size_t bytes) const {
+    if (bytes > free_bytes())
+      throw Error("not enough memory on the device", std::to_string(bytes >> 20) + " MiB asked, " +
+                  std::to_string(free_bytes() >> 20) + " MiB free", "lower the resolution");
+  }
+
+  void note_peak() { peak_ = std::max(peak_, capacity_ - free_bytes()); }
+
+  Device& device_;
+  std::size_t capacity_;
+  std::uint8_t* block_;
+  std::size_t head_ = 0;
+  std::size_t tail_;
+  std::size_t peak_ = 0;
+};
+
+}  // namespace nacre

@@ -1,0 +1,53 @@
+// Nacre: typed memory on one device.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "compute/device/device.hpp"
+
+namespace nacre {
+
+/// `size` elements on a device, inside an Arena's block (which owns them). The host may not look at the elements:
+/// `upload` and `download` are the only ways across.
+template <class T>
+class Array {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  Array() = default;
+  Array(Device& device, T* data, std::size_t size) : device_(&device), data_(data), size_(size) {}
+
+  T* data() const { return data_; }  ///< for kernels only
+  std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(T); }
+  explicit operator bool() const { return data_ != nullptr; }
+
+  void upload(std::span<const T> host) {
+    assert(host.size() <= size_);
+    if (!host.empty()) device_->copy_to_device(data_, host.data(), host.size_bytes());
+  }
+
+  std::vector<T> download() const { return download(0, size_); }
+
+  std::vector<T> download(std::size_t first, std::size_t count) const {
+    assert(first + count <= size_);
+    std::vector<T> host(count);
+    if (count) device_->copy_to_host(host.data(), data_ + first, count * sizeof(T));
+    return host;
+  }
+
+  void fill_bytes(unsigned char value) {
+    if (size_) device_->fill(data_, value, bytes());
+  }
+
+ private:
+  Device* device_ = nullptr;
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace nacre

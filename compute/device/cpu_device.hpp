@@ -1,0 +1,59 @@
+// Nacre: the CPU as a device.
+#pragma once
+
+#include <oneapi/tbb/task_arena.h>
+
+#include <atomic>
+#include <map>
+#include <mutex>
+
+#include "compute/device/device.hpp"
+
+namespace nacre {
+
+class CpuDevice final : public Device {
+ public:
+  CpuDevice(int threads, bool remote);
+  ~CpuDevice() override;
+
+  std::string backend() const override { return "cpu"; }
+  std::string name() const override;
+  int threads() const override { return threads_; }
+  void* allocate(std::size_t bytes) override;
+  void deallocate(void* block, std::size_t bytes) noexcept override;
+  void copy_to_device(void* to, const void* host, std::size_t bytes) override;
+  void copy_to_host(void* host, const void* from, std::size_t bytes) override;
+  void fill(void* to, unsigned char value, std::size_t bytes) override;
+  void synchronize() override {}
+  std::size_t available_bytes() const override;
+  std::size_t arena_bytes() const override;
+  std::size_t peak_bytes() const override;
+
+  tbb::task_arena& workers() { return workers_; }
+
+  /// While one lives, a remote device's memory is open to its kernels.
+  class Access {
+   public:
+    explicit Access(CpuDevice& device) : device_(device) { device_.open(); }
+    ~Access() { device_.close(); }
+    Access(const Access&) = delete;
+    Access& operator=(const Access&) = delete;
+
+   private:
+    CpuDevice& device_;
+  };
+
+ private:
+  void open();
+  void close();
+  void protect(int protection);
+
+  int threads_;
+  bool remote_;
+  tbb::task_arena workers_;
+  std::mutex mutex_;
+  int open_ = 0;
+  std::map<void*, std::size_t> blocks_;
+};
+
+}  // namespace nacre

@@ -1,0 +1,47 @@
+// Nacre: a place where memory lives and kernels run.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+namespace nacre {
+
+/// Memory of one backend. Chosen once per run; everything a pipeline makes lives on one device.
+/// Pointers from `allocate` must not be read on the host: copy them with a named call, also on the CPU.
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  virtual std::string backend() const = 0;  ///< "cpu" or "cuda"
+  virtual std::string name() const = 0;     ///< the processor, for the report
+  virtual int threads() const = 0;          ///< worker threads (1 for CUDA)
+
+  /// A block aligned to 256 bytes, not initialised. Throws Error when there is not that much.
+  virtual void* allocate(std::size_t bytes) = 0;
+  virtual void deallocate(void* block, std::size_t bytes) noexcept = 0;
+  virtual void copy_to_device(void* to, const void* host, std::size_t bytes) = 0;
+  virtual void copy_to_host(void* host, const void* from, std::size_t bytes) = 0;
+  virtual void fill(void* to, unsigned char value, std::size_t bytes) = 0;
+  virtual void synchronize() = 0;
+
+  virtual std::size_t available_bytes() const = 0;  ///< what can still be had without harming others
+  /// Largest block worth asking for as an arena: memory that costs nothing until touched may be asked for generously.
+  virtual std::size_t arena_bytes() const = 0;
+  virtual std::size_t peak_bytes() const = 0;  ///< most device memory in use so far
+};
+
+/// The CPU with `threads` workers (0: all). With `remote`, its memory can be touched only while a kernel or a named
+/// copy runs: any other access is a segmentation fault, so that a missing copy fails without a GPU.
+std::unique_ptr<Device> make_cpu_device(int threads = 0, bool remote = false);
+
+/// Number of usable CUDA devices: 0 without a driver or in a build without CUDA.
+int cuda_device_count();
+
+/// The first CUDA device. Throws Error where there is none or the build has no CUDA.
+std::unique_ptr<Device> make_cuda_device();
+
+/// `request`: "auto" (CUDA where usable, else CPU), "cpu" or "cuda".
+std::unique_ptr<Device> make_device(const std::string& request, int threads = 0);
+
+}  // namespace nacre

@@ -1,0 +1,73 @@
+// Nacre: the launches that algorithms are made of. Algorithms include this file; `x_cpu.cpp` and `x_cuda.cu` add the
+// definition for their backend (executor_cpu.hpp, executor_cuda.cuh) and instantiate.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+#include "compute/device/arena.hpp"
+#include "compute/device/backend.hpp"
+#include "compute/device/stage_timers.hpp"
+
+namespace nacre {
+
+/// How far a long stage is: `fraction` in 0..1.
+using ProgressCallback = std::function<void(std::string_view stage, double fraction)>;
+
+/// What every launch of one pipeline shares, whatever the backend.
+class ExecutorBase {
+ public:
+  explicit ExecutorBase(Device& device) : device_(device), arena_(device, device.arena_bytes()) {}
+
+  Device& device() { return device_; }
+  Arena& arena() { return arena_; }
+  StageTimers& timers() { return timers_; }
+
+  /// Set from a signal handler or another thread; the next launch throws Interrupted.
+  void watch(const std::atomic<bool>* stop) { stop_ = stop; }
+  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+  void check_stop() const {
+    if (stopped()) throw Interrupted();
+  }
+
+ private:
+  Device& device_;
+  Arena arena_;
+  StageTimers timers_;
+  const std::atomic<bool>* stop_ = nullptr;
+};
+
+/// Executor<Cpu> and Executor<Cuda> both give:
+///
+///   for_each(n, kernel)              kernel(i) for i in 0..n-1, in any order and in parallel
+///   exclusive_scan(in, out, n)       out[i] = in[0] + .. + in[i-1]; returns the sum of all; in == out allowed
+///   sort(keys, n)                    ascending 64-bit keys (unique, or it does not matter which of two equals is first)
+///   reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if merge
+///                                    is exact (integers, minimum, maximum)
+///   stage(name)                      a scope that times a stage, the device's work included
+///
+/// Kernels are plain function objects; pointers in them are device pointers.
+template <class Backend>
+class Executor;
+
+/// Adds to memory that many threads add to; exact, so the order does not matter.
+NACRE_HD_INLINE void atomic_add(std::uint64_t* to, std::uint64_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(value));
+#else
+  __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Writes a flag that several threads may write at once with the same value.
+NACRE_HD_INLINE void relaxed_store(std::uint32_t* to, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  *reinterpret_cast<volatile unsigned*>(to) = value;
+#else
+  __atomic_store_n(to, value, __ATOMIC_RELAXED);
+#endif
+}
+
+}  // namespace nacre

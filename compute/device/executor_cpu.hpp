@@ -1,0 +1,104 @@
+// Nacre: the launches on oneTBB.
+#pragma once
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
+#include <oneapi/tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "compute/device/cpu_device.hpp"
+#include "compute/device/executor.hpp"
+
+namespace nacre {
+
+template <>
+class Executor<Cpu> : public ExecutorBase {
+ public:
+  explicit Executor(Device& device) : ExecutorBase(device), cpu_(dynamic_cast<CpuDevice&>(device)) {}
+
+  StageTimers::Scope stage(std::string_view name) { return {timers(), name}; }
+
+  template <class Kernel>
+  void for_each(std::int64_t n, const Kernel& kernel) {
+    run(n, [&](std::int64_t first, std::int64_t last) {
+      const Kernel local = kernel;  // a copy on the stack: its members cannot alias what the kernel writes
+      for (std::int64_t i = first; i < last; ++i) local(i);
+    });
+  }
+
+  template <class T>
+  T exclusive_scan(const T* in, T* out, std::int64_t n) {
+    const std::int64_t block = 1 << 16;
+    const std::int64_t blocks = (n + block - 1) / block;
+    std::vector<T> sums(blocks + 1, T(0));
+    run(blocks, [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t b = first; b < last; ++b) {
+        T sum = 0;
+        for (std::int64_t i = b * block; i < std::min(n, (b + 1) * block); ++i) sum += in[i];
+        sums[b + 1] = sum;
+      }
+    });
+    for (std::int64_t b = 0; b < blocks; ++b) sums[b + 1] += sums[b];
+    run(blocks, [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t b = first; b < last; ++b) {
+        T sum = sums[b];
+        for (std::int64_t i = b * block; i < std::min(n, (b + 1) * block); ++i) {
+          const T value = in[i];
+          out[i] = sum;
+          sum += value;
+        }
+      }
+    });
+    return sums[blocks];
+  }
+
+  void sort(std::uint64_t* keys, std::int64_t n) {
+    check_stop();
+    CpuDevice::Access access(cpu_);
+    cpu_.workers().execute([&] { tbb::parallel_sort(keys, keys + n); });
+  }
+
+  template <class T, class Get, class Merge>
+  T reduce(std::int64_t n, T identity, const Get& get, const Merge& merge) {
+    check_stop();
+    CpuDevice::Access access(cpu_);
+    T result = identity;
+    cpu_.workers().execute([&] {
+      result = tbb::parallel_deterministic_reduce(
+          tbb::blocked_range<std::int64_t>(0, n, 1 << 14), identity,
+          [&](const tbb::blocked_range<std::int64_t>& range, T value) {
+            for (std::int64_t i = range.begin(); i < range.end(); ++i) value = merge(value, get(i));
+            return value;
+          },
+          merge);
+    });
+    return result;
+  }
+
+ private:
+  /// Calls body(first, last) over pieces of 0..n-1 on the device's workers; leaves early when the user asks to stop.
+  template <class Body>
+  void run(std::int64_t n, const Body& body) {
+    check_stop();
+    if (n <= 0) return;
+    {
+      CpuDevice::Access access(cpu_);
+      cpu_.workers().execute([&] {
+        tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, n), [&](const tbb::blocked_range<std::int64_t>& range) {
+          for (std::int64_t first = range.begin(); first < range.end() && !stopped(); first += piece)
+            body(first, std::min(first + piece, range.end()));
+        });
+      });
+    }
+    check_stop();
+  }
+
+  static constexpr std::int64_t piece = 1 << 14;  // elements between two looks at the stop flag
+
+  CpuDevice& cpu_;
+};
+
+}  // namespace nacre

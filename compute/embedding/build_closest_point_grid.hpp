@@ -1,0 +1,266 @@
+// Nacre: the closest-point grid from triangles (sec. 5.1.1, Alg. 5.1, corrected as the notes in docs/method.md say).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "compute/device/executor.hpp"
+#include "compute/embedding/cells_near.hpp"
+#include "compute/embedding/closest_point_grid.hpp"
+#include "compute/embedding/clusters.hpp"
+#include "compute/embedding/sorted_pairs.hpp"
+
+namespace nacre {
+
+/// A closest-point grid and who owns its arrays.
+struct ClosestPointGrid {
+  Int3 bricks{};
+  int sub = 4;
+  float radius = 0;
+  std::uint32_t brick_count = 0;
+  std::uint64_t cells = 0;  ///< stored: brick_count * sub^3
+  Array<std::uint32_t> brick_index;
+  Array<std::uint64_t> brick_code;
+  Array<Float4> offset;
+  Array<std::uint32_t> triangle;
+  Array<std::uint32_t> touch_start;
+  Array<std::uint32_t> touch_triangle;
+
+  ClosestPointGridView view() const {
+    return {bricks, sub, Divider(sub), radius, brick_index.data(), brick_code.data(), offset.data(),
+            triangle.data(), touch_start.data(), touch_triangle.data()};
+  }
+
+  std::uint64_t bytes() const {
+    return brick_index.bytes() + brick_code.bytes() + offset.bytes() + triangle.bytes() + touch_start.bytes() +
+           touch_triangle.bytes();
+  }
+};
+
+namespace detail {
+
+/// The bricks that come within `radius` of a cluster.
+struct BricksNearCluster {
+  MeshView mesh;
+  const std::uint32_t* order;
+  const std::uint32_t* start;
+  const ClusterBound* bound;
+  Int3 bricks;
+  double cells_per_brick, radius;
+
+  template <class Visit>
+  NACRE_HD void operator()(std::int64_t k, Visit&& visit) const {
+    const double scale = 1.0 / cells_per_brick, margin = radius * scale;
+    auto emit = [&](const Int3& brick) { visit(std::uint32_t(morton(brick))); };
+    if (start[k + 1] - start[k] == 1) {
+      for_cells_near(mesh.corners(order[start[k]]) * scale, margin, bricks, emit);
+      return;
+    }
+    const Vec3d centre = Vec3d(bound[k].centre) * scale;
+    const double reach = bound[k].radius * scale * 1.0001 + margin + 1e-4;
+    Int3 first, last;
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = clamp_cell(centre[axis] - reach, bricks[axis]);
+      last[axis] = clamp_cell(centre[axis] + reach, bricks[axis]);
+    }
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          const Vec3d low{double(x), double(y), double(z)};
+          const Vec3d nearest = max(low, min(low + Vec3d(1.0), centre)) - centre;
+          if (dot(nearest, nearest) <= reach * reach) emit({x, y, z});
+        }
+  }
+};
+
+/// Writes what begins at the first key of each brick.
+struct BrickStart {
+  std::uint64_t pairs;
+  std::uint32_t count;
+  Int3 bricks;
+  const std::uint64_t* keys;
+  const std::uint32_t* number;
+  std::uint64_t* start;
+  std::uint64_t* code;
+  std::uint32_t* index;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t next = std::uint64_t(i) + 1 < pairs ? number[i + 1] : count;
+    if (next != number[i]) {
+      const std::uint32_t b = number[i];
+      start[b] = std::uint64_t(i);
+      code[b] = keys[i] >> 32;
+      const Int3 c = morton_cell(code[b]);
+      index[(std::int64_t(c.z) * bricks.y + c.y) * bricks.x + c.x] = b;
+    }
+    if (std::uint64_t(i) + 1 == pairs) start[count] = pairs;
+  }
+};
+
+/// Exact closest points of an octet (2^3 cells) among the clusters of its brick. The octet keeps the few clusters that
+/// can hold a closest point of any of its cells, then each cell looks at those only.
+struct ClosestOfOctet {
+  static constexpr int room = 96;  // clusters kept; with more than that every cell looks at the whole list
+
+  MeshView mesh;
+  ClosestPointGridView grid;
+  const std::uint32_t* order;
+  const std::uint32_t* cluster_start;
+  const ClusterBound* bound;
+  const std::uint64_t* list_start;
+  const std::uint64_t* list;  // keys: the low half is the cluster
+  Float4* offset;
+  std::uint32_t* triangle;
+
+  NACRE_HD static int octets(int sub) { return (sub + 1) / 2; }
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const int n = octets(grid.sub);
+    const auto brick = std::uint32_t(i / (n * n * n));
+    const int o = int(i % (n * n * n));
+    const Int3 corner{2 * (o % n), 2 * (o / n % n), 2 * (o / (n * n))};
+    const Int3 origin = morton_cell(grid.brick_code[brick]) * Int3(grid.sub);
+    const std::uint64_t first = list_start[brick], last = list_start[brick + 1];
+    std::uint32_t kept[room];
+    const int count = keep(Vec3f(origin + corner) + Vec3f(1.0f), first, last, kept);
+    for (int k = 0; k < 8; ++k) {
+      const Int3 local = corner + Int3(k & 1, k >> 1 & 1, k >> 2);
+      if (local.x >= grid.sub || local.y >= grid.sub || local.z >= grid.sub) continue;
+      const std::uint32_t at = brick * grid.cells_per_brick() + (local.z * grid.sub + local.y) * grid.sub + local.x;
+      const Vec3d x = Vec3d(origin + local) + Vec3d(0.5);
+      if (count <= room) search(at, x, std::uint64_t(count), [&](std::uint64_t c) { return kept[c]; });
+      else search(at, x, last - first, [&](std::uint64_t c) { return std::uint32_t(list[first + c]); });
+    }
+  }
+
+  /// Clusters that may hold a closest point of a cell of the octet around `centre`; more than `room`: none are kept.
+  NACRE_HD int keep(const Vec3f& centre, std::uint64_t first, std::uint64_t last, std::uint32_t* kept) const {
+    const float half = 0.8661f;  // from the octet's centre to that of a cell
+    float nearest = 1e30f;
+    for (std::uint64_t k = first; k < last; ++k) {
+      const float d = bound[std::uint32_t(list[k])].upper(centre);
+      nearest = d < nearest ? d : nearest;
+    }
+    const float reach = nearest + 2 * half + 1e-2f;
+    int count = 0;
+    for (std::uint64_t k = first; k < last && count <= room; ++k) {
+      const auto c = std::uint32_t(list[k]);
+      if (bound[c].lower(centre) > reach) continue;
+      if (count < room) kept[count] = c;
+      ++count;
+    }
+    return count;
+  }
+
+  template <class Candidate>
+  NACRE_HD void search(std::uint32_t at, const Vec3d& x, std::uint64_t count, const Candidate& candidate) const {
+    const Vec3f centre(x);
+    float reach = 1e30f;
+    for (std::uint64_t k = 0; k < count; ++k) {
+      const float d = bound[candidate(k)].upper(centre);
+      reach = d < reach ? d : reach;
+    }
+    reach += 1e-2f;
+    double best = double(reach) * reach;
+    Vec3d closest{};
+    std::uint32_t winner = none;
+    for (std::uint64_t k = 0; k < count; ++k) {
+      const std::uint32_t c = candidate(k);
+      if (bound[c].lower(centre) > reach) continue;
+      for (std::uint32_t j = cluster_start[c]; j < cluster_start[c + 1]; ++j) {
+        const std::uint32_t t = order[j];
+        const Vec3d p = nacre::closest_point(mesh.corners(t), x);
+        const double d = dot(p - x, p - x);
+        if (d > best || (d == best && t > winner)) continue;
+        best = d;
+        closest = p;
+        winner = t;
+        reach = float(std::sqrt(best)) + 1e-2f;
+      }
+    }
+    const Vec3f o(closest - x);
+    offset[at] = {o.x, o.y, o.z, float(std::sqrt(best))};
+    triangle[at] = winner;
+  }
+};
+
+/// The cells that a triangle touches, by address.
+struct CellsTouched {
+  MeshView mesh;
+  ClosestPointGridView grid;
+  template <class Visit>
+  NACRE_HD void operator()(std::int64_t t, Visit&& visit) const {
+    for_cells_near(mesh.corners(std::uint32_t(t)), 0.0, grid.dims(), [&](const Int3& c) { visit(grid.address(c)); });
+  }
+};
+
+/// First position whose key's upper half is at least the cell: the lists as offsets.
+struct TouchStart {
+  std::uint64_t pairs;
+  const std::uint64_t* keys;
+  std::uint32_t* start;
+  NACRE_HD void operator()(std::int64_t cell) const {
+    std::uint64_t low = 0, high = pairs;
+    while (low < high) {
+      const std::uint64_t middle = (low + high) / 2;
+      if (keys[middle] >> 32 < std::uint64_t(cell)) low = middle + 1;
+      else high = middle;
+    }
+    start[cell] = std::uint32_t(low);
+  }
+};
+
+struct LowHalf {
+  const std::uint64_t* keys;
+  std::uint32_t* value;
+  NACRE_HD void operator()(std::int64_t i) const { value[i] = std::uint32_t(keys[i]); }
+};
+
+}  // namespace detail
+
+/// Builds the grid around `triangles` triangles whose points are in cells, inside `bricks` coarse cells (each extent at
+/// most 1024) of `sub` cells per axis. Marks every brick that comes within `radius` cells of a triangle, not only those
+/// that hold a vertex, and takes the true closest triangle, not one that shares the nearest vertex (Alg. 5.1 does
+/// neither). Arrays are permanent in the executor's arena. Throws Error when they do not fit.
+template <class Backend>
+ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles,
+                                          Int3 bricks, int sub, float radius) {
+  Arena& arena = exec.arena();
+  ClosestPointGrid grid;
+  grid.bricks = bricks;
+  grid.sub = sub;
+  grid.radius = radius;
+  grid.brick_index = arena.permanent<std::uint32_t>(std::size_t(bricks.x) * bricks.y * bricks.z);
+  grid.brick_index.fill_bytes(0xff);
+  {
+    Arena::Scope scope(arena);
+    const Clusters clusters = make_clusters(exec, mesh, triangles, bricks * Int3(sub));
+    const detail::BricksNearCluster near{mesh,   clusters.order.data(), clusters.start.data(), clusters.bound.data(),
+                                         bricks, double(sub),           double(radius)};
+    const Array<std::uint64_t> pairs = sorted_pairs(exec, clusters.count, near);
+    Array<std::uint32_t> number;
+    grid.brick_count = number_places(exec, pairs, number);
+    grid.cells = std::uint64_t(grid.brick_count) * sub * sub * sub;
+    if (grid.cells >= none) throw Error("the grid is too fine", "over 2^32 cells", "lower --resolution");
+    Array<std::uint64_t> list_start = arena.temporary<std::uint64_t>(grid.brick_count + 1);
+    grid.brick_code = arena.permanent<std::uint64_t>(grid.brick_count);
+    exec.for_each(pairs.size(), detail::BrickStart{pairs.size(), grid.brick_count, bricks, pairs.data(), number.data(),
+                                                   list_start.data(), grid.brick_code.data(), grid.brick_index.data()});
+    grid.offset = arena.permanent<Float4>(grid.cells);
+    grid.triangle = arena.permanent<std::uint32_t>(grid.cells);
+    const int octets = detail::ClosestOfOctet::octets(sub);
+    exec.for_each(std::int64_t(grid.brick_count) * octets * octets * octets,
+                  detail::ClosestOfOctet{mesh, grid.view(), clusters.order.data(), clusters.start.data(),
+                                         clusters.bound.data(), list_start.data(), pairs.data(), grid.offset.data(),
+                                         grid.triangle.data()});
+  }
+  Arena::Scope scope(arena);
+  const Array<std::uint64_t> pairs = sorted_pairs(exec, triangles, detail::CellsTouched{mesh, grid.view()});
+  if (pairs.size() >= none) throw Error("the mesh is too fine", "over 2^32 pairs of triangle and cell");
+  grid.touch_start = arena.permanent<std::uint32_t>(grid.cells + 1);
+  grid.touch_triangle = arena.permanent<std::uint32_t>(pairs.size());
+  exec.for_each(grid.cells + 1, detail::TouchStart{pairs.size(), pairs.data(), grid.touch_start.data()});
+  exec.for_each(pairs.size(), detail::LowHalf{pairs.data(), grid.touch_triangle.data()});
+  return grid;
+}
+
+}  // namespace nacre

@@ -1,0 +1,235 @@
+// Nacre: the two-level closest-point grid as kernels see it (sec. 5.1): look-up, interpolation, projection.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "compute/embedding/triangle.hpp"
+#include "compute/grid/lanes.hpp"
+#include "compute/grid/morton.hpp"
+#include "compute/grid/vec.hpp"
+#include "compute/grid/weno4.hpp"
+
+namespace nacre {
+
+inline constexpr std::uint32_t none = 0xffffffffu;
+
+/// The triangles behind an embedding. Points are in cells of the closest-point grid.
+struct MeshView {
+  const Vec3d* points;
+  const Triangle* triangles;
+  const Vec3f* corner_normals;  ///< 3 per triangle
+
+  NACRE_HD Corners corners(std::uint32_t t) const {
+    const Triangle tri = triangles[t];
+    return {points[tri.a], points[tri.b], points[tri.c]};
+  }
+
+  /// Unit normal at a point with these barycentric coordinates.
+  NACRE_HD Vec3f normal(std::uint32_t t, const Vec3f& weights) const {
+    const Vec3f* n = corner_normals + 3 * std::size_t(t);
+    return normalized(n[0] * weights.x + n[1] * weights.y + n[2] * weights.z);
+  }
+};
+
+/// Division of a cell coordinate by a small number, by shifting where that will do.
+struct Divider {
+  int divisor = 1;
+  int shift = 0;  ///< -1: not a power of two
+  float inverse = 1;
+
+  NACRE_HD Divider() = default;
+  NACRE_HD explicit Divider(int d) : divisor(d), shift(-1), inverse(1.0f / float(d)) {
+    for (int k = 0; k < 5; ++k)
+      if (d == 1 << k) shift = k;
+  }
+  /// Exact for 0 <= i < 2^20; floors for negative ones.
+  NACRE_HD int operator()(int i) const { return shift >= 0 ? i >> shift : int(std::floor((float(i) + 0.5f) * inverse)); }
+};
+
+/// A coarse grid of bricks near the surface, `sub`^3 cells each. Cell (i, j, k) has its centre at (i, j, k) + 0.5; all
+/// lengths are in cells. Every cell of a brick holds a closest point; within `radius` of the surface it is the exact one.
+struct ClosestPointGridView {
+  Int3 bricks{};  ///< extent of the coarse grid
+  int sub = 4;    ///< cells per brick and axis, 3..8
+  Divider divide{4};  ///< by sub
+  float radius = 0;
+  const std::uint32_t* brick_index = nullptr;  ///< per coarse cell, x fastest: number of its brick, or `none`
+  const std::uint64_t* brick_code = nullptr;   ///< per brick: Morton code of its coarse cell
+  const Float4* offset = nullptr;              ///< per cell: closest point minus centre, and its length
+  const std::uint32_t* triangle = nullptr;     ///< per cell: the triangle of the closest point
+  const std::uint32_t* touch_start = nullptr;  ///< per cell: where its list in `touch_triangle` begins
+  const std::uint32_t* touch_triangle = nullptr;  ///< triangles that touch the cell, ascending
+
+  NACRE_HD int cells_per_brick() const { return sub * sub * sub; }
+  NACRE_HD Int3 dims() const { return bricks * Int3(sub); }
+  NACRE_HD bool inside(const Int3& cell) const {
+    const Int3 d = dims();
+    return unsigned(cell.x) < unsigned(d.x) && unsigned(cell.y) < unsigned(d.y) && unsigned(cell.z) < unsigned(d.z);
+  }
+
+  NACRE_HD std::uint32_t brick(int bx, int by, int bz) const {
+    return brick_index[(std::int64_t(bz) * bricks.y + by) * bricks.x + bx];
+  }
+
+  /// Address of a cell in the arrays, or `none` outside of the bricks.
+  NACRE_HD std::uint32_t address(const Int3& cell) const {
+    if (!inside(cell)) return none;
+    const int bx = divide(cell.x), by = divide(cell.y), bz = divide(cell.z);
+    const std::uint32_t b = brick(bx, by, bz);
+    if (b == none) return none;
+    return b * cells_per_brick() + ((cell.z - bz * sub) * sub + (cell.y - by * sub)) * sub + (cell.x - bx * sub);
+  }
+
+  /// Coordinates of the cell at an address.
+  NACRE_HD Int3 cell(std::uint32_t at) const {
+    const std::uint32_t b = at / cells_per_brick();
+    const int rest = int(at - b * cells_per_brick());
+    return morton_cell(brick_code[b]) * Int3(sub) + Int3(rest % sub, (rest / sub) % sub, rest / (sub * sub));
+  }
+};
+
+NACRE_HD_INLINE Int3 floor_cell(const Vec3f& p) {
+  return {int(std::floor(p.x)), int(std::floor(p.y)), int(std::floor(p.z))};
+}
+
+NACRE_HD_INLINE Vec3f cell_centre(const Int3& c) { return {c.x + 0.5f, c.y + 0.5f, c.z + 0.5f}; }
+
+/// Where the N^3 cells of a stencil lie in memory: the stencil meets at most two bricks per axis (N <= sub + 1).
+template <int N>
+struct Stencil {
+  Int3 first;                    ///< lowest cell
+  int split[3];                  ///< how many of the N lie in the lower brick
+  int local[3];                  ///< position of the first one in its brick
+  std::uint32_t base[2][2][2];   ///< [z][y][x]: address of a brick's cell 0
+
+  /// False where a brick is missing.
+  NACRE_HD_INLINE bool find(const ClosestPointGridView& grid, const Int3& lowest) {
+    first = lowest;
+    const Int3 dims = grid.dims();
+    if (first.x < 0 || first.y < 0 || first.z < 0 || first.x + N > dims.x || first.y + N > dims.y || first.z + N > dims.z)
+      return false;
+    int brick[3] = {}, count[3] = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      brick[axis] = grid.divide(first[axis]);
+      local[axis] = first[axis] - brick[axis] * grid.sub;
+      split[axis] = grid.sub - local[axis];
+      count[axis] = split[axis] < N ? 2 : 1;
+    }
+    const int volume = grid.cells_per_brick();
+    for (int z = 0; z < count[2]; ++z)
+      for (int y = 0; y < count[1]; ++y)
+        for (int x = 0; x < count[0]; ++x) {
+          const std::uint32_t b = grid.brick(brick[0] + x, brick[1] + y, brick[2] + z);
+          if (b == none) return false;
+          base[z][y][x] = b * volume;
+        }
+    return true;
+  }
+
+  /// Address of node (a, b, c) = that of row (b, c) plus what `x` says.
+  NACRE_HD_INLINE std::uint32_t address(const ClosestPointGridView& grid, int a, int b, int c) const {
+    const int sub = grid.sub;
+    const int hx = a >= split[0], hy = b >= split[1], hz = c >= split[2];
+    const int x = local[0] + a - hx * sub, y = local[1] + b - hy * sub, z = local[2] + c - hz * sub;
+    return base[hz][hy][hx] + (z * sub + y) * sub + x;
+  }
+};
+
+/// Linear among eight values at distances `f` from the first, x fastest; `at(x, y, z)` says where each lies.
+template <class Address>
+NACRE_HD_INLINE Lanes linear(const Float4* values, const Vec3f& f, const Address& at) {
+  auto edge = [&](int y, int z) {
+    const Lanes low = load(values[at(0, y, z)]), high = load(values[at(1, y, z)]);
+    return low + (high - low) * f.x;
+  };
+  const Lanes a = edge(0, 0), b = edge(1, 0), c = edge(0, 1), d = edge(1, 1);
+  const Lanes low = a + (b - a) * f.y, high = c + (d - c) * f.y;
+  return low + (high - low) * f.z;
+}
+
+/// `values` interpolated linearly at `p`. False where the surface is too far for the eight cells to exist.
+NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Vec3f& p,
+                                        Lanes& result) {
+  const Int3 first = floor_cell(p - Vec3f(0.5f));
+  const Vec3f f = p - cell_centre(first);
+  const Int3 brick{grid.divide(first.x), grid.divide(first.y), grid.divide(first.z)};
+  const int sub = grid.sub;
+  const Int3 local = first - brick * Int3(sub);
+  if (local.x + 1 < sub && local.y + 1 < sub && local.z + 1 < sub) {  // all in one brick
+    if (!grid.inside(first)) return false;
+    const std::uint32_t b = grid.brick(brick.x, brick.y, brick.z);
+    if (b == none) return false;
+    const Float4* corner = values + (std::size_t(b) * grid.cells_per_brick() + (local.z * sub + local.y) * sub + local.x);
+    result = linear(corner, f, [sub](int x, int y, int z) { return (z * sub + y) * sub + x; });
+    return true;
+  }
+  Stencil<2> stencil;
+  if (!stencil.find(grid, first)) return false;
+  result = linear(values, f, [&](int x, int y, int z) { return stencil.address(grid, x, y, z); });
+  return true;
+}
+
+#if defined(__CUDACC__)
+/// The closest point of `p` relative to the centre of cell `first + 1`, and nothing of use in the fourth lane.
+NACRE_HD_INLINE Lanes weno4_stencil(const ClosestPointGridView& grid, const Stencil<4>& stencil, const Vec3f& f) {
+  Lanes row[4];
+  for (int c = 0; c < 4; ++c) {
+    Lanes column[4];
+    for (int b = 0; b < 4; ++b) {
+      Lanes node[4];
+      for (int a = 0; a < 4; ++a)
+        node[a] = load(grid.offset[stencil.address(grid, a, b, c)]) + lanes(float(a - 1), float(b - 1), float(c - 1));
+      column[b] = weno4(node[0], node[1], node[2], node[3], f.x);
+    }
+    row[c] = weno4(column[0], column[1], column[2], column[3], f.y);
+  }
+  return weno4(row[0], row[1], row[2], row[3], f.z);
+}
+#else
+NACRE_HD_INLINE Lanes weno4_stencil(const ClosestPointGridView& grid, const Stencil<4>& stencil, const Vec3f& f) {
+  std::uint32_t column[4];  // where node a of row (0, 0) would be, less its brick
+  const int sub = grid.sub;
+  for (int a = 0; a < 4; ++a) column[a] = stencil.local[0] + a - (a >= stencil.split[0] ? sub : 0);
+  Row slab[4];
+  for (int b = 0; b < 4; ++b) {
+    const int hy = b >= stencil.split[1];
+    const int y = stencil.local[1] + b - hy * sub;
+    Row rows[4];
+    for (int c = 0; c < 4; ++c) {
+      const int hz = c >= stencil.split[2];
+      const std::uint32_t line = ((stencil.local[2] + c - hz * sub) * sub + y) * sub;
+      const Float4* lower = grid.offset + stencil.base[hz][hy][0] + line;
+      const Float4* upper = grid.offset + stencil.base[hz][hy][1] + line;
+      const Row nodes = row(lower[column[0]], (1 < stencil.split[0] ? lower : upper)[column[1]],
+                            (2 < stencil.split[0] ? lower : upper)[column[2]],
+                            (3 < stencil.split[0] ? lower : upper)[column[3]]);
+      const float v = float(b - 1), w = float(c - 1);
+      rows[c] = nodes + Row{-1, v, w, 0, 0, v, w, 0, 1, v, w, 0, 2, v, w, 0};
+    }
+    slab[b] = weno4(rows[0], rows[1], rows[2], rows[3], f.z);
+  }
+  const Row line = weno4(slab[0], slab[1], slab[2], slab[3], f.y);
+  return weno4(node<0>(line), node<1>(line), node<2>(line), node<3>(line), f.x);
+}
+#endif
+
+/// Point of the surface that belongs to `p` (sec. 5.1.2): WENO4 of the closest points around it; at the rim of the band
+/// the nearest cell's closest point. False where `p` is out of the band.
+NACRE_HD inline bool project(const ClosestPointGridView& grid, const Vec3f& p, Vec3f& on_surface) {
+  const Int3 lower = floor_cell(p - Vec3f(0.5f));
+  Stencil<4> stencil;
+  if (stencil.find(grid, lower - Int3(1))) {
+    const Vec3f base = cell_centre(lower);
+    on_surface = base + xyz(weno4_stencil(grid, stencil, p - base));
+    return true;
+  }
+  const Int3 cell = floor_cell(p);
+  const std::uint32_t at = grid.address(cell);
+  if (at == none) return false;
+  const Float4 offset = grid.offset[at];
+  on_surface = cell_centre(cell) + Vec3f(offset.x, offset.y, offset.z);
+  return true;
+}
+
+}  // namespace nacre

@@ -1,0 +1,115 @@
+// Nacre: the sparsely stored refined grid as kernels see it (sec. 5.2.1): texture cells on and beside the surface.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/embedding/closest_point_grid.hpp"
+
+namespace nacre {
+
+/// Texture cells are R^3 to a cell of the closest-point grid. A cell that the surface passes through is a surface cell
+/// and has a number 0..surface_cells-1, in the order of the bricks; values live in arrays of that length. A cell within
+/// two cells of the surface knows the surface cell that holds its closest point, so that a value can be looked up there
+/// too (its closest-point extension). All coordinates here are in texture cells.
+struct RefinedGridView {
+  static constexpr std::uint32_t extended = 0x80000000u;  ///< set in `texel` where the cell is beside the surface
+
+  ClosestPointGridView grid;
+  int refine = 4;  ///< R, 1..8
+  float inverse_refine = 0.25f;
+  Divider divide{4};  ///< by refine
+  const std::uint32_t* block = nullptr;     ///< per closest-point cell: its block of R^3 texture cells, or `none`
+  const std::uint32_t* texel = nullptr;     ///< per texture cell of a block: surface cell number, or `none`
+  const std::uint32_t* place = nullptr;     ///< per surface cell: where its texture cell is in `texel`
+  const std::uint32_t* block_cell = nullptr;  ///< per block: address of its closest-point cell
+  const Float4* seed = nullptr;             ///< per surface cell: closest point minus centre; w unused
+  const std::uint32_t* seed_triangle = nullptr;  ///< per surface cell: the triangle of its closest point
+  const std::uint32_t* neighbour = nullptr;  ///< 6 per surface cell, -x +x -y +y -z +z; itself where there is none
+
+  NACRE_HD int cells_per_block() const { return refine * refine * refine; }
+
+  NACRE_HD Int3 outer(const Int3& cell) const { return {divide(cell.x), divide(cell.y), divide(cell.z)}; }
+
+  /// Block of a closest-point cell, or `none`.
+  NACRE_HD std::uint32_t block_of(const Int3& outer_cell) const {
+    const std::uint32_t at = grid.address(outer_cell);
+    return at == none ? none : block[at];
+  }
+
+  /// Entry of `texel` of a texture cell whose block is known.
+  NACRE_HD std::uint32_t entry_in(std::uint32_t b, const Int3& cell, const Int3& outer_cell) const {
+    const Int3 in = cell - outer_cell * Int3(refine);
+    return b * cells_per_block() + (in.z * refine + in.y) * refine + in.x;
+  }
+
+  /// Entry of `texel` of a texture cell, or `none`.
+  NACRE_HD std::uint32_t entry(const Int3& cell) const {
+    const Int3 outer_cell = outer(cell);
+    const std::uint32_t b = block_of(outer_cell);
+    return b == none ? none : entry_in(b, cell, outer_cell);
+  }
+
+  /// Surface cell at `cell`, or the one that holds its closest point, or `none`.
+  NACRE_HD std::uint32_t surface_cell(const Int3& cell) const {
+    const std::uint32_t at = entry(cell);
+    if (at == none) return none;
+    const std::uint32_t value = texel[at];
+    return value == none ? none : value & ~extended;
+  }
+
+  /// Coordinates of surface cell `s`.
+  NACRE_HD Int3 cell(std::uint32_t s) const { return texel_cell(place[s]); }
+
+  NACRE_HD Int3 texel_cell(std::uint32_t at) const {
+    const std::uint32_t b = at / cells_per_block();
+    const int rest = int(at - b * cells_per_block());
+    return grid.cell(block_cell[b]) * Int3(refine) +
+           Int3(rest % refine, (rest / refine) % refine, rest / (refine * refine));
+  }
+
+  /// Closest point on the surface to the centre of surface cell `s`.
+  NACRE_HD Vec3f seed_point(std::uint32_t s) const {
+    return cell_centre(cell(s)) + Vec3f(seed[s].x, seed[s].y, seed[s].z);
+  }
+};
+
+/// `surface_cell` for cells near each other: remembers the block of the last one.
+class SurfaceCellCursor {
+ public:
+  NACRE_HD explicit SurfaceCellCursor(const RefinedGridView& texture) : texture_(texture) {}
+
+  NACRE_HD std::uint32_t find(const Int3& cell) {
+    const Int3 outer = texture_.outer(cell);
+    if (!(outer == outer_)) {
+      outer_ = outer;
+      block_ = texture_.block_of(outer);
+    }
+    if (block_ == none) return none;
+    const std::uint32_t value = texture_.texel[texture_.entry_in(block_, cell, outer)];
+    return value == none ? none : value & ~RefinedGridView::extended;
+  }
+
+ private:
+  const RefinedGridView& texture_;
+  Int3 outer_{-1, -1, -1};
+  std::uint32_t block_ = none;
+};
+
+/// `values` (one per surface cell) at point `p`, linear among the texture cells around it, extended off the surface.
+NACRE_HD inline float sample(const RefinedGridView& texture, const float* values, const Vec3f& p, float missing) {
+  const Int3 first = floor_cell(p - Vec3f(0.5f));
+  const Vec3f f = p - cell_centre(first);
+  float sum = 0, weight = 0;
+  SurfaceCellCursor cursor(texture);
+  for (int k = 0; k < 8; ++k) {
+    const int x = k & 1, y = k >> 1 & 1, z = k >> 2;
+    const std::uint32_t s = cursor.find(first + Int3(x, y, z));
+    if (s == none) continue;
+    const float w = (x ? f.x : 1 - f.x) * (y ? f.y : 1 - f.y) * (z ? f.z : 1 - f.z);
+    sum += w * values[s];
+    weight += w;
+  }
+  return weight > 0 ? sum / weight : missing;
+}
+
+}  // namespace nacre

@@ -1,0 +1,79 @@
+// Nacre: the vector field on the closest-point grid, as displacement per step, in space and time.
+#pragma once
+
+#include <cmath>
+
+#include "compute/embedding/closest_point_grid.hpp"
+
+namespace nacre {
+
+inline constexpr int max_ttl = 16;
+
+/// Displacement in cells per step at the beginnings of the coming steps: slot j at step j from now.
+struct FlowField {
+  ClosestPointGridView grid;
+  const Float4* slot[max_ttl + 1] = {};
+  bool steady = true;  ///< all slots are the same
+
+  /// At point `p` (cells) and time `u` (0..1) within step `j`. False out of the band.
+  NACRE_HD_INLINE bool velocity(const Vec3f& p, int j, float u, Vec3f& v) const {
+    Lanes a, b;
+    if (steady || u == 0) {
+      if (!interpolate_linear(grid, slot[j], p, a)) return false;
+      v = xyz(a);
+      return true;
+    }
+    if (!interpolate_linear(grid, slot[j + 1], p, b)) return false;
+    if (u < 1) {
+      if (!interpolate_linear(grid, slot[j], p, a)) return false;
+      b = a + (b - a) * u;
+    }
+    v = xyz(b);
+    return true;
+  }
+};
+
+/// How a speed becomes a displacement.
+struct SpeedScale {
+  float reference = 1;  ///< the speed that moves `displacement` cells a step (98th percentile of the data)
+  float displacement = 1;
+  float power = 1;      ///< 1: in proportion; 0: all alike, as in a line integral convolution
+  float limit = 2;      ///< fastest displacement, in units of `displacement`
+
+  NACRE_HD Vec3f operator()(const Vec3f& v) const {
+    const float speed = length(v);
+    if (!(speed > 1e-6f * reference)) return {};
+    float moved = speed / reference;
+    if (power != 1) moved = std::pow(moved, power);
+    moved = moved < limit ? moved : limit;
+    return v * (moved * displacement / speed);
+  }
+};
+
+/// Fills one slot: the vector at each cell's closest point by barycentric interpolation, its tangential part, scaled.
+struct EmbedVelocity {
+  MeshView mesh;
+  ClosestPointGridView grid;
+  const Vec3f* vectors;  ///< one per point of the mesh, at the time of the slot
+  SpeedScale scale;
+  float reach;           ///< cells farther from the surface are never asked
+  Float4* slot;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Float4 o = grid.offset[i];
+    if (o.w > reach) {
+      slot[i] = {0, 0, 0, 0};
+      return;
+    }
+    const std::uint32_t t = grid.triangle[i];
+    const Vec3d p = Vec3d(grid.cell(std::uint32_t(i))) + Vec3d(0.5) + Vec3d(o.x, o.y, o.z);
+    const Vec3f w(barycentric(mesh.corners(t), p));
+    const Triangle corner = mesh.triangles[t];
+    const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
+    const Vec3f n = mesh.normal(t, w);
+    const Vec3f d = scale(v - n * dot(n, v));
+    slot[i] = {d.x, d.y, d.z, 0};
+  }
+};
+
+}  // namespace nacre

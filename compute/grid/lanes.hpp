@@ -1,0 +1,60 @@
+// Nacre: four floats that are stored, loaded and computed with together.
+#pragma once
+
+#include "compute/device/backend.hpp"
+#include "compute/grid/vec.hpp"
+
+namespace nacre {
+
+/// How four floats lie in memory: one 16-byte load on either backend.
+struct alignas(16) Float4 {
+  float x, y, z, w;
+};
+
+#if defined(__CUDACC__)
+
+/// What they are computed with on the device: plain scalars, one thread has many of them in flight anyway.
+struct Lanes {
+  float x, y, z, w;
+};
+NACRE_HD_INLINE Lanes operator+(Lanes a, Lanes b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
+NACRE_HD_INLINE Lanes operator-(Lanes a, Lanes b) { return {a.x - b.x, a.y - b.y, a.z - b.z, a.w - b.w}; }
+NACRE_HD_INLINE Lanes operator*(Lanes a, Lanes b) { return {a.x * b.x, a.y * b.y, a.z * b.z, a.w * b.w}; }
+NACRE_HD_INLINE Lanes operator/(Lanes a, Lanes b) { return {a.x / b.x, a.y / b.y, a.z / b.z, a.w / b.w}; }
+NACRE_HD_INLINE Lanes operator*(Lanes a, float s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
+NACRE_HD_INLINE Lanes operator*(float s, Lanes a) { return a * s; }
+NACRE_HD_INLINE Lanes operator+(Lanes a, float s) { return {a.x + s, a.y + s, a.z + s, a.w + s}; }
+NACRE_HD_INLINE Lanes load(const Float4& a) { return {a.x, a.y, a.z, a.w}; }
+NACRE_HD_INLINE Float4 store(Lanes a) { return {a.x, a.y, a.z, a.w}; }
+NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return {x, y, z, w}; }
+NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a.x, a.y, a.z}; }
+
+#else
+
+/// What they are computed with on the host: one SIMD register.
+typedef float Lanes __attribute__((vector_size(16)));
+typedef Lanes MemoryLanes __attribute__((may_alias));
+NACRE_HD_INLINE Lanes load(const Float4& a) { return *reinterpret_cast<const MemoryLanes*>(&a); }
+NACRE_HD_INLINE Float4 store(Lanes a) { return {a[0], a[1], a[2], a[3]}; }
+NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return Lanes{x, y, z, w}; }
+NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a[0], a[1], a[2]}; }
+
+/// Four nodes of a row side by side: the first two axes of a 4^3 stencil are reduced for all of them at once.
+typedef float Row __attribute__((vector_size(64)));
+typedef float HalfRow __attribute__((vector_size(32)));
+
+NACRE_HD_INLINE Row row(const Float4& a, const Float4& b, const Float4& c, const Float4& d) {
+  const HalfRow low = __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7);
+  const HalfRow high = __builtin_shufflevector(load(c), load(d), 0, 1, 2, 3, 4, 5, 6, 7);
+  return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+/// The k-th node of a row.
+template <int K>
+NACRE_HD_INLINE Lanes node(Row r) {
+  return __builtin_shufflevector(r, r, 4 * K, 4 * K + 1, 4 * K + 2, 4 * K + 3);
+}
+
+#endif
+
+}  // namespace nacre

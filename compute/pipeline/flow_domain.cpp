@@ -1,0 +1,101 @@
+// Nacre: the domain of a flow run, and the dry run over its triangles that estimates its memory.
+#include "compute/pipeline/flow_domain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "compute/device/error.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int max_bricks = 1024;  // per axis: 30 bits of Morton code
+
+struct Bounds {
+  Vec3d lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
+};
+
+Bounds bounds_of(const FlowMesh& mesh) {
+  Bounds b;
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      b.lower = min(b.lower, mesh.points[t[k]]);
+      b.upper = max(b.upper, mesh.points[t[k]]);
+    }
+  return b;
+}
+
+double largest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
+
+std::string gibibytes(double bytes) {
+  const double g = bytes / (1 << 30);
+  std::string text = std::to_string(g);
+  return text.substr(0, text.find('.') + 2) + " GiB";
+}
+
+}  // namespace
+
+FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
+  if (mesh.triangles.empty()) throw Error("no triangles", "", "give a surface");
+  const Bounds b = bounds_of(mesh);
+  const double longest = largest(b.upper - b.lower);
+  if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
+  FlowDomain domain;
+  domain.cell_size = longest * parameters.refine / parameters.resolution;
+  domain.radius = parameters.radius > 0 ? parameters.radius : stencil_radius;
+  domain.margin = int(std::ceil(domain.radius)) + 2;
+  // The surface's lower corner lies off the cell faces: an axis-aligned wall on a face would touch two layers of cells.
+  const double shift = domain.margin + 0.37;
+  domain.origin = b.lower - Vec3d(shift * domain.cell_size);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = (b.upper[axis] - b.lower[axis]) / domain.cell_size;
+    domain.extent[axis] = std::max(1, int(std::ceil(cells - 1e-9)));
+    domain.bricks[axis] = (int(std::ceil(cells + 0.37)) + 2 * domain.margin + parameters.subcells) / parameters.subcells;
+    if (domain.bricks[axis] > max_bricks) {
+      const int limit = (max_bricks - 1) * parameters.subcells - 2 * domain.margin - 2;
+      throw Error("--resolution " + std::to_string(parameters.resolution) + " is too fine",
+                  "at most 1024 coarse cells per axis",
+                  "use --resolution " + std::to_string(limit * parameters.refine) + " or a larger --refine");
+    }
+  }
+  return domain;
+}
+
+double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameters) {
+  const Bounds b = bounds_of(mesh);
+  const Vec3d size = b.upper - b.lower;
+  const double h = std::max(largest(size), 1e-300) / parameters.resolution, H = h * parameters.refine;
+  double area = 0, edges = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d ab = mesh.points[t.b] - mesh.points[t.a], ac = mesh.points[t.c] - mesh.points[t.a];
+    area += 0.5 * length(cross(ab, ac));
+    edges += length(ab) + length(ac);
+  }
+  const double triangles = double(mesh.triangles.size());
+  const double radius = parameters.radius > 0 ? parameters.radius : stencil_radius;
+  const double sheet = area / (H * H);  // surface in closest-point cells
+  const double layers = 2 * radius + 1.6 * parameters.subcells;
+  double dense = 1;
+  for (int axis = 0; axis < 3; ++axis) dense *= size[axis] / H + 2 * radius + 8;
+  const double cells = std::min(sheet * layers, dense);
+  const double reach = 0.8661 + 2.3 / parameters.refine;
+  const double texels = std::min(sheet * 2.4 * reach, dense) * std::pow(parameters.refine, 3);
+  const double surface = std::min(1.6 * area / (h * h), texels);
+  const double slots = parameters.ttl + 1;
+  const double pairs = std::min(triangles, sheet * 2) * 60 / parameters.subcells + cells / 16 + edges / H;
+  return dense / std::pow(parameters.subcells, 3) * 4 + cells * (16 + 4 + 4 + 4 + 16 * slots) + texels * (4 + 4) +
+         surface * (4 + 16 + 4 + 24 + 8 * parameters.ttl + 4 * 3) + pairs * 24 + triangles * 120 + 64e6;
+}
+
+void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available) {
+  const double needed = estimate_flow_bytes(mesh, parameters);
+  if (needed <= double(available)) return;
+  FlowParameters smaller = parameters;
+  while (smaller.resolution > 16 && estimate_flow_bytes(mesh, smaller) > double(available))
+    smaller.resolution = smaller.resolution * 15 / 16;
+  throw Error("--resolution " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
+              gibibytes(double(available)) + " are free", "use --resolution " + std::to_string(smaller.resolution));
+}
+
+}  // namespace nacre

@@ -1,0 +1,31 @@
+// Nacre: where the grid of a flow run lies, and how much memory it will take.
+#pragma once
+
+#include "compute/pipeline/flow_pipeline.hpp"
+
+namespace nacre {
+
+/// The closest-point grid's place in the world: cell = (p - origin) / cell_size.
+struct FlowDomain {
+  Vec3d origin{};
+  double cell_size = 1;  ///< of the closest-point grid
+  Int3 bricks{};
+  Int3 extent{};         ///< closest-point cells of the bounding box, without the margin
+  int margin = 0;        ///< cells beside it
+  double radius = 0;     ///< of the band, in cells
+
+  Vec3d to_grid(const Vec3d& p) const { return (p - origin) / cell_size; }
+  Vec3d to_world(const Vec3d& g) const { return origin + g * cell_size; }
+};
+
+/// Radius of the band that the stencils need: a WENO4 stencil reaches 2 cells along every axis from its point, and a
+/// trial point lies up to one cell off the surface: 2 sqrt 3 + 1.
+inline constexpr double stencil_radius = 4.47;
+
+/// Throws Error where the resolution is out of the key range.
+FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters);
+
+/// Throws Error, naming the largest resolution that fits, where the estimate is over `available` bytes.
+void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available);
+
+}  // namespace nacre

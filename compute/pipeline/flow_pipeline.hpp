@@ -1,0 +1,114 @@
+// Nacre: unsteady flow on a surface, from triangles and vectors to a moving texture. One of the two public doors.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "compute/device/device.hpp"
+#include "compute/device/executor.hpp"
+#include "compute/device/stage_timers.hpp"
+#include "compute/grid/vec.hpp"
+#include "compute/raycast/camera.hpp"
+
+namespace nacre {
+
+/// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp).
+struct FlowParameters {
+  int resolution = 1024;    ///< texture cells along the longest side
+  int refine = 4;           ///< texture cells per closest-point cell and axis (R)
+  int subcells = 4;         ///< closest-point cells per coarse cell and axis
+  double radius = 0;        ///< band around the surface, in closest-point cells; 0: what the stencils need
+  int ttl = 4;              ///< steps that a particle lives
+  double step_cells = 8;    ///< texture cells that the 98th percentile speed moves in a step
+  double speed_power = 1;   ///< displacement ~ speed^power: 1 true speeds, 0 all alike
+  int steps = 20;           ///< steps from the first to the last time
+  int warmup = -1;          ///< steps before the first, at the first time; -1: ttl
+  double sharpen = 0.15;    ///< strength of the Laplacian between steps
+  double jitter = 0.1;      ///< share of fresh noise between steps
+  double contrast = 0.22;   ///< shown standard deviation
+  std::uint32_t seed = 1;
+};
+
+/// The surface that flow is shown on, in host memory that outlives `embed`.
+struct FlowMesh {
+  std::span<const Vec3d> points;           ///< world coordinates
+  std::span<const Triangle> triangles;     ///< none degenerate, indices in range
+  std::span<const Vec3f> corner_normals;   ///< 3 per triangle, unit
+};
+
+/// Vectors over time, world units per second.
+struct FlowVectors {
+  std::function<void(double time, std::span<Vec3f> vectors)> at;  ///< fills one vector per point
+  double start = 0, end = 0;   ///< time of the data; equal: steady
+  double reference_speed = 1;  ///< tangential speed, 98th percentile over space and time
+};
+
+/// What the embedding became, for the report.
+struct EmbeddingInfo {
+  Int3 dimensions{};               ///< texture cells of the surface's bounding box
+  Int3 closest_point_dimensions{};  ///< the same in closest-point cells
+  std::uint64_t cells = 0;          ///< texture cells stored
+  std::uint64_t surface_cells = 0;
+  std::uint64_t closest_point_cells = 0;
+  std::uint64_t bytes = 0;
+  std::uint64_t dense_bytes = 0;    ///< the same payload for every texture cell of the box
+  double cell_size = 0;             ///< edge of a texture cell, world units
+};
+
+/// One value per surface cell and what belongs to it; world coordinates.
+struct FlowValues {
+  std::vector<Vec3d> centre;
+  std::vector<float> value;
+  std::vector<Vec3f> velocity, normal;  ///< tangential vector at the time of the frame; unit normal
+  std::vector<Vec3d> closest_point;
+};
+
+struct RenderOptions {
+  Camera camera;
+  int width = 1024, height = 768;
+  int samples = 2;                           ///< per pixel and axis
+  bool texture = true;
+  std::span<const float> scalar;             ///< per point of the mesh; empty: gray
+  double low = 0, high = 1;
+  std::span<const std::array<float, 3>> colours;  ///< 256, sRGB
+  std::array<float, 3> background{1, 1, 1};  ///< sRGB
+  bool transparent = false;
+};
+
+/// embed, start, then step and look as often as wanted; `parameters` may be changed between calls: those of the grid
+/// take effect at the next `embed`, ttl and seed at the next `start`, the others at once. Throws Error for bad input,
+/// too little memory, and Interrupted when the watched flag is set.
+class FlowPipeline {
+ public:
+  virtual ~FlowPipeline() = default;
+
+  FlowParameters parameters;
+
+  virtual void embed(const FlowMesh& mesh) = 0;              ///< stages embed, refine
+  virtual void start(const FlowVectors& vectors) = 0;        ///< noise and warm-up
+  virtual void step() = 0;                                   ///< stages velocity, advect, deposit, filter
+  virtual double time() const = 0;                           ///< of the frame that is shown
+  virtual std::vector<float> shown() const = 0;              ///< per surface cell, 0..1, contrast stretched
+  virtual FlowValues values() const = 0;
+  /// RGBA bytes, row 0 at the top (stage render).
+  virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
+  /// Shown value at points of the surface (world coordinates); for probes and tests.
+  virtual std::vector<float> sample_shown(std::span<const Vec3d> points) = 0;
+
+  virtual const EmbeddingInfo& embedding() const = 0;
+  virtual StageTimers& timers() = 0;
+  virtual std::size_t peak_bytes() const = 0;                ///< of the arena
+  virtual void watch(const std::atomic<bool>* stop) = 0;     ///< checked between and inside launches
+};
+
+std::unique_ptr<FlowPipeline> make_flow_pipeline(Device& device);
+
+/// Bytes that `embed` and `start` will need, from the area of the surface: within some tens of percent.
+double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
+
+}  // namespace nacre

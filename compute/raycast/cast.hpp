@@ -1,0 +1,97 @@
+// Nacre: rays through the two-level grid: where one meets the surface, and what it looks like there.
+#pragma once
+
+#include <cmath>
+
+#include "compute/embedding/refined_grid.hpp"
+
+namespace nacre {
+
+/// A ray in cells of the closest-point grid; `direction` need not be a unit vector.
+struct Ray {
+  Vec3f origin, direction;
+};
+
+struct Hit {
+  float t = 1e30f;
+  std::uint32_t triangle = none;
+  Vec3f weights{};  ///< barycentric coordinates
+};
+
+/// Ray against triangle, both sides (Moeller-Trumbore). Keeps the nearer hit in `hit`.
+NACRE_HD inline void intersect(const MeshView& mesh, std::uint32_t t, const Ray& ray, Hit& hit) {
+  const Corners c = mesh.corners(t);
+  const Vec3f a(c.a - Vec3d(ray.origin)), ab(c.b - c.a), ac(c.c - c.a);
+  const Vec3f p = cross(ray.direction, ac);
+  const float determinant = dot(ab, p);
+  if (determinant == 0) return;
+  const float inverse = 1 / determinant, slack = -1e-5f;
+  const float v = -dot(a, p) * inverse;
+  if (v < slack || v > 1 - slack) return;
+  const Vec3f q = cross(-a, ab);
+  const float w = dot(ray.direction, q) * inverse;
+  if (w < slack || v + w > 1 - slack) return;
+  const float distance = dot(ac, q) * inverse;
+  if (distance <= 0 || distance >= hit.t) return;
+  hit = {distance, t, {1 - v - w, v, w}};
+}
+
+/// First hit of the ray with the surface. Empty bricks are crossed in one step; inside a brick the stored distance says
+/// how far the ray may go without meeting anything; in a cell that the surface passes through its triangles are tested.
+NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh, const Ray& ray, Hit& hit) {
+  const Int3 dims = grid.dims();
+  const Vec3f inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
+  const float speed = length(ray.direction);
+  float t = 0, end = 1e30f;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (ray.direction[axis] == 0) {
+      if (ray.origin[axis] < 0 || ray.origin[axis] >= float(dims[axis])) return false;
+      continue;
+    }
+    float enter = -ray.origin[axis] * inverse[axis], leave = (float(dims[axis]) - ray.origin[axis]) * inverse[axis];
+    if (enter > leave) {
+      const float swap = enter;
+      enter = leave;
+      leave = swap;
+    }
+    t = enter > t ? enter : t;
+    end = leave < end ? leave : end;
+  }
+  const float nudge = 1e-3f / speed;
+  t += nudge;
+  // Crossing a box of the grid: from `t` to where the ray leaves the box with these corners.
+  auto leave_box = [&](const Vec3f& low, float size) {
+    float out = 1e30f;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (ray.direction[axis] == 0) continue;
+      const float wall = low[axis] + (ray.direction[axis] > 0 ? size : 0.0f);
+      const float at = (wall - ray.origin[axis]) * inverse[axis];
+      out = at < out ? at : out;
+    }
+    return out;
+  };
+  while (t < end) {
+    const Int3 cell = floor_cell(ray.origin + ray.direction * t);
+    if (!grid.inside(cell)) return false;
+    const std::uint32_t at = grid.address(cell);
+    if (at == none) {
+      const Int3 brick{grid.divide(cell.x), grid.divide(cell.y), grid.divide(cell.z)};
+      const float out = leave_box(Vec3f(brick * Int3(grid.sub)), float(grid.sub));
+      t = (out > t ? out : t) + nudge;
+      continue;
+    }
+    const float out = leave_box(Vec3f(cell), 1.0f);
+    const std::uint32_t first = grid.touch_start[at], last = grid.touch_start[at + 1];
+    if (first == last) {  // no surface here: the nearest is at least this far from anywhere in the cell
+      const float skip = (grid.offset[at].w - 0.8661f) / speed;
+      t = (out > t + skip ? out : t + skip) + nudge;
+      continue;
+    }
+    for (std::uint32_t k = first; k < last; ++k) intersect(mesh, grid.touch_triangle[k], ray, hit);
+    if (hit.triangle != none && hit.t <= out + nudge) return true;
+    t = (out > t ? out : t) + nudge;
+  }
+  return hit.triangle != none;
+}
+
+}  // namespace nacre

@@ -1,0 +1,160 @@
+// Nacre: files that appear under their name only when they are whole.
+#include "engine/io/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <mutex>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "compute/device/error.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t buffer_bytes = std::size_t(1) << 18;
+
+struct Registry {
+  std::mutex mutex;
+  std::set<fs::path> paths;
+};
+
+Registry& registry() {
+  static Registry* instance = new Registry;  // never destroyed: files may be committed while statics die
+  return *instance;
+}
+
+/// A name that no other file of this or another running program has.
+fs::path fresh_name_beside(const fs::path& destination) {
+  static std::atomic<unsigned> counter{0};
+  return destination.parent_path() /
+         fmt::format(".nacre-{}-{}{}", ::getpid(), counter++, destination.extension().string());
+}
+
+fs::path follow_links(const fs::path& target) {
+  std::error_code error;
+  if (!fs::is_symlink(target, error)) return target;
+  const fs::path resolved = fs::weakly_canonical(target, error);
+  return error ? target : resolved;
+}
+
+std::string reason(int error_number) {
+  return error_number != 0 ? std::generic_category().message(error_number) : "not everything could be written";
+}
+
+const char* advice(int error_number) {
+  switch (error_number) {
+    case ENOENT:
+    case ENOTDIR: return "create the folder first or choose another one";
+    case EACCES:
+    case EPERM:
+    case EROFS: return "choose a place that you may write to";
+    case ENOSPC:
+    case EDQUOT: return "make room or choose another disk";
+    case EFBIG: return "raise the file size limit or write a smaller file";
+    case EISDIR: return "give the name of a file";
+    default: return "";
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), destination_(follow_links(target_)) {
+  std::error_code error;
+  const fs::file_status status = fs::status(destination_, error);
+  if (target_.empty()) fail(ENOENT);
+  if (fs::is_directory(status) || !destination_.has_filename()) fail(EISDIR);
+  direct_ = fs::exists(status) && !fs::is_regular_file(status);
+  if (fs::exists(status) && ::access(destination_.c_str(), W_OK) != 0) fail(errno);
+
+  int handle = -1;
+  if (direct_) {
+    temporary_ = destination_;
+    handle = ::open(temporary_.c_str(), O_WRONLY | O_CLOEXEC);
+  } else {
+    do {
+      temporary_ = fresh_name_beside(destination_);
+      handle = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    } while (handle < 0 && errno == EEXIST);
+  }
+  if (handle < 0) fail(errno);
+  stream_ = ::fdopen(handle, "wb");
+  if (!stream_) {
+    const int error_number = errno;
+    ::close(handle);
+    if (!direct_) ::unlink(temporary_.c_str());
+    fail(error_number);
+  }
+  std::setvbuf(stream_, nullptr, _IOFBF, buffer_bytes);
+  if (!direct_) add_unfinished(temporary_);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!stream_) return;
+  std::fclose(stream_);
+  if (direct_) return;
+  ::unlink(temporary_.c_str());
+  drop_unfinished(temporary_);
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  errno = 0;
+  if (bytes > 0 && std::fwrite(data, 1, bytes, stream_) != bytes) fail(errno);
+}
+
+void AtomicFile::commit() {
+  errno = 0;
+  const bool lost = std::fflush(stream_) != 0 || std::ferror(stream_) != 0;
+  if (lost) fail(errno);
+  struct stat existing;
+  if (!direct_ && ::stat(destination_.c_str(), &existing) == 0)  // a replaced file keeps its permissions
+    if (::fchmod(::fileno(stream_), existing.st_mode & 07777) != 0) fail(errno);
+  std::FILE* stream = std::exchange(stream_, nullptr);
+  int error_number = std::fclose(stream) == 0 ? 0 : errno;
+  if (direct_) {
+    if (error_number != 0) fail(error_number);
+    return;
+  }
+  if (error_number == 0 && std::rename(temporary_.c_str(), destination_.c_str()) != 0) error_number = errno;
+  if (error_number != 0) ::unlink(temporary_.c_str());
+  drop_unfinished(temporary_);
+  if (error_number != 0) fail(error_number);
+}
+
+void AtomicFile::fail(int error_number) const {
+  throw Error(fmt::format("cannot write {}", target_.empty() ? "a file without a name" : target_.string()),
+              reason(error_number), advice(error_number));
+}
+
+void add_unfinished(const fs::path& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  const std::lock_guard lock(registry().mutex);
+  registry().paths.insert(error ? path : absolute);
+}
+
+void drop_unfinished(const fs::path& path) noexcept try {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  const std::lock_guard lock(registry().mutex);
+  registry().paths.erase(error ? path : absolute);
+} catch (...) {  // out of memory: a name too many on the list does no harm
+}
+
+void remove_unfinished_files() noexcept try {
+  const std::lock_guard lock(registry().mutex);
+  std::error_code error;
+  for (const fs::path& path : registry().paths) fs::remove_all(path, error);
+  registry().paths.clear();
+} catch (...) {  // on the way out: nothing better can be done
+}
+
+}  // namespace nacre

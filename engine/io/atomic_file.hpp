@@ -1,0 +1,49 @@
+// Nacre: files that appear under their name only when they are whole.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <string_view>
+
+namespace nacre {
+
+/// Writes beside `target` and renames on `commit`, so that nobody ever meets half a file and an older one stays until
+/// then. A target that is a link is followed; one that is a device or pipe (/dev/stdout) is written directly.
+/// Every failure (missing or unwritable folder, full disk, file size limit) throws Error that names the target and why.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();  ///< removes the temporary unless committed
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// For writers that want a FILE. Failed writes through it are noticed by `commit`.
+  std::FILE* stream() { return stream_; }
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+
+  /// Flushes, closes and renames. Nothing may be written afterwards.
+  void commit();
+
+  /// Where the bytes are until `commit`: in the target's folder, with the target's extension.
+  const std::filesystem::path& temporary() const { return temporary_; }
+
+ private:
+  [[noreturn]] void fail(int error_number) const;
+
+  std::filesystem::path target_;
+  std::filesystem::path destination_;  // the target with links followed
+  std::filesystem::path temporary_;    // the same as destination_ where written directly
+  std::FILE* stream_ = nullptr;
+  bool direct_ = false;
+};
+
+/// Puts a file or folder on the list of what `remove_unfinished_files` removes, or takes it off.
+void add_unfinished(const std::filesystem::path& path);
+void drop_unfinished(const std::filesystem::path& path) noexcept;
+
+/// Removes the temporaries of all files not committed, for a program that leaves without unwinding.
+void remove_unfinished_files() noexcept;
+
+}  // namespace nacre

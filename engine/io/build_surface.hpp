@@ -1,0 +1,22 @@
+// Nacre: from what a file says to a surface that the numerics can trust.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "engine/io/raw_mesh.hpp"
+#include "engine/scene/surface.hpp"
+
+namespace nacre {
+
+/// Triangulates the polygons of `mesh`, drops what cannot be used (corners that are no points, points that are NaN or
+/// infinite, triangles without area), moves arrays on cells to the points (mean of the adjacent triangles, weighted by
+/// area), sets NaN and infinite values to 0, and drops points that no triangle uses. Each loss adds one sentence with
+/// counts to `warnings`. Throws Error, in which `name` (the file) is named, if no triangle is left.
+Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings);
+
+/// 1234567 as "1,234,567".
+std::string with_commas(std::size_t number);
+
+}  // namespace nacre

@@ -1,0 +1,155 @@
+// Nacre: what is in a file, for `nacre info`.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "compute/device/error.hpp"
+#include "engine/io/array_families.hpp"
+#include "engine/io/build_surface.hpp"
+#include "engine/io/file_bytes.hpp"
+#include "engine/io/file_steps.hpp"
+#include "engine/io/reader.hpp"
+#include "engine/io/registry.hpp"
+#include "engine/io/vtk_image.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+
+ArrayInfo info_of(const RawArray& array, const char* on) {
+  ArrayInfo info{array.name,
+                 array.components,
+                 on,
+                 std::numeric_limits<double>::infinity(),
+                 -std::numeric_limits<double>::infinity(),
+                 array.items()};
+  for (std::size_t i = 0; i < array.items(); ++i) {
+    double value = array.values[i * array.components];
+    if (array.components > 1) {
+      double squares = 0;
+      for (int c = 0; c < array.components; ++c) squares += std::pow(array.values[i * array.components + c], 2.0);
+      value = std::sqrt(squares);
+    }
+    if (std::isnan(value)) continue;
+    info.min = std::min(info.min, value);
+    info.max = std::max(info.max, value);
+  }
+  if (info.min > info.max) info.min = info.max = 0;
+  return info;
+}
+
+void add_arrays(FileInfo& info, const std::vector<RawArray>& arrays, const char* on) {
+  for (const RawArray& array : arrays) info.arrays.push_back(info_of(array, on));
+}
+
+std::string kind_of(const RawMesh& mesh) {
+  if (mesh.polygons() > 0) return "surface";
+  if (mesh.lines > 0) return "lines";
+  return mesh.points.empty() ? "unknown-empty" : "points";
+}
+
+void add_box(FileInfo& info, const std::vector<Vec3d>& points) {
+  bool first = true;
+  for (const Vec3d& p : points) {
+    if (!is_finite(p)) continue;
+    info.lower = first ? p : min(info.lower, p);
+    info.upper = first ? p : max(info.upper, p);
+    first = false;
+  }
+}
+
+void add_mesh(FileInfo& info, RawMesh mesh) {
+  info.kind = kind_of(mesh);
+  info.points = mesh.points.size();
+  info.polygons = mesh.polygons();
+  add_box(info, mesh.points);
+  add_arrays(info, mesh.point_arrays, "points");
+  add_arrays(info, mesh.cell_arrays, "cells");
+  add_arrays(info, mesh.field_arrays, "field");
+  if (mesh.time) info.times = {*mesh.time};
+  if (mesh.volume_cells > 0)
+    info.warnings.push_back(
+        fmt::format("{}: of {} volume cells the outer surface is taken.", info.path, with_commas(mesh.volume_cells)));
+  if (info.kind != "surface") return;
+  try {
+    const Surface surface = build_surface(std::move(mesh), info.path, info.warnings);
+    info.triangles = surface.triangles.size();
+    const ArrayFamilies families = find_array_families(surface.arrays);
+    info.warnings.insert(info.warnings.end(), families.warnings.begin(), families.warnings.end());
+    if (families.times.empty()) return;
+    info.times = families.times;
+    info.kind = "series";
+  } catch (const Error& error) {
+    info.warnings.push_back(std::string(error.what()) + ".");
+  }
+}
+
+void add_image(FileInfo& info, const VtkImage& image) {
+  info.format = "VTK image";
+  info.kind = "volume";
+  info.points = image.points();
+  std::vector<Vec3d> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d p = image.origin;
+    for (int row = 0; row < 3; ++row)
+      for (int axis = 0; axis < 3; ++axis)
+        if (corner >> axis & 1)
+          p[row] += image.direction[3 * row + axis] * image.spacing[axis] * (image.dimensions[axis] - 1);
+    corners.push_back(p);
+  }
+  add_box(info, corners);
+  add_arrays(info, image.point_arrays, "points");
+  add_arrays(info, image.cell_arrays, "cells");
+}
+
+/// A file that lists or holds several steps: the first one, and the times of all.
+void add_steps(FileInfo& info, const FileSteps& files) {
+  add_mesh(info, read_step(files.steps[0]));
+  if (files.steps.size() > 1) info.kind = "series";
+  info.times.clear();
+  for (const FileStep& step : files.steps) info.times.push_back(step.time);
+}
+
+bool is_vtk_image(const std::string& bytes) {
+  const std::string_view head = std::string_view(bytes).substr(0, 4096);
+  return head.find("<VTKFile") != head.npos && head.find("type=\"ImageData\"") != head.npos;
+}
+
+void add_content(FileInfo& info, const fs::path& path) {
+  const bool collection = format_extension(path) == "pvd";
+  if (collection || goes_through_vtk(path)) {
+    info.format = collection ? "VTK XML" : "VTK";
+    add_steps(info, find_steps(path));
+    return;
+  }
+  std::string bytes = read_file(path);
+  if (is_vtk_image(bytes)) {
+    add_image(info, read_vtk_image(std::move(bytes), path));
+    return;
+  }
+  RawFile file = read_raw(std::move(bytes), path);
+  info.format = file.format->name;
+  add_mesh(info, std::move(file.mesh));
+}
+
+}  // namespace
+
+FileInfo describe(const fs::path& path) {
+  require_file(path);
+  FileInfo info;
+  info.path = path.string();
+  std::error_code code;
+  info.bytes = fs::file_size(path, code);
+  try {
+    add_content(info, path);
+  } catch (const std::bad_alloc&) {
+    fail_reading(path, "it does not fit in memory", "open a smaller file");
+  }
+  return info;
+}
+
+}  // namespace nacre

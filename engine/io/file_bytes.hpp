@@ -1,0 +1,23 @@
+// Nacre: a file in memory, and the words for a file that cannot be read.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace nacre {
+
+/// The whole content of a file; what gzip packed is unpacked (with a limit against bombs), a UTF-8 byte order mark is
+/// cut off. Throws Error if it is missing, no regular file, unreadable, empty, or UTF-16 text.
+std::string read_file(const std::filesystem::path& path);
+
+/// Throws Error if there is no regular file of that name.
+void require_file(const std::filesystem::path& path);
+
+/// Lower-case extension without the dot, that of the packed file for `.gz`: "obj" for `motorBike.OBJ.gz`.
+std::string format_extension(const std::filesystem::path& path);
+
+/// Throws Error "FILE cannot be read (why); advice".
+[[noreturn]] void fail_reading(const std::filesystem::path& path, const std::string& why,
+                               const std::string& advice = "check that the file is complete");
+
+}  // namespace nacre

@@ -1,0 +1,40 @@
+// Nacre: which files hold the time steps of what the user names.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/io/raw_mesh.hpp"
+
+namespace nacre {
+
+/// One time step; several parts make one surface.
+struct FileStep {
+  double time = 0;
+  std::vector<std::filesystem::path> parts;
+};
+
+/// Steps in the order of time, at least one.
+struct FileSteps {
+  std::vector<FileStep> steps;
+  std::vector<std::string> warnings;
+  std::shared_ptr<const void> keep_alive;  ///< temporary files live as long as this does; may be null
+};
+
+/// Steps of one file: those that a .pvd lists, those that VTK finds in a file of its own formats, else the file itself
+/// at time 0. Throws Error if a listed file is missing or VTK is needed and not built in.
+FileSteps find_steps(const std::filesystem::path& path);
+
+/// Several files of one series: at their own times if all have one and no two the same, else at 0, 1, 2, ...
+/// Throws Error if one of them is a series itself.
+FileSteps find_steps(const std::vector<std::filesystem::path>& paths);
+
+/// True for files that only VTK reads.
+bool goes_through_vtk(const std::filesystem::path& path);
+
+/// The mesh of a step, its parts put together. Throws Error if one cannot be read.
+RawMesh read_step(const FileStep& step);
+
+}  // namespace nacre

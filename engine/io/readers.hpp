@@ -1,0 +1,19 @@
+// Nacre: the readers of single files, one per format.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "engine/io/raw_mesh.hpp"
+
+namespace nacre {
+
+/// Each takes the file's content and its path (for messages and, in .pvtp/.pvtu, for finding the pieces). Throws Error
+/// if the content is no such file, is cut short, or promises more than it holds.
+RawMesh read_obj(std::string bytes, const std::filesystem::path& path);
+RawMesh read_ply(std::string bytes, const std::filesystem::path& path);
+RawMesh read_stl(std::string bytes, const std::filesystem::path& path);
+RawMesh read_off(std::string bytes, const std::filesystem::path& path);
+RawMesh read_vtk_xml(std::string bytes, const std::filesystem::path& path);
+
+}  // namespace nacre

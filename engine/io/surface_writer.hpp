@@ -1,0 +1,25 @@
+// Nacre: surfaces written in the format that the file's extension names.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/surface.hpp"
+
+namespace nacre {
+
+/// Writes `surface` as .vtp, .ply (binary), .stl (binary), .obj or .off. Arrays are kept by .vtp and .ply only; .stl
+/// keeps 32-bit coordinates. `time` is kept by .vtp. Throws Error for other extensions and where writing fails.
+void write_surface(const std::filesystem::path& file, const Surface& surface,
+                   std::optional<double> time = std::nullopt);
+
+/// Writes each step beside `file` (name.pvd: name_0000.vtp, name_0001.vtp, ...), then `file` itself, which lists them
+/// with their times. If a step fails, those already written are removed. Returns all files, `file` last. Throws Error.
+std::vector<std::filesystem::path> write_series(const std::filesystem::path& file, const SurfaceSeries& series);
+
+/// The extensions that `write_surface` takes, lower case, with dot.
+std::vector<std::string> surface_writer_extensions();
+
+}  // namespace nacre

@@ -1,0 +1,33 @@
+// Nacre: formats that only VTK reads, by way of a child process.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace nacre {
+
+/// Is `nacre-vtk-import` there: beside this program, or where the environment variable NACRE_VTK_IMPORT says?
+bool vtk_child_available();
+
+/// Is this a format for `convert_with_vtk`? `extension` in lower case, with dot (".vtk").
+bool vtk_child_reads(const std::string& extension);
+
+/// A file as VTK understood it: its surface, triangulated, one .vtp per time step.
+struct VtkConversion {
+  std::shared_ptr<const std::filesystem::path> folder;  ///< removed when the last copy dies
+  std::vector<std::filesystem::path> files;             ///< in `folder`, at least one
+  std::vector<double> times;                            ///< one per file, as the file has them; 0 where it has none
+};
+
+/// Converts `file` in a child process, since VTK ends the whole process on some broken files. Throws Error if VTK
+/// complains (its first line), crashes, or takes more than 120 s; Interrupted if it was stopped by Ctrl-C.
+VtkConversion convert_with_vtk(const std::filesystem::path& file);
+
+/// From now on `convert_with_vtk` gives up (Interrupted) once `*stop` is true. Without it, only a Ctrl-C that reaches
+/// the child itself, as from a terminal, does that.
+void watch_vtk_child(const std::atomic<bool>* stop);
+
+}  // namespace nacre

@@ -1,0 +1,61 @@
+// Nacre: reads .vti.
+#include "engine/io/vtk_image.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/io/file_bytes.hpp"
+#include "engine/io/text_cursor.hpp"
+#include "engine/io/vtk_xml.hpp"
+
+namespace nacre {
+namespace {
+
+/// Up to N numbers of an attribute; `values` keeps what the attribute does not give.
+template <std::size_t N>
+bool read_numbers(pugi::xml_node node, const char* name, std::array<double, N>& values) {
+  TextCursor text{std::string_view(node.attribute(name).value())};
+  for (double& value : values)
+    if (!text.number(value) || !std::isfinite(value)) return false;
+  return true;
+}
+
+}  // namespace
+
+VtkImage read_vtk_image(std::string bytes, const std::filesystem::path& path) {
+  const VtkXmlFile file(std::move(bytes), path);
+  const pugi::xml_node grid = file.dataset();
+  if (file.type() != "ImageData") fail_reading(path, fmt::format("it holds {}, not ImageData", file.type()));
+  const pugi::xml_node piece = grid.child("Piece");
+  if (!piece) fail_reading(path, "it has no <Piece>");
+  if (piece.next_sibling("Piece")) fail_reading(path, "it is in several pieces", "save it as one piece");
+
+  std::array<double, 6> extent{};
+  if (!read_numbers(piece, "Extent", extent) && !read_numbers(grid, "WholeExtent", extent))
+    fail_reading(path, "its extent is damaged");
+  VtkImage image;
+  std::array<double, 3> origin{}, spacing{1, 1, 1};
+  read_numbers(grid, "Origin", origin);
+  read_numbers(grid, "Spacing", spacing);
+  read_numbers(grid, "Direction", image.direction);
+  std::size_t points = 1, cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double count = extent[2 * axis + 1] - extent[2 * axis] + 1;
+    if (!(count >= 1 && count <= 1 << 20)) fail_reading(path, "its extent is empty or not sane");
+    image.dimensions[axis] = int(count);
+    image.spacing[axis] = spacing[axis];
+    image.origin[axis] = origin[axis];
+    points *= std::size_t(count);
+    cells *= std::size_t(count) > 1 ? std::size_t(count) - 1 : 1;
+  }
+  for (int row = 0; row < 3; ++row)
+    for (int axis = 0; axis < 3; ++axis)
+      image.origin[row] += image.direction[3 * row + axis] * spacing[axis] * extent[2 * axis];
+  image.point_arrays = file.arrays(piece.child("PointData"), points);
+  image.cell_arrays = file.arrays(piece.child("CellData"), cells);
+  if (image.point_arrays.empty() && image.cell_arrays.empty()) fail_reading(path, "it has no numeric arrays");
+  return image;
+}
+
+}  // namespace nacre

@@ -1,0 +1,88 @@
+// Nacre: nacre-vtk-import FILE FOLDER: a file that VTK reads becomes one .vtp per time step in FOLDER.
+// Prints "time path" for each. On failure it prints one line to stderr and exits with 1.
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <vtkAlgorithm.h>
+#include <vtkErrorCode.h>
+#include <vtkNew.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "engine/io/vtk_import/complaints.hpp"
+#include "engine/io/vtk_import/read.hpp"
+#include "engine/io/vtk_import/surface.hpp"
+
+namespace {
+
+using namespace nacre::vtk_import;
+
+/// A damaged file must not leave a core dump, outlive the parent, or take more memory than the machine has.
+void limit_damage() {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+#if !defined(__SANITIZE_ADDRESS__)
+  const rlim_t memory = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGE_SIZE));
+  const rlimit address_space{memory, memory};
+  ::setrlimit(RLIMIT_AS, &address_space);
+#endif
+}
+
+void fail_on_complaint() {
+  if (!first_complaint().empty()) throw std::runtime_error(first_complaint());
+}
+
+void write(vtkPolyData* surface, const std::string& path) {
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetFileName(path.c_str());
+  writer->SetInputData(surface);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToNone();
+  writer->SetHeaderTypeToUInt64();
+  if (writer->Write() != 1 || writer->GetErrorCode() != vtkErrorCode::NoError)
+    throw std::runtime_error(std::string("cannot write the temporary ") + path + ": " +
+                             vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
+}
+
+void import(const std::string& file, const std::filesystem::path& folder) {
+  if (::access(file.c_str(), R_OK) != 0) throw std::runtime_error("it cannot be opened");
+  const vtkSmartPointer<vtkAlgorithm> reader = reader_for(file);
+  const std::vector<double> times = time_steps(*reader);
+  fail_on_complaint();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    reader->UpdateTimeStep(times[k]);
+    fail_on_complaint();
+    const std::string path = folder / ("step_" + std::to_string(k) + ".vtp");
+    write(surface_of(reader->GetOutputDataObject(0)), path);
+    std::printf("%.17g %s\n", times[k], path.c_str());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fputs("usage: nacre-vtk-import FILE FOLDER\n", stderr);
+    return 2;
+  }
+  limit_damage();
+  keep_complaints();
+  try {
+    import(argv[1], argv[2]);
+    if (std::fflush(stdout) != 0) throw std::runtime_error("the result cannot be handed over");
+    return 0;
+  } catch (const std::bad_alloc&) {
+    std::fputs("nacre-vtk-import: it needs more memory than there is\n", stderr);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "nacre-vtk-import: %s\n", e.what());
+  }
+  return 1;
+}

@@ -1,0 +1,71 @@
+// Nacre: a VTK XML file opened: its tree of elements, and the numbers of its arrays in any encoding.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/io/raw_mesh.hpp"
+#include "engine/io/vtk_bytes.hpp"
+
+namespace nacre {
+
+/// One VTK XML file (.vtp .vtu .vti .pvd .pvtp .pvtu). Arrays are decoded when asked for, not before.
+class VtkXmlFile {
+ public:
+  /// Parses the elements. Appended data are no XML and are set aside first. Throws Error if the XML is damaged.
+  VtkXmlFile(std::string bytes, std::filesystem::path path);
+  VtkXmlFile(const VtkXmlFile&) = delete;
+  VtkXmlFile& operator=(const VtkXmlFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::string type() const;        ///< "PolyData", "UnstructuredGrid", "ImageData", "PPolyData", "Collection", ...
+  pugi::xml_node dataset() const;  ///< the element of that name
+
+  /// All numbers of a <DataArray>, converted to T (float, double or std::int64_t). Throws Error if it is damaged.
+  template <class T>
+  std::vector<T> numbers(pugi::xml_node array) const;
+
+  /// The <DataArray> below `parent` that is called `name`, as numbers; empty if there is none.
+  template <class T>
+  std::vector<T> numbers(pugi::xml_node parent, const char* name) const;
+
+  /// The first `items` items of every numeric array below `parent` (<PointData> or <CellData>).
+  std::vector<RawArray> arrays(pugi::xml_node parent, std::size_t items) const;
+
+  /// The arrays of the data set's <FieldData>, whatever their length.
+  std::vector<RawArray> field_arrays() const;
+
+  /// TimeValue of the field data, if there is one.
+  std::optional<double> time() const;
+
+  /// Points of a piece. Throws Error if there are fewer than `count`.
+  std::vector<Vec3d> points(pugi::xml_node piece, std::size_t count) const;
+
+ private:
+  std::string unpack(pugi::xml_node array) const;
+
+  std::filesystem::path path_;
+  std::string xml_;       // the document points into it
+  std::string appended_;  // from behind the underscore on
+  bool appended_base64_ = false;
+  VtkEncoding encoding_;
+  pugi::xml_document document_;
+};
+
+/// A count from an attribute such as NumberOfPoints; 0 if it is missing. Throws Error if it is no count.
+std::size_t count_attribute(const VtkXmlFile& file, pugi::xml_node node, const char* name);
+
+/// One time step of a .pvd: the files that belong to it.
+struct CollectionStep {
+  double time = 0;
+  std::vector<std::filesystem::path> parts;
+};
+
+/// The steps of a .pvd in the order of time; paths are complete. Throws Error if there is none.
+std::vector<CollectionStep> read_collection(const VtkXmlFile& file);
+
+}  // namespace nacre

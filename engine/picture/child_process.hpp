@@ -1,0 +1,41 @@
+// Nacre: another program that reads what we send it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace nacre {
+
+/// The program's file in one of PATH's folders, or an empty path.
+std::filesystem::path find_program(const std::string& name);
+
+/// A running program whose standard input is ours to write and whose standard error is kept. Killed and reaped when
+/// this object goes before `wait`. Ctrl-C on our terminal does not reach it: we decide how it ends.
+class ChildProcess {
+ public:
+  /// Throws Error where the program cannot be started.
+  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Sends all bytes. False where the program reads no more (it ended, most likely).
+  bool send(const void* bytes, std::size_t size);
+
+  /// Ends the program's input and waits for it. True where it ended by itself with status 0.
+  bool wait();
+
+  /// The first line that it wrote to its standard error so far, empty if none.
+  std::string first_complaint() const;
+
+ private:
+  pid_t process_ = -1;
+  int input_ = -1;       ///< our end of its standard input
+  int complaints_ = -1;  ///< a file in memory: a pipe that nobody reads could fill up and stop the program
+};
+
+}  // namespace nacre

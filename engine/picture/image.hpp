@@ -1,0 +1,23 @@
+// Nacre: an 8-bit image in host memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace nacre {
+
+/// RGBA, 8 bits a channel, sRGB, row 0 at the top: `pixels[(y * width + x) * 4 + channel]`.
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;
+
+  Image() = default;
+  Image(int w, int h) : width(w), height(h), pixels(std::size_t(w) * h * 4, 255) {}
+
+  std::uint8_t* at(int x, int y) { return &pixels[(std::size_t(y) * width + x) * 4]; }
+  const std::uint8_t* at(int x, int y) const { return &pixels[(std::size_t(y) * width + x) * 4]; }
+};
+
+}  // namespace nacre

@@ -1,0 +1,31 @@
+// Nacre: lettering and strokes that can be read on any background.
+#pragma once
+
+#include <string_view>
+
+#include "engine/picture/compose.hpp"
+#include "engine/picture/image.hpp"
+
+namespace nacre {
+
+/// A colour to write with, and the faint one around it that keeps it apart from a busy background.
+struct Ink {
+  Rgba letter, halo;
+};
+
+/// The font size, in pixels, that suits the image, or 0 where it is too small for lettering.
+float lettering_size(const Image& image);
+
+/// Dark ink where the part of the image is light, light ink where it is dark.
+Ink ink_for(const Image& image, int x, int y, int width, int height);
+
+/// `draw_text` with a halo.
+void draw_lettering(Image& image, int x, int y, std::string_view text, float pixels, const Ink& ink);
+
+/// An antialiased stroke from (x0, y0) with radius r0 to (x1, y1) with radius r1, in pixels, its ends round.
+void draw_stroke(Image& image, float x0, float y0, float r0, float x1, float y1, float r1, Rgba color);
+
+/// An opaque or translucent rectangle, cut at the borders.
+void fill_box(Image& image, int x, int y, int width, int height, Rgba color);
+
+}  // namespace nacre

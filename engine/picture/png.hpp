@@ -1,0 +1,23 @@
+// Nacre: images as PNG files.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "engine/picture/image.hpp"
+
+namespace nacre {
+
+/// The bytes of a PNG file: RGB where every pixel is opaque, else RGBA. The image has at least one pixel. Throws Error
+/// where it is too large for a PNG encoder (2 GiB of pixels).
+std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// Writes beside `file`, then renames, so that there is a whole picture or none. Throws Error (with the file's name and
+/// the reason) where it cannot be written or the disk is full.
+void write_png(const std::filesystem::path& file, const Image& image);
+
+/// Any PNG, as RGBA with 8 bits a channel. Throws Error where the file cannot be read or is no whole PNG.
+Image read_png(const std::filesystem::path& file);
+
+}  // namespace nacre

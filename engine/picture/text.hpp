@@ -1,0 +1,26 @@
+// Nacre: antialiased text drawn into an image.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/picture/compose.hpp"
+#include "engine/picture/image.hpp"
+
+namespace nacre {
+
+/// Width in pixels of one line of UTF-8 text. `pixels` is the font size (the em): capitals are 0.73 of it high.
+/// Control characters count as spaces, broken UTF-8 as U+FFFD.
+int text_width(std::string_view text, float pixels);
+
+/// Height in pixels of a line, and of the capitals and digits in it.
+int text_height(float pixels);
+int text_cap_height(float pixels);
+
+/// Draws one line of UTF-8 text: its left edge at `x`, the top of its capitals and digits at `y`. Cut at the borders.
+void draw_text(Image& image, int x, int y, std::string_view text, float pixels, Rgba color);
+
+/// The text, or as much of its beginning as fits into `width` pixels with an ellipsis; empty where nothing fits.
+std::string text_to_fit(std::string_view text, float pixels, int width);
+
+}  // namespace nacre

@@ -1,0 +1,35 @@
+// Nacre: code points out of UTF-8 text that may be broken.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace nacre {
+
+/// Takes the first code point off `text`, which must not be empty. Bytes that are no UTF-8 give U+FFFD, one byte each;
+/// control characters give a space.
+inline char32_t take_code_point(std::string_view& text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  const std::size_t length = first < 0x80         ? 1
+                             : first >> 5 == 0x6  ? 2
+                             : first >> 4 == 0xE  ? 3
+                             : first >> 3 == 0x1E ? 4
+                                                  : 0;
+  constexpr char32_t smallest[] = {0, 0, 0x80, 0x800, 0x10000};
+  char32_t point = length == 1 ? first : first & (0x7F >> length);
+  bool whole = length > 0 && length <= text.size();
+  for (std::size_t i = 1; whole && i < length; ++i) {
+    whole = (byte(i) & 0xC0) == 0x80;
+    point = (point << 6) | (byte(i) & 0x3F);
+  }
+  const bool surrogate = point >= 0xD800 && point < 0xE000;
+  if (!whole || point < smallest[length] || point > 0x10FFFF || surrogate) {
+    text.remove_prefix(1);
+    return 0xFFFD;
+  }
+  text.remove_prefix(length);
+  return point < 0x20 || point == 0x7F ? U' ' : point;
+}
+
+}  // namespace nacre

@@ -1,0 +1,153 @@
+// Nacre: where the frames of an animation go: a folder of pictures, or a video.
+#include "engine/picture/video.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compute/device/error.hpp"
+#include "engine/picture/child_process.hpp"
+#include "engine/picture/output_file.hpp"
+#include "engine/picture/png.hpp"
+
+namespace nacre {
+namespace fs = std::filesystem;
+namespace {
+
+using Words = std::vector<std::string>;
+
+class FrameFolder : public FrameSink {
+ public:
+  explicit FrameFolder(fs::path folder) : folder_(std::move(folder)) {
+    std::error_code failed;
+    fs::create_directories(folder_, failed);
+    if (!fs::is_directory(folder_))
+      throw Error("cannot make the folder " + folder_.string(), failed ? failed.message() : "a file has that name",
+                  advice_on_writing(failed.value()));
+  }
+
+  void add(const Image& frame) override {
+    write_png(folder_ / fmt::format("frame_{:04}.png", count_), frame);
+    ++count_;
+  }
+
+  void finish() override {
+    if (count_ == 0) throw Error("there are no frames to write to " + folder_.string());
+  }
+
+ private:
+  fs::path folder_;
+  int count_ = 0;
+};
+
+/// ffmpeg's words for one kind of file: the container, the encoder, the filter that ends in the encoder's pixels.
+struct Format {
+  std::string container, filter;
+  Words encoder;
+};
+
+/// The texture is noise to an encoder: its usual quality would smear it, so ask for a finer one.
+Format format_of(const fs::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  // HDTV's matrix, stated in the stream: players guess differently where it is not.
+  const std::string yuv = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+  const Words tags = {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"};
+  Words h264 = {"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
+  Words vp9 = {"-c:v", "libvpx-vp9", "-crf", "22", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4"};
+  h264.insert(h264.end(), tags.begin(), tags.end());
+  vp9.insert(vp9.end(), tags.begin(), tags.end());
+  if (extension == ".mkv") return {"matroska", yuv, h264};
+  if (extension == ".webm") return {"webm", yuv, vp9};
+  if (extension == ".gif") return {"gif", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=sierra2_4a", {}};
+  h264.insert(h264.end(), {"-movflags", "+faststart"});
+  if (extension == ".mp4") return {"mp4", yuv, h264};
+  if (extension == ".mov") return {"mov", yuv, h264};
+  throw Error("cannot write the video " + file.string(), "its extension says no kind of video",
+              "name it .mp4, .mov, .mkv, .webm or .gif");
+}
+
+class Video : public FrameSink {
+ public:
+  Video(const fs::path& file, int fps)
+      : name_(file.string()), fps_(fps), format_(format_of(file)), program_(find_program("ffmpeg")), output_(file) {
+    assert(fps > 0);
+    if (program_.empty())
+      throw Error("cannot write the video " + name_, "the program ffmpeg was not found",
+                  "install the package ffmpeg, or write pictures with --frames DIR");
+  }
+
+  void add(const Image& frame) override {
+    if (!child_) start(frame.width, frame.height);
+    assert(frame.width == width_ && frame.height == height_);
+    pack(frame);
+    if (!child_->send(packed_.data(), packed_.size())) fail();
+  }
+
+  void finish() override {
+    if (!child_) throw Error("cannot write the video " + name_, "it has no frames");
+    // ffmpeg ends with status 0 after some failed writes, so a complaint counts as well.
+    if (!child_->wait() || !child_->first_complaint().empty()) fail();
+    output_.commit();
+  }
+
+ private:
+  void start(int width, int height) {
+    width_ = width;
+    height_ = height;
+    const std::string size = fmt::format("{}x{}", even(width), even(height));
+    Words words = {"-nostdin", "-hide_banner", "-loglevel",          "error", "-y",
+                   "-f",       "rawvideo",     "-pixel_format",      "rgb24", "-video_size",
+                   size,       "-framerate",   std::to_string(fps_), "-i",    "pipe:0",
+                   "-vf",      format_.filter};
+    words.insert(words.end(), format_.encoder.begin(), format_.encoder.end());
+    // "file:" keeps a colon in the name from being taken for a protocol.
+    words.insert(words.end(), {"-f", format_.container, "file:" + fs::absolute(output_.temporary()).string()});
+    child_.emplace(program_, words);
+    packed_.resize(std::size_t(even(width)) * std::size_t(even(height)) * 3);
+  }
+
+  static int even(int n) { return n + n % 2; }
+
+  /// Three bytes a pixel; the last column and row stand twice where the size is odd, which 4:2:0 cannot hold.
+  void pack(const Image& frame) {
+    std::uint8_t* out = packed_.data();
+    for (int y = 0; y < even(height_); ++y)
+      for (int x = 0; x < even(width_); ++x, out += 3)
+        std::memcpy(out, frame.at(std::min(x, width_ - 1), std::min(y, height_ - 1)), 3);
+  }
+
+  [[noreturn]] void fail() {
+    child_->wait();
+    std::string reason = child_->first_complaint();
+    if (reason.empty()) reason = "ffmpeg ended before its time";
+    const bool full = reason.find(std::strerror(ENOSPC)) != std::string::npos;
+    throw Error("cannot write the video " + name_, "ffmpeg: " + reason,
+                full ? advice_on_writing(ENOSPC) : "write pictures with --frames DIR instead");
+  }
+
+  std::string name_;
+  int fps_;
+  Format format_;
+  fs::path program_;
+  OutputFile output_;
+  int width_ = 0, height_ = 0;
+  std::vector<std::uint8_t> packed_;
+  std::optional<ChildProcess> child_;  ///< after output_: killed before the file it writes to is removed
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder) { return std::make_unique<FrameFolder>(folder); }
+
+std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps) { return std::make_unique<Video>(file, fps); }
+
+}  // namespace nacre

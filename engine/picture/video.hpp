@@ -1,0 +1,33 @@
+// Nacre: where the frames of an animation go: a folder of pictures, or a video.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "engine/picture/image.hpp"
+
+namespace nacre {
+
+/// Takes frames in the order of their showing. All have the size of the first.
+class FrameSink {
+ public:
+  virtual ~FrameSink() = default;
+
+  /// Throws Error where the frame cannot be written; the sink is of no further use then.
+  virtual void add(const Image& frame) = 0;
+
+  /// Makes the result whole. Throws Error where that fails or no frame was added. A sink that goes without `finish`
+  /// leaves no half-written file.
+  virtual void finish() = 0;
+};
+
+/// frame_0000.png, frame_0001.png and so on in `folder`, which is made if missing. Frames of an earlier run are
+/// overwritten; each file is whole at any time. Throws Error where the folder cannot be made.
+std::unique_ptr<FrameSink> make_frame_folder(const std::filesystem::path& folder);
+
+/// A video by the program ffmpeg, `fps` frames a second: .mp4, .mov and .mkv (H.264), .webm (VP9) or .gif by the name's
+/// extension. Odd sizes gain one column or row. Written beside `file`, renamed by `finish`. Throws Error where the
+/// extension is another, ffmpeg is missing, or the file cannot be written.
+std::unique_ptr<FrameSink> make_video(const std::filesystem::path& file, int fps);
+
+}  // namespace nacre

@@ -1,0 +1,43 @@
+// Nacre: the knob table: one declaration per knob feeds command line, session file, report and panels.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/scene/settings.hpp"
+
+namespace nacre {
+
+/// One knob, bound to its place in a Settings.
+struct Knob {
+  std::string name;   ///< snake_case; on the command line --with-dashes
+  std::string group;  ///< the panel it is in
+  std::string unit;
+  std::string help;   ///< one line
+  std::variant<int*, double*, std::uint32_t*, bool*, std::string*> value;
+  double min = 0, max = 0;            ///< of a number
+  std::vector<std::string> choices;   ///< of a string; empty: any
+
+  std::string option() const;  ///< "--step-cells"
+  std::string text() const;    ///< the value as on the command line
+};
+
+/// The table, bound to `settings`, which must outlive it.
+std::vector<Knob> knobs(Settings& settings);
+
+/// Sets a knob from text. Throws Error where there is no such knob (with the nearest name), the text is no value of its
+/// type, or it is out of range.
+void set_knob(Settings& settings, const std::string& name, const std::string& text);
+
+/// All values, by name.
+nlohmann::json knob_values(const Settings& settings);
+
+/// Sets the knobs that `values` has. Throws Error as `set_knob` does.
+void set_knobs(Settings& settings, const nlohmann::json& values);
+
+/// The table for `nacre --knobs`: name, default, range, unit, help.
+std::string knob_table();
+
+}  // namespace nacre

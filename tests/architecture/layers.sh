@@ -1,0 +1,76 @@
+#!/usr/bin/env bash
+# Nacre: includes point downwards only. Usage: layers.sh [ROOT]; prints every include that does not, and fails.
+set -euo pipefail
+cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
+
+# Top folders, and the folders of compute, from the highest to the lowest: a file includes its own and lower ones.
+top_order=(app engine compute)
+compute_order=(pipeline raycast flow particles meshing embedding field grid device)
+
+# FOLDER:WORD... what a folder of the engine may not include, although it stands beside it.
+engine_forbidden=(
+  scene:io scene:picture
+  picture:io picture:scene
+  io:picture
+)
+
+# rank NAME ORDER...: the place of a name in an order, from 0; -1 where it is not in it.
+rank() {
+  local name=$1 place=0 each
+  shift
+  for each in "$@"; do
+    [[ $each == "$name" ]] && echo $place && return
+    place=$((place + 1))
+  done
+  echo -1
+}
+
+# complaint FROM TO: why a file in folder FROM may not include one in folder TO; nothing where it may.
+complaint() {
+  local from=$1 to=$2 from_rank to_rank from_sub to_sub
+  from_rank=$(rank "${from%%/*}" "${top_order[@]}")
+  to_rank=$(rank "${to%%/*}" "${top_order[@]}")
+  if ((to_rank < 0)); then
+    echo "is not a path from the root of the repository"
+  elif ((to_rank < from_rank)); then
+    echo "points upwards (${top_order[*]})"
+  elif [[ $from == compute/* && $to == compute/* ]]; then
+    from_rank=$(rank "$(cut -d/ -f2 <<<"$from")" "${compute_order[@]}")
+    to_rank=$(rank "$(cut -d/ -f2 <<<"$to")" "${compute_order[@]}")
+    if ((from_rank < 0 || to_rank < 0)); then
+      echo "has a folder of compute without a place in its order (${compute_order[*]})"
+    elif ((to_rank < from_rank)); then
+      echo "points upwards in compute (${compute_order[*]})"
+    fi
+  elif [[ $from == engine/* && $to == engine/* ]]; then
+    from_sub=$(cut -d/ -f2 <<<"$from")
+    to_sub=$(cut -d/ -f2 <<<"$to")
+    if (($(rank "$from_sub:$to_sub" "${engine_forbidden[@]}") >= 0)); then
+      echo "is forbidden: engine/$from_sub does not know engine/$to_sub"
+    fi
+  fi
+}
+
+# Each pair of folders is judged once: FILE:LINE:#include "PATH" becomes "FROM-FOLDER TO-FOLDER FILE PATH".
+pairs=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' app engine compute \
+  --include='*.hpp' --include='*.cpp' --include='*.cu' --include='*.cuh' --include='*.in' |
+  sed -E 's/^([^:]+):[0-9]+:[^"]*"([^"]+)".*/\1 \2/' |
+  awk '{ from = $1; to = $2; sub("/[^/]*$", "", from); if (!sub("/[^/]*$", "", to)) to = "."; print from, to, $1, $2 }') ||
+  true
+
+bad=0
+declare -A verdict=()
+while read -r from to file path; do
+  [[ -n $from ]] || continue
+  key="$from $to"
+  [[ -v verdict[$key] ]] || verdict[$key]=$(complaint "$from" "$to")
+  why=${verdict[$key]}
+  if [[ -z $why && ! -e $path ]]; then
+    why="does not exist"
+  fi
+  if [[ -n $why ]]; then
+    echo "$file: include \"$path\" $why"
+    bad=1
+  fi
+done <<<"$pairs"
+exit $bad

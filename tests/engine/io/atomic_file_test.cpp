@@ -1,0 +1,153 @@
+// Nacre: tests of files that appear only when they are whole.
+#include "engine/io/atomic_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <string>
+#include <vector>
+
+#include "compute/device/error.hpp"
+#include "tests/engine/io/temporary_folder.hpp"
+
+namespace nacre {
+namespace {
+
+using test::read_all;
+using test::TemporaryFolder;
+
+template <class Action>
+std::string error_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// Lets this process write files of at most `bytes`, without the signal that would end it.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+TEST(AtomicFile, AppearsOnCommitOnly) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder / "a.txt");
+  file.write("one ");
+  std::fputs("two", file.stream());
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+  EXPECT_EQ(file.temporary().parent_path(), folder.path());
+  EXPECT_EQ(file.temporary().extension(), ".txt");
+  file.commit();
+  EXPECT_EQ(read_all(folder / "a.txt"), "one two");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(AtomicFile, WithoutCommitTheOlderFileStays) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a.txt") << "old";
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("new");
+  }
+  EXPECT_EQ(read_all(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "real.txt") << "old";
+  ::chmod((folder / "real.txt").c_str(), 0640);
+  std::filesystem::create_symlink("real.txt", folder / "link.txt");
+  AtomicFile file(folder / "link.txt");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_all(folder / "real.txt"), "new");
+  EXPECT_EQ(std::filesystem::status(folder / "real.txt").permissions(), std::filesystem::perms(0640));
+}
+
+TEST(AtomicFile, BadPlacesAreNamed) {
+  const TemporaryFolder folder;
+  const std::string missing = error_of([&] { AtomicFile(folder / "no/such/a.txt"); });
+  EXPECT_NE(missing.find("no/such/a.txt (No such file or directory)"), std::string::npos) << missing;
+  EXPECT_NE(error_of([&] { AtomicFile(folder.path()); }).find("Is a directory"), std::string::npos);
+  std::ofstream(folder / "file") << "x";
+  EXPECT_NE(error_of([&] { AtomicFile(folder / "file/a.txt"); }).find("Not a directory"), std::string::npos);
+  EXPECT_NE(error_of([&] { AtomicFile(""); }), "");
+  if (::geteuid() != 0) {
+    ::chmod(folder.path().c_str(), 0555);
+    EXPECT_NE(error_of([&] { AtomicFile(folder / "a.txt"); }).find("Permission denied"), std::string::npos);
+    ::chmod(folder.path().c_str(), 0755);
+  }
+}
+
+TEST(AtomicFile, FullDiskIsAnErrorAtWriteOrCommit) {
+  const std::string text(100, 'x');  // stays in the buffer until commit
+  const std::string late = error_of([&] {
+    AtomicFile file("/dev/full");
+    file.write(text);
+    file.commit();
+  });
+  EXPECT_NE(late.find("/dev/full (No space left on device)"), std::string::npos) << late;
+  const std::vector<char> large(1 << 20);
+  EXPECT_NE(error_of([&] { AtomicFile("/dev/full").write(large.data(), large.size()); }).find("No space left"),
+            std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(AtomicFile, FileSizeLimitLeavesNothingBehind) {
+  const TemporaryFolder folder;
+  const std::vector<char> large(200000, 'x');
+  const FileSizeLimit limit(65536);
+  const std::string message = error_of([&] {
+    AtomicFile file(folder / "a.bin");
+    for (int i = 0; i < 10; ++i) file.write(large.data(), large.size());
+    file.commit();
+  });
+  EXPECT_NE(message.find("a.bin (File too large)"), std::string::npos) << message;
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(AtomicFile, FailedStreamWritesAreNoticed) {
+  const TemporaryFolder folder;
+  const FileSizeLimit limit(65536);
+  EXPECT_NE(error_of([&] {
+              AtomicFile file(folder / "a.txt");
+              for (int i = 0; i < 100000; ++i) std::fputs("0123456789", file.stream());  // result ignored
+              file.commit();
+            }),
+            "");
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(AtomicFile, UnfinishedFilesCanBeRemoved) {
+  const TemporaryFolder folder;
+  AtomicFile kept(folder / "kept.txt");
+  kept.commit();
+  AtomicFile lost(folder / "lost.txt");
+  std::filesystem::create_directories(folder / "scratch/deep");
+  add_unfinished(folder / "scratch");
+  remove_unfinished_files();
+  EXPECT_EQ(folder.entries(), 1u);
+  EXPECT_TRUE(std::filesystem::exists(folder / "kept.txt"));
+}
+
+}  // namespace
+}  // namespace nacre

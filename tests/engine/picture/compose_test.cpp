@@ -1,0 +1,81 @@
+// Nacre: blending and downsampling against values computed by hand.
+#include "engine/picture/compose.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/picture/test_images.hpp"
+
+namespace nacre {
+namespace {
+
+TEST(BlendOver, OpaqueCoversClearDoesNot) {
+  Image bottom = plain_image(4, 3, {10, 20, 30, 255});
+  Image top = plain_image(4, 3, {200, 100, 50, 0});
+  for (int k = 0; k < 4; ++k) top.at(1, 2)[k] = std::uint8_t(k == 3 ? 255 : 7);
+  blend_over(bottom, top);
+  EXPECT_EQ(bottom.at(0, 0)[0], 10);
+  EXPECT_EQ(bottom.at(1, 2)[0], 7);
+  EXPECT_EQ(bottom.at(1, 2)[3], 255);
+}
+
+TEST(BlendOver, HalfAlphaIsTheMean) {
+  Image bottom = plain_image(1, 1, {0, 100, 200, 255});
+  blend_over(bottom, plain_image(1, 1, {100, 100, 100, 128}));
+  EXPECT_NEAR(bottom.pixels[0], 50, 1);
+  EXPECT_EQ(bottom.pixels[1], 100);
+  EXPECT_NEAR(bottom.pixels[2], 150, 1);
+  EXPECT_EQ(bottom.pixels[3], 255);
+}
+
+TEST(BlendOver, OverATransparentPixelTheTopKeepsItsColour) {
+  Image bottom = plain_image(1, 1, {255, 255, 255, 0});
+  blend_over(bottom, plain_image(1, 1, {40, 50, 60, 128}));
+  EXPECT_EQ(bottom.pixels[0], 40);
+  EXPECT_EQ(bottom.pixels[3], 128);
+}
+
+TEST(BlendOver, IsCutAtTheBorders) {
+  for (const auto& [x, y, expected] : {std::tuple{-2, -2, 1}, {2, 2, 1}, {-1, 1, 4}, {5, 0, 0}, {-9, 0, 0}}) {
+    Image bottom = plain_image(3, 3, {0, 0, 0, 255});
+    const Image before = bottom;
+    blend_over(bottom, plain_image(3, 3, {9, 9, 9, 255}), x, y);
+    EXPECT_EQ(changed_pixels(before, bottom), expected) << x << " " << y;
+  }
+}
+
+TEST(Downsample, KeepsAConstantForEveryLevel) {
+  for (int level = 0; level < 256; ++level) {
+    const auto c = std::uint8_t(level);
+    const Image small = downsample(plain_image(4, 4, {c, c, c, 255}), 2);
+    ASSERT_EQ(small.width, 2);
+    EXPECT_EQ(small.pixels[0], level);
+    EXPECT_EQ(small.pixels[3], 255);
+  }
+}
+
+TEST(Downsample, AveragesLight) {
+  Image board = plain_image(2, 2, {0, 0, 0, 255});
+  for (int k = 0; k < 3; ++k) board.at(0, 0)[k] = board.at(1, 1)[k] = 255;
+  const Image small = downsample(board, 2);
+  ASSERT_EQ(small.width * small.height, 1);
+  EXPECT_EQ(small.pixels[0], 188) << "half the light is 188 in sRGB, not 128";
+}
+
+TEST(Downsample, WeighsByAlpha) {
+  Image image = plain_image(2, 1, {255, 0, 0, 255});
+  for (int k = 0; k < 4; ++k) image.at(1, 0)[k] = 0;
+  const Image small = downsample(image, 2);
+  EXPECT_EQ(small.pixels[0], 255);
+  EXPECT_EQ(small.pixels[3], 128);
+}
+
+TEST(Downsample, SizesThatAreNoMultiple) {
+  const Image small = downsample(plain_image(7, 5, {1, 2, 3, 255}), 3);
+  EXPECT_EQ(small.width, 2);
+  EXPECT_EQ(small.height, 1);
+  EXPECT_EQ(downsample(plain_image(2, 2, {1, 2, 3, 255}), 5).pixels, plain_image(1, 1, {1, 2, 3, 255}).pixels);
+  EXPECT_EQ(downsample(Image(), 2).width, 0);
+}
+
+}  // namespace
+}  // namespace nacre
