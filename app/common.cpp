@@ -9,8 +9,8 @@
 #include <cstdio>
 
 #include "compute/device/error.hpp"
-#include "engine/io/atomic_file.hpp"
 #include "engine/scene/knobs.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace {
@@ -49,7 +49,7 @@ KnobOptions::KnobOptions(CLI::App& command) {
 }
 
 void KnobOptions::apply(Settings& settings, const std::vector<std::string>& set) const {
-  try {
+  checked_words([&] {
     for (const auto& [name, value] : values_)
       if (!value->empty()) set_knob(settings, name, *value);
     for (const std::string& pair : set) {
@@ -57,9 +57,7 @@ void KnobOptions::apply(Settings& settings, const std::vector<std::string>& set)
       if (equals == std::string::npos) throw Error("--set " + pair + " has no '='", "", "write --set KNOB=VALUE");
       set_knob(settings, pair.substr(0, equals), pair.substr(equals + 1));
     }
-  } catch (const Error& error) {
-    throw UsageError(error.what());
-  }
+  });
 }
 
 const std::atomic<bool>& interrupt_flag() { return interrupted; }
@@ -116,7 +114,7 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text) {
-  AtomicFile out(file);
+  OutputFile out(file);
   out.write(text);
   out.commit();
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compute/device/device.hpp"
+#include "compute/device/error.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "engine/scene/settings.hpp"
 
@@ -31,6 +32,16 @@ struct CommonOptions {
 class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+
+/// What `action` returns; an Error in it is one of the words: UsageError.
+template <class Action>
+auto checked_words(const Action& action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    throw UsageError(error.what());
+  }
+}
 
 void add_common_options(CLI::App& command, CommonOptions& options);
 

@@ -44,7 +44,8 @@ std::pair<double, double> parse_pair(const std::string& text, char separator, co
   try {
     std::size_t used_first = 0, used_second = 0;
     const double first = std::stod(text, &used_first), second = std::stod(text.substr(at + 1), &used_second);
-    if (at != std::string::npos && used_first == at && used_second == text.size() - at - 1) return {first, second};
+    const bool whole = at != std::string::npos && used_first == at && used_second == text.size() - at - 1;
+    if (whole && std::isfinite(first) && std::isfinite(second)) return {first, second};
   } catch (const std::logic_error&) {
   }
   throw UsageError(fmt::format("{} takes A{}B, not '{}'", option, separator, text));
@@ -70,9 +71,32 @@ Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
   return session;
 }
 
+std::array<float, 3> parse_color(const std::string& text) {
+  if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+    throw UsageError("--background takes #rrggbb or transparent, not '" + text + "'");
+  const int rgb = std::stoi(text.substr(1), nullptr, 16);
+  return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
+}
+
+bool is_camera_file(const Settings& settings) {
+  return std::filesystem::path(settings.camera).extension() == ".json";
+}
+
+/// Names that mean something without any file: wrong ones are found before the work begins.
+void check_words(const Settings& settings) {
+  checked_words([&] {
+    colormap(settings.colormap);
+    if (!is_camera_file(settings)) fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
+    if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
+  });
+  if (settings.background != "transparent") parse_color(settings.background);
+}
+
 FlowInput read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
   StageTimers::Scope scope(timers, "read");
-  SurfaceSeries series = session.sample.empty() ? open_surface(session.inputs) : make_sample(session.sample, options.detail);
+  SurfaceSeries series = session.sample.empty()
+                             ? open_surface(session.inputs)
+                             : checked_words([&] { return make_sample(session.sample, options.detail); });
   for (const std::string& warning : series.warnings) warn(options.common, warning);
   const Surface first = series.load(0);
   std::vector<std::string> warnings;
@@ -99,7 +123,7 @@ Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
       lower = min(lower, surface.points[t[k]]);
       upper = max(upper, surface.points[t[k]]);
     }
-  if (std::filesystem::path(settings.camera).extension() != ".json")
+  if (!is_camera_file(settings))
     return fit_camera(settings.camera, lower, upper, settings.width, settings.height);
   std::ifstream stream(settings.camera);
   if (!stream) throw Error("cannot read camera " + settings.camera);
@@ -115,6 +139,8 @@ Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
     camera.up = json.contains("up") ? vec("up") : Vec3d(0, 0, 1);
     camera.height = json.value("height", camera.height);
     camera.orthographic = json.value("orthographic", false);
+    if (!(length(camera.target - camera.eye) > 0) || !(length(camera.up) > 0) || !(camera.height > 0))
+      throw Error(settings.camera + " is no camera", "eye and target must differ, up and height be above zero");
     return camera;
   } catch (const nlohmann::json::exception& error) {
     throw Error(settings.camera + " is no camera", error.what(), R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
@@ -161,13 +187,6 @@ class Painter {
   }
 
  private:
-  static std::array<float, 3> parse_color(const std::string& text) {
-    if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-      throw UsageError("--background takes #rrggbb or transparent, not '" + text + "'");
-    const int rgb = std::stoi(text.substr(1), nullptr, 16);
-    return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
-  }
-
   FlowPipeline& pipeline_;
   FlowInput& input_;
   const Settings& settings_;
@@ -214,6 +233,7 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const Session session = make_session(options, knob_options);
   const Settings& settings = session.settings;
+  check_words(settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   const std::unique_ptr<Device> device = make_device(options.common.device, options.common.threads);
   say(options.common, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));

@@ -10,8 +10,9 @@
 #include "app/commands.hpp"
 #include "app/common.hpp"
 #include "compute/device/error.hpp"
-#include "engine/io/atomic_file.hpp"
+#include "engine/io/vtk_child.hpp"
 #include "engine/scene/knobs.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace {
 
@@ -57,6 +58,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   nacre::catch_interrupts();
+  nacre::watch_vtk_child(&nacre::interrupt_flag());
   try {
     return run(argc, argv);
   } catch (const nacre::Interrupted&) {

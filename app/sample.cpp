@@ -26,8 +26,8 @@ void add_sample_command(CLI::App& program, std::function<void()>& run) {
         for (const SampleInfo& sample : samples()) fmt::print("{:<16} {}\n", sample.name, sample.help);
         return;
       }
-      const SurfaceSeries series = make_sample(words->name, words->detail);
       if (words->out.empty()) throw UsageError("where to? add --out FILE");
+      const SurfaceSeries series = checked_words([&] { return make_sample(words->name, words->detail); });
       const std::filesystem::path out = words->out;
       if (out.extension() == ".pvd") {
         const auto files = write_series(out, series);

@@ -29,7 +29,7 @@ class Arena {
   template <class T>
   Array<T> permanent(std::size_t count) {
     const std::size_t start = head_;
-    require(aligned(count * sizeof(T)));
+    require(count, sizeof(T));
     head_ += aligned(count * sizeof(T));
     note_peak();
     return {device_, reinterpret_cast<T*>(block_ + start), count};
@@ -46,7 +46,7 @@ class Arena {
   /// `count` elements that last until the innermost Scope ends.
   template <class T>
   Array<T> temporary(std::size_t count) {
-    require(aligned(count * sizeof(T)));
+    require(count, sizeof(T));
     tail_ -= aligned(count * sizeof(T));
     note_peak();
     return {device_, reinterpret_cast<T*>(block_ + tail_), count};
@@ -74,10 +74,12 @@ class Arena {
  private:
   static std::size_t aligned(std::size_t bytes) { return (bytes + 255) / 256 * 256; }
 
-  void require(std::size_t bytes) const {
-    if (bytes > free_bytes())
-      throw Error("not enough memory on the device", std::to_string(bytes >> 20) + " MiB asked, " +
-                  std::to_string(free_bytes() >> 20) + " MiB free", "lower the resolution");
+  void require(std::size_t count, std::size_t size) const {
+    if (count > free_bytes() / size || aligned(count * size) > free_bytes())
+      throw Error("not enough memory on the device",
+                  std::to_string((count >> 10) * size >> 10) + " MiB asked, " + std::to_string(free_bytes() >> 20) +
+                      " MiB free",
+                  "lower the resolution");
   }
 
   void note_peak() { peak_ = std::max(peak_, capacity_ - free_bytes()); }

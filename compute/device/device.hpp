@@ -35,11 +35,14 @@ class Device {
 /// copy runs: any other access is a segmentation fault, so that a missing copy fails without a GPU.
 std::unique_ptr<Device> make_cpu_device(int threads = 0, bool remote = false);
 
-/// Number of usable CUDA devices: 0 without a driver or in a build without CUDA.
+/// Number of usable CUDA devices: 0 without a driver, on a GPU that this build has no code for, or in a build without
+/// CUDA.
 int cuda_device_count();
 
-/// The first CUDA device. Throws Error where there is none or the build has no CUDA.
-std::unique_ptr<Device> make_cuda_device();
+/// The first CUDA device. Its arenas take four fifths of what is free when they are made, but at most `arena_limit` bytes
+/// (0: no limit), so that several pipelines can stand side by side. Throws Error where there is none or the build has no
+/// CUDA.
+std::unique_ptr<Device> make_cuda_device(std::size_t arena_limit = 0);
 
 /// `request`: "auto" (CUDA where usable, else CPU), "cpu" or "cuda".
 std::unique_ptr<Device> make_device(const std::string& request, int threads = 0);

@@ -47,6 +47,7 @@ class Executor<Cuda> : public ExecutorBase {
   void for_each(std::int64_t n, const Kernel& kernel) {
     check_stop();
     if (n <= 0) return;
+    static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     constexpr int threads = 256;
     const auto blocks = unsigned(std::min<std::int64_t>((n + threads - 1) / threads, 1 << 20));
     for_each_kernel<<<blocks, threads>>>(n, kernel);

@@ -148,9 +148,10 @@ NACRE_HD_INLINE Lanes linear(const Float4* values, const Vec3f& f, const Address
   return low + (high - low) * f.z;
 }
 
-/// `values` interpolated linearly at `p`. False where the surface is too far for the eight cells to exist.
-NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Vec3f& p,
-                                        Lanes& result) {
+/// Calls use(address, f): the address of a point's eight cells as a function of (x, y, z) in 0..1, and its distances from
+/// the first. False where the surface is too far for the eight to exist.
+template <class Use>
+NACRE_HD_INLINE bool with_linear_cells(const ClosestPointGridView& grid, const Vec3f& p, const Use& use) {
   const Int3 first = floor_cell(p - Vec3f(0.5f));
   const Vec3f f = p - cell_centre(first);
   const Int3 brick{grid.divide(first.x), grid.divide(first.y), grid.divide(first.z)};
@@ -160,14 +161,29 @@ NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const 
     if (!grid.inside(first)) return false;
     const std::uint32_t b = grid.brick(brick.x, brick.y, brick.z);
     if (b == none) return false;
-    const Float4* corner = values + (std::size_t(b) * grid.cells_per_brick() + (local.z * sub + local.y) * sub + local.x);
-    result = linear(corner, f, [sub](int x, int y, int z) { return (z * sub + y) * sub + x; });
+    const std::uint32_t corner = b * grid.cells_per_brick() + (local.z * sub + local.y) * sub + local.x;
+    use([=](int x, int y, int z) { return corner + (z * sub + y) * sub + x; }, f);
     return true;
   }
   Stencil<2> stencil;
   if (!stencil.find(grid, first)) return false;
-  result = linear(values, f, [&](int x, int y, int z) { return stencil.address(grid, x, y, z); });
+  use([&](int x, int y, int z) { return stencil.address(grid, x, y, z); }, f);
   return true;
+}
+
+/// `values` interpolated linearly at `p`. False where the surface is too far for the eight cells to exist.
+NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Vec3f& p,
+                                        Lanes& result) {
+  return with_linear_cells(grid, p, [&](const auto& at, const Vec3f& f) { result = linear(values, f, at); });
+}
+
+/// The same, between two sets of values: `u` = 0 the first, 1 the second.
+NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Float4* next,
+                                        float u, const Vec3f& p, Lanes& result) {
+  return with_linear_cells(grid, p, [&](const auto& at, const Vec3f& f) {
+    const Lanes a = linear(values, f, at), b = linear(next, f, at);
+    result = a + (b - a) * u;
+  });
 }
 
 #if defined(__CUDACC__)

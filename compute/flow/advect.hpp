@@ -52,14 +52,18 @@ struct ReleaseParticles {
   /// Moves `p` over step `j`; returns how many cells were hit.
   NACRE_HD int walk(int j, Vec3f& p, std::uint32_t value16) const {
     const float scale = float(texture.refine);
-    Vec3f v;
-    if (!field.velocity(p, j, 0.5f, v) || dot(v, v) * scale * scale < at_rest * at_rest) return 0;
     int hits = 0;
     float u = 0, h = 1;
     while (u < 1) {
       h = h < 1 - u ? h : 1 - u;
       Vec3f end, landed;
-      const bool moved = runge_kutta4(field, p, j, u, h, end) && project(field.grid, end, landed);
+      bool moved = runge_kutta4(field, p, j, u, h, end);
+      const Vec3f way = moved ? end - p : Vec3f{};
+      if (moved && dot(way, way) * scale * scale < at_rest * at_rest * h * h) {
+        u += h;
+        continue;
+      }
+      moved = moved && project(field.grid, end, landed);
       const Vec3f off = moved ? landed - end : Vec3f{};
       if (!moved || dot(off, off) * scale * scale > near_surface * near_surface) {
         if (h > shortest) {

@@ -65,12 +65,14 @@ struct PathAxis {
 
 /// Normalised frame of antialiased lines: a hit counts half for its cell and an eighth for each of the four neighbours
 /// in the plane across the line's main axis; a neighbour that projects back counts for the cell itself. The hit count
-/// has the same weights, so the mean is exact. A cell that nothing reached keeps what it had: nothing goes black.
+/// has the same weights, so the mean is exact.
 struct Antialias {
   RefinedGridView texture;
   const std::uint64_t* sums;
   const std::uint8_t* axis;
-  float* value;  ///< in: the frame before; out: the mean of what was deposited, 0..1
+  const float* otherwise;  ///< the value of a cell that nothing reached: nothing goes black
+  float share;             ///< of the mean in the result; the rest is `otherwise`
+  float* value;            ///< 0..1; may be `otherwise` itself
 
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t* neighbour = texture.neighbour + 6 * i;
@@ -82,7 +84,9 @@ struct Antialias {
       values += Deposit::value(sums[n]);
       weights += Deposit::hits(sums[n]);
     }
-    if (weights) value[i] = float(double(values) / (65535.0 * double(weights)));
+    const float before = otherwise[i];
+    const float mean = weights ? float(double(values) / (65535.0 * double(weights))) : before;
+    value[i] = before + (mean - before) * share;
   }
 };
 

@@ -43,29 +43,90 @@ struct AddMoments {
 
 NACRE_HD inline float clamp01(float x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
-/// The shown frame: the normalised one, stretched about its mean.
-struct StretchContrast {
-  const float* value;
-  float mean, gain;
-  float* shown;
-  NACRE_HD void operator()(std::int64_t i) const { shown[i] = clamp01(0.5f + (value[i] - mean) * gain); }
-};
-
-/// What the next step's particles carry: the normalised frame stretched, sharpened by the Laplacian over the neighbour
-/// index, clamped, and jittered by fresh noise that takes the share `jitter`.
-struct SharpenAndJitter {
+/// Number, sum and sum of squares of the values in each closest-point cell: the raw material of local contrast.
+struct LocalMoments {
   RefinedGridView texture;
   const float* value;
-  float mean, gain, sharpen, jitter;
+  Float4* moments;  ///< per closest-point cell: count, sum, sum of squares
+  NACRE_HD void operator()(std::int64_t cell) const {
+    const std::uint32_t b = texture.block[cell];
+    Float4 m{0, 0, 0, 0};
+    const int n = b == none ? 0 : texture.cells_per_block();
+    for (int k = 0; k < n; ++k) {
+      const std::uint32_t s = texture.texel[b * n + k];
+      if (s & RefinedGridView::extended) continue;  // beside the surface, or nothing
+      const float v = value[s];
+      m = {m.x + 1, m.y + v, m.z + v * v, 0};
+    }
+    moments[cell] = m;
+  }
+};
+
+/// One pass of a (1 2 1)^3 filter over the moments, to widen their window. Cells without a block hold no value and are
+/// never asked: they stay empty.
+struct BlurMoments {
+  RefinedGridView texture;
+  const Float4* from;
+  Float4* to;
+  NACRE_HD void operator()(std::int64_t b) const {
+    const std::uint32_t i = texture.block_cell[b];
+    const Int3 cell = texture.grid.cell(i);
+    Lanes sum = lanes(0, 0, 0);
+    for (int k = 0; k < 27; ++k) {
+      const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
+      const std::uint32_t at = texture.grid.address(cell + Int3(x, y, z));
+      if (at != none) sum = sum + load(from[at]) * float((2 - x * x) * (2 - y * y) * (2 - z * z));
+    }
+    to[i] = store(sum);
+  }
+};
+
+/// How far a value is from the mean, in standard deviations; mean and deviation are the local ones to the share `local`,
+/// else those of the whole texture. Without it what a diverging flow stretches grows into blotches, step by step.
+/// Gives the shown frame, contrast stretched, and the same of `ahead`, whose deviation is `ratio` times that of `value`.
+struct Equalise {
+  RefinedGridView texture;
+  const float* value;
+  const float* ahead;
+  const Float4* moments;  ///< of `value`
+  float mean, deviation;  ///< of the whole of `value`; deviation > 0
+  float ahead_mean, ratio;
+  float local, contrast;
+  float* shown;
+  float* detail;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Vec3f p = cell_centre(texture.cell(std::uint32_t(i))) * texture.inverse_refine;
+    float shift = 0, spread = deviation;
+    Lanes around;
+    if (interpolate_linear(texture.grid, moments, p, around)) {
+      const Vec3f m = xyz(around);  // never empty: the cell's own value is in it
+      const float local_mean = m.y / m.x, variance = m.z / m.x - local_mean * local_mean;
+      const float local_deviation = std::sqrt(variance > 0 ? variance : 0);
+      const float least = 0.25f * deviation;  // a plain region stays plain
+      shift = local * (local_mean - mean);
+      spread += local * ((local_deviation > least ? local_deviation : least) - deviation);
+    }
+    shown[i] = clamp01(0.5f + contrast * (value[i] - mean - shift) / spread);
+    detail[i] = (ahead[i] - ahead_mean - shift) / (spread * ratio);
+  }
+};
+
+/// What the next step's particles carry: sharpened by the Laplacian over the neighbour index, with the spread of white
+/// noise, clamped, and jittered by fresh noise that takes the share `jitter`.
+struct SharpenAndJitter {
+  RefinedGridView texture;
+  const float* detail;
+  float sharpen, jitter;
   std::uint32_t seed, step;
   float* carried;
 
   NACRE_HD void operator()(std::int64_t i) const {
+    const float white_noise = 0.28867513f;  // its standard deviation
     const std::uint32_t* n = texture.neighbour + 6 * i;
-    const float own = value[i];
+    const float own = detail[i];
     float laplacian = 0;
-    for (int k = 0; k < 6; ++k) laplacian += value[n[k]] - own;  // a neighbour that projects back adds nothing
-    const float sharp = clamp01(0.5f + gain * (own - mean - sharpen * laplacian));
+    for (int k = 0; k < 6; ++k) laplacian += detail[n[k]] - own;  // a neighbour that projects back adds nothing
+    const float sharp = clamp01(0.5f + white_noise * (own - sharpen * laplacian));
     const float noise = uniform_random(seed, std::uint32_t(i), step + 1);
     carried[i] = sharp + jitter * (noise - sharp);
   }

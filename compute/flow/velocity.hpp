@@ -17,19 +17,12 @@ struct FlowField {
 
   /// At point `p` (cells) and time `u` (0..1) within step `j`. False out of the band.
   NACRE_HD_INLINE bool velocity(const Vec3f& p, int j, float u, Vec3f& v) const {
-    Lanes a, b;
-    if (steady || u == 0) {
-      if (!interpolate_linear(grid, slot[j], p, a)) return false;
-      v = xyz(a);
-      return true;
-    }
-    if (!interpolate_linear(grid, slot[j + 1], p, b)) return false;
-    if (u < 1) {
-      if (!interpolate_linear(grid, slot[j], p, a)) return false;
-      b = a + (b - a) * u;
-    }
-    v = xyz(b);
-    return true;
+    Lanes result;
+    const bool inside = steady || u <= 0 ? interpolate_linear(grid, slot[j], p, result)
+                        : u >= 1        ? interpolate_linear(grid, slot[j + 1], p, result)
+                                        : interpolate_linear(grid, slot[j], slot[j + 1], u, p, result);
+    v = xyz(result);
+    return inside;
   }
 };
 

@@ -28,9 +28,10 @@ struct FlowParameters {
   double speed_power = 1;   ///< displacement ~ speed^power: 1 true speeds, 0 all alike
   int steps = 20;           ///< steps from the first to the last time
   int warmup = -1;          ///< steps before the first, at the first time; -1: ttl
-  double sharpen = 0.15;    ///< strength of the Laplacian between steps
-  double jitter = 0.1;      ///< share of fresh noise between steps
-  double contrast = 0.22;   ///< shown standard deviation
+  double sharpen = 0.05;    ///< strength of the Laplacian between steps
+  double jitter = 0.55;     ///< share of fresh noise between steps
+  double equalise = 0.5;    ///< share of local contrast against that of the whole texture
+  double contrast = 0.26;   ///< shown standard deviation
   std::uint32_t seed = 1;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "compute/embedding/build_closest_point_grid.hpp"
 #include "compute/embedding/build_refined_grid.hpp"
@@ -71,9 +72,16 @@ class FlowPipelineOf final : public FlowPipeline {
     axis_ = arena.permanent<std::uint8_t>(n);
     carried_ = arena.permanent<float>(n);
     value_ = arena.permanent<float>(n);
+    ahead_ = arena.permanent<float>(n);
+    detail_ = arena.permanent<float>(n);
+    for (Array<Float4>& moments : moments_) {
+      moments = arena.permanent<Float4>(coarse_.cells);
+      moments.fill_bytes(0);  // blurring never writes the cells without a block
+    }
     shown_ = arena.permanent<float>(n);
     exec_.for_each(n, FillNoise{parameters.seed, carried_.data()});
     exec_.for_each(n, FillNoise{parameters.seed, value_.data()});
+    exec_.for_each(n, FillNoise{parameters.seed, ahead_.data()});
     step_ = launched_ = 0;
     first_ = parameters.warmup >= 0 ? -parameters.warmup : -ttl_;
     fill_slots();
@@ -173,9 +181,11 @@ class FlowPipelineOf final : public FlowPipeline {
     {
       auto stage = exec_.stage("deposit");
       exec_.for_each(fine_.surface_cells, PathAxis{fine_.view(coarse_.view()), slot(k).data(), axis_.data()});
-      exec_.for_each(fine_.surface_cells,
-                     Antialias{fine_.view(coarse_.view()), done.data(), axis_.data(), value_.data()});
+      antialias(done, value_, 1, value_);
       done.fill_bytes(0);
+      // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the mean
+      // of this frame and of what older particles have already left in the next one; else the texture lags the flow.
+      antialias(sums_[(k + 1 - first_) % ttl_], value_, 0.5f, ahead_);
     }
     show();
   }
@@ -184,13 +194,35 @@ class FlowPipelineOf final : public FlowPipeline {
   void show() {
     auto stage = exec_.stage("filter");
     const std::int64_t n = fine_.surface_cells;
-    const Moments moments = exec_.reduce(n, Moments{}, MomentsOf{value_.data()}, AddMoments{});
-    const float mean = moments.mean(n), deviation = std::max(moments.deviation(n), 1e-4f);
-    exec_.for_each(n, StretchContrast{value_.data(), mean, float(parameters.contrast) / deviation, shown_.data()});
-    const float white = 0.28867513f;  // standard deviation of uniform noise
-    exec_.for_each(n, SharpenAndJitter{fine_.view(coarse_.view()), value_.data(), mean, white / deviation,
-                                       float(parameters.sharpen), float(parameters.jitter), parameters.seed,
-                                       std::uint32_t(++launched_), carried_.data()});
+    const RefinedGridView texture = fine_.view(coarse_.view());
+    const auto moments_of = [&](const Array<float>& a) {
+      return exec_.reduce(n, Moments{}, MomentsOf{a.data()}, AddMoments{});
+    };
+    const Moments now = moments_of(value_), next = moments_of(ahead_);
+    const float deviation = std::max(now.deviation(n), 1e-4f);
+    const Float4* moments = gather_moments(texture);
+    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, now.mean(n), deviation,
+                               next.mean(n), std::max(next.deviation(n), 1e-4f) / deviation, float(parameters.equalise),
+                               float(parameters.contrast), shown_.data(), detail_.data()});
+    exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters.sharpen), float(parameters.jitter),
+                                       parameters.seed, std::uint32_t(++launched_), carried_.data()});
+  }
+
+  /// Local moments of `value_` over a window of about a dozen texture cells, in one of two buffers.
+  const Float4* gather_moments(const RefinedGridView& texture) {
+    const Array<Float4>*from = &moments_[0], *to = &moments_[1];
+    exec_.for_each(coarse_.cells, LocalMoments{texture, value_.data(), from->data()});
+    const int passes = refine_ == 1 ? 8 : refine_ == 2 ? 4 : refine_ <= 4 ? 1 : 0;
+    for (int k = 0; k < passes; ++k) {
+      exec_.for_each(fine_.block_cell.size(), BlurMoments{texture, from->data(), to->data()});
+      std::swap(from, to);
+    }
+    return from->data();
+  }
+
+  void antialias(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
+    exec_.for_each(fine_.surface_cells, Antialias{fine_.view(coarse_.view()), sums.data(), axis_.data(),
+                                                  otherwise.data(), share, value.data()});
   }
 
   Executor<Backend> exec_;
@@ -214,7 +246,8 @@ class FlowPipelineOf final : public FlowPipeline {
   Array<Float4> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
   Array<std::uint8_t> axis_;
-  Array<float> carried_, value_, shown_;
+  Array<float> carried_, value_, ahead_, detail_, shown_;
+  Array<Float4> moments_[2];
 };
 
 template <class Backend>

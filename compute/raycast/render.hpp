@@ -58,7 +58,7 @@ NACRE_HD inline Vec3f shade(const Scene& scene, const Ray& ray, const Hit& hit) 
   if (scene.shown) {
     const Vec3f p = (ray.origin + ray.direction * hit.t) * float(scene.texture.refine);
     const float value = sample(scene.texture, scene.shown, p, 0.5f);
-    brightness *= 0.12f + 1.5f * value * value;
+    brightness *= 0.25f + 1.15f * value;
   }
   return base * brightness;
 }

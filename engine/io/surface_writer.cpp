@@ -15,8 +15,8 @@
 #include <system_error>
 
 #include "compute/device/error.hpp"
-#include "engine/io/atomic_file.hpp"
 #include "engine/io/vtp_writer.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace {
@@ -34,7 +34,7 @@ std::string lower_extension(const fs::path& file) {
 /// Collects small pieces of a file, binary or text, and hands them on in large ones.
 class Chunks {
  public:
-  explicit Chunks(AtomicFile& file) : file_(file) { text_.reserve(chunk_bytes + 4096); }
+  explicit Chunks(OutputFile& file) : file_(file) { text_.reserve(chunk_bytes + 4096); }
 
   template <class... Args>
   void print(fmt::format_string<Args...> format, Args&&... args) {
@@ -67,7 +67,7 @@ class Chunks {
   }
 
  private:
-  AtomicFile& file_;
+  OutputFile& file_;
   std::string text_;
 };
 
@@ -160,7 +160,7 @@ std::string attribute(const std::string& text) {
 }
 
 void write_pvd(const fs::path& file, const std::vector<fs::path>& steps, const std::vector<double>& times) {
-  AtomicFile out(file);
+  OutputFile out(file);
   out.write(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
       "<Collection>\n");
@@ -185,7 +185,7 @@ void write_surface(const fs::path& file, const Surface& surface, std::optional<d
   check(file, surface);
   if (extension == ".vtp")
     return write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, surface.arrays, time);
-  AtomicFile target(file);
+  OutputFile target(file);
   Chunks out(target);
   if (extension == ".obj") write_obj(out, surface);
   if (extension == ".ply") write_ply(out, surface);

@@ -144,7 +144,7 @@ class Unpacker {
   }
 
   std::size_t read_count() {
-    char bytes[8];
+    char bytes[8] = {};
     read(bytes, encoding_.header_bytes);
     return encoding_.header_bytes == 8 ? std::size_t(load_number<std::uint64_t>(bytes, encoding_.order))
                                        : load_number<std::uint32_t>(bytes, encoding_.order);

@@ -17,8 +17,8 @@
 #include <system_error>
 
 #include "compute/device/error.hpp"
-#include "engine/io/atomic_file.hpp"
-#include "engine/io/child_process.hpp"
+#include "engine/system/child_process.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace {

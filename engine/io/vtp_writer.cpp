@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "compute/device/error.hpp"
-#include "engine/io/atomic_file.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace {
@@ -46,7 +46,7 @@ class Appended {
  public:
   /// The XML element of a block of `bytes` that `write` will put into the file.
   std::string announce(const std::string& type, const std::string& name, int components, std::uint64_t bytes,
-                       std::function<void(AtomicFile&)> write) {
+                       std::function<void(OutputFile&)> write) {
     const std::string element = fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
         xml_escaped(name), components, offset_);
@@ -55,7 +55,7 @@ class Appended {
     return element;
   }
 
-  void write(AtomicFile& file) const {
+  void write(OutputFile& file) const {
     file.write("<AppendedData encoding=\"raw\">\n_");
     for (const Block& block : blocks_) {
       file.write(&block.bytes, sizeof block.bytes);
@@ -67,7 +67,7 @@ class Appended {
  private:
   struct Block {
     std::uint64_t bytes;
-    std::function<void(AtomicFile&)> write;
+    std::function<void(OutputFile&)> write;
   };
   std::vector<Block> blocks_;
   std::uint64_t offset_ = 0;
@@ -75,7 +75,7 @@ class Appended {
 
 /// Writes value(0), value(1), ... value(count - 1) by way of a small buffer.
 template <class Index, class Value>
-void write_generated(AtomicFile& file, std::uint64_t count, const Value& value) {
+void write_generated(OutputFile& file, std::uint64_t count, const Value& value) {
   std::vector<Index> buffer(std::min<std::uint64_t>(count, 1 << 16));
   for (std::uint64_t begin = 0; begin < count; begin += buffer.size()) {
     const std::uint64_t n = std::min<std::uint64_t>(buffer.size(), count - begin);
@@ -90,9 +90,9 @@ std::string announce_indices(Appended& appended, const char* name, std::uint64_t
                              Value value) {
   if (largest <= std::uint64_t(std::numeric_limits<std::int32_t>::max()))
     return appended.announce("Int32", name, 1, 4 * count,
-                             [=](AtomicFile& file) { write_generated<std::int32_t>(file, count, value); });
+                             [=](OutputFile& file) { write_generated<std::int32_t>(file, count, value); });
   return appended.announce("Int64", name, 1, 8 * count,
-                           [=](AtomicFile& file) { write_generated<std::int64_t>(file, count, value); });
+                           [=](OutputFile& file) { write_generated<std::int64_t>(file, count, value); });
 }
 
 std::string announce_cells(Appended& appended, std::uint64_t points, std::span<const Triangle> triangles) {
@@ -103,7 +103,7 @@ std::string announce_cells(Appended& appended, std::uint64_t points, std::span<c
            announce_indices(appended, "offsets", points, points, after) + "</Verts>\n";
   const std::string corners =
       appended.announce("UInt32", "connectivity", 1, triangles.size_bytes(),
-                        [triangles](AtomicFile& file) { file.write(triangles.data(), triangles.size_bytes()); });
+                        [triangles](OutputFile& file) { file.write(triangles.data(), triangles.size_bytes()); });
   const auto end = [](std::uint64_t i) { return 3 * i + 3; };
   return "<Polys>\n" + corners + announce_indices(appended, "offsets", triangles.size(), 3 * triangles.size(), end) +
          "</Polys>\n";
@@ -114,7 +114,7 @@ std::string announce_arrays(Appended& appended, std::span<const PointArray> arra
   for (const PointArray& array : arrays)
     xml += appended.announce(
         "Float32", array.name, array.components, array.values.size() * sizeof(float),
-        [&array](AtomicFile& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
+        [&array](OutputFile& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
   return xml + "</PointData>\n";
 }
 
@@ -142,11 +142,11 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
   xml += announce_arrays(appended, arrays);
   xml += "<Points>\n" +
          appended.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
-                           [points](AtomicFile& file) { file.write(points.data(), points.size_bytes()); }) +
+                           [points](OutputFile& file) { file.write(points.data(), points.size_bytes()); }) +
          "</Points>\n";
   xml += announce_cells(appended, points.size(), triangles) + "</Piece>\n</PolyData>\n";
 
-  AtomicFile file(path);
+  OutputFile file(path);
   file.write(xml);
   appended.write(file);
   file.write("</VTKFile>\n");

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
-#include "engine/picture/output_file.hpp"
+#include "engine/system/output_file.hpp"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -90,10 +90,7 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
 void write_png(const fs::path& file, const Image& image) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
   OutputFile output(file);
-  Handle handle(std::fopen(output.temporary().c_str(), "wb"), &std::fclose);
-  if (!handle) fail_to_write(file, errno);
-  if (std::fwrite(bytes.data(), 1, bytes.size(), handle.get()) != bytes.size()) fail_to_write(file, errno);
-  if (std::fclose(handle.release()) != 0) fail_to_write(file, errno);
+  output.write(bytes.data(), bytes.size());
   output.commit();
 }
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "compute/device/error.hpp"
-#include "engine/picture/child_process.hpp"
-#include "engine/picture/output_file.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/system/child_process.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace fs = std::filesystem;

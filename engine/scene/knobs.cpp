@@ -103,6 +103,7 @@ std::vector<Knob> knobs(Settings& s) {
       {"warmup", "flow", "steps", "steps at the first time before the first frame; -1: ttl", &f.warmup, -1, 1000, {}},
       {"sharpen", "flow", "", "Laplacian sharpening between steps", &f.sharpen, 0, 2, {}},
       {"jitter", "flow", "", "share of fresh noise between steps", &f.jitter, 0, 1, {}},
+      {"equalise", "flow", "", "local contrast against that of the whole texture, as a share", &f.equalise, 0, 1, {}},
       {"seed", "flow", "", "of the noise: one seed, one result", &f.seed, 0, 4294967295.0, {}},
       {"contrast", "picture", "", "standard deviation of the shown texture", &f.contrast, 0, 1, {}},
       {"color", "picture", "", "array to colour by, speed or none", &s.color, 0, 0, {}},

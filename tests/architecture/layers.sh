@@ -9,6 +9,7 @@ compute_order=(pipeline raycast flow particles meshing embedding field grid devi
 
 # FOLDER:WORD... what a folder of the engine may not include, although it stands beside it.
 engine_forbidden=(
+  system:scene system:io system:picture
   scene:io scene:picture
   picture:io picture:scene
   io:picture

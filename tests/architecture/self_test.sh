@@ -53,6 +53,9 @@ good_tree
 plant engine/picture/side.hpp '#include "engine/scene/c.hpp"'
 expect layers.sh 'engine/picture does not know engine/scene'
 good_tree
+plant engine/system/up.hpp '#include "engine/io/e.hpp"'
+expect layers.sh 'engine/system does not know engine/io'
+good_tree
 plant engine/scene/relative.hpp '#include "c.hpp"'
 expect layers.sh 'is not a path from the root'
 good_tree

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "compute/device/error.hpp"
-#include "engine/picture/child_process.hpp"
+#include "engine/system/child_process.hpp"
 #include "engine/picture/png.hpp"
 #include "tests/engine/picture/small_disk.hpp"
 #include "tests/engine/picture/temporary_folder.hpp"

@@ -1,8 +1,10 @@
-// Nacre: another program that reads what we send it.
+// Nacre: other programs: one run to its end, or one that reads what we send it.
 #pragma once
 
 #include <sys/types.h>
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -12,6 +14,20 @@ namespace nacre {
 
 /// The program's file in one of PATH's folders, or an empty path.
 std::filesystem::path find_program(const std::string& name);
+
+struct ChildResult {
+  int exit_status = -1;    ///< where it ended by itself, else -1
+  int signal = 0;          ///< where a signal ended it
+  bool timed_out = false;  ///< it was killed because its time was over
+  bool stopped = false;    ///< it was killed because `stop` became true
+  std::string output;      ///< stdout; at most 64 MiB, the rest is dropped
+  std::string errors;      ///< stderr; at most 64 KiB, the rest is dropped
+};
+
+/// Runs `program` with `arguments`, no input and default signal handling, and waits for it. It is killed after `limit`,
+/// or within 0.1 s once `stop` (if given) is true. Throws Error if it cannot be started.
+ChildResult run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                      std::chrono::milliseconds limit, const std::atomic<bool>* stop = nullptr);
 
 /// A running program whose standard input is ours to write and whose standard error is kept. Killed and reaped when
 /// this object goes before `wait`. Ctrl-C on our terminal does not reach it: we decide how it ends.

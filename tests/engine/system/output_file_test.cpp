@@ -1,5 +1,5 @@
 // Nacre: tests of files that appear only when they are whole.
-#include "engine/io/atomic_file.hpp"
+#include "engine/system/output_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -46,9 +46,9 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
-TEST(AtomicFile, AppearsOnCommitOnly) {
+TEST(OutputFile, AppearsOnCommitOnly) {
   const TemporaryFolder folder;
-  AtomicFile file(folder / "a.txt");
+  OutputFile file(folder / "a.txt");
   file.write("one ");
   std::fputs("two", file.stream());
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
@@ -59,23 +59,23 @@ TEST(AtomicFile, AppearsOnCommitOnly) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST(AtomicFile, WithoutCommitTheOlderFileStays) {
+TEST(OutputFile, WithoutCommitTheOlderFileStays) {
   const TemporaryFolder folder;
   std::ofstream(folder / "a.txt") << "old";
   {
-    AtomicFile file(folder / "a.txt");
+    OutputFile file(folder / "a.txt");
     file.write("new");
   }
   EXPECT_EQ(read_all(folder / "a.txt"), "old");
   EXPECT_EQ(folder.entries(), 1u);
 }
 
-TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
+TEST(OutputFile, KeepsPermissionsAndFollowsLinks) {
   const TemporaryFolder folder;
   std::ofstream(folder / "real.txt") << "old";
   ::chmod((folder / "real.txt").c_str(), 0640);
   std::filesystem::create_symlink("real.txt", folder / "link.txt");
-  AtomicFile file(folder / "link.txt");
+  OutputFile file(folder / "link.txt");
   file.write("new");
   file.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
@@ -83,41 +83,43 @@ TEST(AtomicFile, KeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(std::filesystem::status(folder / "real.txt").permissions(), std::filesystem::perms(0640));
 }
 
-TEST(AtomicFile, BadPlacesAreNamed) {
+TEST(OutputFile, BadPlacesAreNamed) {
   const TemporaryFolder folder;
-  const std::string missing = error_of([&] { AtomicFile(folder / "no/such/a.txt"); });
+  const std::string missing = error_of([&] { OutputFile(folder / "no/such/a.txt"); });
   EXPECT_NE(missing.find("no/such/a.txt (No such file or directory)"), std::string::npos) << missing;
-  EXPECT_NE(error_of([&] { AtomicFile(folder.path()); }).find("Is a directory"), std::string::npos);
+  EXPECT_NE(error_of([&] { OutputFile(folder.path()); }).find("Is a directory"), std::string::npos);
   std::ofstream(folder / "file") << "x";
-  EXPECT_NE(error_of([&] { AtomicFile(folder / "file/a.txt"); }).find("Not a directory"), std::string::npos);
-  EXPECT_NE(error_of([&] { AtomicFile(""); }), "");
+  EXPECT_NE(error_of([&] { OutputFile(folder / "file/a.txt"); }).find("Not a directory"), std::string::npos);
+  EXPECT_NE(error_of([&] { OutputFile(""); }), "");
+  const std::string long_name = error_of([&] { OutputFile(folder / std::string(300, 'a')); });
+  EXPECT_NE(long_name.find("choose a shorter name"), std::string::npos) << long_name;
   if (::geteuid() != 0) {
     ::chmod(folder.path().c_str(), 0555);
-    EXPECT_NE(error_of([&] { AtomicFile(folder / "a.txt"); }).find("Permission denied"), std::string::npos);
+    EXPECT_NE(error_of([&] { OutputFile(folder / "a.txt"); }).find("Permission denied"), std::string::npos);
     ::chmod(folder.path().c_str(), 0755);
   }
 }
 
-TEST(AtomicFile, FullDiskIsAnErrorAtWriteOrCommit) {
+TEST(OutputFile, FullDiskIsAnErrorAtWriteOrCommit) {
   const std::string text(100, 'x');  // stays in the buffer until commit
   const std::string late = error_of([&] {
-    AtomicFile file("/dev/full");
+    OutputFile file("/dev/full");
     file.write(text);
     file.commit();
   });
   EXPECT_NE(late.find("/dev/full (No space left on device)"), std::string::npos) << late;
   const std::vector<char> large(1 << 20);
-  EXPECT_NE(error_of([&] { AtomicFile("/dev/full").write(large.data(), large.size()); }).find("No space left"),
+  EXPECT_NE(error_of([&] { OutputFile("/dev/full").write(large.data(), large.size()); }).find("No space left"),
             std::string::npos);
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-TEST(AtomicFile, FileSizeLimitLeavesNothingBehind) {
+TEST(OutputFile, FileSizeLimitLeavesNothingBehind) {
   const TemporaryFolder folder;
   const std::vector<char> large(200000, 'x');
   const FileSizeLimit limit(65536);
   const std::string message = error_of([&] {
-    AtomicFile file(folder / "a.bin");
+    OutputFile file(folder / "a.bin");
     for (int i = 0; i < 10; ++i) file.write(large.data(), large.size());
     file.commit();
   });
@@ -125,11 +127,11 @@ TEST(AtomicFile, FileSizeLimitLeavesNothingBehind) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-TEST(AtomicFile, FailedStreamWritesAreNoticed) {
+TEST(OutputFile, FailedStreamWritesAreNoticed) {
   const TemporaryFolder folder;
   const FileSizeLimit limit(65536);
   EXPECT_NE(error_of([&] {
-              AtomicFile file(folder / "a.txt");
+              OutputFile file(folder / "a.txt");
               for (int i = 0; i < 100000; ++i) std::fputs("0123456789", file.stream());  // result ignored
               file.commit();
             }),
@@ -137,11 +139,11 @@ TEST(AtomicFile, FailedStreamWritesAreNoticed) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-TEST(AtomicFile, UnfinishedFilesCanBeRemoved) {
+TEST(OutputFile, UnfinishedFilesCanBeRemoved) {
   const TemporaryFolder folder;
-  AtomicFile kept(folder / "kept.txt");
+  OutputFile kept(folder / "kept.txt");
   kept.commit();
-  AtomicFile lost(folder / "lost.txt");
+  OutputFile lost(folder / "lost.txt");
   std::filesystem::create_directories(folder / "scratch/deep");
   add_unfinished(folder / "scratch");
   remove_unfinished_files();

@@ -1,5 +1,5 @@
 // Nacre: files that appear under their name only when they are whole.
-#include "engine/io/atomic_file.hpp"
+#include "engine/system/output_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -50,7 +50,9 @@ std::string reason(int error_number) {
   return error_number != 0 ? std::generic_category().message(error_number) : "not everything could be written";
 }
 
-const char* advice(int error_number) {
+}  // namespace
+
+const char* advice_on_writing(int error_number) {
   switch (error_number) {
     case ENOENT:
     case ENOTDIR: return "create the folder first or choose another one";
@@ -61,16 +63,16 @@ const char* advice(int error_number) {
     case EDQUOT: return "make room or choose another disk";
     case EFBIG: return "raise the file size limit or write a smaller file";
     case EISDIR: return "give the name of a file";
+    case ENAMETOOLONG: return "choose a shorter name";
     default: return "";
   }
 }
 
-}  // namespace
-
-AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), destination_(follow_links(target_)) {
+OutputFile::OutputFile(fs::path target) : target_(std::move(target)), destination_(follow_links(target_)) {
   std::error_code error;
   const fs::file_status status = fs::status(destination_, error);
   if (target_.empty()) fail(ENOENT);
+  if (error == std::errc::filename_too_long) fail(ENAMETOOLONG);
   if (fs::is_directory(status) || !destination_.has_filename()) fail(EISDIR);
   direct_ = fs::exists(status) && !fs::is_regular_file(status);
   if (fs::exists(status) && ::access(destination_.c_str(), W_OK) != 0) fail(errno);
@@ -97,7 +99,7 @@ AtomicFile::AtomicFile(fs::path target) : target_(std::move(target)), destinatio
   if (!direct_) add_unfinished(temporary_);
 }
 
-AtomicFile::~AtomicFile() {
+OutputFile::~OutputFile() {
   if (!stream_) return;
   std::fclose(stream_);
   if (direct_) return;
@@ -105,12 +107,12 @@ AtomicFile::~AtomicFile() {
   drop_unfinished(temporary_);
 }
 
-void AtomicFile::write(const void* data, std::size_t bytes) {
+void OutputFile::write(const void* data, std::size_t bytes) {
   errno = 0;
   if (bytes > 0 && std::fwrite(data, 1, bytes, stream_) != bytes) fail(errno);
 }
 
-void AtomicFile::commit() {
+void OutputFile::commit() {
   errno = 0;
   const bool lost = std::fflush(stream_) != 0 || std::ferror(stream_) != 0;
   if (lost) fail(errno);
@@ -129,9 +131,9 @@ void AtomicFile::commit() {
   if (error_number != 0) fail(error_number);
 }
 
-void AtomicFile::fail(int error_number) const {
+void OutputFile::fail(int error_number) const {
   throw Error(fmt::format("cannot write {}", target_.empty() ? "a file without a name" : target_.string()),
-              reason(error_number), advice(error_number));
+              reason(error_number), advice_on_writing(error_number));
 }
 
 void add_unfinished(const fs::path& path) {

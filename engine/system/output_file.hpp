@@ -11,12 +11,12 @@ namespace nacre {
 /// Writes beside `target` and renames on `commit`, so that nobody ever meets half a file and an older one stays until
 /// then. A target that is a link is followed; one that is a device or pipe (/dev/stdout) is written directly.
 /// Every failure (missing or unwritable folder, full disk, file size limit) throws Error that names the target and why.
-class AtomicFile {
+class OutputFile {
  public:
-  explicit AtomicFile(std::filesystem::path target);
-  ~AtomicFile();  ///< removes the temporary unless committed
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
+  explicit OutputFile(std::filesystem::path target);
+  ~OutputFile();  ///< removes the temporary unless committed
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
 
   /// For writers that want a FILE. Failed writes through it are noticed by `commit`.
   std::FILE* stream() { return stream_; }
@@ -26,7 +26,8 @@ class AtomicFile {
   /// Flushes, closes and renames. Nothing may be written afterwards.
   void commit();
 
-  /// Where the bytes are until `commit`: in the target's folder, with the target's extension.
+  /// Where the bytes are until `commit`, for another program that writes them: in the target's folder, with the
+  /// target's extension.
   const std::filesystem::path& temporary() const { return temporary_; }
 
  private:
@@ -38,6 +39,9 @@ class AtomicFile {
   std::FILE* stream_ = nullptr;
   bool direct_ = false;
 };
+
+/// What a user can do about an errno met while writing; empty where we know nothing better than the reason itself.
+const char* advice_on_writing(int error_number);
 
 /// Puts a file or folder on the list of what `remove_unfinished_files` removes, or takes it off.
 void add_unfinished(const std::filesystem::path& path);

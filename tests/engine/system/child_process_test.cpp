@@ -1,5 +1,5 @@
 // Nacre: tests of running another program.
-#include "engine/io/child_process.hpp"
+#include "engine/system/child_process.hpp"
 
 #include <gtest/gtest.h>
 

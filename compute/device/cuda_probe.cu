@@ -1,0 +1,11 @@
+// Nacre: asks the driver for the smallest kernel of this build.
+#include "compute/device/cuda_probe.hpp"
+
+#include <cuda_runtime.h>
+
+__global__ void nacre_probe() {}
+
+bool nacre::cuda_code_runs() {
+  cudaFuncAttributes attributes{};
+  return cudaFuncGetAttributes(&attributes, nacre_probe) == cudaSuccess;
+}

@@ -1,0 +1,119 @@
+// Nacre: tests of too little memory, of disks that are full or may not be written, and of Ctrl-C.
+#include <csignal>
+#include <thread>
+
+#include "engine/picture/png.hpp"
+#include "tests/app/program.hpp"
+#include "tests/engine/picture/small_disk.hpp"
+
+namespace nacre::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+class Limits : public AppTest {};
+
+/// The number after "use --resolution ".
+std::string advised_resolution(const std::string& line) {
+  const std::string words = "use --resolution ";
+  const std::size_t at = line.find(words);
+  if (at == line.npos) return "";
+  const std::size_t begin = at + words.size();
+  return line.substr(begin, line.find_first_not_of("0123456789", begin) - begin);
+}
+
+#if !defined(__SANITIZE_ADDRESS__)
+TEST_F(Limits, WhatDoesNotFitInMemoryIsNamedWithWhatDoes) {
+  const std::string limit = "-v 600000";  // KiB of address space
+  const Words words = {"flow", "--sample", "sphere",  "--detail", "24",     "--steps", "1",       "--ttl",
+                       "1",    "--warmup", "0",       "--quiet",  "--size", "64x48",   "--image", path("a.png")};
+  const Outcome refused = nacre_limited(limit, words + Words{"--resolution", "4000"});
+  expect_failure(refused, 1, {"--resolution 4000", "GiB"});
+  EXPECT_EQ(names(), Words{});
+  const std::string fits = advised_resolution(refused.err);
+  ASSERT_NE(fits, "") << refused.err;
+  EXPECT_GE(std::stoi(fits), 64);
+  const Outcome run = nacre_limited(limit, words + Words{"--resolution", fits});
+  EXPECT_EQ(run.status, 0) << fits << ": " << run.err;
+  EXPECT_EQ(names(), Words{"a.png"});
+}
+#endif
+
+TEST_F(Limits, OutputsThatCannotBeWritten) {
+  write("file", "x");
+  for (const Words& output : {Words{"--image", path("none/a.png")}, {"--out", path("none/a.vtp")}, {"--report", path("none/r.json")},
+                              {"--video", path("none/a.mp4")}, {"--frames", path("file/f")}, {"--image", folder_.path().string()},
+                              {"--save-session", path("none/s.json")}})
+    expect_failure(nacre(small_flow + output), 1, {output[1]});
+  expect_failure(nacre(small_flow + Words{"--video", path("a.txt")}), 1, {"a.txt", ".mp4"});
+  expect_failure(nacre({"sample", "sphere", "--detail", "16", "--out", path("a.xyz")}), 1, {"a.xyz"});
+  EXPECT_EQ(names(), Words{"file"});
+}
+
+TEST_F(Limits, AFileSizeLimitLeavesNothingBehind) {
+  write("old.vtp", "an older result");
+  for (const Words& output : {Words{"--out", path("old.vtp")}, {"--image", path("a.png"), "--size", "640x480"}})
+    expect_failure(nacre_limited("-f 64", small_flow + output), 1, {output[1], "File too large"});
+  EXPECT_EQ(names(), Words{"old.vtp"});
+  EXPECT_EQ(content("old.vtp"), "an older result");
+}
+
+TEST_F(Limits, AFullDiskLeavesNothingBehind) {
+  expect_failure(nacre(small_flow + Words{"--out", "/dev/full"}), 1, {"/dev/full", "No space left"});
+  fs::create_directory(path("disk"));
+  const SmallDisk disk(path("disk"), 64 << 10);
+  if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a small disk";
+  expect_failure(nacre(small_flow + Words{"--out", path("disk/a.vtp")}), 1, {"a.vtp", "No space left"});
+  EXPECT_TRUE(fs::is_empty(path("disk")));
+}
+
+/// What the program does when it gets `signal` after `seconds`, and how long it takes from there.
+struct Stopped {
+  Outcome run;
+  double seconds_after = 0;
+};
+
+Stopped interrupt(const Words& words, double seconds) {
+  const auto before = Clock::now();
+  const Outcome result = run("/usr/bin/timeout", Words{"--preserve-status", "-s", "INT", "-k", "30", std::to_string(seconds),
+                                                   NACRE_PROGRAM} +
+                                                 words);
+  return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
+}
+
+class CtrlC : public AppTest, public ::testing::WithParamInterface<double> {
+ protected:
+  /// Minutes of work, in which every kind of output is open.
+  Words long_run() const {
+    Words words = {"flow", "--sample", "sphere", "--detail", "64", "--resolution", "1500", "--steps", "1000", "--size", "160x120",
+                   "--quiet", "--image", path("a.png"), "--out", path("a.vtp"), "--report", path("r.json")};
+    if (!find_program("ffmpeg").empty()) words = words + Words{"--video", path("a.mp4")};
+    return words;
+  }
+};
+
+TEST_P(CtrlC, StopsWithinTwoSecondsAndLeavesNothing) {
+  const Stopped stopped = interrupt(long_run(), GetParam());
+  EXPECT_EQ(stopped.run.status, 130) << stopped.run.err;
+  EXPECT_LT(stopped.seconds_after, 2);
+  EXPECT_EQ(stopped.run.out, "");
+  EXPECT_EQ(names(), Words{});
+}
+
+INSTANTIATE_TEST_SUITE_P(After, CtrlC, ::testing::Values(0.3, 1.5, 4.0));
+
+TEST_F(CtrlC, FramesWrittenSoFarAreWhole) {
+  const Stopped stopped =
+      interrupt({"flow", "--sample", "sphere", "--detail", "24", "--resolution", "64", "--steps", "100000", "--size", "96x72",
+                 "--quiet", "--frames", path("f")},
+                2.5);
+  EXPECT_EQ(stopped.run.status, 130) << stopped.run.err;
+  EXPECT_LT(stopped.seconds_after, 2);
+  for (const auto& entry : fs::directory_iterator(path("f"))) {
+    EXPECT_EQ(entry.path().extension(), ".png");
+    EXPECT_EQ(read_png(entry.path()).width, 96) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace nacre::test

@@ -1,0 +1,120 @@
+// Nacre: tests of the words of a command line, exit statuses, and who may write where.
+#include "tests/app/program.hpp"
+
+namespace nacre::test {
+namespace {
+
+TEST(Words, HelpVersionAndKnobs) {
+  const Outcome help = nacre({"--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const char* command : {"flow", "info", "sample"}) EXPECT_TRUE(contains(help.out, command)) << command;
+  EXPECT_EQ(help.err, "");
+
+  const Outcome version = nacre({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_EQ(version.out.rfind("nacre ", 0), 0u) << version.out;
+
+  const Outcome knobs = nacre({"--knobs"});
+  EXPECT_EQ(knobs.status, 0);
+  for (const char* knob : {"resolution", "refine", "ttl", "steps", "step_cells", "seed", "colormap", "camera"})
+    EXPECT_EQ(lines_with(knobs.out, std::string(knob) + " "), 1) << knob;
+  EXPECT_TRUE(contains(knobs.out, "16..16384")) << "ranges are printed";
+}
+
+TEST(Words, HelpOfFlowHasEveryOptionOfTheContract) {
+  const Outcome help = nacre({"flow", "--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const char* option :
+       {"--vectors", "--method", "--radius", "--resolution", "--refine", "--ttl", "--steps", "--time", "--step-cells",
+        "--color", "--colormap", "--image", "--size", "--camera", "--frames", "--video", "--no-legend", "--no-time",
+        "--out", "--sample", "--device", "--threads", "--seed", "--report", "--quiet", "--set", "--session"})
+    EXPECT_TRUE(contains(help.out, option)) << option;
+}
+
+TEST(Words, WrongOnesEndWithTwo) {
+  expect_failure(nacre({"--nonsense"}), 2, {"--nonsense"});
+  expect_failure(nacre({"flow"}), 2, {"--sample", "FILE"});
+  expect_failure(nacre({"flow", "a.obj", "--sample", "sphere"}), 2, {"not both"});
+  expect_failure(nacre({"info"}), 2, {"FILE"});
+  expect_failure(nacre(small_flow + Words{"--rsolution", "3"}), 2, {"--rsolution"});
+  expect_failure(nacre(small_flow + Words{"--ttl", "99"}), 2, {"--ttl 99", "1..16"});
+  expect_failure(nacre(small_flow + Words{"--ttl", "two"}), 2, {"two"});
+  expect_failure(nacre(small_flow + Words{"--set", "rsolution=3"}), 2, {"did you mean resolution"});
+  expect_failure(nacre(small_flow + Words{"--set", "ttl"}), 2, {"KNOB=VALUE"});
+  expect_failure(nacre(small_flow + Words{"--size", "12"}), 2, {"--size"});
+  expect_failure(nacre(small_flow + Words{"--device", "abacus"}), 2, {"abacus"});
+  expect_failure(nacre(small_flow + Words{"--method", "sponge"}), 2, {"sponge", "grid"});
+  expect_failure(nacre(small_flow + Words{"--background", "greenish"}), 2, {"#rrggbb"});
+  expect_failure(nacre(small_flow + Words{"--time", "2:1"}), 2, {"--time"});
+  expect_failure(nacre({"sample", "sphere"}), 2, {"--out"});
+  EXPECT_EQ(nacre({}).status, 2);
+}
+
+TEST(Words, UnknownNamesGetAListOrAGuess) {
+  expect_failure(nacre({"flow", "--sample", "sphre"}), 2, {"did you mean 'sphere'", "torus"});
+  expect_failure(nacre({"sample", "trian", "--out", "a.vtp"}), 2, {"did you mean 'train'"});
+  expect_failure(nacre(small_flow + Words{"--colormap", "vridis"}), 2, {"vridis", "gray"});
+  expect_failure(nacre(small_flow + Words{"--camera", "top"}), 2, {"top", "iso", "+x"});
+  expect_failure(nacre(small_flow + Words{"--vectors", "@swrl"}), 2, {"@swirl", "@rotation"});
+  // What a file holds is not known from the words: these are failures of the work.
+  expect_failure(nacre(small_flow + Words{"--vectors", "vlocity"}), 1, {"vlocity", "velocity"});
+  expect_failure(nacre(small_flow + Words{"--color", "pressure"}), 1, {"pressure", "velocity"});
+}
+
+TEST(Words, NothingIsDoneBeforeTheyAreUnderstood) {
+  const TemporaryFolder folder;
+  const Words outputs = {"--image", (folder / "a.png").string(), "--frames", (folder / "f").string(), "--video",
+                         (folder / "a.mp4").string()};
+  expect_failure(nacre(small_flow + outputs + Words{"--colormap", "none"}), 2, {});
+  expect_failure(nacre(small_flow + outputs + Words{"--camera", "none"}), 2, {});
+  expect_failure(nacre(small_flow + outputs + Words{"--time", "7:8"}), 1, {"0:0.95"});
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(Words, ResultsGoToStdoutTheRestToStderr) {
+  const TemporaryFolder folder;
+  const std::string picture = (folder / "a.png").string(), values = (folder / "a.vtp").string();
+  Words words = small_flow + Words{"--image", picture, "--out", values, "--size", "64x48"};
+  const Outcome quiet = nacre(words);
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.out, picture + "\n" + values + "\n");
+  EXPECT_EQ(quiet.err, "");
+
+  std::erase(words, "--quiet");
+  const Outcome loud = nacre(words);
+  EXPECT_EQ(loud.out, quiet.out);
+  EXPECT_TRUE(contains(loud.err, "device: ")) << "auto says which device it took";
+  EXPECT_TRUE(contains(loud.err, "vectors: velocity")) << "the choice of vectors is said aloud";
+  EXPECT_FALSE(contains(loud.err, "\033")) << "no progress bar in a pipe";
+}
+
+TEST(Words, SampleListsAndWritesThem) {
+  const Outcome list = nacre({"sample"});
+  EXPECT_EQ(list.status, 0);
+  for (const char* name : {"sphere", "torus", "train", "aircraft", "cylinder"})
+    EXPECT_EQ(lines_with(list.out, std::string(name) + " "), 1) << name;
+
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.vtp").string();
+  const Outcome written = nacre({"sample", "sphere", "--detail", "16", "--out", file});
+  EXPECT_EQ(written.out, file + "\n") << written.err;
+  const Outcome info = nacre({"info", file});
+  EXPECT_EQ(info.status, 0);
+  EXPECT_TRUE(contains(info.out, "velocity")) << info.out;
+}
+
+TEST(Words, InfoAsJson) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.pvd").string();
+  ASSERT_EQ(nacre({"sample", "torus", "--detail", "32", "--out", file}).status, 0);
+  const Outcome info = nacre({"info", "--json", file});
+  const nlohmann::json json = nlohmann::json::parse(info.out);
+  EXPECT_EQ(json["kind"], "series");
+  EXPECT_GT(json["times"].size(), 1u);
+  EXPECT_GT(json["triangles"], 100);
+  EXPECT_EQ(json["arrays"][0]["name"], "velocity");
+  EXPECT_EQ(json["arrays"][0]["components"], 3);
+}
+
+}  // namespace
+}  // namespace nacre::test

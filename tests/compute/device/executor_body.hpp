@@ -1,0 +1,146 @@
+// Nacre: test bodies for the launches that algorithms are made of.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "compute/device/random.hpp"
+#include "tests/compute/on_devices.hpp"
+
+namespace nacre::test {
+
+inline constexpr std::int64_t launch_sizes[] = {0, 1, 2, 255, 65535, 65536, 65537, 1000000};
+
+struct CountVisit {
+  std::uint64_t* visits;
+  NACRE_HD void operator()(std::int64_t i) const { atomic_add(visits + i, std::uint64_t(i) + 1); }
+};
+
+template <class Backend>
+void ForEachVisitsEveryElementOnce(Executor<Backend>& exec) {
+  for (const std::int64_t n : launch_sizes) {
+    Arena::Scope scope(exec.arena());
+    Array<std::uint64_t> visits = exec.arena().template temporary<std::uint64_t>(n + 1);
+    visits.fill_bytes(0);
+    exec.for_each(n, CountVisit{visits.data()});
+    const std::vector<std::uint64_t> host = visits.download();
+    for (std::int64_t i = 0; i < n; ++i) ASSERT_EQ(host[i], std::uint64_t(i) + 1) << n;
+    EXPECT_EQ(host[n], 0u);
+  }
+}
+
+template <class T, class Backend>
+void scan_sizes(Executor<Backend>& exec, std::uint32_t mask) {
+  for (const std::int64_t n : launch_sizes)
+    for (const bool in_place : {false, true}) {
+      Arena::Scope scope(exec.arena());
+      std::vector<T> host(n), expected(n);
+      for (std::int64_t i = 0; i < n; ++i) host[i] = T(philox(std::uint32_t(i), 0, 1).a & mask);
+      std::exclusive_scan(host.begin(), host.end(), expected.begin(), T(0));
+      Array<T> in = exec.arena().template temporary<T>(n);
+      in.upload(host);
+      Array<T> out = in_place ? in : exec.arena().template temporary<T>(n);
+      const T total = exec.exclusive_scan(in.data(), out.data(), n);
+      EXPECT_EQ(total, std::accumulate(host.begin(), host.end(), T(0))) << n;
+      EXPECT_EQ(out.download(), expected) << n;
+      if (!in_place) {
+        EXPECT_EQ(in.download(), host) << n;
+      }
+    }
+}
+
+template <class Backend>
+void ScanAddsWhatComesBefore(Executor<Backend>& exec) {
+  scan_sizes<std::uint32_t>(exec, 0xff);
+  scan_sizes<std::uint64_t>(exec, 0xffffffff);  // the sum leaves 32 bits
+}
+
+template <class Backend>
+void SortOrdersKeys(Executor<Backend>& exec) {
+  for (const std::int64_t n : launch_sizes) {
+    Arena::Scope scope(exec.arena());
+    std::vector<std::uint64_t> keys(n);
+    for (std::int64_t i = 0; i < n; ++i) {
+      const Random2 r = philox(std::uint32_t(i), 1, 1);
+      keys[i] = std::uint64_t(r.a) << 32 | (r.b & 0xfff);
+    }
+    if (n > 2) keys[0] = ~std::uint64_t(0), keys[1] = keys[2];
+    Array<std::uint64_t> array = exec.arena().template temporary<std::uint64_t>(n);
+    array.upload(keys);
+    exec.sort(array.data(), n);
+    std::sort(keys.begin(), keys.end());
+    EXPECT_EQ(array.download(), keys) << n;
+  }
+}
+
+struct Element {
+  const std::uint64_t* values;
+  NACRE_HD std::uint64_t operator()(std::int64_t i) const { return values[i]; }
+};
+struct Add {
+  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+struct Larger {
+  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a > b ? a : b; }
+};
+
+template <class Backend>
+void ReduceMergesEveryElement(Executor<Backend>& exec) {
+  for (const std::int64_t n : launch_sizes) {
+    Arena::Scope scope(exec.arena());
+    std::vector<std::uint64_t> host(n);
+    for (std::int64_t i = 0; i < n; ++i) host[i] = philox(std::uint32_t(i), 2, 1).a;
+    Array<std::uint64_t> values = exec.arena().template temporary<std::uint64_t>(n);
+    values.upload(host);
+    const std::uint64_t zero = 0;
+    EXPECT_EQ(exec.reduce(n, zero, Element{values.data()}, Add{}), std::accumulate(host.begin(), host.end(), zero));
+    EXPECT_EQ(exec.reduce(n, zero, Element{values.data()}, Larger{}),
+              n ? *std::max_element(host.begin(), host.end()) : 0);
+  }
+}
+
+template <class Backend>
+void NothingRunsOnceStopped(Executor<Backend>& exec) {
+  std::atomic<bool> stop = false;
+  exec.watch(&stop);
+  Arena::Scope scope(exec.arena());
+  Array<std::uint64_t> values = exec.arena().template temporary<std::uint64_t>(100);
+  values.fill_bytes(0);
+  exec.for_each(100, CountVisit{values.data()});
+  stop = true;
+  EXPECT_THROW(exec.for_each(100, CountVisit{values.data()}), Interrupted);
+  EXPECT_THROW(exec.exclusive_scan(values.data(), values.data(), 100), Interrupted);
+  EXPECT_THROW(exec.sort(values.data(), 100), Interrupted);
+  EXPECT_THROW(exec.reduce(100, std::uint64_t(0), Element{values.data()}, Add{}), Interrupted);
+  EXPECT_EQ(values.download(99, 1)[0], 100u);
+  stop = false;
+  EXPECT_NO_THROW(exec.for_each(100, CountVisit{values.data()}));
+  exec.watch(nullptr);
+}
+
+template <class Backend>
+void StagesAreTimed(Executor<Backend>& exec) {
+  for (int k = 0; k < 3; ++k) {
+    auto stage = exec.stage("sort");
+    SortOrdersKeys(exec);
+  }
+  { auto stage = exec.stage("scan"); }
+  const auto& stages = exec.timers().stages();
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0].name, "sort");
+  EXPECT_EQ(stages[0].calls, 3);
+  EXPECT_GT(exec.timers().seconds("sort"), exec.timers().seconds("scan"));
+  EXPECT_EQ(exec.timers().seconds("no such stage"), 0);
+}
+
+NACRE_DEVICE_TEST(Executor, ForEachVisitsEveryElementOnce)
+NACRE_DEVICE_TEST(Executor, ScanAddsWhatComesBefore)
+NACRE_DEVICE_TEST(Executor, SortOrdersKeys)
+NACRE_DEVICE_TEST(Executor, ReduceMergesEveryElement)
+NACRE_DEVICE_TEST(Executor, NothingRunsOnceStopped)
+NACRE_DEVICE_TEST(Executor, StagesAreTimed)
+
+}  // namespace nacre::test

@@ -1,0 +1,189 @@
+// Nacre: what the flow texture must show: alignment, motion, coherence, determinism, stagnation.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <map>
+#include <random>
+
+#include "tests/evidence/texture_measures.hpp"
+
+namespace nacre {
+namespace {
+
+FlowParameters at_resolution(int resolution, int ttl = 4) {
+  FlowParameters parameters;
+  parameters.resolution = resolution;
+  parameters.ttl = ttl;
+  return parameters;
+}
+
+/// Median angle between texture and flow over a sample, leaving out points at rest.
+double median_alignment(const std::string& sample, const std::function<Vec3d(Vec3d)>& onto_surface) {
+  FlowRun run(sample, at_resolution(384));
+  run.steps(6);
+  const FlowValues values = run.pipeline->values();
+  std::vector<Vec3d> points;
+  std::vector<Vec3f> normals, flow;
+  for (std::size_t i = 0; i < values.value.size(); i += values.value.size() / 800) {
+    if (length(values.velocity[i]) < 1e-3 * run.vectors->statistics().percentile_98) continue;
+    points.push_back(values.closest_point[i]);
+    normals.push_back(values.normal[i]);
+    flow.push_back(values.velocity[i]);
+  }
+  const double error = median(alignment_errors(*run.pipeline, points, normals, flow, onto_surface));
+  std::printf("alignment on %s: median %.1f degrees\n", sample.c_str(), error);
+  return error;
+}
+
+TEST(FlowEvidence, StreaksAlignWithTheFlowOnASphere) {
+  EXPECT_LE(median_alignment("sphere", [](Vec3d x) { return normalized(x); }), 10);
+}
+
+TEST(FlowEvidence, StreaksAlignWithTheFlowOnATorus) {
+  EXPECT_LE(median_alignment("torus", [](Vec3d x) {
+              const Vec3d ring = normalized(Vec3d(x.x, x.y, 0));
+              return ring + normalized(x - ring) * 0.4;
+            }), 10);
+}
+
+std::vector<Vec3d> spiral_on_sphere(int n, double angle) {
+  std::vector<Vec3d> points;
+  for (int i = 0; i < n; ++i) {
+    const double z = -0.8 + 1.6 * (i + 0.5) / n, a = i * 2.399963 + angle, r = std::sqrt(1 - z * z);
+    points.push_back({r * std::cos(a), r * std::sin(a), z});
+  }
+  return points;
+}
+
+/// Frame k must look most like frame k + 1 when that is turned back by what the flow turns in a step.
+TEST(FlowEvidence, TextureMovesWithTheFlow) {
+  for (const int ttl : {2, 4}) {
+    FlowRun run("sphere-rotation", at_resolution(256, ttl));
+    run.steps(2 * ttl);
+    const int points = 6000;
+    const std::vector<float> before = run.pipeline->sample_shown(spiral_on_sphere(points, 0));
+    run.steps(1);
+    const double expected = run.pipeline->parameters.step_cells * run.pipeline->embedding().cell_size /
+                            run.vectors->statistics().percentile_98;
+    double best = -1, at = 0;
+    for (double share = 0; share <= 2; share += 0.05) {
+      const double c = correlation(before, run.pipeline->sample_shown(spiral_on_sphere(points, share * expected)));
+      if (c > best) best = c, at = share;
+    }
+    std::printf("motion at ttl %d: %.2f of v dt, correlation %.3f\n", ttl, at, best);
+    EXPECT_NEAR(at, 1.0, 0.15) << "ttl " << ttl;
+    EXPECT_GT(best, 0.8);
+  }
+}
+
+/// The texture is on the surface, not on the screen: seen from a camera turned by half a degree it is the same.
+TEST(FlowEvidence, TextureStaysWhenTheCameraMoves) {
+  FlowRun run("sphere", at_resolution(384));
+  run.steps(4);
+  RenderOptions options;
+  options.width = options.height = 384;
+  options.camera = fit_camera("iso", {-1, -1, -1}, {1, 1, 1}, options.width, options.height);
+  options.camera.orthographic = true;
+  options.samples = 3;
+  const Camera turned = orbit(options.camera, 0.5);
+  /// Brightness of the pixels that see the given points.
+  const auto look = [&](const Camera& camera, const std::vector<Vec3d>& points) {
+    options.camera = camera;
+    const std::vector<std::uint8_t> image = run.pipeline->render(options);
+    options.texture = false;
+    const std::vector<std::uint8_t> plain = run.pipeline->render(options);  // takes the light out
+    options.texture = true;
+    const Vec3d right = camera.right(), up = cross(right, camera.forward());
+    std::vector<float> seen;
+    for (const Vec3d& p : points) {
+      const double x = (dot(p - camera.target, right) / camera.height + 0.5) * options.width - 0.5;
+      const double y = (0.5 - dot(p - camera.target, up) / camera.height) * options.height - 0.5;
+      const int x0 = int(x), y0 = int(y);
+      double value = 0;
+      for (int k = 0; k < 4; ++k) {
+        const double w = (k & 1 ? x - x0 : 1 - x + x0) * (k >> 1 ? y - y0 : 1 - y + y0);
+        const std::size_t at = 4 * (std::size_t(y0 + (k >> 1)) * options.width + x0 + (k & 1));
+        value += w * double(image[at]) / std::max<int>(plain[at], 1);
+      }
+      seen.push_back(float(value));
+    }
+    return seen;
+  };
+  std::vector<Vec3d> points;
+  const Camera start = options.camera;
+  for (const Vec3d& p : spiral_on_sphere(8000, 0))
+    if (dot(p, start.forward()) < -0.6) points.push_back(p);
+  const double c = correlation(look(start, points), look(turned, points));
+  std::printf("coherence over half a degree: %.3f at %zu points\n", c, points.size());
+  EXPECT_GE(c, 0.95);
+}
+
+std::vector<float> run_bytes(int threads, std::uint32_t seed) {
+  FlowParameters parameters = at_resolution(128, 3);
+  parameters.seed = seed;
+  FlowRun run("torus", parameters, threads, false, 60);
+  run.steps(4);
+  return run.pipeline->shown();
+}
+
+TEST(FlowEvidence, OneSeedGivesOneResultOnAnyNumberOfThreads) {
+  const std::vector<float> one = run_bytes(1, 7), two = run_bytes(2, 7), other = run_bytes(2, 8);
+  EXPECT_EQ(one, two);
+  EXPECT_NE(one, other);
+}
+
+/// A flow that stands still on one half: there the texture is gray noise, neither black nor white nor flat.
+TEST(FlowEvidence, StagnantRegionsStayGrayNoise) {
+  FlowRun run("sphere", at_resolution(128));
+  const auto flow = run.vectors.get();
+  FlowVectors half;
+  half.at = [flow](double t, std::span<Vec3f> out) {
+    flow->vectors(t, out);
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (flow->surface().points[i].z < 0) out[i] = {};
+  };
+  half.reference_speed = flow->statistics().percentile_98;
+  run.pipeline->start(half);
+  run.steps(12);
+  const FlowValues values = run.pipeline->values();
+  const std::vector<float> shown = run.pipeline->shown();
+  double sum = 0, squares = 0;
+  int n = 0, black = 0;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (values.centre[i].z > -0.2) continue;
+    sum += shown[i];
+    squares += shown[i] * shown[i];
+    black += shown[i] == 0;
+    ++n;
+  }
+  const double mean = sum / n, deviation = std::sqrt(squares / n - mean * mean);
+  EXPECT_NEAR(mean, 0.5, 0.1);
+  EXPECT_GT(deviation, 0.08);
+  EXPECT_LT(black, n / 10);
+}
+
+/// Zero vectors everywhere are not an error: noise in, noise out.
+TEST(FlowEvidence, AllZeroVectorsGiveNoise) {
+  FlowRun run("torus", at_resolution(64), 0, true, 40);
+  FlowVectors still;
+  still.at = [](double, std::span<Vec3f> out) { std::fill(out.begin(), out.end(), Vec3f{}); };
+  run.pipeline->start(still);
+  run.steps(3);
+  for (float v : run.pipeline->shown()) ASSERT_TRUE(v >= 0 && v <= 1);
+}
+
+/// The texture grid is the same whatever the closest-point grid below it.
+TEST(FlowEvidence, RefineDoesNotChangeWhereTheSurfaceIs) {
+  std::map<int, std::uint64_t> cells;
+  for (const int refine : {1, 2, 4, 8}) {
+    FlowParameters parameters = at_resolution(128);
+    parameters.refine = refine;
+    FlowRun run("torus", parameters, 0, true, 60);
+    cells[refine] = run.pipeline->embedding().surface_cells;
+    run.steps(1);
+  }
+  for (const auto& [refine, count] : cells) EXPECT_NEAR(double(count), double(cells[4]), 0.02 * double(cells[4])) << refine;
+}
+
+}  // namespace
+}  // namespace nacre

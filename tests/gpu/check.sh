@@ -1,0 +1,228 @@
+#!/usr/bin/env bash
+# Nacre: everything that needs a GPU, in one command and under eight minutes.
+#   check.sh --pack [DIR]   build for sm_90 into a folder that runs anywhere with a driver (default build/gpu-pack)
+#   check.sh --run [DIR]    run what is in such a folder: needs bash, awk and an NVIDIA driver, nothing else
+#   check.sh                run the folder; where there is none, build it first
+# Results (JSON, logs, pictures, results.txt) go to $OUT, else to build/gpu-results. Status: 0 all well, 1 something
+# failed, 77 no CUDA device.
+set -euo pipefail
+
+here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
+root=$(cd "$here/../.." && pwd -P)
+architecture=${NACRE_GPU_ARCHITECTURE:-90}
+march=${NACRE_MARCH:-x86-64-v3}  # the machine with the GPU need not have this one's processor
+pack_limit_mib=48
+seconds_limit=450
+
+say() { printf 'check: %s\n' "$*"; }
+fail() {
+  printf 'check: %s\n' "$*" >&2
+  exit 1
+}
+
+# ---- the half that builds ----
+
+# Copies a program and the libraries that it needs, those of the C library and the driver excepted.
+pack_program() {
+  local program=$1 pack=$2 library
+  install -m 755 "$program" "$pack/bin/"
+  strip "$pack/bin/$(basename "$program")"
+  while read -r library; do
+    case $(basename "$library") in
+      libc.so* | libm.so* | libdl.so* | librt.so* | libpthread.so* | ld-linux* | libcuda.so*) ;;
+      *) [[ -e $pack/lib/$(basename "$library") ]] || install -m 644 "$library" "$pack/lib/" ;;
+    esac
+  done < <(ldd "$program" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
+  if ldd "$program" | grep -q 'not found'; then
+    fail "$(basename "$program") needs a library that is not here"
+  fi
+}
+
+pack() {
+  local pack=$1 build=${NACRE_GPU_BUILD:-$root/build/gpu} programs=(nacre test_gpu gpu_info) name size
+  command -v cmake >/dev/null || fail "cmake is not installed: nothing to build with; bring a folder made by --pack"
+  local options=(-DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_TESTS=ON "-DNACRE_MARCH=$march" -DCMAKE_BUILD_TYPE=Release
+    -DCMAKE_CXX_FLAGS=-Wno-psabi  # our 64-byte vectors never cross a call
+    "-DCMAKE_CUDA_ARCHITECTURES=$architecture" "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$build/bin")
+  command -v ninja >/dev/null && options+=(-G Ninja)
+  command -v ccache >/dev/null && options+=(-DCMAKE_{CXX,CUDA}_COMPILER_LAUNCHER=ccache)
+  cmake -S "$root" -B "$build" "${options[@]}"
+  cmake --build "$build" --parallel "${NACRE_JOBS:-$(nproc)}" --target "${programs[@]}"
+  rm -rf "$pack"
+  mkdir -p "$pack/bin" "$pack/lib" "$pack/data"
+  for name in "${programs[@]}"; do
+    pack_program "$build/bin/$name" "$pack"
+  done
+  install -m 755 "$here/check.sh" "$pack/run.sh"
+  install -m 644 "$root/tests/bench/report.sh" "$pack/"
+  "$build/bin/nacre" sample torus --detail 100 --out "$pack/data/torus.pvd" >/dev/null
+  size=$(du -sm "$pack" | cut -f 1)
+  ((size < pack_limit_mib)) || fail "$pack has $size MiB, more than $pack_limit_mib"
+  say "packed $size MiB into $pack"
+}
+
+# ---- the half that runs ----
+
+failures=()
+
+device_value() { report_value "$out/device.json" "$1"; }
+
+left() { echo $((seconds_limit - SECONDS)); }
+
+# flow_run NAME WORDS...: one nacre flow with its report NAME.json and picture NAME.png; NAME.log keeps what it said.
+flow_run() {
+  local name=$1
+  shift
+  timeout "$(left)" "$pack/bin/nacre" flow "$@" --quiet --size 1024x768 --image "$out/$name.png" \
+    --report "$out/$name.json" >"$out/$name.log" 2>&1
+}
+
+device_info() {
+  local status=0
+  "$pack/bin/gpu_info" >"$out/device.json" 2>"$out/device.log" || status=$?
+  if ((status == 77)); then
+    say "no CUDA device: nothing was tested"
+    exit 77
+  fi
+  ((status == 0)) || { cat "$out/device.log" >&2; fail "the device does not answer"; }
+  say "$(device_value name), compute capability $(device_value compute_capability)"
+}
+
+unit_tests() {
+  local status=0
+  timeout "$(left)" "$pack/bin/test_gpu" --gtest_output="json:$out/tests.json" >"$out/tests.log" 2>&1 || status=$?
+  grep -E '^CPU|FAILED|SKIPPED|tests ran|Failure' "$out/tests.log" || true
+  ((status == 0)) || failures+=("tests (status $status, see tests.log)")
+}
+
+surface_cells() { report_value "$out/file-$1.json" embedding.surface_cells; }
+
+# The program from file to picture, on both.
+program_test() {
+  local device
+  for device in cpu cuda; do
+    flow_run "file-$device" "$pack/data/torus.pvd" --device "$device" --resolution 512 --steps 20 ||
+      failures+=("nacre flow torus.pvd --device $device: $(head -n 1 "$out/file-$device.log")")
+  done
+  if [[ $(report_value "$out/file-cuda.json" device.backend 2>/dev/null) != cuda ]]; then
+    failures+=("--device cuda did not run on the device")
+  elif [[ $(surface_cells cpu) != "$(surface_cells cuda)" ]]; then
+    failures+=("torus.pvd has other surface cells on cuda than on cpu")
+  fi
+}
+
+interop_test() {
+  if [[ ! -x $pack/bin/test_interop ]]; then
+    say "interop: no viewer in this build"
+    return
+  fi
+  timeout "$(left)" "$pack/bin/test_interop" >"$out/interop.log" 2>&1 || failures+=("interop (see interop.log)")
+}
+
+# bench_line NAME BACKEND RESOLUTION TTL: a line of the table and an element of results.json.
+# Bytes: the fewest that a stage must move for each surface cell (each array once, whatever a cache may have to repeat):
+# filter 44 (values, neighbour index, result), deposit 54 (sums, neighbour index, axes, value, clearing), advect
+# 24 + 16 ttl (the particle's start; one 8-byte deposit a step, read and written).
+bench_line() {
+  local report="$out/$1.json" stage
+  local values=(-v backend="$2" -v resolution="$3" -v ttl="$4" -v json="$out/runs.json"
+    -v cells="$(report_value "$report" embedding.surface_cells)" -v copy="$(device_value copy_bytes_per_second)"
+    -v step="$(report_value "$report" flow.seconds_per_step.median)"
+    -v memory="$(report_value "$report" memory.device_peak_bytes)")
+  for stage in embed refine advect deposit filter render; do
+    values+=(-v "$stage=$(stage_seconds "$report" "$stage")" -v "${stage}_calls=$(stage_calls "$report" "$stage")")
+  done
+  awk "${values[@]}" '
+    function per_call(seconds, calls) { return calls > 0 ? seconds / calls : 0 }
+    function rate(bytes, seconds) { return seconds > 0 ? bytes * cells / seconds : 0 }
+    function share(r) { return backend == "cuda" && copy > 0 ? sprintf("%.1f%%", 100 * r / copy) : "-" }
+    function number(key, value) { return sprintf(", \"%s\": %.9g", key, value) }
+    BEGIN {
+      a = per_call(advect, advect_calls); d = per_call(deposit, deposit_calls); f = per_call(filter, filter_calls)
+      ra = rate(24 + 16 * ttl, a); rd = rate(54, d); rf = rate(44, f)
+      printf "%-6s %5d %3d %10d %8.3f %8.3f %9.2f %9.2f %9.2f %9.2f %8.3f %8.2f %6s %6s %6s\n", backend, resolution,
+        ttl, cells, embed, refine, step * 1e3, a * 1e3, d * 1e3, f * 1e3, render, memory / 1e9, share(ra), share(rd),
+        share(rf)
+      printf "    {\"backend\": \"%s\"", backend >> json
+      printf "%s%s%s", number("resolution", resolution), number("ttl", ttl), number("surface_cells", cells) >> json
+      printf "%s%s", number("embed_seconds", embed), number("refine_seconds", refine) >> json
+      printf "%s%s", number("step_seconds", step), number("render_seconds", render) >> json
+      printf "%s%s%s", number("advect_seconds", a), number("deposit_seconds", d), number("filter_seconds", f) >> json
+      printf "%s%s", number("advect_bytes_per_second", ra), number("deposit_bytes_per_second", rd) >> json
+      printf "%s%s},\n", number("filter_bytes_per_second", rf), number("memory_bytes", memory) >> json
+    }' </dev/null
+}
+
+# bench BACKEND STEPS RESOLUTION TTL
+bench() {
+  local name="train-$1-$3-ttl$4"
+  if (($(left) < 20)); then
+    say "$name left out: out of time"
+  elif flow_run "$name" --sample train --device "$1" --resolution "$3" --ttl "$4" --steps "$2"; then
+    bench_line "$name" "$1" "$3" "$4"
+  elif [[ $1 == cpu ]] && (($(left) < 20)); then
+    say "$name stopped: out of time"
+  else
+    failures+=("$name: $(head -n 1 "$out/$name.log")")
+  fi
+}
+
+benchmarks() {
+  local resolution ttl
+  : >"$out/runs.json"
+  echo "flow on the train: embed, refine, render in s; step and its parts in ms; memory in GB; the last three: the"
+  echo "fewest bytes that advect, deposit and filter can move, over their time, as a share of this device's copy rate"
+  printf '%-6s %5s %3s %10s %8s %8s %9s %9s %9s %9s %8s %8s %6s %6s %6s\n' device res ttl cells embed refine step \
+    advect deposit filter render memory adv dep fil
+  for resolution in 1024 2048 4096; do
+    for ttl in 2 4; do bench cuda 10 "$resolution" "$ttl"; done
+  done
+  for resolution in 1024 2048 4096; do
+    for ttl in 2 4; do bench cpu 3 "$resolution" "$ttl"; done
+  done
+}
+
+# results.json: the device, the runs and what failed; the tests' own numbers are in tests.json.
+write_results() {
+  {
+    printf '{\n  "device": '
+    sed '2,$s/^/  /' "$out/device.json"
+    printf '  ,\n  "runs": [\n'
+    sed '$s/,$//' "$out/runs.json"
+    printf '  ],\n  "failures": %d,\n  "seconds": %d\n}\n' "${#failures[@]}" "$SECONDS"
+  } >"$out/results.json"
+  rm "$out/runs.json"
+}
+
+run() {
+  pack=$1
+  out=${OUT:-$root/build/gpu-results}
+  [[ -x $pack/bin/test_gpu ]] || fail "$pack holds no programs: make it with check.sh --pack"
+  mkdir -p "$out"
+  export LD_LIBRARY_PATH="$pack/lib"
+  source "$pack/report.sh"
+  exec > >(tee "$out/results.txt")
+  device_info
+  unit_tests
+  program_test
+  interop_test
+  benchmarks
+  write_results
+  local failure
+  for failure in ${failures[@]+"${failures[@]}"}; do
+    say "FAILED: $failure"
+  done
+  ((${#failures[@]} == 0)) || exit 1
+  say "all good in $SECONDS s; results in $out"
+}
+
+[[ -x $here/bin/test_gpu ]] && root=$here && default=$here || default=$root/build/gpu-pack
+case ${1:-} in
+  --pack) pack "${2:-$root/build/gpu-pack}" ;;
+  --run) run "${2:-$default}" ;;
+  '')
+    [[ -x $default/bin/test_gpu ]] || pack "$default"
+    run "$default"
+    ;;
+  *) fail "no such option: $1 (--pack or --run)" ;;
+esac
