@@ -117,14 +117,11 @@ FlowInput read_input(const FlowOptions& options, const Session& session, StageTi
 }
 
 Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
-  Vec3d lower(1e300), upper(-1e300);
+  std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
   for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) {
-      lower = min(lower, surface.points[t[k]]);
-      upper = max(upper, surface.points[t[k]]);
-    }
+    for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
   if (!is_camera_file(settings))
-    return fit_camera(settings.camera, lower, upper, settings.width, settings.height);
+    return fit_camera(settings.camera, corners, settings.width, settings.height);
   std::ifstream stream(settings.camera);
   if (!stream) throw Error("cannot read camera " + settings.camera);
   try {
@@ -133,7 +130,7 @@ Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
       const auto v = json.at(key).get<std::array<double, 3>>();
       return Vec3d(v[0], v[1], v[2]);
     };
-    Camera camera = fit_camera("iso", lower, upper, settings.width, settings.height);
+    Camera camera = fit_camera("iso", corners, settings.width, settings.height);
     camera.eye = vec("eye");
     camera.target = vec("target");
     camera.up = json.contains("up") ? vec("up") : Vec3d(0, 0, 1);

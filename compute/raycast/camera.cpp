@@ -2,6 +2,7 @@
 #include "compute/raycast/camera.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "compute/device/error.hpp"
 
@@ -21,27 +22,44 @@ Vec3d view_direction(const std::string& view) {
 
 }  // namespace
 
-Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& upper, int width, int height) {
+Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height) {
   const Vec3d direction = view_direction(view);
-  const Vec3d half = (upper - lower) * 0.5;
+  Vec3d lower(1e300), upper(-1e300);
+  for (const Vec3d& p : points) {
+    lower = min(lower, p);
+    upper = max(upper, p);
+  }
+  if (points.empty()) lower = upper = Vec3d(0.0);
+  const double radius = std::max(0.5 * length(upper - lower), 1e-30), distance = 9 * radius;
   Camera camera;
-  camera.target = (lower + upper) * 0.5;
   camera.up = std::fabs(direction.z) > 0.99 ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
-  const double diagonal = std::max(length(half), 1e-30);
-  const double distance = 4.5 * diagonal;
+  camera.target = (lower + upper) * 0.5;
   camera.eye = camera.target + direction * distance;
   const Vec3d right = camera.right(), up = cross(right, camera.forward());
-  // The box's corners as the camera sees them, brought to the distance of the target.
-  double wide = 0, tall = 0;
-  for (int k = 0; k < 8; ++k) {
-    const Vec3d corner{k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z};
-    const double nearer = distance / (distance - dot(corner, direction));
-    wide = std::max(wide, std::fabs(dot(corner, right)) * nearer);
-    tall = std::max(tall, std::fabs(dot(corner, up)) * nearer);
+  // What the points cover as the camera sees them, brought to the distance of the target.
+  double left = 1e300, most_right = -1e300, bottom = 1e300, top = -1e300;
+  for (const Vec3d& p : points) {
+    const Vec3d d = p - camera.target;
+    const double nearer = distance / (distance - dot(d, direction));
+    left = std::min(left, dot(d, right) * nearer);
+    most_right = std::max(most_right, dot(d, right) * nearer);
+    bottom = std::min(bottom, dot(d, up) * nearer);
+    top = std::max(top, dot(d, up) * nearer);
   }
+  if (points.empty()) left = most_right = bottom = top = 0;
+  const Vec3d shift = right * (0.5 * (left + most_right)) + up * (0.5 * (bottom + top));
+  camera.target += shift;
+  camera.eye += shift;
   const double aspect = double(width) / std::max(height, 1);
-  camera.height = 2 * 1.08 * std::max({tall, wide / aspect, 1e-6 * diagonal});
+  camera.height = 1.12 * std::max({top - bottom, (most_right - left) / aspect, 1e-6 * radius});
   return camera;
+}
+
+Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& upper, int width, int height) {
+  std::array<Vec3d, 8> corners;
+  for (int k = 0; k < 8; ++k)
+    corners[k] = {k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z};
+  return fit_camera(view, corners, width, height);
 }
 
 Camera orbit(const Camera& camera, double degrees) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "compute/grid/vec.hpp"
@@ -26,8 +27,11 @@ struct Camera {
   }
 };
 
-/// A camera that sees the whole box from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z is
+/// A camera that sees all `points` from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z is
 /// up, y for the two z views). Throws Error for any other word.
+Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height);
+
+/// The same for the corners of a box.
 Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& upper, int width, int height);
 
 /// Turns the camera about the vertical axis through its target.
