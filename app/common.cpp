@@ -21,9 +21,7 @@ void on_interrupt(int signal) {
   if (interrupted.exchange(true)) _exit(128 + signal);
 }
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
 
@@ -109,7 +107,8 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
   for (const auto& stage : timers.stages())
     report["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}});
   std::unique_ptr<Device> host = device.backend() == "cpu" ? nullptr : make_cpu_device();
-  report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()}, {"device_peak_bytes", arena_bytes}};
+  report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()},
+                      {"device_peak_bytes", arena_bytes}};
   return report;
 }
 

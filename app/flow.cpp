@@ -35,7 +35,7 @@ struct FlowOptions {
 
 struct FlowInput {
   std::string name;
-  std::string array;     ///< the vectors' name
+  std::string array;  ///< the vectors' name
   VectorsInTime vectors;
 };
 
@@ -78,9 +78,7 @@ std::array<float, 3> parse_color(const std::string& text) {
   return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
 }
 
-bool is_camera_file(const Settings& settings) {
-  return std::filesystem::path(settings.camera).extension() == ".json";
-}
+bool is_camera_file(const Settings& settings) { return std::filesystem::path(settings.camera).extension() == ".json"; }
 
 /// Names that mean something without any file: wrong ones are found before the work begins.
 void check_words(const Settings& settings) {
@@ -107,10 +105,11 @@ FlowInput read_input(const FlowOptions& options, const Session& session, StageTi
   std::string name = series.name;
   VectorsInTime vectors(std::move(series), std::move(surface), choice.name, session.settings.color);
   const VectorStatistics& s = vectors.statistics();
-  if (s.percentile_98 <= 0) warn(options.common, "the vectors are zero everywhere: the texture will stay noise");
+  if (s.percentile_98 <= 0)
+    warn(options.common, "the vectors are zero everywhere: the texture will stay noise");
   else if (s.normal_share > 0.5)
-    warn(options.common, fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown", choice.name,
-                                     100 * s.normal_share));
+    warn(options.common, fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown",
+                                     choice.name, 100 * s.normal_share));
   if (s.zero_share > 0.5)
     warn(options.common, fmt::format("{} is zero at {:.0f}% of the points", choice.name, 100 * s.zero_share));
   return {name, choice.name, std::move(vectors)};
@@ -120,8 +119,7 @@ Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
   std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
   for (const Triangle& t : surface.triangles)
     for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  if (!is_camera_file(settings))
-    return fit_camera(settings.camera, corners, settings.width, settings.height);
+  if (!is_camera_file(settings)) return fit_camera(settings.camera, corners, settings.width, settings.height);
   std::ifstream stream(settings.camera);
   if (!stream) throw Error("cannot read camera " + settings.camera);
   try {
@@ -140,7 +138,8 @@ Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
       throw Error(settings.camera + " is no camera", "eye and target must differ, up and height be above zero");
     return camera;
   } catch (const nlohmann::json::exception& error) {
-    throw Error(settings.camera + " is no camera", error.what(), R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
+    throw Error(settings.camera + " is no camera", error.what(),
+                R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
   }
 }
 
@@ -148,10 +147,16 @@ Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
 class Painter {
  public:
   Painter(FlowPipeline& pipeline, FlowInput& input, const Settings& settings, double frame_time)
-      : pipeline_(pipeline), input_(input), settings_(settings), frame_time_(frame_time),
-        map_(colormap(settings.colormap)), camera_(read_camera(settings, input.vectors.surface())) {
-    if (settings.background == "transparent") transparent_ = true;
-    else background_ = parse_color(settings.background);
+      : pipeline_(pipeline),
+        input_(input),
+        settings_(settings),
+        frame_time_(frame_time),
+        map_(colormap(settings.colormap)),
+        camera_(read_camera(settings, input.vectors.surface())) {
+    if (settings.background == "transparent")
+      transparent_ = true;
+    else
+      background_ = parse_color(settings.background);
   }
 
   Image paint(int frame) {
@@ -179,7 +184,9 @@ class Painter {
       draw_legend(image, map_, options.low, options.high, settings_.color == "speed" ? input_.array : settings_.color);
     if (settings_.time_stamp && input_.vectors.end() > input_.vectors.start())
       draw_time(image, pipeline_.time(), "", frame_time_);
-    if (settings_.legend) draw_orientation(image, Vec3f(camera.right()), Vec3f(cross(camera.right(), camera.forward())), Vec3f(camera.forward()));
+    if (settings_.legend)
+      draw_orientation(image, Vec3f(camera.right()), Vec3f(cross(camera.right(), camera.forward())),
+                       Vec3f(camera.forward()));
     return image;
   }
 
@@ -203,7 +210,9 @@ void write_values(const FlowPipeline& pipeline, const std::filesystem::path& fil
       for (int k = 0; k < 3; ++k) array.values[3 * i + k] = float(from[i][k]);
     return array;
   };
-  const std::vector<PointArray> arrays{{"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal),
+  const std::vector<PointArray> arrays{{"value", 1, v.value},
+                                       vectors("velocity", v.velocity),
+                                       vectors("normal", v.normal),
                                        vectors("closest_point", v.closest_point)};
   write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time);
 }
@@ -222,7 +231,8 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
           {"bytes", e.bytes},
           {"dense_bytes", e.dense_bytes},
           {"sparseness_percent", 100.0 * (1 - double(e.bytes) / std::max<double>(1, double(e.dense_bytes)))},
-          {"closest_point_dimensions", {e.closest_point_dimensions.x, e.closest_point_dimensions.y, e.closest_point_dimensions.z}},
+          {"closest_point_dimensions",
+           {e.closest_point_dimensions.x, e.closest_point_dimensions.y, e.closest_point_dimensions.z}},
           {"closest_point_cells", e.closest_point_cells},
           {"cell_size", e.cell_size}};
 }
@@ -296,9 +306,13 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    report["input"] = {{"name", input.name}, {"vectors", input.array}, {"points", surface.points.size()},
-                       {"triangles", surface.triangles.size()}, {"time", {start, end}},
-                       {"reference_speed", vectors.reference_speed}, {"normal_share", input.vectors.statistics().normal_share},
+    report["input"] = {{"name", input.name},
+                       {"vectors", input.array},
+                       {"points", surface.points.size()},
+                       {"triangles", surface.triangles.size()},
+                       {"time", {start, end}},
+                       {"reference_speed", vectors.reference_speed},
+                       {"normal_share", input.vectors.statistics().normal_share},
                        {"zero_share", input.vectors.statistics().zero_share}};
     report["parameters"] = knob_values(settings);
     report["embedding"] = embedding_report(pipeline->embedding());
@@ -328,7 +342,8 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_flag("--no-time", options->no_time, "no time stamp");
   add_common_options(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command);
-  command->callback([&run, options, knob_options] { run = [options, knob_options] { run_flow(*options, *knob_options); }; });
+  command->callback(
+      [&run, options, knob_options] { run = [options, knob_options] { run_flow(*options, *knob_options); }; });
 }
 
 }  // namespace nacre

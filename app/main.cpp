@@ -1,11 +1,11 @@
 // Nacre: main: words in, exit status out.
+#include <fmt/format.h>
+
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <cstdio>
 #include <new>
-
-#include <fmt/format.h>
 
 #include "app/commands.hpp"
 #include "app/common.hpp"

@@ -65,8 +65,8 @@ class Arena {
     std::size_t tail_;
   };
 
-  std::size_t mark() const { return head_; }         ///< where the head is now
-  void rewind(std::size_t mark) { head_ = mark; }    ///< drops every permanent array made after `mark`
+  std::size_t mark() const { return head_; }       ///< where the head is now
+  void rewind(std::size_t mark) { head_ = mark; }  ///< drops every permanent array made after `mark`
   std::size_t free_bytes() const { return tail_ - head_; }
   std::size_t peak_bytes() const { return peak_; }
   Device& device() const { return device_; }

@@ -1,7 +1,7 @@
 // Nacre: asks the driver for the smallest kernel of this build.
-#include "compute/device/cuda_probe.hpp"
-
 #include <cuda_runtime.h>
+
+#include "compute/device/cuda_probe.hpp"
 
 __global__ void nacre_probe() {}
 

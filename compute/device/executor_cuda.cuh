@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cuda_runtime.h>
+#include <thrust/iterator/counting_iterator.h>
+#include <thrust/iterator/transform_iterator.h>
 
 #include <algorithm>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_reduce.cuh>
 #include <cub/device/device_scan.cuh>
-#include <thrust/iterator/counting_iterator.h>
-#include <thrust/iterator/transform_iterator.h>
 
 #include "compute/device/cuda_check.hpp"
 #include "compute/device/executor.hpp"
@@ -60,7 +60,8 @@ class Executor<Cuda> : public ExecutorBase {
     if (n <= 0) return T(0);
     T last_in{}, last_out{};
     device().copy_to_host(&last_in, in + n - 1, sizeof(T));  // before the scan: in == out is allowed
-    with_scratch([&](void* scratch, std::size_t& bytes) { return cub::DeviceScan::ExclusiveSum(scratch, bytes, in, out, n); });
+    with_scratch(
+        [&](void* scratch, std::size_t& bytes) { return cub::DeviceScan::ExclusiveSum(scratch, bytes, in, out, n); });
     device().copy_to_host(&last_out, out + n - 1, sizeof(T));
     return last_out + last_in;
   }
@@ -71,7 +72,8 @@ class Executor<Cuda> : public ExecutorBase {
     Arena::Scope scope(arena());
     Array<std::uint64_t> other = arena().temporary<std::uint64_t>(n);
     cub::DoubleBuffer<std::uint64_t> buffer(keys, other.data());
-    with_scratch([&](void* scratch, std::size_t& bytes) { return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n); });
+    with_scratch(
+        [&](void* scratch, std::size_t& bytes) { return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n); });
     if (buffer.Current() != keys)
       cuda_check(cudaMemcpyAsync(keys, buffer.Current(), n * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice), "copy");
   }

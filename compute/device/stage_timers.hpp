@@ -36,9 +36,7 @@ class StageTimers {
    public:
     Scope(StageTimers& timers, std::string_view name)
         : timers_(timers), name_(name), start_(std::chrono::steady_clock::now()) {}
-    ~Scope() {
-      timers_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-    }
+    ~Scope() { timers_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count()); }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 

@@ -27,8 +27,16 @@ struct ClosestPointGrid {
   Array<std::uint32_t> touch_triangle;
 
   ClosestPointGridView view() const {
-    return {bricks, sub, Divider(sub), radius, brick_index.data(), brick_code.data(), offset.data(),
-            triangle.data(), touch_start.data(), touch_triangle.data()};
+    return {bricks,
+            sub,
+            Divider(sub),
+            radius,
+            brick_index.data(),
+            brick_code.data(),
+            offset.data(),
+            triangle.data(),
+            touch_start.data(),
+            touch_triangle.data()};
   }
 
   std::uint64_t bytes() const {
@@ -127,8 +135,10 @@ struct ClosestOfOctet {
       if (local.x >= grid.sub || local.y >= grid.sub || local.z >= grid.sub) continue;
       const std::uint32_t at = brick * grid.cells_per_brick() + (local.z * grid.sub + local.y) * grid.sub + local.x;
       const Vec3d x = Vec3d(origin + local) + Vec3d(0.5);
-      if (count <= room) search(at, x, std::uint64_t(count), [&](std::uint64_t c) { return kept[c]; });
-      else search(at, x, last - first, [&](std::uint64_t c) { return std::uint32_t(list[first + c]); });
+      if (count <= room)
+        search(at, x, std::uint64_t(count), [&](std::uint64_t c) { return kept[c]; });
+      else
+        search(at, x, last - first, [&](std::uint64_t c) { return std::uint32_t(list[first + c]); });
     }
   }
 
@@ -202,8 +212,10 @@ struct TouchStart {
     std::uint64_t low = 0, high = pairs;
     while (low < high) {
       const std::uint64_t middle = (low + high) / 2;
-      if (keys[middle] >> 32 < std::uint64_t(cell)) low = middle + 1;
-      else high = middle;
+      if (keys[middle] >> 32 < std::uint64_t(cell))
+        low = middle + 1;
+      else
+        high = middle;
     }
     start[cell] = std::uint32_t(low);
   }
@@ -248,10 +260,10 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
     grid.offset = arena.permanent<Float4>(grid.cells);
     grid.triangle = arena.permanent<std::uint32_t>(grid.cells);
     const int octets = detail::ClosestOfOctet::octets(sub);
-    exec.for_each(std::int64_t(grid.brick_count) * octets * octets * octets,
-                  detail::ClosestOfOctet{mesh, grid.view(), clusters.order.data(), clusters.start.data(),
-                                         clusters.bound.data(), list_start.data(), pairs.data(), grid.offset.data(),
-                                         grid.triangle.data()});
+    exec.for_each(
+        std::int64_t(grid.brick_count) * octets * octets * octets,
+        detail::ClosestOfOctet{mesh, grid.view(), clusters.order.data(), clusters.start.data(), clusters.bound.data(),
+                               list_start.data(), pairs.data(), grid.offset.data(), grid.triangle.data()});
   }
   Arena::Scope scope(arena);
   const Array<std::uint64_t> pairs = sorted_pairs(exec, triangles, detail::CellsTouched{mesh, grid.view()});

@@ -17,8 +17,17 @@ struct RefinedGrid {
   Array<Float4> seed;
 
   RefinedGridView view(const ClosestPointGridView& grid) const {
-    return {grid, refine, 1.0f / float(refine), Divider(refine), block.data(), texel.data(), place.data(), block_cell.data(),
-            seed.data(), seed_triangle.data(), neighbour.data()};
+    return {grid,
+            refine,
+            1.0f / float(refine),
+            Divider(refine),
+            block.data(),
+            texel.data(),
+            place.data(),
+            block_cell.data(),
+            seed.data(),
+            seed_triangle.data(),
+            neighbour.data()};
   }
 
   std::uint64_t bytes() const {
@@ -47,8 +56,10 @@ struct NumberBlocks {
   std::uint32_t* number;  // in: exclusive scan of the flags; out: block or none
   std::uint32_t* block_cell;
   NACRE_HD void operator()(std::int64_t i) const {
-    if (offset[i].w <= reach) block_cell[number[i]] = std::uint32_t(i);
-    else number[i] = none;
+    if (offset[i].w <= reach)
+      block_cell[number[i]] = std::uint32_t(i);
+    else
+      number[i] = none;
   }
 };
 

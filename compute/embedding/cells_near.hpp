@@ -8,9 +8,7 @@
 
 namespace nacre {
 
-NACRE_HD inline int clamp_cell(double x, int cells) {
-  return x < 0 ? 0 : x >= cells ? cells - 1 : int(x);
-}
+NACRE_HD inline int clamp_cell(double x, int cells) { return x < 0 ? 0 : x >= cells ? cells - 1 : int(x); }
 
 namespace detail {
 /// Unit normal of the triangle's plane; of a needle, of some plane through its longest edge.

@@ -44,21 +44,23 @@ struct Divider {
       if (d == 1 << k) shift = k;
   }
   /// Exact for 0 <= i < 2^20; floors for negative ones.
-  NACRE_HD int operator()(int i) const { return shift >= 0 ? i >> shift : int(std::floor((float(i) + 0.5f) * inverse)); }
+  NACRE_HD int operator()(int i) const {
+    return shift >= 0 ? i >> shift : int(std::floor((float(i) + 0.5f) * inverse));
+  }
 };
 
 /// A coarse grid of bricks near the surface, `sub`^3 cells each. Cell (i, j, k) has its centre at (i, j, k) + 0.5; all
 /// lengths are in cells. Every cell of a brick holds a closest point; within `radius` of the surface it is the exact one.
 struct ClosestPointGridView {
-  Int3 bricks{};  ///< extent of the coarse grid
-  int sub = 4;    ///< cells per brick and axis, 3..8
+  Int3 bricks{};      ///< extent of the coarse grid
+  int sub = 4;        ///< cells per brick and axis, 3..8
   Divider divide{4};  ///< by sub
   float radius = 0;
-  const std::uint32_t* brick_index = nullptr;  ///< per coarse cell, x fastest: number of its brick, or `none`
-  const std::uint64_t* brick_code = nullptr;   ///< per brick: Morton code of its coarse cell
-  const Float4* offset = nullptr;              ///< per cell: closest point minus centre, and its length
-  const std::uint32_t* triangle = nullptr;     ///< per cell: the triangle of the closest point
-  const std::uint32_t* touch_start = nullptr;  ///< per cell: where its list in `touch_triangle` begins
+  const std::uint32_t* brick_index = nullptr;     ///< per coarse cell, x fastest: number of its brick, or `none`
+  const std::uint64_t* brick_code = nullptr;      ///< per brick: Morton code of its coarse cell
+  const Float4* offset = nullptr;                 ///< per cell: closest point minus centre, and its length
+  const std::uint32_t* triangle = nullptr;        ///< per cell: the triangle of the closest point
+  const std::uint32_t* touch_start = nullptr;     ///< per cell: where its list in `touch_triangle` begins
   const std::uint32_t* touch_triangle = nullptr;  ///< triangles that touch the cell, ascending
 
   NACRE_HD int cells_per_brick() const { return sub * sub * sub; }
@@ -98,16 +100,17 @@ NACRE_HD_INLINE Vec3f cell_centre(const Int3& c) { return {c.x + 0.5f, c.y + 0.5
 /// Where the N^3 cells of a stencil lie in memory: the stencil meets at most two bricks per axis (N <= sub + 1).
 template <int N>
 struct Stencil {
-  Int3 first;                    ///< lowest cell
-  int split[3];                  ///< how many of the N lie in the lower brick
-  int local[3];                  ///< position of the first one in its brick
-  std::uint32_t base[2][2][2];   ///< [z][y][x]: address of a brick's cell 0
+  Int3 first;                   ///< lowest cell
+  int split[3];                 ///< how many of the N lie in the lower brick
+  int local[3];                 ///< position of the first one in its brick
+  std::uint32_t base[2][2][2];  ///< [z][y][x]: address of a brick's cell 0
 
   /// False where a brick is missing.
   NACRE_HD_INLINE bool find(const ClosestPointGridView& grid, const Int3& lowest) {
     first = lowest;
     const Int3 dims = grid.dims();
-    if (first.x < 0 || first.y < 0 || first.z < 0 || first.x + N > dims.x || first.y + N > dims.y || first.z + N > dims.z)
+    if (first.x < 0 || first.y < 0 || first.z < 0 || first.x + N > dims.x || first.y + N > dims.y ||
+        first.z + N > dims.z)
       return false;
     int brick[3] = {}, count[3] = {};
     for (int axis = 0; axis < 3; ++axis) {
@@ -136,54 +139,48 @@ struct Stencil {
   }
 };
 
-/// Linear among eight values at distances `f` from the first, x fastest; `at(x, y, z)` says where each lies.
-template <class Address>
-NACRE_HD_INLINE Lanes linear(const Float4* values, const Vec3f& f, const Address& at) {
-  auto edge = [&](int y, int z) {
-    const Lanes low = load(values[at(0, y, z)]), high = load(values[at(1, y, z)]);
-    return low + (high - low) * f.x;
-  };
-  const Lanes a = edge(0, 0), b = edge(1, 0), c = edge(0, 1), d = edge(1, 1);
-  const Lanes low = a + (b - a) * f.y, high = c + (d - c) * f.y;
-  return low + (high - low) * f.z;
-}
+/// The eight cells around a point, for linear interpolation of anything that is stored per cell.
+struct LinearCells {
+  std::uint32_t at[8];  ///< addresses, x fastest
+  Vec3f f;              ///< the point's distances from the first cell's centre, 0..1
 
-/// Calls use(address, f): the address of a point's eight cells as a function of (x, y, z) in 0..1, and its distances from
-/// the first. False where the surface is too far for the eight to exist.
-template <class Use>
-NACRE_HD_INLINE bool with_linear_cells(const ClosestPointGridView& grid, const Vec3f& p, const Use& use) {
-  const Int3 first = floor_cell(p - Vec3f(0.5f));
-  const Vec3f f = p - cell_centre(first);
-  const Int3 brick{grid.divide(first.x), grid.divide(first.y), grid.divide(first.z)};
-  const int sub = grid.sub;
-  const Int3 local = first - brick * Int3(sub);
-  if (local.x + 1 < sub && local.y + 1 < sub && local.z + 1 < sub) {  // all in one brick
-    if (!grid.inside(first)) return false;
-    const std::uint32_t b = grid.brick(brick.x, brick.y, brick.z);
-    if (b == none) return false;
-    const std::uint32_t corner = b * grid.cells_per_brick() + (local.z * sub + local.y) * sub + local.x;
-    use([=](int x, int y, int z) { return corner + (z * sub + y) * sub + x; }, f);
+  /// False where the surface is too far for the eight to exist.
+  NACRE_HD_INLINE bool find(const ClosestPointGridView& grid, const Vec3f& p) {
+    const Int3 first = floor_cell(p - Vec3f(0.5f));
+    f = p - cell_centre(first);
+    const Int3 brick{grid.divide(first.x), grid.divide(first.y), grid.divide(first.z)};
+    const int sub = grid.sub;
+    const Int3 local = first - brick * Int3(sub);
+    if (local.x + 1 < sub && local.y + 1 < sub && local.z + 1 < sub) {  // all in one brick
+      if (!grid.inside(first)) return false;
+      const std::uint32_t b = grid.brick(brick.x, brick.y, brick.z);
+      if (b == none) return false;
+      const std::uint32_t corner = b * grid.cells_per_brick() + (local.z * sub + local.y) * sub + local.x;
+      for (int k = 0; k < 8; ++k) at[k] = corner + ((k >> 2) * sub + (k >> 1 & 1)) * sub + (k & 1);
+      return true;
+    }
+    Stencil<2> stencil;
+    if (!stencil.find(grid, first)) return false;
+    for (int k = 0; k < 8; ++k) at[k] = stencil.address(grid, k & 1, k >> 1 & 1, k >> 2);
     return true;
   }
-  Stencil<2> stencil;
-  if (!stencil.find(grid, first)) return false;
-  use([&](int x, int y, int z) { return stencil.address(grid, x, y, z); }, f);
-  return true;
-}
+
+  NACRE_HD_INLINE Lanes interpolate(const Float4* values) const {
+    const Lanes a = load(values[at[0]]), b = load(values[at[2]]), c = load(values[at[4]]), d = load(values[at[6]]);
+    const Lanes e = a + (load(values[at[1]]) - a) * f.x, g = b + (load(values[at[3]]) - b) * f.x;
+    const Lanes h = c + (load(values[at[5]]) - c) * f.x, i = d + (load(values[at[7]]) - d) * f.x;
+    const Lanes low = e + (g - e) * f.y, high = h + (i - h) * f.y;
+    return low + (high - low) * f.z;
+  }
+};
 
 /// `values` interpolated linearly at `p`. False where the surface is too far for the eight cells to exist.
 NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Vec3f& p,
                                         Lanes& result) {
-  return with_linear_cells(grid, p, [&](const auto& at, const Vec3f& f) { result = linear(values, f, at); });
-}
-
-/// The same, between two sets of values: `u` = 0 the first, 1 the second.
-NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Float4* next,
-                                        float u, const Vec3f& p, Lanes& result) {
-  return with_linear_cells(grid, p, [&](const auto& at, const Vec3f& f) {
-    const Lanes a = linear(values, f, at), b = linear(next, f, at);
-    result = a + (b - a) * u;
-  });
+  LinearCells cells;
+  if (!cells.find(grid, p)) return false;
+  result = cells.interpolate(values);
+  return true;
 }
 
 #if defined(__CUDACC__)
@@ -217,9 +214,9 @@ NACRE_HD_INLINE Lanes weno4_stencil(const ClosestPointGridView& grid, const Sten
       const std::uint32_t line = ((stencil.local[2] + c - hz * sub) * sub + y) * sub;
       const Float4* lower = grid.offset + stencil.base[hz][hy][0] + line;
       const Float4* upper = grid.offset + stencil.base[hz][hy][1] + line;
-      const Row nodes = row(lower[column[0]], (1 < stencil.split[0] ? lower : upper)[column[1]],
-                            (2 < stencil.split[0] ? lower : upper)[column[2]],
-                            (3 < stencil.split[0] ? lower : upper)[column[3]]);
+      const Row nodes =
+          row(lower[column[0]], (1 < stencil.split[0] ? lower : upper)[column[1]],
+              (2 < stencil.split[0] ? lower : upper)[column[2]], (3 < stencil.split[0] ? lower : upper)[column[3]]);
       const float v = float(b - 1), w = float(c - 1);
       rows[c] = nodes + Row{-1, v, w, 0, 0, v, w, 0, 1, v, w, 0, 2, v, w, 0};
     }

@@ -129,8 +129,8 @@ Clusters make_clusters(Executor<Backend>& exec, const MeshView& mesh, std::uint3
   exec.for_each(triangles, detail::ClusterHead{mesh, keys.data(), number.data(), clusters.order.data()});
   clusters.count = exec.exclusive_scan(number.data(), number.data(), triangles);
   exec.for_each(triangles, detail::ClusterStart{triangles, clusters.count, number.data(), clusters.start.data()});
-  exec.for_each(clusters.count, detail::BoundCluster{mesh, clusters.order.data(), clusters.start.data(),
-                                                     clusters.bound.data()});
+  exec.for_each(clusters.count,
+                detail::BoundCluster{mesh, clusters.order.data(), clusters.start.data(), clusters.bound.data()});
   return clusters;
 }
 

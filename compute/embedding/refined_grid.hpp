@@ -17,14 +17,14 @@ struct RefinedGridView {
   ClosestPointGridView grid;
   int refine = 4;  ///< R, 1..8
   float inverse_refine = 0.25f;
-  Divider divide{4};  ///< by refine
-  const std::uint32_t* block = nullptr;     ///< per closest-point cell: its block of R^3 texture cells, or `none`
-  const std::uint32_t* texel = nullptr;     ///< per texture cell of a block: surface cell number, or `none`
-  const std::uint32_t* place = nullptr;     ///< per surface cell: where its texture cell is in `texel`
-  const std::uint32_t* block_cell = nullptr;  ///< per block: address of its closest-point cell
-  const Float4* seed = nullptr;             ///< per surface cell: closest point minus centre; w unused
+  Divider divide{4};                             ///< by refine
+  const std::uint32_t* block = nullptr;          ///< per closest-point cell: its block of R^3 texture cells, or `none`
+  const std::uint32_t* texel = nullptr;          ///< per texture cell of a block: surface cell number, or `none`
+  const std::uint32_t* place = nullptr;          ///< per surface cell: where its texture cell is in `texel`
+  const std::uint32_t* block_cell = nullptr;     ///< per block: address of its closest-point cell
+  const Float4* seed = nullptr;                  ///< per surface cell: closest point minus centre; w unused
   const std::uint32_t* seed_triangle = nullptr;  ///< per surface cell: the triangle of its closest point
-  const std::uint32_t* neighbour = nullptr;  ///< 6 per surface cell, -x +x -y +y -z +z; itself where there is none
+  const std::uint32_t* neighbour = nullptr;      ///< 6 per surface cell, -x +x -y +y -z +z; itself where there is none
 
   NACRE_HD int cells_per_block() const { return refine * refine * refine; }
 

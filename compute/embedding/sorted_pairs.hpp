@@ -35,9 +35,7 @@ struct WriteKeys {
 struct HeadFlag {
   const std::uint64_t* keys;
   std::uint32_t* head;
-  NACRE_HD void operator()(std::int64_t i) const {
-    head[i] = i == 0 || keys[i] >> 32 != keys[i - 1] >> 32 ? 1 : 0;
-  }
+  NACRE_HD void operator()(std::int64_t i) const { head[i] = i == 0 || keys[i] >> 32 != keys[i - 1] >> 32 ? 1 : 0; }
 };
 
 }  // namespace detail

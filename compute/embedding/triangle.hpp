@@ -75,8 +75,7 @@ NACRE_HD inline Vec3d closest_point(const Corners& t, const Vec3d& p) {
 
   const double va = d3 * d6 - d5 * d4;
   const double along = (d4 - d3) + (d5 - d6);
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && along > 0)
-    return t.b + (t.c - t.b) * ((d4 - d3) / along);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && along > 0) return t.b + (t.c - t.b) * ((d4 - d3) / along);
 
   // va, vb, vc are differences of such products: of a sliver nothing but rounding is left of them.
   const double sum = va + vb + vc;
@@ -127,8 +126,8 @@ NACRE_HD inline bool touches_cube(const Corners& triangle, const Vec3d& centre, 
   const Vec3d n = cross(ab, bc);
   const double nx = n.x < 0 ? -n.x : n.x, ny = n.y < 0 ? -n.y : n.y, nz = n.z < 0 ? -n.z : n.z;
   // The normal of a needle is mostly rounding, which its length must not turn into a distance.
-  const double rounding = 1e-15 * detail::magnitude(t.a.x, t.a.y, t.a.z) * (detail::magnitude(ab.x, ab.y, ab.z) + half) *
-                          (detail::magnitude(bc.x, bc.y, bc.z) + half);
+  const double rounding = 1e-15 * detail::magnitude(t.a.x, t.a.y, t.a.z) *
+                          (detail::magnitude(ab.x, ab.y, ab.z) + half) * (detail::magnitude(bc.x, bc.y, bc.z) + half);
   const double d = dot(n, t.a), reach = half * (nx + ny + nz) + rounding;
   if (d > reach || d < -reach) return false;
   return !detail::separated_by_edge(t, ab, half) && !detail::separated_by_edge(t, bc, half) &&

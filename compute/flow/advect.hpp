@@ -26,7 +26,7 @@ NACRE_HD inline bool runge_kutta4(const FlowField& field, const Vec3f& p, int j,
 struct ReleaseParticles {
   FlowField field;
   RefinedGridView texture;
-  const float* carried;  ///< per surface cell, 0..1
+  const float* carried;          ///< per surface cell, 0..1
   std::uint64_t* sums[max_ttl];  ///< buffers of the coming steps
   int ttl;
 

@@ -17,12 +17,12 @@ struct FlowField {
 
   /// At point `p` (cells) and time `u` (0..1) within step `j`. False out of the band.
   NACRE_HD_INLINE bool velocity(const Vec3f& p, int j, float u, Vec3f& v) const {
-    Lanes result;
-    const bool inside = steady || u <= 0 ? interpolate_linear(grid, slot[j], p, result)
-                        : u >= 1        ? interpolate_linear(grid, slot[j + 1], p, result)
-                                        : interpolate_linear(grid, slot[j], slot[j + 1], u, p, result);
+    LinearCells cells;
+    if (!cells.find(grid, p)) return false;
+    Lanes result = cells.interpolate(slot[!steady && u >= 1 ? j + 1 : j]);
+    if (!steady && u > 0 && u < 1) result = result + (cells.interpolate(slot[j + 1]) - result) * u;
     v = xyz(result);
-    return inside;
+    return true;
   }
 };
 
@@ -30,8 +30,8 @@ struct FlowField {
 struct SpeedScale {
   float reference = 1;  ///< the speed that moves `displacement` cells a step (98th percentile of the data)
   float displacement = 1;
-  float power = 1;      ///< 1: in proportion; 0: all alike, as in a line integral convolution
-  float limit = 2;      ///< fastest displacement, in units of `displacement`
+  float power = 1;  ///< 1: in proportion; 0: all alike, as in a line integral convolution
+  float limit = 2;  ///< fastest displacement, in units of `displacement`
 
   NACRE_HD Vec3f operator()(const Vec3f& v) const {
     const float speed = length(v);
@@ -49,7 +49,7 @@ struct EmbedVelocity {
   ClosestPointGridView grid;
   const Vec3f* vectors;  ///< one per point of the mesh, at the time of the slot
   SpeedScale scale;
-  float reach;           ///< cells farther from the surface are never asked
+  float reach;  ///< cells farther from the surface are never asked
   Float4* slot;
 
   NACRE_HD void operator()(std::int64_t i) const {

@@ -25,9 +25,15 @@ struct Vec3 {
   NACRE_HD constexpr Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
   NACRE_HD constexpr Vec3& operator*=(T s) { return *this = *this * s; }
 
-  friend NACRE_HD_INLINE constexpr Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-  friend NACRE_HD_INLINE constexpr Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-  friend NACRE_HD_INLINE constexpr Vec3 operator*(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+  friend NACRE_HD_INLINE constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+  }
+  friend NACRE_HD_INLINE constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend NACRE_HD_INLINE constexpr Vec3 operator*(const Vec3& a, const Vec3& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+  }
   friend NACRE_HD_INLINE constexpr Vec3 operator*(const Vec3& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
   friend NACRE_HD_INLINE constexpr Vec3 operator*(T s, const Vec3& a) { return a * s; }
   friend NACRE_HD_INLINE constexpr Vec3 operator/(const Vec3& a, T s) { return {a.x / s, a.y / s, a.z / s}; }

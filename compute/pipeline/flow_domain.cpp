@@ -51,7 +51,8 @@ FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = (b.upper[axis] - b.lower[axis]) / domain.cell_size;
     domain.extent[axis] = std::max(1, int(std::ceil(cells - 1e-9)));
-    domain.bricks[axis] = (int(std::ceil(cells + 0.37)) + 2 * domain.margin + parameters.subcells) / parameters.subcells;
+    domain.bricks[axis] =
+        (int(std::ceil(cells + 0.37)) + 2 * domain.margin + parameters.subcells) / parameters.subcells;
     if (domain.bricks[axis] > max_bricks) {
       const int limit = (max_bricks - 1) * parameters.subcells - 2 * domain.margin - 2;
       throw Error("--resolution " + std::to_string(parameters.resolution) + " is too fine",

@@ -10,9 +10,9 @@ struct FlowDomain {
   Vec3d origin{};
   double cell_size = 1;  ///< of the closest-point grid
   Int3 bricks{};
-  Int3 extent{};         ///< closest-point cells of the bounding box, without the margin
-  int margin = 0;        ///< cells beside it
-  double radius = 0;     ///< of the band, in cells
+  Int3 extent{};      ///< closest-point cells of the bounding box, without the margin
+  int margin = 0;     ///< cells beside it
+  double radius = 0;  ///< of the band, in cells
 
   Vec3d to_grid(const Vec3d& p) const { return (p - origin) / cell_size; }
   Vec3d to_world(const Vec3d& g) const { return origin + g * cell_size; }

@@ -19,46 +19,46 @@ namespace nacre {
 
 /// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp).
 struct FlowParameters {
-  int resolution = 1024;    ///< texture cells along the longest side
-  int refine = 4;           ///< texture cells per closest-point cell and axis (R)
-  int subcells = 4;         ///< closest-point cells per coarse cell and axis
-  double radius = 0;        ///< band around the surface, in closest-point cells; 0: what the stencils need
-  int ttl = 4;              ///< steps that a particle lives
-  double step_cells = 8;    ///< texture cells that the 98th percentile speed moves in a step
-  double speed_power = 1;   ///< displacement ~ speed^power: 1 true speeds, 0 all alike
-  int steps = 20;           ///< steps from the first to the last time
-  int warmup = -1;          ///< steps before the first, at the first time; -1: ttl
-  double sharpen = 0.05;    ///< strength of the Laplacian between steps
-  double jitter = 0.55;     ///< share of fresh noise between steps
-  double equalise = 0.5;    ///< share of local contrast against that of the whole texture
-  double contrast = 0.26;   ///< shown standard deviation
+  int resolution = 1024;   ///< texture cells along the longest side
+  int refine = 4;          ///< texture cells per closest-point cell and axis (R)
+  int subcells = 4;        ///< closest-point cells per coarse cell and axis
+  double radius = 0;       ///< band around the surface, in closest-point cells; 0: what the stencils need
+  int ttl = 4;             ///< steps that a particle lives
+  double step_cells = 8;   ///< texture cells that the 98th percentile speed moves in a step
+  double speed_power = 1;  ///< displacement ~ speed^power: 1 true speeds, 0 all alike
+  int steps = 20;          ///< steps from the first to the last time
+  int warmup = -1;         ///< steps before the first, at the first time; -1: ttl
+  double sharpen = 0.05;   ///< strength of the Laplacian between steps
+  double jitter = 0.55;    ///< share of fresh noise between steps
+  double equalise = 0.5;   ///< share of local contrast against that of the whole texture
+  double contrast = 0.26;  ///< shown standard deviation
   std::uint32_t seed = 1;
 };
 
 /// The surface that flow is shown on, in host memory that outlives `embed`.
 struct FlowMesh {
-  std::span<const Vec3d> points;           ///< world coordinates
-  std::span<const Triangle> triangles;     ///< none degenerate, indices in range
-  std::span<const Vec3f> corner_normals;   ///< 3 per triangle, unit
+  std::span<const Vec3d> points;          ///< world coordinates
+  std::span<const Triangle> triangles;    ///< none degenerate, indices in range
+  std::span<const Vec3f> corner_normals;  ///< 3 per triangle, unit
 };
 
 /// Vectors over time, world units per second.
 struct FlowVectors {
   std::function<void(double time, std::span<Vec3f> vectors)> at;  ///< fills one vector per point
-  double start = 0, end = 0;   ///< time of the data; equal: steady
+  double start = 0, end = 0;                                      ///< time of the data; equal: steady
   double reference_speed = 1;  ///< tangential speed, 98th percentile over space and time
 };
 
 /// What the embedding became, for the report.
 struct EmbeddingInfo {
-  Int3 dimensions{};               ///< texture cells of the surface's bounding box
+  Int3 dimensions{};                ///< texture cells of the surface's bounding box
   Int3 closest_point_dimensions{};  ///< the same in closest-point cells
   std::uint64_t cells = 0;          ///< texture cells stored
   std::uint64_t surface_cells = 0;
   std::uint64_t closest_point_cells = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t dense_bytes = 0;    ///< the same payload for every texture cell of the box
-  double cell_size = 0;             ///< edge of a texture cell, world units
+  std::uint64_t dense_bytes = 0;  ///< the same payload for every texture cell of the box
+  double cell_size = 0;           ///< edge of a texture cell, world units
 };
 
 /// One value per surface cell and what belongs to it; world coordinates.
@@ -72,12 +72,12 @@ struct FlowValues {
 struct RenderOptions {
   Camera camera;
   int width = 1024, height = 768;
-  int samples = 2;                           ///< per pixel and axis
+  int samples = 2;  ///< per pixel and axis
   bool texture = true;
-  std::span<const float> scalar;             ///< per point of the mesh; empty: gray
+  std::span<const float> scalar;  ///< per point of the mesh; empty: gray
   double low = 0, high = 1;
   std::span<const std::array<float, 3>> colours;  ///< 256, sRGB
-  std::array<float, 3> background{1, 1, 1};  ///< sRGB
+  std::array<float, 3> background{1, 1, 1};       ///< sRGB
   bool transparent = false;
 };
 
@@ -90,11 +90,11 @@ class FlowPipeline {
 
   FlowParameters parameters;
 
-  virtual void embed(const FlowMesh& mesh) = 0;              ///< stages embed, refine
-  virtual void start(const FlowVectors& vectors) = 0;        ///< noise and warm-up
-  virtual void step() = 0;                                   ///< stages velocity, advect, deposit, filter
-  virtual double time() const = 0;                           ///< of the frame that is shown
-  virtual std::vector<float> shown() const = 0;              ///< per surface cell, 0..1, contrast stretched
+  virtual void embed(const FlowMesh& mesh) = 0;        ///< stages embed, refine
+  virtual void start(const FlowVectors& vectors) = 0;  ///< noise and warm-up
+  virtual void step() = 0;                             ///< stages velocity, advect, deposit, filter
+  virtual double time() const = 0;                     ///< of the frame that is shown
+  virtual std::vector<float> shown() const = 0;        ///< per surface cell, 0..1, contrast stretched
   virtual FlowValues values() const = 0;
   /// RGBA bytes, row 0 at the top (stage render).
   virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
@@ -103,8 +103,8 @@ class FlowPipeline {
 
   virtual const EmbeddingInfo& embedding() const = 0;
   virtual StageTimers& timers() = 0;
-  virtual std::size_t peak_bytes() const = 0;                ///< of the arena
-  virtual void watch(const std::atomic<bool>* stop) = 0;     ///< checked between and inside launches
+  virtual std::size_t peak_bytes() const = 0;             ///< of the arena
+  virtual void watch(const std::atomic<bool>* stop) = 0;  ///< checked between and inside launches
 };
 
 std::unique_ptr<FlowPipeline> make_flow_pipeline(Device& device);

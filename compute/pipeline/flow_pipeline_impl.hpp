@@ -153,8 +153,8 @@ class FlowPipelineOf final : public FlowPipeline {
     point_vectors_.upload(host_vectors_);
     const SpeedScale scale{float(vectors_.reference_speed), float(parameters.step_cells / refine_),
                            float(parameters.speed_power), 2.0f};
-    exec_.for_each(coarse_.cells, EmbedVelocity{mesh_, coarse_.view(), point_vectors_.data(), scale, 3.5f,
-                                                slot(k).data()});
+    exec_.for_each(coarse_.cells,
+                   EmbedVelocity{mesh_, coarse_.view(), point_vectors_.data(), scale, 3.5f, slot(k).data()});
   }
 
   Array<Float4>& slot(int k) { return slots_[steady_ ? 0 : (k - first_) % (ttl_ + 1)]; }
@@ -201,8 +201,8 @@ class FlowPipelineOf final : public FlowPipeline {
     const Moments now = moments_of(value_), next = moments_of(ahead_);
     const float deviation = std::max(now.deviation(n), 1e-4f);
     const Float4* moments = gather_moments(texture);
-    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, now.mean(n), deviation,
-                               next.mean(n), std::max(next.deviation(n), 1e-4f) / deviation, float(parameters.equalise),
+    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, now.mean(n), deviation, next.mean(n),
+                               std::max(next.deviation(n), 1e-4f) / deviation, float(parameters.equalise),
                                float(parameters.contrast), shown_.data(), detail_.data()});
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters.sharpen), float(parameters.jitter),
                                        parameters.seed, std::uint32_t(++launched_), carried_.data()});
@@ -352,8 +352,8 @@ std::vector<float> FlowPipelineOf<Backend>::sample_shown(std::span<const Vec3d> 
   Array<Vec3f> places = arena.temporary<Vec3f>(host.size());
   places.upload(host);
   Array<float> value = arena.temporary<float>(host.size());
-  exec_.for_each(std::int64_t(host.size()), detail::SampleShown{fine_.view(coarse_.view()), shown_.data(), places.data(),
-                                                                value.data()});
+  exec_.for_each(std::int64_t(host.size()),
+                 detail::SampleShown{fine_.view(coarse_.view()), shown_.data(), places.data(), value.data()});
   return value.download();
 }
 

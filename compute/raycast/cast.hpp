@@ -59,14 +59,17 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
   }
   const float nudge = 1e-3f / speed;
   t += nudge;
-  // Crossing a box of the grid: from `t` to where the ray leaves the box with these corners.
+  // Where the ray, now at `t`, leaves the box of the grid with this lower corner.
   auto leave_box = [&](const Vec3f& low, float size) {
     float out = 1e30f;
     for (int axis = 0; axis < 3; ++axis) {
       if (ray.direction[axis] == 0) continue;
       const float wall = low[axis] + (ray.direction[axis] > 0 ? size : 0.0f);
       const float at = (wall - ray.origin[axis]) * inverse[axis];
-      out = at < out ? at : out;
+      // Rounded onto the wall already: it is behind after 1e-4 cells along this axis, which is far for a ray that runs
+      // along the wall; such a ray would stand still otherwise.
+      const float later = at > t ? at : t + 1e-4f * std::fabs(inverse[axis]);
+      out = later < out ? later : out;
     }
     return out;
   };
@@ -77,7 +80,7 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     if (at == none) {
       const Int3 brick{grid.divide(cell.x), grid.divide(cell.y), grid.divide(cell.z)};
       const float out = leave_box(Vec3f(brick * Int3(grid.sub)), float(grid.sub));
-      t = (out > t ? out : t) + nudge;
+      t = out + nudge;
       continue;
     }
     const float out = leave_box(Vec3f(cell), 1.0f);
@@ -89,7 +92,7 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     }
     for (std::uint32_t k = first; k < last; ++k) intersect(mesh, grid.touch_triangle[k], ray, hit);
     if (hit.triangle != none && hit.t <= out + nudge) return true;
-    t = (out > t ? out : t) + nudge;
+    t = out + nudge;
   }
   return hit.triangle != none;
 }

@@ -32,7 +32,7 @@ struct Scene {
   float low = 0, high = 1;          ///< range of the scalar over the colour map
   Vec3f light{};                    ///< unit, towards the light
   float ambient = 0.3f;
-  Vec3f background{};               ///< linear light
+  Vec3f background{};  ///< linear light
   float background_alpha = 1;
 };
 
@@ -43,7 +43,8 @@ NACRE_HD inline Vec3f shade(const Scene& scene, const Ray& ray, const Hit& hit) 
   Vec3f base(0.62f, 0.62f, 0.62f);
   if (scene.scalar) {
     const Triangle t = scene.mesh.triangles[hit.triangle];
-    const float s = scene.scalar[t.a] * hit.weights.x + scene.scalar[t.b] * hit.weights.y + scene.scalar[t.c] * hit.weights.z;
+    const float s =
+        scene.scalar[t.a] * hit.weights.x + scene.scalar[t.b] * hit.weights.y + scene.scalar[t.c] * hit.weights.z;
     const float x = (s - scene.low) / (scene.high - scene.low);
     const float at = (x > 0 ? x < 1 ? x : 1 : 0) * 255.0f;
     const int k = at < 254 ? int(at) : 254;
@@ -85,8 +86,8 @@ struct RenderPixel {
       alpha += seen ? 1.0f : scene.background_alpha;
     }
     const float n = 1.0f / float(samples * samples);
-    pixels[i] = channel(std::sqrt(sum.x * n)) | channel(std::sqrt(sum.y * n)) << 8 | channel(std::sqrt(sum.z * n)) << 16 |
-                channel(alpha * n) << 24;
+    pixels[i] = channel(std::sqrt(sum.x * n)) | channel(std::sqrt(sum.y * n)) << 8 |
+                channel(std::sqrt(sum.z * n)) << 16 | channel(alpha * n) << 24;
   }
 
   NACRE_HD static std::uint32_t channel(float v) { return std::uint32_t((v < 0 ? 0 : v > 1 ? 1 : v) * 255.0f + 0.5f); }

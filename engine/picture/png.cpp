@@ -89,7 +89,7 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
 
 void write_png(const fs::path& file, const Image& image) {
   const std::vector<std::uint8_t> bytes = encode_png(image);
-  OutputFile output(file);
+  OutputFile output(file, OutputFile::Devices::refused);
   output.write(bytes.data(), bytes.size());
   output.commit();
 }

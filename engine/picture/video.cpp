@@ -78,7 +78,11 @@ Format format_of(const fs::path& file) {
 class Video : public FrameSink {
  public:
   Video(const fs::path& file, int fps)
-      : name_(file.string()), fps_(fps), format_(format_of(file)), program_(find_program("ffmpeg")), output_(file) {
+      : name_(file.string()),
+        fps_(fps),
+        format_(format_of(file)),
+        program_(find_program("ffmpeg")),
+        output_(file, OutputFile::Devices::refused) {
     assert(fps > 0);
     if (program_.empty())
       throw Error("cannot write the video " + name_, "the program ffmpeg was not found",

@@ -51,7 +51,8 @@ T parse_number(const Knob& knob, const std::string& text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error == std::errc::result_out_of_range) out_of_range(knob, text);
   if (error != std::errc() || end != text.data() + text.size())
-    throw Error(fmt::format("{} takes a{} number, not '{}'", knob.option(), std::is_integral_v<T> ? " whole" : "", text));
+    throw Error(
+        fmt::format("{} takes a{} number, not '{}'", knob.option(), std::is_integral_v<T> ? " whole" : "", text));
   if (!(double(value) >= knob.min && double(value) <= knob.max)) out_of_range(knob, text);
   return value;
 }
@@ -91,14 +92,33 @@ std::vector<Knob> knobs(Settings& s) {
       {"resolution", "embedding", "cells", "texture cells along the longest side", &f.resolution, 16, 16384, {}},
       {"refine", "embedding", "", "texture cells per closest-point cell and axis", &f.refine, 1, 8, {}},
       {"subcells", "embedding", "", "closest-point cells per coarse cell and axis", &f.subcells, 3, 8, {}},
-      {"radius", "embedding", "cells", "band around the surface in closest-point cells; 0: what the stencils need",
-       &f.radius, 0, 16, {}},
-      {"crease", "embedding", "degrees", "faces that meet at more than this keep their own normals", &s.crease, 0, 180, {}},
+      {"radius",
+       "embedding",
+       "cells",
+       "band around the surface in closest-point cells; 0: what the stencils need",
+       &f.radius,
+       0,
+       16,
+       {}},
+      {"crease",
+       "embedding",
+       "degrees",
+       "faces that meet at more than this keep their own normals",
+       &s.crease,
+       0,
+       180,
+       {}},
       {"vectors", "flow", "", "array to show, or @swirl, @rotation; empty: the likeliest", &s.vectors, 0, 0, {}},
       {"ttl", "flow", "steps", "how long a particle lives", &f.ttl, 1, 16, {}},
       {"steps", "flow", "", "steps from the first to the last time", &f.steps, 0, 100000, {}},
-      {"step_cells", "flow", "cells", "texture cells that the 98th percentile speed moves in a step", &f.step_cells, 0.1,
-       64, {}},
+      {"step_cells",
+       "flow",
+       "cells",
+       "texture cells that the 98th percentile speed moves in a step",
+       &f.step_cells,
+       0.1,
+       64,
+       {}},
       {"speed_power", "flow", "", "displacement ~ speed^power: 1 true speeds, 0 all alike", &f.speed_power, 0, 2, {}},
       {"warmup", "flow", "steps", "steps at the first time before the first frame; -1: ttl", &f.warmup, -1, 1000, {}},
       {"sharpen", "flow", "", "Laplacian sharpening between steps", &f.sharpen, 0, 2, {}},
@@ -128,7 +148,8 @@ void set_knob(Settings& settings, const std::string& name, const std::string& te
   const auto nearest = std::min_element(table.begin(), table.end(), [&](const Knob& a, const Knob& b) {
     return distance(a.name, wanted) < distance(b.name, wanted);
   });
-  throw Error(fmt::format("no knob '{}'", name), "", fmt::format("did you mean {}? `nacre --knobs` lists all", nearest->name));
+  throw Error(fmt::format("no knob '{}'", name), "",
+              fmt::format("did you mean {}? `nacre --knobs` lists all", nearest->name));
 }
 
 nlohmann::json knob_values(const Settings& settings) {
@@ -148,7 +169,8 @@ std::string knob_table() {
   Settings defaults;
   std::string table = fmt::format("{:<12} {:<10} {:<22} {:<8} {}\n", "knob", "default", "range", "unit", "");
   for (const Knob& knob : knobs(defaults))
-    table += fmt::format("{:<12} {:<10} {:<22} {:<8} {}\n", knob.name, knob.text(), range_of(knob), knob.unit, knob.help);
+    table +=
+        fmt::format("{:<12} {:<10} {:<22} {:<8} {}\n", knob.name, knob.text(), range_of(knob), knob.unit, knob.help);
   return table;
 }
 

@@ -15,10 +15,10 @@ struct Knob {
   std::string name;   ///< snake_case; on the command line --with-dashes
   std::string group;  ///< the panel it is in
   std::string unit;
-  std::string help;   ///< one line
+  std::string help;  ///< one line
   std::variant<int*, double*, std::uint32_t*, bool*, std::string*> value;
-  double min = 0, max = 0;            ///< of a number
-  std::vector<std::string> choices;   ///< of a string; empty: any
+  double min = 0, max = 0;           ///< of a number
+  std::vector<std::string> choices;  ///< of a string; empty: any
 
   std::string option() const;  ///< "--step-cells"
   std::string text() const;    ///< the value as on the command line

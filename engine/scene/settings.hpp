@@ -12,8 +12,8 @@ struct Settings {
   FlowParameters flow;
 
   std::string method = "grid";
-  std::string vectors;             ///< array name or @field; empty: chosen
-  double crease = 40;              ///< degrees
+  std::string vectors;  ///< array name or @field; empty: chosen
+  double crease = 40;   ///< degrees
   std::string color = "speed";
   std::string colormap = "sea";
   std::string camera = "iso";      ///< a view or a JSON file

@@ -37,10 +37,10 @@ struct Surface {
 
 /// A surface over time. One step is a steady surface; `load(k)` may be called in any order and more than once.
 struct SurfaceSeries {
-  std::string name;                         ///< what to call it: a file name or a sample's name
-  std::vector<double> times;                ///< one per step, increasing; at least one
-  std::function<Surface(std::size_t)> load; ///< throws Error if the step cannot be read
-  std::vector<std::string> warnings;        ///< what was dropped or assumed on opening, each a full sentence
+  std::string name;                          ///< what to call it: a file name or a sample's name
+  std::vector<double> times;                 ///< one per step, increasing; at least one
+  std::function<Surface(std::size_t)> load;  ///< throws Error if the step cannot be read
+  std::vector<std::string> warnings;         ///< what was dropped or assumed on opening, each a full sentence
 
   std::size_t steps() const { return times.size(); }
 };

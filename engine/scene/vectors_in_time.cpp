@@ -24,7 +24,8 @@ const PointArray& array_of(const Surface& surface, const std::string& name, std:
   if (!array) {
     std::string names;
     for (const PointArray& a : surface.arrays) names += (names.empty() ? "" : ", ") + a.name;
-    throw Error("no array '" + name + "' in step " + std::to_string(step), names.empty() ? "it has none" : "it has " + names);
+    throw Error("no array '" + name + "' in step " + std::to_string(step),
+                names.empty() ? "it has none" : "it has " + names);
   }
   if (array->size() != points) throw Error("array '" + name + "' has another length in step " + std::to_string(step));
   return *array;
@@ -103,7 +104,8 @@ std::vector<float> VectorsInTime::scalar(double t) {
   if (color_ == "speed") {
     std::vector<Vec3f> v(result.size());
     vectors(t, v);
-    for (std::size_t i = 0; i < v.size(); ++i) result[i] = length(v[i] - point_normals_[i] * dot(v[i], point_normals_[i]));
+    for (std::size_t i = 0; i < v.size(); ++i)
+      result[i] = length(v[i] - point_normals_[i] * dot(v[i], point_normals_[i]));
     return result;
   }
   const Between at = around(t);
@@ -121,8 +123,10 @@ void VectorsInTime::survey() {
     const double t = moments == series_.steps() ? series_.times[k] : start_ + (end_ - start_) * double(k) / 8;
     vectors(t, v);
     const VectorStatistics s = vector_statistics(surface_, v);
-    if (k == 0) statistics_ = s;
-    else statistics_.percentile_98 += s.percentile_98;
+    if (k == 0)
+      statistics_ = s;
+    else
+      statistics_.percentile_98 += s.percentile_98;
     statistics_.max_speed = std::max(statistics_.max_speed, s.max_speed);
     statistics_.zero_share = std::min(statistics_.zero_share, s.zero_share);
     if (color_ == "none" || color_ == "speed") continue;

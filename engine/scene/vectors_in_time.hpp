@@ -46,7 +46,10 @@ class VectorsInTime {
   const Step& step(std::size_t number);
   void survey();
   /// The steps around `t` and the share of the later one.
-  struct Between { std::size_t before, after; float share; };
+  struct Between {
+    std::size_t before, after;
+    float share;
+  };
   Between around(double t) const;
 
   SurfaceSeries series_;

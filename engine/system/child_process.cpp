@@ -47,8 +47,10 @@ int spawn(const fs::path& program, const std::vector<std::string>& arguments, co
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   for (int i = 0; i < 3; ++i)
-    if (streams[std::size_t(i)] >= 0) posix_spawn_file_actions_adddup2(&actions, streams[std::size_t(i)], i);
-    else posix_spawn_file_actions_addopen(&actions, i, "/dev/null", i == 0 ? O_RDONLY : O_WRONLY, 0);
+    if (streams[std::size_t(i)] >= 0)
+      posix_spawn_file_actions_adddup2(&actions, streams[std::size_t(i)], i);
+    else
+      posix_spawn_file_actions_addopen(&actions, i, "/dev/null", i == 0 ? O_RDONLY : O_WRONLY, 0);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t all, none;

@@ -39,11 +39,14 @@ fs::path fresh_name_beside(const fs::path& destination) {
          fmt::format(".nacre-{}-{}{}", ::getpid(), counter++, destination.extension().string());
 }
 
+/// The file that a link leads to, so that a rename replaces the file and not the link.
 fs::path follow_links(const fs::path& target) {
+  constexpr int longest_chain = 40;
   std::error_code error;
-  if (!fs::is_symlink(target, error)) return target;
-  const fs::path resolved = fs::weakly_canonical(target, error);
-  return error ? target : resolved;
+  fs::path file = target;
+  for (int i = 0; i < longest_chain && fs::is_symlink(fs::symlink_status(file, error)); ++i)
+    file = file.parent_path() / fs::read_symlink(file, error);
+  return file;
 }
 
 std::string reason(int error_number) {
@@ -60,7 +63,7 @@ const char* advice_on_writing(int error_number) {
     case EPERM:
     case EROFS: return "choose a place that you may write to";
     case ENOSPC:
-    case EDQUOT: return "make room or choose another disk";
+    case EDQUOT: return "free some space or choose another disk";
     case EFBIG: return "raise the file size limit or write a smaller file";
     case EISDIR: return "give the name of a file";
     case ENAMETOOLONG: return "choose a shorter name";
@@ -68,9 +71,13 @@ const char* advice_on_writing(int error_number) {
   }
 }
 
-OutputFile::OutputFile(fs::path target) : target_(std::move(target)), destination_(follow_links(target_)) {
+OutputFile::OutputFile(fs::path target, Devices devices)
+    : target_(std::move(target)), destination_(follow_links(target_)) {
   std::error_code error;
   const fs::file_status status = fs::status(destination_, error);
+  const bool plain = destination_.has_filename() && (!fs::exists(status) || fs::is_regular_file(status));
+  if (devices == Devices::refused && !plain)
+    throw Error("cannot write " + target_.string(), "it is not a plain file", "give the name of a file");
   if (target_.empty()) fail(ENOENT);
   if (error == std::errc::filename_too_long) fail(ENAMETOOLONG);
   if (fs::is_directory(status) || !destination_.has_filename()) fail(EISDIR);

@@ -9,11 +9,14 @@
 namespace nacre {
 
 /// Writes beside `target` and renames on `commit`, so that nobody ever meets half a file and an older one stays until
-/// then. A target that is a link is followed; one that is a device or pipe (/dev/stdout) is written directly.
+/// then. A target that is a link is followed, also to a file that is not there yet; one that is a device or pipe
+/// (/dev/stdout) is written directly, or refused where the format cannot be written so.
 /// Every failure (missing or unwritable folder, full disk, file size limit) throws Error that names the target and why.
 class OutputFile {
  public:
-  explicit OutputFile(std::filesystem::path target);
+  enum class Devices { written, refused };
+
+  explicit OutputFile(std::filesystem::path target, Devices devices = Devices::written);
   ~OutputFile();  ///< removes the temporary unless committed
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

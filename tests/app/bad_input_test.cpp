@@ -86,8 +86,10 @@ TEST_F(BadInput, CountsThatLie) {
 }
 
 TEST_F(BadInput, NoTriangles) {
-  expect_clear_failure(flow(write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), {"--vectors", "@swirl"}), 1, {"points.obj"});
-  expect_clear_failure(flow(write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"), {"--vectors", "@swirl"}), 1, {"lines.obj"});
+  expect_clear_failure(flow(write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), {"--vectors", "@swirl"}), 1,
+                       {"points.obj"});
+  expect_clear_failure(flow(write("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"), {"--vectors", "@swirl"}), 1,
+                       {"lines.obj"});
   Surface flat = square();
   for (Vec3d& p : flat.points) p.y = 0;
   expect_clear_failure(flow(save("flat.vtp", flat)), 1, {"flat.vtp", "no triangles"});

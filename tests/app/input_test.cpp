@@ -39,8 +39,8 @@ const Words small = {"--resolution", "48", "--steps", "2", "--size", "64x48"};
 class EverySample : public AppTest, public ::testing::WithParamInterface<const char*> {};
 
 TEST_P(EverySample, Runs) {
-  const Outcome run = nacre({"flow", "--sample", GetParam(), "--detail", "200", "--resolution", "96", "--steps", "2", "--size",
-                         "96x72", "--image", path("a.png"), "--quiet"});
+  const Outcome run = nacre({"flow", "--sample", GetParam(), "--detail", "200", "--resolution", "96", "--steps", "2",
+                             "--size", "96x72", "--image", path("a.png"), "--quiet"});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_EQ(read_png(path("a.png")).width, 96);

@@ -25,8 +25,8 @@ std::string advised_resolution(const std::string& line) {
 #if !defined(__SANITIZE_ADDRESS__)
 TEST_F(Limits, WhatDoesNotFitInMemoryIsNamedWithWhatDoes) {
   const std::string limit = "-v 600000";  // KiB of address space
-  const Words words = {"flow", "--sample", "sphere",  "--detail", "24",     "--steps", "1",       "--ttl",
-                       "1",    "--warmup", "0",       "--quiet",  "--size", "64x48",   "--image", path("a.png")};
+  const Words words = {"flow", "--sample", "sphere", "--detail", "24",     "--steps", "1",       "--ttl",
+                       "1",    "--warmup", "0",      "--quiet",  "--size", "64x48",   "--image", path("a.png")};
   const Outcome refused = nacre_limited(limit, words + Words{"--resolution", "4000"});
   expect_failure(refused, 1, {"--resolution 4000", "GiB"});
   EXPECT_EQ(names(), Words{});
@@ -41,8 +41,12 @@ TEST_F(Limits, WhatDoesNotFitInMemoryIsNamedWithWhatDoes) {
 
 TEST_F(Limits, OutputsThatCannotBeWritten) {
   write("file", "x");
-  for (const Words& output : {Words{"--image", path("none/a.png")}, {"--out", path("none/a.vtp")}, {"--report", path("none/r.json")},
-                              {"--video", path("none/a.mp4")}, {"--frames", path("file/f")}, {"--image", folder_.path().string()},
+  for (const Words& output : {Words{"--image", path("none/a.png")},
+                              {"--out", path("none/a.vtp")},
+                              {"--report", path("none/r.json")},
+                              {"--video", path("none/a.mp4")},
+                              {"--frames", path("file/f")},
+                              {"--image", folder_.path().string()},
                               {"--save-session", path("none/s.json")}})
     expect_failure(nacre(small_flow + output), 1, {output[1]});
   expect_failure(nacre(small_flow + Words{"--video", path("a.txt")}), 1, {"a.txt", ".mp4"});
@@ -75,9 +79,9 @@ struct Stopped {
 
 Stopped interrupt(const Words& words, double seconds) {
   const auto before = Clock::now();
-  const Outcome result = run("/usr/bin/timeout", Words{"--preserve-status", "-s", "INT", "-k", "30", std::to_string(seconds),
-                                                   NACRE_PROGRAM} +
-                                                 words);
+  const Outcome result =
+      run("/usr/bin/timeout",
+          Words{"--preserve-status", "-s", "INT", "-k", "30", std::to_string(seconds), NACRE_PROGRAM} + words);
   return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
 }
 
@@ -85,8 +89,9 @@ class CtrlC : public AppTest, public ::testing::WithParamInterface<double> {
  protected:
   /// Minutes of work, in which every kind of output is open.
   Words long_run() const {
-    Words words = {"flow", "--sample", "sphere", "--detail", "64", "--resolution", "1500", "--steps", "1000", "--size", "160x120",
-                   "--quiet", "--image", path("a.png"), "--out", path("a.vtp"), "--report", path("r.json")};
+    Words words = {"flow",    "--sample",    "sphere", "--detail",    "64",       "--resolution",
+                   "1500",    "--steps",     "1000",   "--size",      "160x120",  "--quiet",
+                   "--image", path("a.png"), "--out",  path("a.vtp"), "--report", path("r.json")};
     if (!find_program("ffmpeg").empty()) words = words + Words{"--video", path("a.mp4")};
     return words;
   }
@@ -103,10 +108,9 @@ TEST_P(CtrlC, StopsWithinTwoSecondsAndLeavesNothing) {
 INSTANTIATE_TEST_SUITE_P(After, CtrlC, ::testing::Values(0.3, 1.5, 4.0));
 
 TEST_F(CtrlC, FramesWrittenSoFarAreWhole) {
-  const Stopped stopped =
-      interrupt({"flow", "--sample", "sphere", "--detail", "24", "--resolution", "64", "--steps", "100000", "--size", "96x72",
-                 "--quiet", "--frames", path("f")},
-                2.5);
+  const Stopped stopped = interrupt({"flow", "--sample", "sphere", "--detail", "24", "--resolution", "64", "--steps",
+                                     "100000", "--size", "96x72", "--quiet", "--frames", path("f")},
+                                    2.5);
   EXPECT_EQ(stopped.run.status, 130) << stopped.run.err;
   EXPECT_LT(stopped.seconds_after, 2);
   for (const auto& entry : fs::directory_iterator(path("f"))) {

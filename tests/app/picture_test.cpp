@@ -83,8 +83,9 @@ TEST_F(Picture, CamerasLookFromWhereTheySay) {
   // A triangle that faces +z, seen from above and edge-on.
   write("flat.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nf 1 2 3\n");
   const auto covered = [&](const std::string& camera) {
-    const Outcome run = nacre({"flow", path("flat.obj"), "--vectors", "@rotation", "--resolution", "48", "--steps", "1", "--quiet",
-                           "--no-legend", "--no-time", "--size", "160x120", "--camera", camera, "--image", path("a.png")});
+    const Outcome run =
+        nacre({"flow", path("flat.obj"), "--vectors", "@rotation", "--resolution", "48", "--steps", "1", "--quiet",
+               "--no-legend", "--no-time", "--size", "160x120", "--camera", camera, "--image", path("a.png")});
     EXPECT_EQ(run.status, 0) << run.err;
     const Image image = read_png(path("a.png"));
     int count = 0;
@@ -101,7 +102,9 @@ TEST_F(Picture, CamerasLookFromWhereTheySay) {
 }
 
 TEST_F(Picture, BadCamerasAreNamed) {
-  const auto with = [&](const std::string& file) { return nacre(small_flow + Words{"--camera", file, "--image", path("a.png")}); };
+  const auto with = [&](const std::string& file) {
+    return nacre(small_flow + Words{"--camera", file, "--image", path("a.png")});
+  };
   expect_failure(with(path("none.json")), 1, {"none.json"});
   expect_failure(with(write("text.json", "no json")), 1, {"text.json", "eye"});
   expect_failure(with(write("half.json", R"({"eye":[1,2,3]})")), 1, {"half.json", "target"});
@@ -127,7 +130,8 @@ TEST_F(Picture, FramesAreCountedAndWhole) {
 }
 
 TEST_F(Picture, TheLastFrameIsThePicture) {
-  const Outcome run = nacre(small_flow + Words{"--size", "96x72", "--frames", path("frames"), "--image", path("a.png")});
+  const Outcome run =
+      nacre(small_flow + Words{"--size", "96x72", "--frames", path("frames"), "--image", path("a.png")});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(read_png(path("frames/frame_0001.png")).pixels, read_png(path("a.png")).pixels);
 }
@@ -138,7 +142,7 @@ TEST_F(Picture, VideoHasEveryFrame) {
   const Outcome made = nacre(small_flow + Words{"--size", "96x72", "--fps", "10", "--video", path("a.mp4")});
   EXPECT_EQ(made.status, 0) << made.err;
   const Outcome told = run(probe, {"-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
-                               "stream=width,height,r_frame_rate,nb_read_frames", "-of", "json", path("a.mp4")});
+                                   "stream=width,height,r_frame_rate,nb_read_frames", "-of", "json", path("a.mp4")});
   const nlohmann::json stream = nlohmann::json::parse(told.out)["streams"][0];
   EXPECT_EQ(stream["width"], 96);
   EXPECT_EQ(stream["height"], 72);

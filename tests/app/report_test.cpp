@@ -20,7 +20,7 @@ class Report : public AppTest {};
 
 TEST_F(Report, HasEveryKeyOfTheContract) {
   const Outcome run = nacre(small_flow + Words{"--threads", "2", "--seed", "7", "--report", path("r.json"), "--image",
-                                           path("a.png"), "--size", "64x48", "--out", path("a.vtp")});
+                                               path("a.png"), "--size", "64x48", "--out", path("a.vtp")});
   ASSERT_EQ(run.status, 0) << run.err;
   const json r = json::parse(content("r.json"));
   EXPECT_TRUE(r["nacre"].is_string());
@@ -50,7 +50,8 @@ TEST_F(Report, HasEveryKeyOfTheContract) {
 }
 
 TEST_F(Report, StageNamesAreTheFixedOnes) {
-  ASSERT_EQ(nacre(small_flow + Words{"--report", path("r.json"), "--image", path("a.png"), "--size", "64x48"}).status, 0);
+  ASSERT_EQ(nacre(small_flow + Words{"--report", path("r.json"), "--image", path("a.png"), "--size", "64x48"}).status,
+            0);
   const json stages = json::parse(content("r.json"))["stages"];
   std::vector<std::string> names;
   for (const json& stage : stages) {
@@ -87,8 +88,9 @@ TEST_F(SessionFile, RoundTripGivesTheSameBytes) {
   const auto outputs = [&](const std::string& name) {
     return Words{"--quiet", "--out", path(name + ".vtp"), "--image", path(name + ".png")};
   };
-  const Words flow = {"flow", path("s.pvd"), "--resolution", "48", "--steps", "2", "--seed", "11", "--size", "96x72",
-                      "--set", "ttl=2", "--camera", "+x", "--save-session", path("session.json")};
+  const Words flow = {
+      "flow",   path("s.pvd"), "--resolution", "48",    "--steps",  "2",  "--seed",         "11",
+      "--size", "96x72",       "--set",        "ttl=2", "--camera", "+x", "--save-session", path("session.json")};
   ASSERT_EQ(nacre(flow + outputs("a")).status, 0);
   const Outcome again = nacre(Words{"flow", "--session", path("session.json")} + outputs("b"));
   ASSERT_EQ(again.status, 0) << again.err;

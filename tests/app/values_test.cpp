@@ -20,9 +20,7 @@ const RawArray& array(const RawMesh& mesh, const std::string& name, int componen
   throw std::runtime_error("no array " + name);
 }
 
-Vec3d vector(const RawArray& a, std::size_t i) {
-  return {a.values[3 * i], a.values[3 * i + 1], a.values[3 * i + 2]};
-}
+Vec3d vector(const RawArray& a, std::size_t i) { return {a.values[3 * i], a.values[3 * i + 1], a.values[3 * i + 2]}; }
 
 class Values : public AppTest {
  protected:
@@ -92,7 +90,8 @@ TEST_F(Values, ArraysMeanWhatTheyAreCalled) {
 
 TEST_F(Values, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
   const auto bytes = [&](const std::string& name, const Words& words) {
-    EXPECT_EQ(nacre(small_flow + words + Words{"--size", "64x48", "--out", path(name), "--image", path("a.png")}).status, 0);
+    EXPECT_EQ(
+        nacre(small_flow + words + Words{"--size", "64x48", "--out", path(name), "--image", path("a.png")}).status, 0);
     return content(name) + content("a.png");
   };
   const std::string one = bytes("1.vtp", {"--threads", "1", "--seed", "5"});

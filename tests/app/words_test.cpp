@@ -25,9 +25,10 @@ TEST(Words, HelpOfFlowHasEveryOptionOfTheContract) {
   const Outcome help = nacre({"flow", "--help"});
   EXPECT_EQ(help.status, 0);
   for (const char* option :
-       {"--vectors", "--method", "--radius", "--resolution", "--refine", "--ttl", "--steps", "--time", "--step-cells",
-        "--color", "--colormap", "--image", "--size", "--camera", "--frames", "--video", "--no-legend", "--no-time",
-        "--out", "--sample", "--device", "--threads", "--seed", "--report", "--quiet", "--set", "--session"})
+       {"--vectors", "--method",     "--radius",    "--resolution", "--refine", "--ttl",    "--steps",
+        "--time",    "--step-cells", "--color",     "--colormap",   "--image",  "--size",   "--camera",
+        "--frames",  "--video",      "--no-legend", "--no-time",    "--out",    "--sample", "--device",
+        "--threads", "--seed",       "--report",    "--quiet",      "--set",    "--session"})
     EXPECT_TRUE(contains(help.out, option)) << option;
 }
 
@@ -63,8 +64,8 @@ TEST(Words, UnknownNamesGetAListOrAGuess) {
 
 TEST(Words, NothingIsDoneBeforeTheyAreUnderstood) {
   const TemporaryFolder folder;
-  const Words outputs = {"--image", (folder / "a.png").string(), "--frames", (folder / "f").string(), "--video",
-                         (folder / "a.mp4").string()};
+  const Words outputs = {"--image", (folder / "a.png").string(), "--frames", (folder / "f").string(),
+                         "--video", (folder / "a.mp4").string()};
   expect_failure(nacre(small_flow + outputs + Words{"--colormap", "none"}), 2, {});
   expect_failure(nacre(small_flow + outputs + Words{"--camera", "none"}), 2, {});
   expect_failure(nacre(small_flow + outputs + Words{"--time", "7:8"}), 1, {"0:0.95"});

@@ -13,23 +13,23 @@
 /// none). Bodies live in `*_body.hpp`; `*_test.cpp` includes executor_cpu.hpp and the body, a `.cu` executor_cuda.cuh
 /// and the body, nothing else.
 #if defined(__CUDACC__)
-#define NACRE_DEVICE_TEST(suite, body)                               \
-  TEST(suite, body##OnCuda) {                                        \
+#define NACRE_DEVICE_TEST(suite, body)                                     \
+  TEST(suite, body##OnCuda) {                                              \
     if (nacre::cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device"; \
-    const auto device = nacre::make_cuda_device();                   \
-    nacre::Executor<nacre::Cuda> exec(*device);                      \
-    body(exec);                                                      \
+    const auto device = nacre::make_cuda_device();                         \
+    nacre::Executor<nacre::Cuda> exec(*device);                            \
+    body(exec);                                                            \
   }
 #else
-#define NACRE_DEVICE_TEST(suite, body)                                \
-  TEST(suite, body##OnCpu) {                                          \
-    const auto device = nacre::make_cpu_device();                     \
-    nacre::Executor<nacre::Cpu> exec(*device);                        \
-    body(exec);                                                       \
-  }                                                                   \
-  TEST(suite, body##OnRemoteCpu) {                                    \
-    const auto device = nacre::make_cpu_device(0, true);              \
-    nacre::Executor<nacre::Cpu> exec(*device);                        \
-    body(exec);                                                       \
+#define NACRE_DEVICE_TEST(suite, body)                   \
+  TEST(suite, body##OnCpu) {                             \
+    const auto device = nacre::make_cpu_device();        \
+    nacre::Executor<nacre::Cpu> exec(*device);           \
+    body(exec);                                          \
+  }                                                      \
+  TEST(suite, body##OnRemoteCpu) {                       \
+    const auto device = nacre::make_cpu_device(0, true); \
+    nacre::Executor<nacre::Cpu> exec(*device);           \
+    body(exec);                                          \
   }
 #endif

@@ -1,6 +1,4 @@
 // Nacre: closest points of real meshes with defects, against brute force.
-#include "compute/device/executor_cpu.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "compute/device/executor_cpu.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/scene/prepare.hpp"
 #include "tests/compute/embedding/check_closest_points.hpp"
@@ -47,8 +46,7 @@ bool check_file(const fs::path& path, int resolution, std::uint32_t samples) {
   const auto device = make_cpu_device(0, true);
   Executor<Cpu> exec(*device);
   const MeshView view = upload(exec, mesh);
-  const HostGrid grid(
-      build_closest_point_grid(exec, view, std::uint32_t(mesh.triangles.size()), bricks, 4, band));
+  const HostGrid grid(build_closest_point_grid(exec, view, std::uint32_t(mesh.triangles.size()), bricks, 4, band));
   const BruteForce brute(mesh.points, mesh.triangles);
   GridFaults faults;
   const auto cells = std::uint32_t(grid.offset.size());

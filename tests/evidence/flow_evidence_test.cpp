@@ -40,10 +40,12 @@ TEST(FlowEvidence, StreaksAlignWithTheFlowOnASphere) {
 }
 
 TEST(FlowEvidence, StreaksAlignWithTheFlowOnATorus) {
-  EXPECT_LE(median_alignment("torus", [](Vec3d x) {
-              const Vec3d ring = normalized(Vec3d(x.x, x.y, 0));
-              return ring + normalized(x - ring) * 0.4;
-            }), 10);
+  EXPECT_LE(median_alignment("torus",
+                             [](Vec3d x) {
+                               const Vec3d ring = normalized(Vec3d(x.x, x.y, 0));
+                               return ring + normalized(x - ring) * 0.4;
+                             }),
+            10);
 }
 
 std::vector<Vec3d> spiral_on_sphere(int n, double angle) {
@@ -182,7 +184,8 @@ TEST(FlowEvidence, RefineDoesNotChangeWhereTheSurfaceIs) {
     cells[refine] = run.pipeline->embedding().surface_cells;
     run.steps(1);
   }
-  for (const auto& [refine, count] : cells) EXPECT_NEAR(double(count), double(cells[4]), 0.02 * double(cells[4])) << refine;
+  for (const auto& [refine, count] : cells)
+    EXPECT_NEAR(double(count), double(cells[4]), 0.02 * double(cells[4])) << refine;
 }
 
 }  // namespace

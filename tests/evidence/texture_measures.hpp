@@ -22,7 +22,8 @@ struct FlowRun {
   std::unique_ptr<VectorsInTime> vectors;
   std::unique_ptr<FlowPipeline> pipeline;
 
-  FlowRun(const std::string& sample, const FlowParameters& parameters, int threads = 0, bool steady = true, int detail = 0)
+  FlowRun(const std::string& sample, const FlowParameters& parameters, int threads = 0, bool steady = true,
+          int detail = 0)
       : device(make_cpu_device(threads)) {
     SurfaceSeries series = make_sample(sample, detail);
     if (steady) series.times.resize(1);

@@ -136,8 +136,8 @@ HostEmbedding BackendRunsOf<Backend>::embed(const FlowMesh& mesh, const FlowPara
   const Array<Vec3f> normals = arena().template permanent_copy<Vec3f>(mesh.corner_normals);
   const MeshView view{points.data(), corners.data(), normals.data()};
   const auto triangles = std::uint32_t(mesh.triangles.size());
-  const ClosestPointGrid coarse = build_closest_point_grid(exec_, view, triangles, domain.bricks, parameters.subcells,
-                                                           float(domain.radius));
+  const ClosestPointGrid coarse =
+      build_closest_point_grid(exec_, view, triangles, domain.bricks, parameters.subcells, float(domain.radius));
   const RefinedGrid fine = build_refined_grid(exec_, view, triangles, coarse, parameters.refine);
   HostEmbedding host{coarse.brick_code.download(), coarse.offset.download(), coarse.triangle.download(),
                      fine.texel.download(),        fine.place.download(),    fine.neighbour.download(),

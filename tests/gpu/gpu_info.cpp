@@ -48,9 +48,10 @@ void print_info(std::size_t mib) {
   cuda_check(cudaDriverGetVersion(&driver), "asking for the driver's version");
   cuda_check(cudaRuntimeGetVersion(&runtime), "asking for the runtime's version");
   cuda_check(cudaMemGetInfo(&free, &total), "asking for free memory");
-  std::printf("{\n  \"name\": \"%s\",\n  \"compute_capability\": \"%d.%d\",\n  \"multiprocessors\": %d,\n"
-              "  \"driver\": %d,\n  \"runtime\": %d,\n  \"total_bytes\": %zu,\n  \"free_bytes\": %zu,\n",
-              device.name, device.major, device.minor, device.multiProcessorCount, driver, runtime, total, free);
+  std::printf(
+      "{\n  \"name\": \"%s\",\n  \"compute_capability\": \"%d.%d\",\n  \"multiprocessors\": %d,\n"
+      "  \"driver\": %d,\n  \"runtime\": %d,\n  \"total_bytes\": %zu,\n  \"free_bytes\": %zu,\n",
+      device.name, device.major, device.minor, device.multiProcessorCount, driver, runtime, total, free);
   const std::size_t bytes = std::min(mib << 20, free / 4);
   std::printf("  \"copy_bytes\": %zu,\n  \"copy_bytes_per_second\": %.4g\n}\n", bytes, copy_rate(bytes));
 }

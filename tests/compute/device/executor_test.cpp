@@ -1,11 +1,11 @@
 // Nacre: the launches on the CPU: any number of threads, stopping, and memory that pretends to be remote.
-#include "compute/device/executor_cpu.hpp"
-#include "tests/compute/device/executor_body.hpp"
-
 #include <chrono>
 #include <csignal>
 #include <string>
 #include <thread>
+
+#include "compute/device/executor_cpu.hpp"
+#include "tests/compute/device/executor_body.hpp"
 
 namespace nacre::test {
 namespace {

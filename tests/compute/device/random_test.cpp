@@ -1,10 +1,10 @@
 // Nacre: the counter-based random numbers against their published answers.
+#include "compute/device/random.hpp"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-
-#include "compute/device/random.hpp"
 
 namespace nacre {
 namespace {

@@ -46,8 +46,10 @@ void check(const Corners& t, double margin, Int3 dims) {
           continue;
         }
         const double d = distance(t, centre);
-        if (visits[at]) wrong += d > margin + 0.8661;
-        else if (d < margin + 0.8661) wrong += d <= margin || distance_to_cell(t, centre) <= margin;
+        if (visits[at])
+          wrong += d > margin + 0.8661;
+        else if (d < margin + 0.8661)
+          wrong += d <= margin || distance_to_cell(t, centre) <= margin;
       }
   EXPECT_EQ(wrong, 0u) << "margin " << margin << ", a " << t.a.x << " " << t.a.y << " " << t.a.z << ", b " << t.b.x
                        << " " << t.b.y << " " << t.b.z << ", c " << t.c.x << " " << t.c.y << " " << t.c.z;

@@ -13,13 +13,13 @@ namespace nacre::test {
 
 /// What is wrong with a grid. Tolerances are 1e-5 of a cell.
 struct GridFaults {
-  std::size_t looked_at = 0;      ///< stored cells within the radius
-  std::size_t wrong_distance = 0; ///< not the distance of the closest point
-  std::size_t wrong_point = 0;    ///< another point although the closest one is unique
-  std::size_t wrong_triangle = 0; ///< the point does not lie on the triangle that is named
-  std::size_t missing = 0;        ///< cells within the radius that are not stored, or not as such
-  std::size_t wrong_touch = 0;    ///< cells whose list of touching triangles is another
-  double worst = 0;               ///< error of the distance, cells
+  std::size_t looked_at = 0;       ///< stored cells within the radius
+  std::size_t wrong_distance = 0;  ///< not the distance of the closest point
+  std::size_t wrong_point = 0;     ///< another point although the closest one is unique
+  std::size_t wrong_triangle = 0;  ///< the point does not lie on the triangle that is named
+  std::size_t missing = 0;         ///< cells within the radius that are not stored, or not as such
+  std::size_t wrong_touch = 0;     ///< cells whose list of touching triangles is another
+  double worst = 0;                ///< error of the distance, cells
 
   void expect_none(const std::string& what) const {
     EXPECT_GT(looked_at, 0u) << what;
@@ -39,8 +39,8 @@ inline void check_stored(const HostGrid& grid, const BruteForce& brute, std::uin
     return;
   }
   const auto nearest = brute(x, 1e300, t);
-  const double error = std::max(std::fabs(length(p - x) - nearest.distance),
-                                std::fabs(double(grid.offset[at].w) - nearest.distance));
+  const double error =
+      std::max(std::fabs(length(p - x) - nearest.distance), std::fabs(double(grid.offset[at].w) - nearest.distance));
   faults.worst = std::max(faults.worst, error);
   ++faults.looked_at;
   faults.wrong_distance += error > 1e-5;

@@ -1,8 +1,8 @@
 // Nacre: the closest-point grid on the CPU, and how its cells are addressed.
+#include <cstring>
+
 #include "compute/device/executor_cpu.hpp"
 #include "tests/compute/embedding/closest_point_grid_body.hpp"
-
-#include <cstring>
 
 namespace nacre::test {
 namespace {
@@ -20,7 +20,7 @@ TEST(ClosestPointGrid, AddressesAndCellsAreInverse) {
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
   for (const int sub : {3, 4, 5, 8}) {
-    const HostGrid grid(embed(exec, sphere({20, 20, 20}, 12, 8), 40, sub));
+    const HostGrid grid(embed(exec, sphere({20, 20, 20}, 17, 12), 40, sub));
     for (std::uint32_t at = 0; at < grid.offset.size(); ++at) ASSERT_EQ(grid.view.address(grid.view.cell(at)), at);
     EXPECT_EQ(grid.view.address({-1, 0, 0}), none);
     EXPECT_EQ(grid.view.address({0, 0, grid.view.dims().z}), none);

@@ -25,7 +25,8 @@ struct ProjectPoint {
 };
 
 template <class Backend>
-std::vector<Float4> project_all(Executor<Backend>& exec, const ClosestPointGrid& grid, const std::vector<Vec3f>& points) {
+std::vector<Float4> project_all(Executor<Backend>& exec, const ClosestPointGrid& grid,
+                                const std::vector<Vec3f>& points) {
   Arena::Scope scope(exec.arena());
   Array<Vec3f> in = exec.arena().template temporary<Vec3f>(points.size());
   in.upload(points);
@@ -147,8 +148,9 @@ void FacetsBoundTheError(Executor<Backend>& exec) {
       off_sphere = std::max(off_sphere, std::fabs(length(p - shape.centre) - shape.size));
       if (i % 10 == 0) off_facets = std::max(off_facets, brute(p).distance);
     }
-    std::printf("sphere of %5zu facets: sagitta %.4f, projected points off the sphere by %.4f, off the facets by %.4f\n",
-                mesh.triangles.size(), sagitta, off_sphere, off_facets);
+    std::printf(
+        "sphere of %5zu facets: sagitta %.4f, projected points off the sphere by %.4f, off the facets by %.4f\n",
+        mesh.triangles.size(), sagitta, off_sphere, off_facets);
     EXPECT_LE(off_sphere, 1.1 * sagitta);
     EXPECT_LE(off_facets, 1.1 * sagitta);
     exec.arena().rewind(mark);

@@ -135,7 +135,8 @@ void EveryRefinement(Executor<Backend>& exec) {
     const TextureShares round = check_texture(exec, sphere({12.3, 12.1, 11.8}, 5, 8), 24, refine, "sphere", 7);
     EXPECT_GE(round.extended, refine <= 4 ? 0.99 : 0.95) << refine;
     EXPECT_GE(round.symmetric, 0.84) << refine;
-    const TextureShares square = check_texture(exec, box({7.4, 7.3, 7.2}, {13.1, 14.4, 13.2}, 1), 22, refine, "cube", 7);
+    const TextureShares square =
+        check_texture(exec, box({7.4, 7.3, 7.2}, {13.1, 14.4, 13.2}, 1), 22, refine, "cube", 7);
     EXPECT_GE(square.extended, refine <= 4 ? 0.96 : 0.8) << refine;  // its edges are not smooth
     EXPECT_GE(square.symmetric, 0.93) << refine;
   }

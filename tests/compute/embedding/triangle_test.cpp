@@ -118,18 +118,18 @@ TEST(Barycentric, ReproducesPointsOfSlivers) {
 
 TEST(TouchesCube, KnownCases) {
   const Vec3d centre(0.5);
-  EXPECT_TRUE(touches_cube({{0.2, 0.2, 0.2}, {0.3, 0.2, 0.2}, {0.2, 0.3, 0.2}}, centre, 0.5));       // inside
-  EXPECT_TRUE(touches_cube({{1, 1, 1}, {2, 1, 1}, {1, 2, 3}}, centre, 0.5));                         // at a corner
-  EXPECT_TRUE(touches_cube({{-9, -9, 1}, {9, -9, 1}, {0, 20, 1}}, centre, 0.5));                     // on a face's plane
+  EXPECT_TRUE(touches_cube({{0.2, 0.2, 0.2}, {0.3, 0.2, 0.2}, {0.2, 0.3, 0.2}}, centre, 0.5));  // inside
+  EXPECT_TRUE(touches_cube({{1, 1, 1}, {2, 1, 1}, {1, 2, 3}}, centre, 0.5));                    // at a corner
+  EXPECT_TRUE(touches_cube({{-9, -9, 1}, {9, -9, 1}, {0, 20, 1}}, centre, 0.5));                // on a face's plane
   EXPECT_FALSE(touches_cube({{-9, -9, 1.001}, {9, -9, 1.001}, {0, 20, 1.001}}, centre, 0.5));
-  EXPECT_TRUE(touches_cube({{-90, 0, -90}, {90, 1, -90}, {0, 0.5, 200}}, centre, 0.5));              // right through
-  EXPECT_FALSE(touches_cube({{2.1, 0, 0.5}, {0, 2.1, 0.5}, {2.1, 2.1, 0.5}}, centre, 0.5));          // past an edge
+  EXPECT_TRUE(touches_cube({{-90, 0, -90}, {90, 1, -90}, {0, 0.5, 200}}, centre, 0.5));      // right through
+  EXPECT_FALSE(touches_cube({{2.1, 0, 0.5}, {0, 2.1, 0.5}, {2.1, 2.1, 0.5}}, centre, 0.5));  // past an edge
   EXPECT_TRUE(touches_cube({{1.9, 0, 0.5}, {0, 1.9, 0.5}, {2.1, 2.1, 0.5}}, centre, 0.5));
-  EXPECT_FALSE(touches_cube({{3.1, 0, 0}, {0, 3.1, 0}, {0, 0, 3.1}}, centre, 0.5));                  // past a corner
+  EXPECT_FALSE(touches_cube({{3.1, 0, 0}, {0, 3.1, 0}, {0, 0, 3.1}}, centre, 0.5));  // past a corner
   EXPECT_TRUE(touches_cube({{2.9, 0, 0}, {0, 2.9, 0}, {0, 0, 2.9}}, centre, 0.5));
-  EXPECT_FALSE(touches_cube({{50, 50, 50}, {51, 50, 50}, {50, 51, 50}}, centre, 0.5));               // far
-  EXPECT_TRUE(touches_cube({{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, centre, 0.5));       // a point
-  EXPECT_TRUE(touches_cube({{-5, -5, -5}, {5, 5, 5}, {5, 5, 5}}, centre, 0.5));                      // a needle
+  EXPECT_FALSE(touches_cube({{50, 50, 50}, {51, 50, 50}, {50, 51, 50}}, centre, 0.5));          // far
+  EXPECT_TRUE(touches_cube({{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, centre, 0.5));  // a point
+  EXPECT_TRUE(touches_cube({{-5, -5, -5}, {5, 5, 5}, {5, 5, 5}}, centre, 0.5));                 // a needle
   EXPECT_FALSE(touches_cube({{-5, -5, 1.1}, {5, 5, 1.1}, {5, 5, 1.1}}, centre, 0.5));
 }
 
@@ -161,8 +161,10 @@ TEST(TouchesCube, AgreesWithClipping) {
     const Corners t{p, p + random.point(-size, size), p + random.point(-size, size)};
     const bool touches = touches_cube(t, centre, 0.5);
     touching += touches;
-    if (touches) EXPECT_TRUE(clipped_touches(t, centre, 0.5 + 1e-9)) << k;
-    else EXPECT_FALSE(clipped_touches(t, centre, 0.5 - 1e-9)) << k;
+    if (touches)
+      EXPECT_TRUE(clipped_touches(t, centre, 0.5 + 1e-9)) << k;
+    else
+      EXPECT_FALSE(clipped_touches(t, centre, 0.5 - 1e-9)) << k;
   }
   EXPECT_GT(touching, 5000);
   EXPECT_LT(touching, 25000);

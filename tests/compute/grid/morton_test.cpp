@@ -1,7 +1,7 @@
 // Nacre: Morton codes.
-#include <gtest/gtest.h>
-
 #include "compute/grid/morton.hpp"
+
+#include <gtest/gtest.h>
 
 namespace nacre {
 namespace {

@@ -1,11 +1,12 @@
 // Nacre: WENO4 interpolation in one dimension.
+#include "compute/grid/weno4.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
 #include "compute/grid/lanes.hpp"
-#include "compute/grid/weno4.hpp"
 
 namespace nacre {
 namespace {
@@ -56,8 +57,8 @@ TEST(Weno4, TheErrorOnSmoothDataFallsWithOrderThree) {
 TEST(Weno4, DoesNotOvershootAStep) {
   for (int i = 0; i <= 100; ++i) {
     const float x = float(i) / 100;
-    for (const float v : {weno4(0.0f, 0.0f, 0.0f, 1.0f, x), weno4(0.0f, 0.0f, 1.0f, 1.0f, x),
-                          weno4(0.0f, 1.0f, 1.0f, 1.0f, x)}) {
+    for (const float v :
+         {weno4(0.0f, 0.0f, 0.0f, 1.0f, x), weno4(0.0f, 0.0f, 1.0f, 1.0f, x), weno4(0.0f, 1.0f, 1.0f, 1.0f, x)}) {
       EXPECT_GT(v, -1e-3f) << x;
       EXPECT_LT(v, 1 + 1e-3f) << x;
     }

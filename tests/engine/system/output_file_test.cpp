@@ -83,6 +83,22 @@ TEST(OutputFile, KeepsPermissionsAndFollowsLinks) {
   EXPECT_EQ(std::filesystem::status(folder / "real.txt").permissions(), std::filesystem::perms(0640));
 }
 
+TEST(OutputFile, FollowsALinkToAFileThatIsNotThereYet) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("real.txt", folder / "link.txt");
+  OutputFile file(folder / "link.txt");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(read_all(folder / "real.txt"), "new");
+}
+
+TEST(OutputFile, DevicesCanBeRefused) {
+  EXPECT_NE(error_of([] { OutputFile("/dev/null", OutputFile::Devices::refused); }).find("not a plain file"),
+            std::string::npos);
+  EXPECT_EQ(error_of([] { OutputFile("/dev/null").commit(); }), "");
+}
+
 TEST(OutputFile, BadPlacesAreNamed) {
   const TemporaryFolder folder;
   const std::string missing = error_of([&] { OutputFile(folder / "no/such/a.txt"); });
