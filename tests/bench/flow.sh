@@ -37,7 +37,8 @@ row() {
     -v refine="$(stage_seconds "$report" refine)" -v step="$(report_value "$report" flow.seconds_per_step.median)" \
     -v render="$(stage_seconds "$report" render)" -v memory="$(report_value "$report" memory.peak_bytes)" 'BEGIN {
       printf "| %s | %d | %d | %.3f | %.3f | ", name, resolution, cells, embed, refine
-      printf "%.3f | %.3f | %.2f | %.2f |\n", step, render, memory / 1e9, step > 0 ? cells / step / 1e6 : 0
+      rate = (step > 0) ? cells / step / 1e6 : 0
+      printf "%.3f | %.3f | %.2f | %.2f |\n", step, render, memory / 1e9, rate
     }'
 }
 
