@@ -96,7 +96,7 @@ class Executor<Cpu> : public ExecutorBase {
     check_stop();
   }
 
-  static constexpr std::int64_t piece = 1 << 14;  // elements between two looks at the stop flag
+  static constexpr std::int64_t piece = 1 << 10;  // elements between two looks at the stop flag
 
   CpuDevice& cpu_;
 };
