@@ -8,6 +8,7 @@ namespace nacre {
 
 /// Registers a command; sets `run` to what it does when its name is given. `run` throws Error, UsageError, Interrupted.
 void add_flow_command(CLI::App& program, std::function<void()>& run);
+void add_mesh_command(CLI::App& program, std::function<void()>& run);
 void add_info_command(CLI::App& program, std::function<void()>& run);
 void add_sample_command(CLI::App& program, std::function<void()>& run);
 

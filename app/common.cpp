@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -35,9 +36,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
 }
 
-KnobOptions::KnobOptions(CLI::App& command) {
+KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
   Settings defaults;
   for (const Knob& knob : knobs(defaults)) {
+    if (!knob.concerns(command_name)) continue;
     if (std::holds_alternative<bool*>(knob.value)) continue;  // commands give those as flags of their own
     auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
     command.add_option(knob.option(), *value, knob.help + (knob.unit.empty() ? "" : " [" + knob.unit + "]"))
@@ -55,6 +57,16 @@ void KnobOptions::apply(Settings& settings, const std::vector<std::string>& set)
       if (equals == std::string::npos) throw Error("--set " + pair + " has no '='", "", "write --set KNOB=VALUE");
       set_knob(settings, pair.substr(0, equals), pair.substr(equals + 1));
     }
+  });
+}
+
+bool KnobOptions::given(const std::string& name, const std::vector<std::string>& set) const {
+  for (const auto& [option, value] : values_)
+    if (option == name && !value->empty()) return true;
+  return std::any_of(set.begin(), set.end(), [&](std::string pair) {
+    pair.resize(std::min(pair.size(), pair.find('=')));
+    std::replace(pair.begin(), pair.end(), '-', '_');
+    return pair == name;
   });
 }
 

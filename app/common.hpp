@@ -48,8 +48,10 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 /// Remembers what the knob options of a command line say, to be applied over a session's values.
 class KnobOptions {
  public:
-  /// Adds one option per knob.
-  explicit KnobOptions(CLI::App& command);
+  /// Adds one option per knob that concerns the command.
+  KnobOptions(CLI::App& command, const std::string& name);
+  /// Was this knob given, as an option or by `--set`?
+  bool given(const std::string& name, const std::vector<std::string>& set) const;
   /// Applies them and `--set` to `settings`. Throws UsageError for values that are off.
   void apply(Settings& settings, const std::vector<std::string>& set) const;
 

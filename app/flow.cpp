@@ -8,6 +8,7 @@
 
 #include "app/commands.hpp"
 #include "app/common.hpp"
+#include "app/picture_words.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/io/reader.hpp"
@@ -39,24 +40,13 @@ struct FlowInput {
   VectorsInTime vectors;
 };
 
-std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option) {
-  const auto at = text.find(separator);
-  try {
-    std::size_t used_first = 0, used_second = 0;
-    const double first = std::stod(text, &used_first), second = std::stod(text.substr(at + 1), &used_second);
-    const bool whole = at != std::string::npos && used_first == at && used_second == text.size() - at - 1;
-    if (whole && std::isfinite(first) && std::isfinite(second)) return {first, second};
-  } catch (const std::logic_error&) {
-  }
-  throw UsageError(fmt::format("{} takes A{}B, not '{}'", option, separator, text));
-}
-
 Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
   Session session;
   if (!options.common.session.empty()) session = read_session(options.common.session);
   if (!options.files.empty() || !options.sample.empty()) {
     session.inputs.assign(options.files.begin(), options.files.end());
     session.sample = options.sample;
+    session.detail = options.detail;
   }
   knobs.apply(session.settings, options.common.set);
   if (!options.size.empty()) {
@@ -71,30 +61,20 @@ Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
   return session;
 }
 
-std::array<float, 3> parse_color(const std::string& text) {
-  if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
-    throw UsageError("--background takes #rrggbb or transparent, not '" + text + "'");
-  const int rgb = std::stoi(text.substr(1), nullptr, 16);
-  return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
-}
-
-bool is_camera_file(const Settings& settings) { return std::filesystem::path(settings.camera).extension() == ".json"; }
-
 /// Names that mean something without any file: wrong ones are found before the work begins.
 void check_words(const Settings& settings) {
   checked_words([&] {
     colormap(settings.colormap);
-    if (!is_camera_file(settings)) fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
   });
-  if (settings.background != "transparent") parse_color(settings.background);
+  check_picture_words(settings);
 }
 
 FlowInput read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
   StageTimers::Scope scope(timers, "read");
   SurfaceSeries series = session.sample.empty()
                              ? open_surface(session.inputs)
-                             : checked_words([&] { return make_sample(session.sample, options.detail); });
+                             : checked_words([&] { return make_sample(session.sample, session.detail); });
   for (const std::string& warning : series.warnings) warn(options.common, warning);
   const Surface first = series.load(0);
   std::vector<std::string> warnings;
@@ -115,32 +95,11 @@ FlowInput read_input(const FlowOptions& options, const Session& session, StageTi
   return {name, choice.name, std::move(vectors)};
 }
 
-Camera read_camera(const Settings& settings, const PreparedSurface& surface) {
+Camera camera_for(const Settings& settings, const PreparedSurface& surface) {
   std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
   for (const Triangle& t : surface.triangles)
     for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  if (!is_camera_file(settings)) return fit_camera(settings.camera, corners, settings.width, settings.height);
-  std::ifstream stream(settings.camera);
-  if (!stream) throw Error("cannot read camera " + settings.camera);
-  try {
-    const nlohmann::json json = nlohmann::json::parse(stream);
-    const auto vec = [&](const char* key) {
-      const auto v = json.at(key).get<std::array<double, 3>>();
-      return Vec3d(v[0], v[1], v[2]);
-    };
-    Camera camera = fit_camera("iso", corners, settings.width, settings.height);
-    camera.eye = vec("eye");
-    camera.target = vec("target");
-    camera.up = json.contains("up") ? vec("up") : Vec3d(0, 0, 1);
-    camera.height = json.value("height", camera.height);
-    camera.orthographic = json.value("orthographic", false);
-    if (!(length(camera.target - camera.eye) > 0) || !(length(camera.up) > 0) || !(camera.height > 0))
-      throw Error(settings.camera + " is no camera", "eye and target must differ, up and height be above zero");
-    return camera;
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(settings.camera + " is no camera", error.what(),
-                R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
-  }
+  return read_camera(settings, corners);
 }
 
 /// Draws frames of one run.
@@ -152,7 +111,7 @@ class Painter {
         settings_(settings),
         frame_time_(frame_time),
         map_(colormap(settings.colormap)),
-        camera_(read_camera(settings, input.vectors.surface())) {
+        camera_(camera_for(settings, input.vectors.surface())) {
     if (settings.background == "transparent")
       transparent_ = true;
     else
@@ -341,7 +300,7 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_flag("--no-legend", options->no_legend, "no colour legend and axes");
   command->add_flag("--no-time", options->no_time, "no time stamp");
   add_common_options(*command, options->common);
-  auto knob_options = std::make_shared<KnobOptions>(*command);
+  auto knob_options = std::make_shared<KnobOptions>(*command, "flow");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_flow(*options, *knob_options); }; });
 }

@@ -1,12 +1,38 @@
 // Nacre: `nacre info`: what is in a file.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/commands.hpp"
 #include "app/common.hpp"
 #include "engine/io/reader.hpp"
 
 namespace nacre {
 namespace {
+
+constexpr std::size_t shown_labels = 64;
+
+nlohmann::json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
+
+nlohmann::json as_json(const VolumeInfo& volume) {
+  nlohmann::json labels = nlohmann::json::array();
+  for (const auto& [label, voxels] : volume.labels) labels.push_back({{"label", label}, {"voxels", voxels}});
+  nlohmann::json axes = nlohmann::json::array();
+  for (const Vec3d& axis : volume.axes) axes.push_back(vector_json(axis));
+  return {{"dimensions", {volume.dims.x, volume.dims.y, volume.dims.z}},
+          {"spacing", vector_json(volume.spacing)},
+          {"origin", vector_json(volume.origin)},
+          {"axes", axes},
+          {"right_handed", volume.right_handed},
+          {"space", volume.space},
+          {"type", volume.type},
+          {"min", volume.statistics.min},
+          {"max", volume.statistics.max},
+          {"integral", volume.statistics.integral},
+          {"nan", volume.statistics.nan},
+          {"infinite", volume.statistics.infinite},
+          {"labels", labels}};
+}
 
 nlohmann::json as_json(const FileInfo& info) {
   nlohmann::json arrays = nlohmann::json::array();
@@ -17,16 +43,47 @@ nlohmann::json as_json(const FileInfo& info) {
                       {"count", a.count},
                       {"min", a.min},
                       {"max", a.max}});
-  const auto vec = [](const Vec3d& v) { return nlohmann::json::array({v.x, v.y, v.z}); };
-  return {{"path", info.path},           {"format", info.format},    {"kind", info.kind},
-          {"bytes", info.bytes},         {"points", info.points},    {"polygons", info.polygons},
-          {"triangles", info.triangles}, {"lower", vec(info.lower)}, {"upper", vec(info.upper)},
-          {"times", info.times},         {"arrays", arrays},         {"warnings", info.warnings}};
+  nlohmann::json json = {{"path", info.path},
+                         {"format", info.format},
+                         {"kind", info.kind},
+                         {"bytes", info.bytes},
+                         {"points", info.points},
+                         {"polygons", info.polygons},
+                         {"triangles", info.triangles},
+                         {"lower", vector_json(info.lower)},
+                         {"upper", vector_json(info.upper)},
+                         {"times", info.times},
+                         {"arrays", arrays},
+                         {"warnings", info.warnings}};
+  if (info.volume) json["volume"] = as_json(*info.volume);
+  return json;
+}
+
+void print(const VolumeInfo& volume) {
+  const auto triple = [](const Vec3d& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); };
+  fmt::print("  {} x {} x {} voxels of {}, spacing {}, origin {}\n", volume.dims.x, volume.dims.y, volume.dims.z,
+             volume.type, triple(volume.spacing), triple(volume.origin));
+  fmt::print("  axes ({}) ({}) ({}), {}-handed{}{}\n", triple(volume.axes[0]), triple(volume.axes[1]),
+             triple(volume.axes[2]), volume.right_handed ? "right" : "left", volume.space.empty() ? "" : ", in ",
+             volume.space);
+  const VolumeStatistics& statistics = volume.statistics;
+  fmt::print("  values {:.9g} to {:.9g}{}", statistics.min, statistics.max, statistics.integral ? ", all whole" : "");
+  if (statistics.nan + statistics.infinite > 0)
+    fmt::print(", {} voxels NaN, {} infinite", statistics.nan, statistics.infinite);
+  fmt::print("\n");
+  if (volume.labels.empty()) return;
+  fmt::print("  {} different values\n", volume.labels.size());
+  for (std::size_t i = 0; i < std::min(shown_labels, volume.labels.size()); ++i)
+    fmt::print("  {:>12} {:>12} voxels\n", volume.labels[i].first, volume.labels[i].second);
+  if (volume.labels.size() > shown_labels) fmt::print("  ... and {} more\n", volume.labels.size() - shown_labels);
 }
 
 void print(const FileInfo& info) {
   fmt::print("{}\n  {} {}, {} bytes\n", info.path, info.format, info.kind, info.bytes);
-  fmt::print("  {} points, {} polygons, {} triangles\n", info.points, info.polygons, info.triangles);
+  if (info.volume)
+    print(*info.volume);
+  else
+    fmt::print("  {} points, {} polygons, {} triangles\n", info.points, info.polygons, info.triangles);
   fmt::print("  box {:.6g} {:.6g} {:.6g} to {:.6g} {:.6g} {:.6g}\n", info.lower.x, info.lower.y, info.lower.z,
              info.upper.x, info.upper.y, info.upper.z);
   if (!info.times.empty())
@@ -41,7 +98,7 @@ void print(const FileInfo& info) {
 }  // namespace
 
 void add_info_command(CLI::App& program, std::function<void()>& run) {
-  CLI::App* command = program.add_subcommand("info", "what is in a file: kind, size, arrays, time steps");
+  CLI::App* command = program.add_subcommand("info", "what is in a file: kind, size, arrays, time steps, labels");
   auto files = std::make_shared<std::vector<std::string>>();
   auto json = std::make_shared<bool>(false);
   command->add_option("FILE", *files, "files to look at")->required();

@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   program.add_flag("--knobs", knobs, "print the table of knobs");
   std::function<void()> command;
   nacre::add_flow_command(program, command);
+  nacre::add_mesh_command(program, command);
   nacre::add_info_command(program, command);
   nacre::add_sample_command(program, command);
   try {
@@ -68,7 +69,7 @@ int main(int argc, char** argv) {
     return fail(usage, std::string(error.what()));
   } catch (const std::bad_alloc&) {
     nacre::remove_unfinished_files();
-    return fail(failed, "out of memory; lower --resolution");
+    return fail(failed, "out of memory; lower --resolution (flow), or raise --max-size and --min-size (mesh)");
   } catch (const std::exception& error) {
     nacre::remove_unfinished_files();
     return fail(nacre::interrupt_flag() ? interrupted : failed, error.what());

@@ -3,7 +3,7 @@
 required_packages=(
   g++ cmake ninja-build
   libtbb-dev libfmt-dev libpugixml-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
-  libtinyobjloader-dev libstb-dev libgtest-dev
+  libtinyobjloader-dev libstb-dev libteem-dev libnifti2-dev libcgal-dev libgtest-dev
   ffmpeg fonts-dejavu-core
 )
 optional_packages=(ccache)

@@ -29,6 +29,16 @@ class Executor<Cpu> : public ExecutorBase {
     });
   }
 
+  template <class Kernel>
+  void for_each_team(std::int64_t n, const Kernel& kernel) {
+    run(n, [&](std::int64_t first, std::int64_t last) {
+      const Kernel local = kernel;
+      std::vector<unsigned char> scratch(Team::sum_bytes + local.scratch_bytes());
+      Team team(scratch.data());
+      for (std::int64_t i = first; i < last; ++i) local(team, i);
+    });
+  }
+
   template <class T>
   T exclusive_scan(const T* in, T* out, std::int64_t n) {
     const std::int64_t block = 1 << 16;
@@ -61,6 +71,19 @@ class Executor<Cpu> : public ExecutorBase {
     cpu_.workers().execute([&] { tbb::parallel_sort(keys, keys + n); });
   }
 
+  void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
+    check_stop();
+    struct Pair {
+      std::uint64_t key;
+      std::uint32_t value;
+      bool operator<(const Pair& other) const { return key != other.key ? key < other.key : value < other.value; }
+    };
+    std::vector<Pair> pairs(n);
+    for_each_plain(n, [&](std::int64_t i) { pairs[i] = {keys[i], values[i]}; });
+    cpu_.workers().execute([&] { tbb::parallel_sort(pairs.begin(), pairs.end()); });
+    for_each_plain(n, [&](std::int64_t i) { keys[i] = pairs[i].key, values[i] = pairs[i].value; });
+  }
+
   template <class T, class Get, class Merge>
   T reduce(std::int64_t n, T identity, const Get& get, const Merge& merge) {
     check_stop();
@@ -79,6 +102,13 @@ class Executor<Cpu> : public ExecutorBase {
   }
 
  private:
+  template <class Body>
+  void for_each_plain(std::int64_t n, const Body& body) {
+    run(n, [&](std::int64_t first, std::int64_t last) {
+      for (std::int64_t i = first; i < last; ++i) body(i);
+    });
+  }
+
   /// Calls body(first, last) over pieces of 0..n-1 on the device's workers; leaves early when the user asks to stop.
   template <class Body>
   void run(std::int64_t n, const Body& body) {

@@ -21,6 +21,16 @@ __global__ void for_each_kernel(std::int64_t n, const __grid_constant__ Kernel k
   for (std::int64_t i = std::int64_t(blockIdx.x) * blockDim.x + threadIdx.x; i < n; i += stride) kernel(i);
 }
 
+template <class Kernel>
+__global__ void for_each_team_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
+  extern __shared__ __align__(16) unsigned char scratch[];
+  Team team(scratch);
+  for (std::int64_t i = blockIdx.x; i < n; i += gridDim.x) {
+    kernel(team, i);
+    __syncthreads();
+  }
+}
+
 template <>
 class Executor<Cuda> : public ExecutorBase {
  public:
@@ -54,6 +64,21 @@ class Executor<Cuda> : public ExecutorBase {
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 
+  template <class Kernel>
+  void for_each_team(std::int64_t n, const Kernel& kernel) {
+    check_stop();
+    if (n <= 0) return;
+    static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
+    const std::size_t scratch = Team::sum_bytes + kernel.scratch_bytes();
+    if (scratch > (48u << 10))
+      cuda_check(
+          cudaFuncSetAttribute(for_each_team_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(scratch)),
+          "shared memory of a team");
+    const auto blocks = unsigned(std::min<std::int64_t>(n, 1 << 20));
+    for_each_team_kernel<<<blocks, Team::lanes, scratch>>>(n, kernel);
+    cuda_check(cudaGetLastError(), "kernel launch");
+  }
+
   template <class T>
   T exclusive_scan(const T* in, T* out, std::int64_t n) {
     check_stop();
@@ -76,6 +101,25 @@ class Executor<Cuda> : public ExecutorBase {
         [&](void* scratch, std::size_t& bytes) { return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n); });
     if (buffer.Current() != keys)
       cuda_check(cudaMemcpyAsync(keys, buffer.Current(), n * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice), "copy");
+  }
+
+  void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
+    check_stop();
+    if (n <= 1) return;
+    Arena::Scope scope(arena());
+    Array<std::uint64_t> other_keys = arena().temporary<std::uint64_t>(n);
+    Array<std::uint32_t> other_values = arena().temporary<std::uint32_t>(n);
+    cub::DoubleBuffer<std::uint64_t> key_buffer(keys, other_keys.data());
+    cub::DoubleBuffer<std::uint32_t> value_buffer(values, other_values.data());
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffer, value_buffer, n);
+    });
+    if (key_buffer.Current() != keys)
+      cuda_check(cudaMemcpyAsync(keys, key_buffer.Current(), n * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice),
+                 "copy");
+    if (value_buffer.Current() != values)
+      cuda_check(cudaMemcpyAsync(values, value_buffer.Current(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToDevice),
+                 "copy");
   }
 
   template <class T, class Get, class Merge>

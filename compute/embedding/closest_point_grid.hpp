@@ -12,8 +12,6 @@
 
 namespace nacre {
 
-inline constexpr std::uint32_t none = 0xffffffffu;
-
 /// The triangles behind an embedding. Points are in cells of the closest-point grid.
 struct MeshView {
   const Vec3d* points;
@@ -48,6 +46,9 @@ struct Divider {
     return shift >= 0 ? i >> shift : int(std::floor((float(i) + 0.5f) * inverse));
   }
 };
+
+// Stencil, LinearCells and weno4_stencil work on any grid of bricks that has sub, divide, dims(), inside(),
+// cells_per_brick(), brick() and, for weno4_stencil, offset.
 
 /// A coarse grid of bricks near the surface, `sub`^3 cells each. Cell (i, j, k) has its centre at (i, j, k) + 0.5; all
 /// lengths are in cells. Every cell of a brick holds a closest point; within `radius` of the surface it is the exact one.
@@ -106,7 +107,8 @@ struct Stencil {
   std::uint32_t base[2][2][2];  ///< [z][y][x]: address of a brick's cell 0
 
   /// False where a brick is missing.
-  NACRE_HD_INLINE bool find(const ClosestPointGridView& grid, const Int3& lowest) {
+  template <class Grid>
+  NACRE_HD_INLINE bool find(const Grid& grid, const Int3& lowest) {
     first = lowest;
     const Int3 dims = grid.dims();
     if (first.x < 0 || first.y < 0 || first.z < 0 || first.x + N > dims.x || first.y + N > dims.y ||
@@ -131,7 +133,8 @@ struct Stencil {
   }
 
   /// Address of node (a, b, c) = that of row (b, c) plus what `x` says.
-  NACRE_HD_INLINE std::uint32_t address(const ClosestPointGridView& grid, int a, int b, int c) const {
+  template <class Grid>
+  NACRE_HD_INLINE std::uint32_t address(const Grid& grid, int a, int b, int c) const {
     const int sub = grid.sub;
     const int hx = a >= split[0], hy = b >= split[1], hz = c >= split[2];
     const int x = local[0] + a - hx * sub, y = local[1] + b - hy * sub, z = local[2] + c - hz * sub;
@@ -145,7 +148,8 @@ struct LinearCells {
   Vec3f f;              ///< the point's distances from the first cell's centre, 0..1
 
   /// False where the surface is too far for the eight to exist.
-  NACRE_HD_INLINE bool find(const ClosestPointGridView& grid, const Vec3f& p) {
+  template <class Grid>
+  NACRE_HD_INLINE bool find(const Grid& grid, const Vec3f& p) {
     const Int3 first = floor_cell(p - Vec3f(0.5f));
     f = p - cell_centre(first);
     const Int3 brick{grid.divide(first.x), grid.divide(first.y), grid.divide(first.z)};
@@ -185,7 +189,8 @@ NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const 
 
 #if defined(__CUDACC__)
 /// The closest point of `p` relative to the centre of cell `first + 1`, and nothing of use in the fourth lane.
-NACRE_HD_INLINE Lanes weno4_stencil(const ClosestPointGridView& grid, const Stencil<4>& stencil, const Vec3f& f) {
+template <class Grid>
+NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil, const Vec3f& f) {
   Lanes row[4];
   for (int c = 0; c < 4; ++c) {
     Lanes column[4];
@@ -200,7 +205,8 @@ NACRE_HD_INLINE Lanes weno4_stencil(const ClosestPointGridView& grid, const Sten
   return weno4(row[0], row[1], row[2], row[3], f.z);
 }
 #else
-NACRE_HD_INLINE Lanes weno4_stencil(const ClosestPointGridView& grid, const Stencil<4>& stencil, const Vec3f& f) {
+template <class Grid>
+NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil, const Vec3f& f) {
   std::uint32_t column[4];  // where node a of row (0, 0) would be, less its brick
   const int sub = grid.sub;
   for (int a = 0; a < 4; ++a) column[a] = stencil.local[0] + a - (a >= stencil.split[0] ? sub : 0);

@@ -28,6 +28,7 @@ NACRE_HD_INLINE Lanes load(const Float4& a) { return {a.x, a.y, a.z, a.w}; }
 NACRE_HD_INLINE Float4 store(Lanes a) { return {a.x, a.y, a.z, a.w}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return {x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a.x, a.y, a.z}; }
+NACRE_HD_INLINE float sum(Lanes a) { return a.x + a.y + (a.z + a.w); }
 
 #else
 
@@ -38,6 +39,7 @@ NACRE_HD_INLINE Lanes load(const Float4& a) { return *reinterpret_cast<const Mem
 NACRE_HD_INLINE Float4 store(Lanes a) { return {a[0], a[1], a[2], a[3]}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return Lanes{x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a[0], a[1], a[2]}; }
+NACRE_HD_INLINE float sum(Lanes a) { return a[0] + a[1] + (a[2] + a[3]); }
 
 /// Four nodes of a row side by side: the first two axes of a 4^3 stencil are reduced for all of them at once.
 typedef float Row __attribute__((vector_size(64)));

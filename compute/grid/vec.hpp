@@ -84,6 +84,9 @@ NACRE_HD bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
+/// What stands for no index.
+inline constexpr std::uint32_t none = 0xffffffffu;
+
 /// Three indices into a point array.
 struct Triangle {
   std::uint32_t a{}, b{}, c{};

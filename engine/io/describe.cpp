@@ -13,6 +13,7 @@
 #include "engine/io/file_steps.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/registry.hpp"
+#include "engine/io/volume_reader.hpp"
 #include "engine/io/vtk_image.hpp"
 
 namespace nacre {
@@ -106,6 +107,31 @@ void add_image(FileInfo& info, const VtkImage& image) {
   add_arrays(info, image.cell_arrays, "cells");
 }
 
+void add_volume(FileInfo& info, const Volume& volume, const std::string& format) {
+  info.format = format;
+  info.kind = "volume";
+  info.points = volume.voxels();
+  info.warnings.insert(info.warnings.end(), volume.warnings.begin(), volume.warnings.end());
+  std::vector<Vec3d> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3d p = volume.origin;
+    for (int axis = 0; axis < 3; ++axis)
+      if (corner >> axis & 1) p += volume.axes[axis] * (volume.spacing[axis] * (volume.dims[axis] - 1));
+    corners.push_back(p);
+  }
+  add_box(info, corners);
+  info.volume = {volume.dims,
+                 volume.spacing,
+                 volume.origin,
+                 volume.axes,
+                 volume.right_handed(),
+                 volume.space,
+                 value_type_name(volume.values),
+                 volume_statistics(volume),
+                 {}};
+  if (auto labels = count_labels(volume, most_labels)) info.volume->labels = std::move(*labels);
+}
+
 /// A file that lists or holds several steps: the first one, and the times of all.
 void add_steps(FileInfo& info, const FileSteps& files) {
   add_mesh(info, read_step(files.steps[0]));
@@ -119,7 +145,25 @@ bool is_vtk_image(const std::string& bytes) {
   return head.find("<VTKFile") != head.npos && head.find("type=\"ImageData\"") != head.npos;
 }
 
+/// A volume, if that is what the file holds. Of a .vti all arrays are listed, also where none has one value per voxel.
+bool add_volume_file(FileInfo& info, const fs::path& path) {
+  const VolumeFormat* format = find_volume_format(path);
+  if (!format) return false;
+  if (format_extension(path) != "vti") {
+    add_volume(info, read_volume(path), format->name);
+    return true;
+  }
+  add_image(info, read_vtk_image(read_file(path), path));
+  try {
+    add_volume(info, read_volume(path), format->name);
+  } catch (const Error& error) {
+    info.warnings.push_back(std::string(error.what()) + ".");
+  }
+  return true;
+}
+
 void add_content(FileInfo& info, const fs::path& path) {
+  if (add_volume_file(info, path)) return;
   const bool collection = format_extension(path) == "pvd";
   if (collection || goes_through_vtk(path)) {
     info.format = collection ? "VTK XML" : "VTK";

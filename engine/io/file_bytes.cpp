@@ -15,9 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Text shrinks to a tenth, a smooth volume to a hundredth; beyond this a packed file is a mistake or a trap.
+// Text shrinks to a tenth, a smooth volume to a hundredth; far beyond this a packed file is a mistake or a trap.
 constexpr std::size_t unpacked_base = std::size_t(16) << 20;
-constexpr std::size_t unpacked_ratio = 200;
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -27,7 +26,7 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-std::string gunzip(const std::string& packed, const fs::path& path) {
+std::string gunzip(const std::string& packed, std::size_t unpacked_ratio, const fs::path& path) {
   const std::size_t limit = unpacked_base + unpacked_ratio * packed.size();
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) fail_reading(path, "zlib could not start");
@@ -85,7 +84,7 @@ void require_file(const fs::path& path) {
     throw Error(path.string() + " cannot be opened", code ? code.message() : "it is not a regular file", "name a file");
 }
 
-std::string read_file(const fs::path& path) {
+std::string read_file(const fs::path& path, std::size_t unpacked_ratio) {
   require_file(path);
   std::ifstream file(path, std::ios::binary);
   std::error_code code;
@@ -97,7 +96,7 @@ std::string read_file(const fs::path& path) {
   file.read(bytes.data(), std::streamsize(size));
   bytes.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
   if (bytes.size() != size) fail_reading(path, "the system ended the file early");
-  if (bytes.compare(0, 2, "\x1f\x8b") == 0) bytes = gunzip(bytes, path);
+  if (bytes.compare(0, 2, "\x1f\x8b") == 0) bytes = gunzip(bytes, unpacked_ratio, path);
   if (bytes.empty()) fail_reading(path, "what it packs is empty", "check how it was written");
   reject_utf16(bytes, path);
   if (bytes.compare(0, 3, "\xef\xbb\xbf") == 0) bytes.erase(0, 3);

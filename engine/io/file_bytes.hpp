@@ -1,14 +1,16 @@
 // Nacre: a file in memory, and the words for a file that cannot be read.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
 namespace nacre {
 
-/// The whole content of a file; what gzip packed is unpacked (with a limit against bombs), a UTF-8 byte order mark is
-/// cut off. Throws Error if it is missing, no regular file, unreadable, empty, or UTF-16 text.
-std::string read_file(const std::filesystem::path& path);
+/// The whole content of a file; what gzip packed is unpacked (to `unpacked_ratio` times its size at most, against
+/// bombs), a UTF-8 byte order mark is cut off. Throws Error if it is missing, no regular file, unreadable, empty, or
+/// UTF-16 text.
+std::string read_file(const std::filesystem::path& path, std::size_t unpacked_ratio = 200);
 
 /// Throws Error if there is no regular file of that name.
 void require_file(const std::filesystem::path& path);

@@ -1,13 +1,16 @@
 // Nacre: surfaces from files: open one, or look at what is in it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/scene/surface.hpp"
+#include "engine/scene/volume.hpp"
 
 namespace nacre {
 
@@ -20,10 +23,23 @@ struct ArrayInfo {
   std::size_t count = 0;    ///< items: values / components
 };
 
+/// A volume in a file.
+struct VolumeInfo {
+  Int3 dims{};
+  Vec3d spacing, origin;
+  std::array<Vec3d, 3> axes{};
+  bool right_handed = true;
+  std::string space;  ///< what the world's axes point to; empty where the file does not say
+  std::string type;   ///< "uint8", ..., "float", "double"
+  VolumeStatistics statistics;
+  std::vector<LabelCount> labels;  ///< its different values, if they are integral and at most `most_labels`
+};
+inline constexpr std::size_t most_labels = 65535;
+
 /// What is in a file.
 struct FileInfo {
   std::string path;
-  std::string format;         ///< "OBJ", "PLY", "STL", "OFF", "VTK XML", "VTK image" or "VTK"
+  std::string format;         ///< "OBJ", "PLY", "STL", "OFF", "VTK XML", "VTK", or as in `volume_formats`
   std::string kind;           ///< "surface", "volume", "points", "lines", "series" or "unknown-empty"
   std::uint64_t bytes = 0;    ///< of the file itself
   std::size_t points = 0;     ///< in the file (of a series: in its first step)
@@ -32,6 +48,7 @@ struct FileInfo {
   Vec3d lower, upper;         ///< box around the finite points, in the file's unit
   std::vector<double> times;  ///< one per step; empty if there is no time
   std::vector<ArrayInfo> arrays;
+  std::optional<VolumeInfo> volume;   ///< where it is one that `read_volume` reads
   std::vector<std::string> warnings;  ///< full sentences
 };
 

@@ -12,6 +12,7 @@
 #include "engine/io/byte_order.hpp"
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/readers.hpp"
+#include "engine/io/volume_reader.hpp"
 
 namespace nacre {
 namespace {
@@ -75,9 +76,12 @@ RawFile read_raw(std::string bytes, const std::filesystem::path& path) {
   const SurfaceFormat* format = find_format(format_extension(path));
   if (!format) {
     format = sniff_format(bytes);
+    if (!format && is_volume_file(path))
+      throw Error(path.string() + " is a volume and has no surface", "", "open a surface for flow");
     if (!format)
       fail_reading(path, "neither its name nor its content is of a known format",
-                   fmt::format("known are .{}", fmt::join(own_extensions(), " .")));
+                   fmt::format("known are .{}, and as volumes {}", fmt::join(own_extensions(), " ."),
+                               fmt::join(volume_extensions(), " ")));
     return {format, format->read(std::move(bytes), path)};
   }
   const std::string mismatch = mismatch_advice(bytes, *format);

@@ -9,12 +9,12 @@
 #include <cctype>
 #include <cstdint>
 #include <cstring>
-#include <iterator>
 #include <limits>
 #include <set>
 #include <system_error>
 
 #include "compute/device/error.hpp"
+#include "engine/io/chunks.hpp"
 #include "engine/io/vtp_writer.hpp"
 #include "engine/system/output_file.hpp"
 
@@ -23,53 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t chunk_bytes = std::size_t(1) << 16;
-
 std::string lower_extension(const fs::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   return extension;
 }
-
-/// Collects small pieces of a file, binary or text, and hands them on in large ones.
-class Chunks {
- public:
-  explicit Chunks(OutputFile& file) : file_(file) { text_.reserve(chunk_bytes + 4096); }
-
-  template <class... Args>
-  void print(fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
-    if (text_.size() >= chunk_bytes) flush();
-  }
-  template <class T>
-  void raw(const T& value) {
-    text_.append(reinterpret_cast<const char*>(&value), sizeof value);
-    if (text_.size() >= chunk_bytes) flush();
-  }
-  /// The shortest text that reads back as the same number; as a float where that is all the number ever was.
-  void number(double value) {
-    if (double(float(value)) == value)
-      print("{}", float(value));
-    else
-      print("{}", value);
-  }
-  void point(const Vec3d& p, const char* before) {
-    print("{}", before);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) print(" ");
-      number(p[axis]);
-    }
-    print("\n");
-  }
-  void flush() {
-    file_.write(text_);
-    text_.clear();
-  }
-
- private:
-  OutputFile& file_;
-  std::string text_;
-};
 
 void write_obj(Chunks& out, const Surface& surface) {
   for (const Vec3d& p : surface.points) out.point(p, "v ");

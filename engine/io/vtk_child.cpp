@@ -74,11 +74,19 @@ std::string complaint_in(const std::string& errors) {
   return first.empty() ? "VTK could not read it" : printable(first.substr(0, 300));
 }
 
-void check(const ChildResult& result, const fs::path& file) {
+/// What to look for in a file, and what to convert it to where that fails.
+struct Wanted {
+  const char* word;
+  const char* formats;
+  bool volume;
+};
+constexpr Wanted surfaces{"surface", ".vtp or .vtu", false}, volumes{"volume", ".vti or .nrrd", true};
+
+void check(const ChildResult& result, const Wanted& wanted, const fs::path& file) {
   const std::string what = fmt::format("cannot read {}", file.string());
   if (result.timed_out)
     throw Error(what, fmt::format("VTK did not finish within {} s", time_limit.count()),
-                "convert it to .vtp or .vtu with ParaView");
+                fmt::format("convert it to {} with ParaView", wanted.formats));
   if (result.stopped || result.signal == SIGINT || result.signal == SIGTERM) throw Interrupted();
   if (result.signal != 0)
     throw Error(what, fmt::format("VTK crashed on it (signal {})", result.signal), "the file is probably damaged");
@@ -93,6 +101,24 @@ bool add_step(const std::string& line, VtkConversion& conversion) {
   conversion.times.push_back(time);
   conversion.files.emplace_back(std::string(end + 1, line.data() + line.size()));
   return true;
+}
+
+VtkConversion convert(const fs::path& file, const Wanted& wanted) {
+  if (!vtk_child_available())
+    throw Error(fmt::format("cannot read {}", file.string()), "this program was built without VTK",
+                fmt::format("convert the file to {}, or build where VTK is installed", wanted.formats));
+  VtkConversion conversion;
+  conversion.folder = make_folder(file);
+  std::vector<std::string> arguments{fs::absolute(file).string(), conversion.folder->string()};
+  if (wanted.volume) arguments.insert(arguments.begin(), "--volume");
+  const ChildResult result = run_child(child_path(), arguments, time_limit, watched.load());
+  check(result, wanted, file);
+  std::istringstream lines(result.output);
+  for (std::string line; std::getline(lines, line);) add_step(line, conversion);
+  if (conversion.files.empty())
+    throw Error(fmt::format("cannot read {}", file.string()), fmt::format("VTK found no {} in it", wanted.word),
+                "check the file with ParaView");
+  return conversion;
 }
 
 }  // namespace
@@ -111,21 +137,8 @@ bool vtk_child_reads(const std::string& extension) {
 
 void watch_vtk_child(const std::atomic<bool>* stop) { watched = stop; }
 
-VtkConversion convert_with_vtk(const fs::path& file) {
-  if (!vtk_child_available())
-    throw Error(fmt::format("cannot read {}", file.string()), "this program was built without VTK",
-                "convert the file to .vtp or .vtu, or build where VTK is installed");
-  VtkConversion conversion;
-  conversion.folder = make_folder(file);
-  const ChildResult result =
-      run_child(child_path(), {fs::absolute(file).string(), conversion.folder->string()}, time_limit, watched.load());
-  check(result, file);
-  std::istringstream lines(result.output);
-  for (std::string line; std::getline(lines, line);) add_step(line, conversion);
-  if (conversion.files.empty())
-    throw Error(fmt::format("cannot read {}", file.string()), "VTK found no surface in it",
-                "check the file with ParaView");
-  return conversion;
-}
+VtkConversion convert_with_vtk(const fs::path& file) { return convert(file, surfaces); }
+
+VtkConversion convert_volume_with_vtk(const fs::path& file) { return convert(file, volumes); }
 
 }  // namespace nacre

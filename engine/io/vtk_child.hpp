@@ -15,7 +15,7 @@ bool vtk_child_available();
 /// Is this a format for `convert_with_vtk`? `extension` in lower case, with dot (".vtk").
 bool vtk_child_reads(const std::string& extension);
 
-/// A file as VTK understood it: its surface, triangulated, one .vtp per time step.
+/// A file as VTK understood it: its surface, triangulated, one .vtp per time step; or its image as one .vti.
 struct VtkConversion {
   std::shared_ptr<const std::filesystem::path> folder;  ///< removed when the last copy dies
   std::vector<std::filesystem::path> files;             ///< in `folder`, at least one
@@ -26,7 +26,10 @@ struct VtkConversion {
 /// complains (its first line), crashes, or takes more than 120 s; Interrupted if it was stopped by Ctrl-C.
 VtkConversion convert_with_vtk(const std::filesystem::path& file);
 
-/// From now on `convert_with_vtk` gives up (Interrupted) once `*stop` is true. Without it, only a Ctrl-C that reaches
+/// The same for the image in an SLC or legacy .vtk file: one .vti, its values in the type of the file.
+VtkConversion convert_volume_with_vtk(const std::filesystem::path& file);
+
+/// From now on both give up (Interrupted) once `*stop` is true. Without it, only a Ctrl-C that reaches
 /// the child itself, as from a terminal, does that.
 void watch_vtk_child(const std::atomic<bool>* stop);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/io/file_bytes.hpp"
@@ -23,8 +24,8 @@ bool read_numbers(pugi::xml_node node, const char* name, std::array<double, N>& 
 
 }  // namespace
 
-VtkImage read_vtk_image(std::string bytes, const std::filesystem::path& path) {
-  const VtkXmlFile file(std::move(bytes), path);
+VtkImage read_vtk_grid(const VtkXmlFile& file) {
+  const std::filesystem::path& path = file.path();
   const pugi::xml_node grid = file.dataset();
   if (file.type() != "ImageData") fail_reading(path, fmt::format("it holds {}, not ImageData", file.type()));
   const pugi::xml_node piece = grid.child("Piece");
@@ -39,20 +40,26 @@ VtkImage read_vtk_image(std::string bytes, const std::filesystem::path& path) {
   read_numbers(grid, "Origin", origin);
   read_numbers(grid, "Spacing", spacing);
   read_numbers(grid, "Direction", image.direction);
-  std::size_t points = 1, cells = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const double count = extent[2 * axis + 1] - extent[2 * axis] + 1;
     if (!(count >= 1 && count <= 1 << 20)) fail_reading(path, "its extent is empty or not sane");
     image.dimensions[axis] = int(count);
     image.spacing[axis] = spacing[axis];
     image.origin[axis] = origin[axis];
-    points *= std::size_t(count);
-    cells *= std::size_t(count) > 1 ? std::size_t(count) - 1 : 1;
   }
   for (int row = 0; row < 3; ++row)
     for (int axis = 0; axis < 3; ++axis)
       image.origin[row] += image.direction[3 * row + axis] * spacing[axis] * extent[2 * axis];
-  image.point_arrays = file.arrays(piece.child("PointData"), points);
+  return image;
+}
+
+VtkImage read_vtk_image(std::string bytes, const std::filesystem::path& path) {
+  const VtkXmlFile file(std::move(bytes), path);
+  VtkImage image = read_vtk_grid(file);
+  const pugi::xml_node piece = file.dataset().child("Piece");
+  std::size_t cells = 1;
+  for (int axis = 0; axis < 3; ++axis) cells *= std::size_t(std::max(image.dimensions[axis] - 1, 1));
+  image.point_arrays = file.arrays(piece.child("PointData"), image.points());
   image.cell_arrays = file.arrays(piece.child("CellData"), cells);
   if (image.point_arrays.empty() && image.cell_arrays.empty()) fail_reading(path, "it has no numeric arrays");
   return image;

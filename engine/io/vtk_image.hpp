@@ -8,6 +8,7 @@
 
 #include "compute/grid/vec.hpp"
 #include "engine/io/raw_mesh.hpp"
+#include "engine/io/vtk_xml.hpp"
 
 namespace nacre {
 
@@ -21,6 +22,9 @@ struct VtkImage {
   std::vector<RawArray> cell_arrays;                           ///< one item per cell between the points
   std::size_t points() const { return std::size_t(dimensions.x) * dimensions.y * dimensions.z; }
 };
+
+/// The grid of a .vti of one piece, without its arrays. Throws Error if it is damaged, empty, or in several pieces.
+VtkImage read_vtk_grid(const VtkXmlFile& file);
 
 /// Reads a .vti of one piece. Throws Error if it is damaged, empty, or in several pieces.
 VtkImage read_vtk_image(std::string bytes, const std::filesystem::path& path);

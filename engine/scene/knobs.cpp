@@ -60,7 +60,10 @@ T parse_number(const Knob& knob, const std::string& text) {
 void assign(const Knob& knob, const std::string& text) {
   if (auto* p = std::get_if<int*>(&knob.value)) **p = parse_number<int>(knob, text);
   if (auto* p = std::get_if<double*>(&knob.value)) **p = parse_number<double>(knob, text);
-  if (auto* p = std::get_if<std::uint32_t*>(&knob.value)) **p = parse_number<std::uint32_t>(knob, text);
+  if (auto* p = std::get_if<std::uint32_t*>(&knob.value)) {
+    **p = parse_number<std::uint32_t>(knob, text);
+    if (knob.also) *knob.also = **p;
+  }
   if (auto* p = std::get_if<bool*>(&knob.value)) {
     if (text != "true" && text != "false" && text != "1" && text != "0")
       throw Error(fmt::format("{} takes true or false, not '{}'", knob.option(), text));
@@ -81,63 +84,16 @@ std::string Knob::option() const {
   return "--" + dashes;
 }
 
-std::string Knob::text() const {
-  return std::visit([](const auto* value) { return fmt::format("{}", *value); }, value);
+bool Knob::concerns(const std::string& command) const {
+  const auto in = [&](std::initializer_list<const char*> groups) {
+    return std::find(groups.begin(), groups.end(), group) != groups.end();
+  };
+  if (in({"general", "picture"})) return true;
+  return (command == "mesh") == in({"materials", "fields", "sizing", "particles", "cells"});
 }
 
-std::vector<Knob> knobs(Settings& s) {
-  FlowParameters& f = s.flow;
-  return {
-      {"method", "embedding", "", "embedding that the flow runs on", &s.method, 0, 0, {"grid"}},
-      {"resolution", "embedding", "cells", "texture cells along the longest side", &f.resolution, 16, 16384, {}},
-      {"refine", "embedding", "", "texture cells per closest-point cell and axis", &f.refine, 1, 8, {}},
-      {"subcells", "embedding", "", "closest-point cells per coarse cell and axis", &f.subcells, 3, 8, {}},
-      {"radius",
-       "embedding",
-       "cells",
-       "band around the surface in closest-point cells; 0: what the stencils need",
-       &f.radius,
-       0,
-       16,
-       {}},
-      {"crease",
-       "embedding",
-       "degrees",
-       "faces that meet at more than this keep their own normals",
-       &s.crease,
-       0,
-       180,
-       {}},
-      {"vectors", "flow", "", "array to show, or @swirl, @rotation; empty: the likeliest", &s.vectors, 0, 0, {}},
-      {"ttl", "flow", "steps", "how long a particle lives", &f.ttl, 1, 16, {}},
-      {"steps", "flow", "", "steps from the first to the last time", &f.steps, 0, 100000, {}},
-      {"step_cells",
-       "flow",
-       "cells",
-       "texture cells that the 98th percentile speed moves in a step",
-       &f.step_cells,
-       0.1,
-       64,
-       {}},
-      {"speed_power", "flow", "", "displacement ~ speed^power: 1 true speeds, 0 all alike", &f.speed_power, 0, 2, {}},
-      {"warmup", "flow", "steps", "steps at the first time before the first frame; -1: ttl", &f.warmup, -1, 1000, {}},
-      {"sharpen", "flow", "", "Laplacian sharpening between steps", &f.sharpen, 0, 2, {}},
-      {"jitter", "flow", "", "share of fresh noise between steps", &f.jitter, 0, 1, {}},
-      {"equalise", "flow", "", "local contrast against that of the whole texture, as a share", &f.equalise, 0, 1, {}},
-      {"seed", "flow", "", "of the noise: one seed, one result", &f.seed, 0, 4294967295.0, {}},
-      {"contrast", "picture", "", "standard deviation of the shown texture", &f.contrast, 0, 1, {}},
-      {"color", "picture", "", "array to colour by, speed or none", &s.color, 0, 0, {}},
-      {"colormap", "picture", "", "colours", &s.colormap, 0, 0, {}},
-      {"camera", "picture", "", "iso, +x, -x, +y, -y, +z, -z or a JSON file", &s.camera, 0, 0, {}},
-      {"orbit", "picture", "degrees", "turn of the camera per frame", &s.orbit, -360, 360, {}},
-      {"width", "picture", "pixels", "of the picture", &s.width, 16, 16384, {}},
-      {"height", "picture", "pixels", "of the picture", &s.height, 16, 16384, {}},
-      {"samples", "picture", "", "rays per pixel and axis", &s.samples, 1, 8, {}},
-      {"background", "picture", "", "#rrggbb or transparent", &s.background, 0, 0, {}},
-      {"legend", "picture", "", "draw the colour legend", &s.legend, 0, 1, {}},
-      {"time_stamp", "picture", "", "draw the time", &s.time_stamp, 0, 1, {}},
-      {"fps", "picture", "1/s", "frames per second of a video", &s.fps, 1, 240, {}},
-  };
+std::string Knob::text() const {
+  return std::visit([](const auto* value) { return fmt::format("{}", *value); }, value);
 }
 
 void set_knob(Settings& settings, const std::string& name, const std::string& text) {

@@ -19,9 +19,11 @@ struct Knob {
   std::variant<int*, double*, std::uint32_t*, bool*, std::string*> value;
   double min = 0, max = 0;           ///< of a number
   std::vector<std::string> choices;  ///< of a string; empty: any
+  std::uint32_t* also = nullptr;     ///< a second place with the same value
 
-  std::string option() const;  ///< "--step-cells"
-  std::string text() const;    ///< the value as on the command line
+  std::string option() const;                       ///< "--step-cells"
+  std::string text() const;                         ///< the value as on the command line
+  bool concerns(const std::string& command) const;  ///< "flow" or "mesh"
 };
 
 /// The table, bound to `settings`, which must outlive it.

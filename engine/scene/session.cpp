@@ -21,6 +21,7 @@ Session read_session(const std::filesystem::path& file) {
       session.inputs.push_back(path.is_absolute() ? path : file.parent_path() / path);
     }
     session.sample = json.value("sample", "");
+    session.detail = json.value("detail", 0);
     if (json.contains("knobs")) set_knobs(session.settings, json["knobs"]);
   } catch (const nlohmann::json::exception& error) {
     throw Error(file.string() + " is no session", error.what());
@@ -34,6 +35,7 @@ std::string session_text(const Session& session) {
   json["inputs"] = nlohmann::json::array();
   for (const auto& input : session.inputs) json["inputs"].push_back(std::filesystem::absolute(input).string());
   if (!session.sample.empty()) json["sample"] = session.sample;
+  if (session.detail != 0) json["detail"] = session.detail;
   json["knobs"] = knob_values(session.settings);
   return json.dump(2) + "\n";
 }

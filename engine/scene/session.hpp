@@ -9,11 +9,12 @@
 
 namespace nacre {
 
-/// What a session file holds: {"nacre": version, "inputs": [files], "sample": name, "knobs": {...}}. Relative inputs
+/// What a session file holds: {"nacre": version, "inputs": [files], "sample": name, "detail": number, "knobs": {...}}. Relative inputs
 /// are relative to the session file.
 struct Session {
   std::vector<std::filesystem::path> inputs;
   std::string sample;
+  int detail = 0;  ///< of the sample; 0: its own
   Settings settings;
 };
 

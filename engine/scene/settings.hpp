@@ -4,12 +4,26 @@
 #include <string>
 
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
 
 namespace nacre {
+
+/// What becomes a material of a volume, as words; engine/scene/material_words.hpp turns them into what they mean.
+struct MaterialWords {
+  bool labels = false;    ///< the values are labels, whatever they look like
+  std::string isovalue;   ///< V[,V...]
+  std::string threshold;  ///< LO:HI
+  std::string materials;  ///< L[,L...]: labels to keep; empty: all
+  std::string merge;      ///< A:B[,A:B...]: label A becomes B
+  int min_component = 0;  ///< drop pieces of fewer voxels
+};
 
 /// Values of all knobs; the defaults are the members' initial values. The table is in knobs.hpp.
 struct Settings {
   FlowParameters flow;
+  MeshParameters mesh;
+  MaterialWords materials;
+  double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
   std::string method = "grid";
   std::string vectors;  ///< array name or @field; empty: chosen

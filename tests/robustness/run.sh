@@ -28,7 +28,7 @@ done
 
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)/../shared/data
 files=()
-for folder in malformed meshes; do
+for folder in malformed meshes labels scalar; do
   if [[ -d $data/$folder ]]; then
     mapfile -d '' -t -O "${#files[@]}" files < <(find -L "$data/$folder" -type f -print0 | sort -z)
   else

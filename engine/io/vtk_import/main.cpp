@@ -1,4 +1,5 @@
 // Nacre: nacre-vtk-import FILE FOLDER: a file that VTK reads becomes one .vtp per time step in FOLDER.
+// nacre-vtk-import --volume FILE FOLDER: the image in it becomes one .vti in FOLDER.
 // Prints "time path" for each. On failure it prints one line to stderr and exits with 1.
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -6,10 +7,12 @@
 #include <vtkAlgorithm.h>
 #include <vtkErrorCode.h>
 #include <vtkNew.h>
+#include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
@@ -18,6 +21,7 @@
 #include "engine/io/vtk_import/complaints.hpp"
 #include "engine/io/vtk_import/read.hpp"
 #include "engine/io/vtk_import/surface.hpp"
+#include "engine/io/vtk_import/volume.hpp"
 
 namespace {
 
@@ -39,10 +43,11 @@ void fail_on_complaint() {
   if (!first_complaint().empty()) throw std::runtime_error(first_complaint());
 }
 
-void write(vtkPolyData* surface, const std::string& path) {
-  vtkNew<vtkXMLPolyDataWriter> writer;
+template <class Writer>
+void write(vtkDataObject* data, const std::string& path) {
+  vtkNew<Writer> writer;
   writer->SetFileName(path.c_str());
-  writer->SetInputData(surface);
+  writer->SetInputData(data);
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetCompressorTypeToNone();
@@ -52,8 +57,19 @@ void write(vtkPolyData* surface, const std::string& path) {
                              vtkErrorCode::GetStringFromErrorCode(writer->GetErrorCode()));
 }
 
-void import(const std::string& file, const std::filesystem::path& folder) {
+void require(const std::string& file) {
   if (::access(file.c_str(), R_OK) != 0) throw std::runtime_error("it cannot be opened");
+}
+
+void import_volume(const std::string& file, const std::filesystem::path& folder) {
+  require(file);
+  const std::string path = folder / "volume.vti";
+  write<vtkXMLImageDataWriter>(read_image(file), path);
+  std::printf("0 %s\n", path.c_str());
+}
+
+void import(const std::string& file, const std::filesystem::path& folder) {
+  require(file);
   const vtkSmartPointer<vtkAlgorithm> reader = reader_for(file);
   const std::vector<double> times = time_steps(*reader);
   fail_on_complaint();
@@ -61,7 +77,7 @@ void import(const std::string& file, const std::filesystem::path& folder) {
     reader->UpdateTimeStep(times[k]);
     fail_on_complaint();
     const std::string path = folder / ("step_" + std::to_string(k) + ".vtp");
-    write(surface_of(reader->GetOutputDataObject(0)), path);
+    write<vtkXMLPolyDataWriter>(surface_of(reader->GetOutputDataObject(0)), path);
     std::printf("%.17g %s\n", times[k], path.c_str());
   }
 }
@@ -69,14 +85,15 @@ void import(const std::string& file, const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: nacre-vtk-import FILE FOLDER\n", stderr);
+  const bool volume = argc == 4 && std::strcmp(argv[1], "--volume") == 0;
+  if (argc != 3 && !volume) {
+    std::fputs("usage: nacre-vtk-import [--volume] FILE FOLDER\n", stderr);
     return 2;
   }
   limit_damage();
   keep_complaints();
   try {
-    import(argv[1], argv[2]);
+    volume ? import_volume(argv[2], argv[3]) : import(argv[1], argv[2]);
     if (std::fflush(stdout) != 0) throw std::runtime_error("the result cannot be handed over");
     return 0;
   } catch (const std::bad_alloc&) {

@@ -1,0 +1,238 @@
+// Nacre: `nacre mesh`: from a volume to a conformal mesh.
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "app/commands.hpp"
+#include "app/mesh_run.hpp"
+#include "app/picture_words.hpp"
+#include "compute/device/error.hpp"
+#include "compute/meshing/tetrahedra.hpp"
+#include "engine/io/volume_reader.hpp"
+#include "engine/scene/knobs.hpp"
+#include "engine/scene/material_words.hpp"
+#include "engine/scene/phantoms.hpp"
+
+namespace nacre {
+namespace {
+
+/// The source's own constants (source notes). Its reconstruction depends on the volume: see `choose_kernel`.
+void apply_source_preset(Settings& settings) {
+  MeshParameters& m = settings.mesh;
+  m.theta = 0.75;
+  m.iterations = 50;
+  m.stagnation = 0.0015;
+  m.add_below = 0.75;
+  m.delete_above = 1.35;
+  m.subcells = 3;
+}
+
+Session make_session(const MeshOptions& options, const KnobOptions& knobs) {
+  Session session;
+  if (!options.common.session.empty()) session = read_session(options.common.session);
+  if (!options.files.empty() || !options.sample.empty()) {
+    session.inputs.assign(options.files.begin(), options.files.end());
+    session.sample = options.sample;
+    session.detail = options.detail;
+  }
+  if (options.preset == "source") apply_source_preset(session.settings);
+  knobs.apply(session.settings, options.common.set);
+  if (!options.size.empty()) {
+    const auto [width, height] = parse_pair(options.size, 'x', "--size");
+    knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
+  }
+  if (options.labels) session.settings.materials.labels = true;
+  if (options.curvature) session.settings.mesh.curvature = true;
+  if (session.inputs.empty() == session.sample.empty())
+    throw UsageError(session.inputs.empty() ? "no input: give a FILE or --sample NAME; see nacre mesh --help"
+                                            : "a FILE or --sample, not both");
+  return session;
+}
+
+void check_words(const MeshOptions& options, const Session& session) {
+  const Settings& settings = session.settings;
+  checked_words([&] {
+    if (!session.sample.empty() && !is_phantom(session.sample)) make_phantom(session.sample);  // throws the list
+    parse_material_words(settings.materials);
+  });
+  if (settings.mesh.min_size > settings.mesh.max_size)
+    throw UsageError(
+        fmt::format("--min-size {:g} is larger than --max-size {:g}", settings.mesh.min_size, settings.mesh.max_size));
+  check_picture_words(settings);
+  check_mesh_outputs(options);
+}
+
+std::vector<Volume> read_volumes(const MeshOptions& options, const Session& session) {
+  std::vector<Volume> volumes;
+  if (!session.sample.empty())
+    volumes.push_back(checked_words([&] { return make_phantom(session.sample, session.detail, &interrupt_flag()); }));
+  for (const auto& file : session.inputs) {
+    volumes.push_back(read_volume(file));
+    for (const std::string& warning : volumes.back().warnings) warn(options.common, warning);
+    if (interrupt_flag()) throw Interrupted();
+  }
+  return volumes;
+}
+
+/// Reads the volumes and makes materials of them; `input` is told what the report wants to know.
+MeshVolume read_input(const MeshOptions& options, const Session& session, StageTimers& timers, MeshInput& input) {
+  StageTimers::Scope scope(timers, "read");
+  const std::vector<Volume> volumes = read_volumes(options, session);
+  MaterialOptions materials = parse_material_words(session.settings.materials);
+  const bool scalar_sample = !session.sample.empty() && !volume_statistics(volumes.front()).integral;
+  if (scalar_sample && materials.mode == MaterialOptions::Mode::automatic && !materials.threshold)
+    materials.isovalues = {phantom_isovalue};
+  for (const Volume& volume : volumes)
+    input.warnings.insert(input.warnings.end(), volume.warnings.begin(), volume.warnings.end());
+  if (interrupt_flag()) throw Interrupted();
+  const std::size_t said = input.warnings.size();
+  MeshVolume volume = make_mesh_volume(volumes, materials, &input.warnings);
+  for (std::size_t i = said; i < input.warnings.size(); ++i) warn(options.common, input.warnings[i]);
+  input.name = volumes.front().name;
+  for (std::size_t i = 1; i < volumes.size(); ++i) input.name += ", " + volumes[i].name;
+  input.kind = volume.kind;
+  input.dims = volume.dims;
+  input.spacing = volume.spacing;
+  input.origin = volume.origin;
+  input.axes = volume.axes;
+  input.labels = volume.labels;
+  input.names = volume.names;
+  input.voxels.assign(volume.labels.size(), 0);
+  for (const std::uint16_t material : volume.material) ++input.voxels.at(material);
+  return volume;
+}
+
+/// The source rebuilds scalar volumes from B-splines and labels by Catmull-Rom.
+void choose_kernel(const MeshOptions& options, const KnobOptions& knobs, MeshVolume::Kind kind, Settings& settings) {
+  if (options.preset != "source" || knobs.given("kernel", options.common.set)) return;
+  settings.mesh.kernel = kind == MeshVolume::Kind::scalar ? "b-spline" : "catmull-rom";
+}
+
+void show_progress(MeshPipeline& pipeline, Progress& bar) {
+  pipeline.progress = [&bar](const MeshProgress& p) {
+    bar.update(p.iteration > 0
+                   ? fmt::format("{} {}, {} particles, energy {:.4f}", p.stage, p.iteration, p.particles, p.energy)
+                   : std::string(p.stage),
+               p.fraction);
+  };
+}
+
+/// Throws Interrupted unless what there is shall be kept.
+void check_interrupt(bool kept) {
+  if (!kept && interrupt_flag()) throw Interrupted();
+}
+
+EdgeLength edge_length(const Settings& settings, const Vec3d& spacing) {
+  if (settings.max_cell <= 0) return {};
+  const float longest = float(settings.max_cell * std::min({spacing.x, spacing.y, spacing.z}));
+  return [longest](std::span<const Vec3d> points) { return std::vector<float>(points.size(), longest); };
+}
+
+MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
+                   const MeshVolume& volume, MeshPipeline& pipeline, Progress& bar) {
+  MeshResult result;
+  pipeline.load(volume);
+  pipeline.build_fields();
+  try {
+    pipeline.relax();
+  } catch (const Interrupted&) {
+    if (!options.keep_on_interrupt) throw;
+    result.interrupted = true;
+    pipeline.watch(nullptr);
+    bar.clear();
+    say(options.common, "interrupted: making the mesh of the particles so far");
+  }
+  result.mesh = pipeline.triangulate();
+  check_interrupt(result.interrupted);
+  {
+    bar.update("quality", 0.95);
+    StageTimers::Scope scope(pipeline.timers(), "quality");
+    result.topology = check_topology(result.mesh, volume.materials());
+    result.quality = surface_quality(result.mesh);
+  }
+  result.distance = pipeline.surface_distance(result.mesh);
+  check_interrupt(result.interrupted);
+  if (wants_cells(options)) {
+    bar.update("tetrahedra", 0.97);
+    StageTimers::Scope scope(pipeline.timers(), "tetrahedra");
+    result.cells = fill_with_tetrahedra(result.mesh, edge_length(settings, input.spacing),
+                                        result.interrupted ? nullptr : &interrupt_flag());
+    result.cell_quality = cell_quality(*result.cells, volume.materials());
+  }
+  return result;
+}
+
+void warn_of_flaws(const MeshOptions& options, const MeshInput& input, const MeshResult& result) {
+  for (std::size_t m = 1; m < result.topology.materials.size(); ++m) {
+    const MaterialTopology& material = result.topology.materials[m];
+    if (material.facets == 0)
+      warn(options.common, fmt::format("label {} has no surface: it is lost", input.labels[m]));
+    else if (!material.closed)
+      warn(options.common, fmt::format("the surface of label {} is not closed", input.labels[m]));
+  }
+}
+
+void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
+  const auto started = std::chrono::steady_clock::now();
+  Session session = make_session(options, knob_options);
+  check_words(options, session);
+  const std::unique_ptr<Device> device = make_device(options.common.device, options.common.threads);
+  say(options.common, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));
+  const std::unique_ptr<MeshPipeline> pipeline = make_mesh_pipeline(*device);
+  pipeline->watch(&interrupt_flag());
+  Progress bar(options.common.quiet);
+  bar.update("read", 0);
+  MeshInput input;
+  const MeshVolume volume = read_input(options, session, pipeline->timers(), input);
+  choose_kernel(options, knob_options, volume.kind, session.settings);
+  if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
+  pipeline->parameters = session.settings.mesh;
+  show_progress(*pipeline, bar);
+
+  const MeshResult result = compute(options, session.settings, input, volume, *pipeline, bar);
+  bar.update("write", 0.99);
+  const std::vector<std::string> outputs =
+      write_mesh_outputs(options, session.settings, input, result, *pipeline, pipeline->timers());
+  bar.clear();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  if (!options.common.report.empty()) {
+    nlohmann::json report = report_frame("mesh", *device, pipeline->timers(), pipeline->peak_bytes());
+    add_mesh_report(report, input, session.settings, pipeline->info(), result);
+    report["seconds"] = seconds;
+    report["outputs"] = outputs;
+    write_text(options.common.report, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  }
+  warn_of_flaws(options, input, result);
+  say(options.common, mesh_summary(input, pipeline->info(), result, seconds));
+  for (const std::string& file : outputs) fmt::print("{}\n", file);
+  if (result.interrupted) throw Interrupted();
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& program, std::function<void()>& run) {
+  CLI::App* command = program.add_subcommand("mesh", "from a volume to a conformal mesh: surfaces, tetrahedra");
+  auto options = std::make_shared<MeshOptions>();
+  command->add_option("FILE", options->files, "a label or scalar volume, or one indicator volume per material");
+  command->add_option("--sample", options->sample, "a built-in volume; `nacre sample` lists them");
+  command->add_option("--detail", options->detail, "voxels along the sample's longest side (0: its own)")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--preset", options->preset, "source: the constants of the dissertation")
+      ->check(CLI::IsMember({"source"}));
+  command->add_flag("--labels", options->labels, "the values are labels, whatever they look like");
+  command->add_flag("--curvature", options->curvature, "bound the sizing field by curvature, too");
+  command->add_option("--out", options->out, "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu .msh");
+  command->add_flag("--per-material", options->per_material, "one closed surface per material: NAME_LABEL.ext");
+  command->add_option("--particles-out", options->particles_out, "write the particles as .vtp");
+  command->add_option("--image", options->image, "write a picture of the triangles as PNG");
+  command->add_option("--size", options->size, "WxH of the picture");
+  command->add_flag("--cut-away", options->cut_away, "picture: leave out the half nearer to the camera");
+  command->add_flag("--keep-on-interrupt", options->keep_on_interrupt,
+                    "Ctrl-C ends the particles early; the mesh is made of what there is");
+  add_common_options(*command, options->common);
+  auto knob_options = std::make_shared<KnobOptions>(*command, "mesh");
+  command->callback(
+      [&run, options, knob_options] { run = [options, knob_options] { run_mesh(*options, *knob_options); }; });
+}
+
+}  // namespace nacre

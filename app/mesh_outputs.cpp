@@ -1,0 +1,156 @@
+// Nacre: the files that `nacre mesh` writes.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "app/mesh_run.hpp"
+#include "app/picture_words.hpp"
+#include "compute/raycast/mesh_picture.hpp"
+#include "engine/io/mesh_writer.hpp"
+#include "engine/io/vtp_writer.hpp"
+#include "engine/picture/legend.hpp"
+#include "engine/picture/oklab.hpp"
+#include "engine/picture/png.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string extension_of(const std::string& file) {
+  std::string extension = fs::path(file).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+bool has(const std::vector<std::string>& list, const std::string& one) {
+  return std::find(list.begin(), list.end(), one) != list.end();
+}
+
+/// Hours of work must not end at a folder that is not there.
+void check_folder(const std::string& file) {
+  if (file.empty()) return;
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) throw Error("cannot write " + file, "there is no folder " + folder.string());
+  if (fs::is_directory(file, error)) throw Error("cannot write " + file, "it is a folder");
+}
+
+void write_particles(const std::string& file, const MeshParticles& particles) {
+  const std::size_t n = particles.points.size();
+  std::vector<PointArray> arrays{{"size", 1, particles.size},
+                                 {"energy", 1, particles.energy},
+                                 {"order", 1, std::vector<float>(particles.order.begin(), particles.order.end())},
+                                 {"normal", 3, std::vector<float>(3 * n)}};
+  for (std::size_t i = 0; i < n; ++i)
+    for (int k = 0; k < 3; ++k) arrays[3].values[3 * i + k] = particles.normal[i][k];
+  write_vtp(file, std::span<const Vec3d>(particles.points), {}, arrays);
+}
+
+/// A colour of its own for each material: hues a golden angle apart, of one lightness.
+Color material_colour(int material) {
+  const float hue = 0.6f + 2.3999632f * float(material), chroma = 0.11f;
+  Color rgb = linear_from_oklab({0.74f, chroma * std::cos(hue), chroma * std::sin(hue)});
+  for (float& c : rgb) c = srgb_from_linear(std::clamp(c, 0.0f, 1.0f));
+  return rgb;
+}
+
+/// Facets to the outside have their material's colour, those between two materials a lighter mixture.
+Color pair_colour(const std::array<std::uint16_t, 2>& pair) {
+  const Color b = material_colour(pair[1]);
+  if (pair[0] == 0) return b;
+  const Color a = material_colour(pair[0]);
+  Color mixed;
+  for (int k = 0; k < 3; ++k) mixed[k] = 0.35f + 0.65f * 0.5f * (a[k] + b[k]);
+  return mixed;
+}
+
+Image draw_mesh(const SurfaceMesh& mesh, const Settings& settings, bool cut_away) {
+  MeshPictureOptions options;
+  options.camera = read_camera(settings, mesh.points);
+  options.width = settings.width;
+  options.height = settings.height;
+  options.samples = settings.samples;
+  options.transparent = settings.background == "transparent";
+  if (!options.transparent) options.background = parse_color(settings.background);
+  Vec3d low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  for (const Vec3d& p : mesh.points) low = min(low, p), high = max(high, p);
+  const Vec3d middle = (low + high) * 0.5, forward = options.camera.forward();
+  std::vector<Triangle> triangles;
+  std::vector<Color> colours;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    const Vec3d centre = (mesh.points[triangle.a] + mesh.points[triangle.b] + mesh.points[triangle.c]) / 3.0;
+    if (cut_away && dot(centre - middle, forward) < 0) continue;
+    triangles.push_back(triangle);
+    colours.push_back(pair_colour(mesh.materials[t]));
+  }
+  Image image;
+  image.width = settings.width;
+  image.height = settings.height;
+  image.pixels = mesh_picture(mesh.points, triangles, colours, options);
+  if (settings.legend)
+    draw_orientation(image, Vec3f(options.camera.right()), Vec3f(cross(options.camera.right(), forward)),
+                     Vec3f(forward));
+  return image;
+}
+
+}  // namespace
+
+bool wants_cells(const MeshOptions& options) { return has(tetrahedral_mesh_extensions(), extension_of(options.out)); }
+
+void check_mesh_outputs(const MeshOptions& options) {
+  if (!options.out.empty()) {
+    std::vector<std::string> known = surface_mesh_extensions();
+    for (const std::string& extension : tetrahedral_mesh_extensions())
+      if (!has(known, extension)) known.push_back(extension);
+    if (!has(known, extension_of(options.out)))
+      throw UsageError(fmt::format("cannot write {}; use one of {}", options.out, fmt::join(known, " ")));
+    if (options.per_material && wants_cells(options))
+      throw UsageError("--per-material writes surfaces; use one of .vtp .ply .stl .obj .off");
+  } else if (options.per_material) {
+    throw UsageError("--per-material needs --out FILE");
+  }
+  if (!options.particles_out.empty() && extension_of(options.particles_out) != ".vtp")
+    throw UsageError(fmt::format("--particles-out takes a .vtp file, not '{}'", options.particles_out));
+  for (const std::string& file : {options.out, options.particles_out, options.image, options.common.report})
+    check_folder(file);
+}
+
+std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Settings& settings,
+                                            const MeshInput& input, const MeshResult& result,
+                                            const MeshPipeline& pipeline, StageTimers& timers) {
+  std::vector<std::string> files;
+  Image image;
+  if (!options.image.empty()) {
+    StageTimers::Scope scope(timers, "render");
+    image = draw_mesh(result.mesh, settings, options.cut_away);
+  }
+  StageTimers::Scope scope(timers, "write");
+  if (result.cells) {
+    write_tetrahedral_mesh(options.out, *result.cells, input.labels);
+    files.push_back(options.out);
+  } else if (options.per_material) {
+    for (const fs::path& file : write_material_surfaces(options.out, result.mesh, input.labels))
+      files.push_back(file.string());
+  } else if (!options.out.empty()) {
+    write_surface_mesh(options.out, result.mesh, input.labels);
+    files.push_back(options.out);
+  }
+  if (!options.particles_out.empty()) {
+    write_particles(options.particles_out, pipeline.particles());
+    files.push_back(options.particles_out);
+  }
+  if (!options.image.empty()) {
+    write_png(options.image, image);
+    files.push_back(options.image);
+  }
+  return files;
+}
+
+}  // namespace nacre

@@ -1,0 +1,184 @@
+// Nacre: the report of `nacre mesh`.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/mesh_run.hpp"
+#include "engine/scene/knobs.hpp"
+
+namespace nacre {
+namespace {
+
+using nlohmann::json;
+
+json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
+json vector_json(const Int3& v) { return {v.x, v.y, v.z}; }
+
+const char* kind_name(MeshVolume::Kind kind) {
+  switch (kind) {
+    case MeshVolume::Kind::labels: return "labels";
+    case MeshVolume::Kind::indicators: return "indicators";
+    case MeshVolume::Kind::scalar: return "scalar";
+  }
+  return "";
+}
+
+std::string name_of(const MeshInput& input, std::size_t material) {
+  return material < input.names.size() ? input.names[material] : "";
+}
+
+json input_json(const MeshInput& input) {
+  json materials = json::array();
+  for (std::size_t m = 1; m < input.labels.size(); ++m)
+    materials.push_back({{"label", input.labels[m]}, {"name", name_of(input, m)}, {"voxels", input.voxels[m]}});
+  json axes = json::array();
+  for (const Vec3d& axis : input.axes) axes.push_back(vector_json(axis));
+  return {{"name", input.name},
+          {"kind", kind_name(input.kind)},
+          {"dimensions", vector_json(input.dims)},
+          {"spacing", vector_json(input.spacing)},
+          {"origin", vector_json(input.origin)},
+          {"axes", axes},
+          {"outside", input.labels.empty() ? 0 : input.labels[0]},
+          {"materials", materials},
+          {"warnings", input.warnings}};
+}
+
+json fields_json(const MeshInfo& info) {
+  return {{"blocks", vector_json(info.blocks)},
+          {"bytes", info.field_bytes},
+          {"surfaces", info.surfaces},
+          {"curves", info.curves},
+          {"points", info.points},
+          {"crowded_points", info.crowded_points},
+          {"constrained_voxels", info.constrained_voxels},
+          {"smallest_size_voxels", info.smallest_size},
+          {"largest_size_voxels", info.largest_size},
+          {"expected_particles", info.expected_particles}};
+}
+
+json particles_json(const MeshInfo& info, bool interrupted) {
+  return {{"seeded", info.seeded},
+          {"final", info.final},
+          {"on_points", info.points_final},
+          {"on_curves", info.curves_final},
+          {"on_surfaces", info.surfaces_final},
+          {"iterations", info.iterations},
+          {"interrupted", interrupted},
+          {"energy", info.energy},
+          {"count", info.count}};
+}
+
+json angles_json(const TriangleQuality& q) {
+  return {{"min", q.angle_min}, {"mean_min", q.angle_mean_min}, {"max", q.angle_max}};
+}
+
+json ratio_json(const TriangleQuality& q) {
+  return {{"mean", q.radius_ratio_mean}, {"min", q.radius_ratio_min}, {"histogram", q.radius_ratio_histogram}};
+}
+
+json materials_json(const MeshInput& input, const TopologyReport& topology) {
+  json materials = json::array();
+  for (std::size_t m = 1; m < std::min(input.labels.size(), topology.materials.size()); ++m) {
+    const MaterialTopology& t = topology.materials[m];
+    materials.push_back({{"label", input.labels[m]},
+                         {"name", name_of(input, m)},
+                         {"euler", t.euler},
+                         {"closed", t.closed},
+                         {"volume", t.volume},
+                         {"components", t.components},
+                         {"vertices", t.vertices},
+                         {"triangles", t.facets}});
+  }
+  return materials;
+}
+
+json distance_json(const MeshResult& r) {
+  const SurfaceDistance& d = r.distance;
+  const double vertices = double(r.mesh.points.size()), facets = double(r.mesh.triangles.size());
+  return {{"mean", (d.vertex_mean * vertices + d.facet_mean * facets) / std::max(1.0, vertices + facets)},
+          {"max", std::max(d.vertex_max, d.facet_max)},
+          {"vertex_mean", d.vertex_mean},
+          {"vertex_max", d.vertex_max},
+          {"facet_mean", d.facet_mean},
+          {"facet_max", d.facet_max}};
+}
+
+json mesh_json(const MeshInput& input, const MeshResult& r) {
+  const TriangleQuality &all = r.quality.all, &away = r.quality.away_from_junctions;
+  return {{"vertices", r.topology.vertices},
+          {"triangles", r.topology.triangles},
+          {"components", r.topology.components},
+          {"boundary_edges", r.topology.boundary_edges},
+          {"nonmanifold_edges", r.topology.nonmanifold_edges},
+          {"junction_edges", r.topology.junction_edges},
+          {"pinched_edges", r.topology.pinched_edges},
+          {"nonmanifold_vertices", r.topology.nonmanifold_vertices},
+          {"pinched_vertices", r.topology.pinched_vertices},
+          {"inconsistent_edges", r.topology.inconsistent_edges},
+          {"duplicate_triangles", r.topology.duplicate_triangles},
+          {"degenerate_triangles", r.topology.degenerate_triangles},
+          {"sound", r.topology.sound()},
+          {"radius_ratio", ratio_json(all)},
+          {"angle_degrees", angles_json(all)},
+          {"share_under_25_degrees", all.share_under_25},
+          {"away_from_junctions",
+           {{"triangles", away.triangles},
+            {"radius_ratio", ratio_json(away)},
+            {"angle_degrees", angles_json(away)},
+            {"share_under_25_degrees", away.share_under_25}}},
+          {"surface_distance_voxels", distance_json(r)},
+          {"materials", materials_json(input, r.topology)}};
+}
+
+json cells_json(const MeshInput& input, const MeshResult& r) {
+  const CellQuality& q = r.cell_quality;
+  json materials = json::array();
+  for (std::size_t m = 1; m < std::min(input.labels.size(), q.volume.size()); ++m)
+    materials.push_back({{"label", input.labels[m]}, {"volume", q.volume[m]}});
+  return {{"vertices", r.cells->points.size()},
+          {"cells", q.cells},
+          {"inverted", q.inverted},
+          {"dihedral_degrees", {{"min", q.dihedral_min}, {"max", q.dihedral_max}, {"histogram", q.dihedral_histogram}}},
+          {"share_within_10_160_degrees", q.share_within_10_160},
+          {"materials", materials}};
+}
+
+}  // namespace
+
+void add_mesh_report(json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
+                     const MeshResult& result) {
+  report["input"] = input_json(input);
+  report["parameters"] = knob_values(settings);
+  report["embedding"] = {{"kind", "interfaces"}, {"cells", info.embedding_cells}, {"bytes", info.embedding_bytes}};
+  report["fields"] = fields_json(info);
+  report["particles"] = particles_json(info, result.interrupted);
+  report["mesh"] = mesh_json(input, result);
+  if (result.cells) report["tetrahedra"] = cells_json(input, result);
+}
+
+std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds) {
+  const TopologyReport& t = result.topology;
+  std::size_t open = 0, lost = 0;
+  for (std::size_t m = 1; m < t.materials.size(); ++m) {
+    lost += t.materials[m].facets == 0;
+    open += t.materials[m].facets > 0 && !t.materials[m].closed;
+  }
+  const std::size_t materials = input.labels.size() - 1;
+  std::string text = fmt::format(
+      "{} particles, {} triangles around {} material{}, {}\nradius ratio {:.3f} mean, {:.3f} min; {:.3f} voxels from "
+      "the "
+      "interface on average",
+      info.final, t.triangles, materials, materials == 1 ? "" : "s",
+      open > 0   ? fmt::format("{} not closed", open)
+      : lost > 0 ? fmt::format("{} lost", lost)
+                 : "all closed",
+      result.quality.all.radius_ratio_mean, result.quality.all.radius_ratio_min, result.distance.vertex_mean);
+  if (result.cells)
+    text += fmt::format("\n{} tetrahedra, dihedral angles {:.1f} to {:.1f} degrees, {:.2f}% within 10 to 160",
+                        result.cell_quality.cells, result.cell_quality.dihedral_min, result.cell_quality.dihedral_max,
+                        100 * result.cell_quality.share_within_10_160);
+  return text + fmt::format("\n{:.1f} s{}", seconds, result.interrupted ? ", interrupted: particles as they were" : "");
+}
+
+}  // namespace nacre

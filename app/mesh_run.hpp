@@ -1,0 +1,65 @@
+// Nacre: what a run of `nacre mesh` was asked for, and what came out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/common.hpp"
+#include "compute/meshing/quality.hpp"
+#include "compute/meshing/topology.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+#include "engine/scene/session.hpp"
+
+namespace nacre {
+
+struct MeshOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string sample, preset, size, out, particles_out, image;
+  int detail = 0;
+  bool labels = false, curvature = false, per_material = false, keep_on_interrupt = false, cut_away = false;
+};
+
+/// What the report says about the volume once the volume itself is gone.
+struct MeshInput {
+  std::string name;
+  MeshVolume::Kind kind = MeshVolume::Kind::labels;
+  Int3 dims{};
+  Vec3d spacing, origin;
+  std::array<Vec3d, 3> axes;
+  std::vector<std::int64_t> labels;  ///< per material; [0]: the outside's
+  std::vector<std::string> names;    ///< may be empty
+  std::vector<std::size_t> voxels;   ///< per material
+  std::vector<std::string> warnings;
+};
+
+struct MeshResult {
+  SurfaceMesh mesh;
+  TopologyReport topology;
+  SurfaceQuality quality;
+  SurfaceDistance distance;
+  std::optional<TetrahedralMesh> cells;
+  CellQuality cell_quality;
+  bool interrupted = false;  ///< the particles were stopped before they were done
+};
+
+/// The report's own part: input, parameters, embedding, fields, particles, mesh, tetrahedra.
+void add_mesh_report(nlohmann::json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
+                     const MeshResult& result);
+
+/// Some lines for people.
+std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds);
+
+/// Throws UsageError where a file's extension says nothing, Error where its folder is not there.
+void check_mesh_outputs(const MeshOptions& options);
+
+/// Is `--out` a file of tetrahedra?
+bool wants_cells(const MeshOptions& options);
+
+/// Writes what was asked for, in stages render and write; returns the files.
+std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Settings& settings,
+                                            const MeshInput& input, const MeshResult& result,
+                                            const MeshPipeline& pipeline, StageTimers& timers);
+
+}  // namespace nacre

@@ -1,0 +1,72 @@
+// Nacre: words about pictures.
+#include "app/picture_words.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/common.hpp"
+#include "compute/device/error.hpp"
+
+namespace nacre {
+namespace {
+
+bool is_camera_file(const Settings& settings) { return std::filesystem::path(settings.camera).extension() == ".json"; }
+
+}  // namespace
+
+std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option) {
+  const auto at = text.find(separator);
+  try {
+    std::size_t used_first = 0, used_second = 0;
+    const double first = std::stod(text, &used_first), second = std::stod(text.substr(at + 1), &used_second);
+    const bool whole = at != std::string::npos && used_first == at && used_second == text.size() - at - 1;
+    if (whole && std::isfinite(first) && std::isfinite(second)) return {first, second};
+  } catch (const std::logic_error&) {
+  }
+  throw UsageError(fmt::format("{} takes A{}B, not '{}'", option, separator, text));
+}
+
+std::array<float, 3> parse_color(const std::string& text) {
+  if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+    throw UsageError("--background takes #rrggbb or transparent, not '" + text + "'");
+  const int rgb = std::stoi(text.substr(1), nullptr, 16);
+  return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
+}
+
+void check_picture_words(const Settings& settings) {
+  checked_words([&] {
+    if (!is_camera_file(settings)) fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
+  });
+  if (settings.background != "transparent") parse_color(settings.background);
+}
+
+Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {
+  if (!is_camera_file(settings)) return fit_camera(settings.camera, corners, settings.width, settings.height);
+  std::ifstream stream(settings.camera);
+  if (!stream) throw Error("cannot read camera " + settings.camera);
+  try {
+    const nlohmann::json json = nlohmann::json::parse(stream);
+    const auto vec = [&](const char* key) {
+      const auto v = json.at(key).get<std::array<double, 3>>();
+      return Vec3d(v[0], v[1], v[2]);
+    };
+    Camera camera = fit_camera("iso", corners, settings.width, settings.height);
+    camera.eye = vec("eye");
+    camera.target = vec("target");
+    camera.up = json.contains("up") ? vec("up") : Vec3d(0, 0, 1);
+    camera.height = json.value("height", camera.height);
+    camera.orthographic = json.value("orthographic", false);
+    if (!(length(camera.target - camera.eye) > 0) || !(length(camera.up) > 0) || !(camera.height > 0))
+      throw Error(settings.camera + " is no camera", "eye and target must differ, up and height be above zero");
+    return camera;
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(settings.camera + " is no camera", error.what(),
+                R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
+  }
+}
+
+}  // namespace nacre

@@ -1,0 +1,26 @@
+// Nacre: words about pictures that several commands take: colour, size, camera.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "compute/raycast/camera.hpp"
+#include "engine/scene/settings.hpp"
+
+namespace nacre {
+
+/// "A<separator>B", two finite numbers; throws UsageError that names `option`.
+std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option);
+
+/// "#rrggbb" as 0..1. Throws UsageError.
+std::array<float, 3> parse_color(const std::string& text);
+
+/// Throws UsageError where `camera` or `background` mean nothing; a camera file is not looked into.
+void check_picture_words(const Settings& settings);
+
+/// The camera of the settings: a view that sees all `corners`, or what its JSON file says. Throws Error.
+Camera read_camera(const Settings& settings, std::span<const Vec3d> corners);
+
+}  // namespace nacre

@@ -1,0 +1,294 @@
+// Nacre: finds all interfaces of a volume's materials and embeds their closest points (sec. 4.1.1).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "compute/device/executor.hpp"
+#include "compute/embedding/find_junctions.hpp"
+#include "compute/embedding/interface_grid.hpp"
+#include "compute/field/sizing.hpp"
+
+namespace nacre {
+
+/// The interfaces of a volume and their embedding, in permanent memory.
+struct InterfaceGrid {
+  Int3 coarse{};
+  float cells_per_voxel = 2;
+  std::vector<Junction> junctions;  ///< by number: surfaces and curves; ascending, surfaces and curves mixed
+  Array<Junction> junction;         ///< the same on the device
+  std::vector<Float4> points;       ///< junction points: place in voxels, sizing field
+  std::vector<Junction> point_junction;
+  std::int64_t bricks = 0;
+  Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
+  Array<Float4> offset, direction;
+
+  InterfaceGridView view() const {
+    return {coarse, cells_per_voxel, brick_start.data(), brick_interface.data(), offset.data(), direction.data()};
+  }
+  std::int64_t cells() const { return bricks * 64; }
+  std::int64_t bytes() const {
+    return std::int64_t(brick_start.bytes() + brick_interface.bytes() + brick_coarse.bytes() + offset.bytes() +
+                        direction.bytes());
+  }
+};
+
+namespace detail {
+
+/// Keys (coarse cell << 24 | interface) of the bricks that the stencils of an interface's particles can meet: those within
+/// 3 cells of a cell that it passes through.
+struct BricksAround {
+  const FoundJunction* found;
+  const Junction* table;
+  std::uint32_t table_size;
+  Int3 coarse;
+
+  template <class Visit>
+  NACRE_HD void operator()(std::int64_t i, const Visit& visit) const {
+    const FoundJunction f = found[i];
+    if (f.junction.order() == 0) return;
+    const std::uint64_t interface = number_of(f.junction);
+    const Int3 c{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
+    for (int z = f.low(2) < 3 ? -1 : 0; z <= (f.high(2) > 0 ? 1 : 0); ++z)
+      for (int y = f.low(1) < 3 ? -1 : 0; y <= (f.high(1) > 0 ? 1 : 0); ++y)
+        for (int x = f.low(0) < 3 ? -1 : 0; x <= (f.high(0) > 0 ? 1 : 0); ++x) {
+          const Int3 d = c + Int3(x, y, z);
+          if (unsigned(d.x) < unsigned(coarse.x) && unsigned(d.y) < unsigned(coarse.y) &&
+              unsigned(d.z) < unsigned(coarse.z))
+            visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);
+        }
+  }
+
+  NACRE_HD std::uint32_t number_of(const Junction& j) const {
+    std::uint32_t low = 0, high = table_size;
+    while (high - low > 1) {
+      const std::uint32_t middle = (low + high) / 2;
+      if (table[middle].packed <= j.packed)
+        low = middle;
+      else
+        high = middle;
+    }
+    return low;
+  }
+};
+
+struct CountBricks {
+  BricksAround around;
+  std::uint64_t* count;
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint64_t n = 0;
+    around(i, [&](std::uint64_t) { ++n; });
+    count[i] = n;
+  }
+};
+
+struct ListBricks {
+  BricksAround around;
+  const std::uint64_t* start;
+  std::uint64_t* keys;
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint64_t* to = keys + start[i];
+    around(i, [&](std::uint64_t key) { *to++ = key; });
+  }
+};
+
+struct NewKey {
+  const std::uint64_t* keys;
+  std::uint32_t* head;
+  NACRE_HD void operator()(std::int64_t i) const { head[i] = i == 0 || keys[i] != keys[i - 1] ? 1 : 0; }
+};
+
+struct UniqueBricks {
+  const std::uint64_t* keys;
+  const std::uint32_t* number;
+  std::uint32_t* interface;
+  std::uint32_t* coarse;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (i > 0 && keys[i] == keys[i - 1]) return;
+    interface[number[i]] = std::uint32_t(keys[i] & 0xffffff);
+    coarse[number[i]] = std::uint32_t(keys[i] >> 24);
+  }
+};
+
+/// First brick of each coarse cell, by bisection in the bricks' sorted cells.
+struct FirstBrick {
+  const std::uint32_t* brick_coarse;
+  std::uint32_t bricks;
+  std::uint32_t* start;
+  NACRE_HD void operator()(std::int64_t c) const {
+    std::uint32_t low = 0, high = bricks;
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      if (std::int64_t(brick_coarse[middle]) < c)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    start[c] = low;
+  }
+};
+
+/// Projects a cell's centre onto its brick's interface.
+struct EmbedInterface {
+  MaterialBricksView field;
+  DistanceFieldView distance;
+  SizingFieldView size;
+  const Junction* junction;
+  Int3 coarse;
+  float cells_per_voxel;
+  const std::uint32_t* brick_coarse;
+  const std::uint32_t* brick_interface;
+  Float4* offset;
+  Float4* direction;
+  std::uint8_t* found;  ///< per cell: whether the projection arrived
+
+  NACRE_HD Vec3f centre(std::int64_t i) const {
+    const std::uint32_t c = brick_coarse[i / 64];
+    const int k = int(i % 64);
+    const Int3 b{int(c % coarse.x), int(c / coarse.x % coarse.y), int(c / coarse.x / coarse.y)};
+    return cell_centre(b * Int3(4) + Int3(k % 4, k / 4 % 4, k / 16));
+  }
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Vec3f cell = centre(i), p = cell / cells_per_voxel;
+    const Junction j = junction[brick_interface[i / 64]];
+    offset[i] = {0, 0, 0, -4};
+    direction[i] = {0, 0, 0, 0};
+    found[i] = 0;
+    JunctionPoint at;
+    if (!field.inside(p, 3) || !first_guess(j, p, at)) return;
+    // From there to the closest point: along the tangent towards p and back onto the interface.
+    for (int k = 0; k < 2; ++k) {
+      const Vec3f r = p - at.p;
+      const Vec3f along =
+          j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
+      if (dot(along, along) < 1e-3f) break;
+      JunctionPoint better;
+      if (!project(field, j, at.p + along, 4, better, last_step) || dot(better.p - p, better.p - p) >= dot(r, r)) break;
+      at = better;
+    }
+    const Vec3f o = at.p * cells_per_voxel - cell;
+    offset[i] = {o.x, o.y, o.z, std::fmax(junction_margin(field, j, at.p, at.steepness), -4.0f)};
+    direction[i] = {at.direction.x, at.direction.y, at.direction.z, size(at.p)};
+    found[i] = 1;
+  }
+
+ private:
+  static constexpr float last_step = 0.03f;
+
+  /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
+  /// also for a surface farther away than the stencils around its points reach, two cells along each axis.
+  NACRE_HD bool first_guess(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
+    float away = 0;
+    const std::uint32_t q = j.order() == 2 ? distance.closest(p, away) : none;
+    if (q == none || !(distance.point[q].surface == j)) return project(field, j, p, 5 / cells_per_voxel, at, last_step);
+    const Float4 n = distance.point[q].normal;
+    const float reach = 2.6f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.5f;
+    if (away > reach) return false;
+    const Vec3f normal(n.x, n.y, n.z), on = distance.place(q), r = p - on;
+    Vec3f along = r - normal * dot(r, normal);
+    const float most = 2, size = length(along);
+    if (size > most) along *= most / size;
+    return project(field, j, on + along, 3, at, last_step) || project(field, j, p, 5 / cells_per_voxel, at, last_step);
+  }
+};
+
+/// A cell without a closest point takes that of the neighbour whose point is the nearest to it.
+struct BorrowClosestPoint {
+  InterfaceGridView grid;
+  EmbedInterface embed;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (embed.found[i]) return;
+    const InterfaceBricks bricks{grid, embed.brick_interface[i / 64]};
+    const Vec3f centre = embed.centre(i);
+    const Int3 cell = floor_cell(centre);
+    float least = 3e38f;
+    std::uint32_t best = none;
+    Vec3f best_offset;
+    for (int k = 0; k < 27; ++k) {
+      const Int3 c = cell + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      if (!bricks.inside(c)) continue;
+      const std::uint32_t b = bricks.brick(c.x >> 2, c.y >> 2, c.z >> 2);
+      if (b == none) continue;
+      const std::uint32_t at = b * 64 + ((c.z & 3) * 4 + (c.y & 3)) * 4 + (c.x & 3);
+      if (!embed.found[at]) continue;
+      const Float4 o = embed.offset[at];
+      const Vec3f from_here = cell_centre(c) + Vec3f(o.x, o.y, o.z) - centre;
+      if (dot(from_here, from_here) < least) least = dot(from_here, from_here), best = at, best_offset = from_here;
+    }
+    if (best == none) return;
+    embed.direction[i] = embed.direction[best];
+    embed.offset[i] = {best_offset.x, best_offset.y, best_offset.z, embed.offset[best].w};
+  }
+};
+
+}  // namespace detail
+
+/// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where there
+/// are none, or more than 65,000.
+template <class Backend>
+InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b, const DistanceField& distance,
+                               const SizingField& size, double cells_per_voxel) {
+  Arena& arena = exec.arena();
+  InterfaceGrid grid;
+  grid.cells_per_voxel = float(cells_per_voxel);
+  const Int3 n = b.blocks * Int3(block_size);
+  for (int axis = 0; axis < 3; ++axis)
+    grid.coarse[axis] =
+        int(std::ceil(double(n[axis]) / b.cells_per_unit[axis] * cells_per_voxel / InterfaceGridView::sub));
+  const std::int64_t coarse = std::int64_t(grid.coarse.x) * grid.coarse.y * grid.coarse.z;
+  grid.brick_start = arena.permanent<std::uint32_t>(coarse + 1);
+  std::uint64_t total = 0;
+  Array<std::uint64_t> keys;
+  Arena::Scope scope(arena);
+  const JunctionSearch search = find_junctions(exec, b, grid.coarse, grid.cells_per_voxel);
+  if (search.table.empty()) throw Error("no interface in the volume", "it holds one material only");
+  if (search.table.size() > 65000)
+    throw Error("too many interfaces", std::to_string(search.table.size()) + " pairs and triples of materials meet",
+                "merge materials with --merge or keep fewer with --materials");
+  grid.junctions = search.table;
+  grid.junction = arena.permanent_copy<Junction>(search.table);
+  const detail::BricksAround around{search.found.data(), grid.junction.data(), std::uint32_t(search.table.size()),
+                                    grid.coarse};
+  {
+    Array<std::uint64_t> start = arena.temporary<std::uint64_t>(search.found.size());
+    exec.for_each(search.count, detail::CountBricks{around, start.data()});
+    total = exec.exclusive_scan(start.data(), start.data(), search.count);
+    keys = arena.temporary<std::uint64_t>(total);
+    exec.for_each(search.count, detail::ListBricks{around, start.data(), keys.data()});
+  }
+  exec.sort(keys.data(), total);
+  Array<std::uint32_t> number = arena.temporary<std::uint32_t>(total);
+  exec.for_each(total, detail::NewKey{keys.data(), number.data()});
+  grid.bricks = exec.exclusive_scan(number.data(), number.data(), total);
+  if (grid.bricks >= std::int64_t(1) << 26)
+    throw Error("embedding too large", "more than 2^26 bricks", "lower --mesh-subcells");
+  grid.brick_interface = arena.permanent<std::uint32_t>(grid.bricks);
+  grid.brick_coarse = arena.permanent<std::uint32_t>(grid.bricks);
+  exec.for_each(
+      total, detail::UniqueBricks{keys.data(), number.data(), grid.brick_interface.data(), grid.brick_coarse.data()});
+  exec.for_each(coarse + 1,
+                detail::FirstBrick{grid.brick_coarse.data(), std::uint32_t(grid.bricks), grid.brick_start.data()});
+  grid.offset = arena.permanent<Float4>(grid.cells());
+  grid.direction = arena.permanent<Float4>(grid.cells());
+  Array<std::uint8_t> found = arena.temporary<std::uint8_t>(grid.cells());
+  const detail::EmbedInterface embed{b.view(),
+                                     distance.view(),
+                                     size.view(),
+                                     grid.junction.data(),
+                                     grid.coarse,
+                                     grid.cells_per_voxel,
+                                     grid.brick_coarse.data(),
+                                     grid.brick_interface.data(),
+                                     grid.offset.data(),
+                                     grid.direction.data(),
+                                     found.data()};
+  exec.for_each(grid.cells(), embed);
+  exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});
+  junction_points(exec, b, size, search, grid.coarse, grid.cells_per_voxel, grid.points, grid.point_junction);
+  return grid;
+}
+
+}  // namespace nacre

@@ -1,0 +1,315 @@
+// Nacre: which materials meet where: surfaces of two, curves of three, points of four (sec. 3.6).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "compute/device/executor.hpp"
+#include "compute/field/interface.hpp"
+#include "compute/field/sizing.hpp"
+
+namespace nacre {
+
+/// A junction that passes through some of the 4^3 cells of a coarse cell.
+struct FoundJunction {
+  Junction junction;
+  std::uint32_t coarse = 0;
+  std::uint32_t window = 0;  ///< lowest and highest of the cells, two bits each
+
+  NACRE_HD int low(int axis) const { return int(window >> 2 * axis) & 3; }
+  NACRE_HD int high(int axis) const { return int(window >> (6 + 2 * axis)) & 3; }
+};
+
+/// All that were found, in temporary memory of the caller's scope, and the surfaces and curves among them in order.
+struct JunctionSearch {
+  Array<FoundJunction> found;
+  std::int64_t count = 0;
+  std::vector<Junction> table;
+};
+
+namespace detail {
+
+/// The junctions of one coarse cell: no more than this many different ones are told apart.
+struct CellJunctions {
+  static constexpr int capacity = 64;
+  Junction junction[capacity];
+  std::uint32_t window[capacity];
+  int count = 0;
+
+  NACRE_HD void add(const Junction& j, const Int3& cell) {
+    int k = 0;
+    while (k < count && !(junction[k] == j)) ++k;
+    if (k == count) {
+      if (count == capacity) return;
+      junction[count++] = j;
+      window[k] = pack(cell, cell);
+      return;
+    }
+    Int3 low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int a = int(window[k] >> 2 * axis) & 3, b = int(window[k] >> (6 + 2 * axis)) & 3;
+      low[axis] = a < cell[axis] ? a : cell[axis];
+      high[axis] = b > cell[axis] ? b : cell[axis];
+    }
+    window[k] = pack(low, high);
+  }
+
+ private:
+  NACRE_HD static std::uint32_t pack(const Int3& low, const Int3& high) {
+    return std::uint32_t(low.x | low.y << 2 | low.z << 4 | high.x << 6 | high.y << 8 | high.z << 10);
+  }
+};
+
+/// Looks into the cells of a coarse cell, at samples no farther apart than the voxels.
+struct SearchCoarseCell {
+  MaterialBricksView field;
+  Int3 coarse;
+  float cells_per_voxel;
+  int samples;  ///< per coarse cell and axis
+
+  SearchCoarseCell(const MaterialBricksView& f, const Int3& c, float cells)
+      : field(f), coarse(c), cells_per_voxel(cells), samples(cells >= 1 ? 4 : int(std::ceil(4 / cells))) {}
+
+  NACRE_HD void operator()(std::int64_t c, CellJunctions& result) const {
+    const Int3 b{int(c % coarse.x), int(c / coarse.x % coarse.y), int(c / coarse.x / coarse.y)};
+    if (!mixed(b)) return;
+    for (int z = 0; z < samples; ++z)
+      for (int y = 0; y < samples; ++y)
+        for (int x = 0; x < samples; ++x) {
+          const Vec3f place = Vec3f(b * Int3(4)) + Vec3f(x + 0.5f, y + 0.5f, z + 0.5f) * (4.0f / float(samples));
+          search(place / cells_per_voxel, {4 * x / samples, 4 * y / samples, 4 * z / samples}, result);
+        }
+  }
+
+ private:
+  static constexpr int most = 8;
+  NACRE_HD float spacing() const { return 4 / (cells_per_voxel * float(samples)); }
+
+  NACRE_HD Int3 voxel(const Vec3f& p) const {
+    const Vec3f u = p * field.cells_per_unit - Vec3f(0.5f);
+    return {int(std::floor(u.x)), int(std::floor(u.y)), int(std::floor(u.z))};
+  }
+
+  /// Whether the voxels around a coarse cell are of more than one material.
+  NACRE_HD bool mixed(const Int3& b) const {
+    const Int3 n = field.voxels();
+    const Int3 low = max(voxel(Vec3f(b * Int3(4)) / cells_per_voxel), Int3(0));
+    const Int3 high = min(voxel(Vec3f((b + Int3(1)) * Int3(4)) / cells_per_voxel) + Int3(1), n - Int3(1));
+    if (low.x > high.x || low.y > high.y || low.z > high.z) return false;
+    const std::uint16_t own = field.voxel_material[field.voxel_number(low.x, low.y, low.z)];
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+          if (field.voxel_material[field.voxel_number(x, y, z)] != own) return true;
+    return false;
+  }
+
+  NACRE_HD void search(const Vec3f& p, const Int3& local, CellJunctions& result) const {
+    if (!field.inside(p, 3)) return;
+    std::uint32_t material[most];
+    int count = materials_around(p, material);
+    if (count < 2) return;
+    const CubicStencil stencil(field, p);
+    FieldSample f[most];
+    int top = 0;
+    for (int m = 0; m < count; ++m) {
+      f[m] = stencil.sample(field, material[m]);
+      if (f[m].value > f[top].value) top = m;
+    }
+    const float cell = spacing();
+    const FieldSample first = f[top];
+    int kept = 0;
+    for (int m = 0; m < count; ++m) {  // only those within reach of the one that is here
+      const float behind = first.value - f[m].value;
+      if (behind > 1.6f * cell * std::fmax(length(first.gradient - f[m].gradient), 1e-6f)) continue;
+      f[kept] = f[m];
+      material[kept++] = material[m];
+    }
+    for (int a = 0; a < kept; ++a)
+      for (int b = a + 1; b < kept; ++b) {
+        const FieldSample two[2] = {f[a], f[b]};
+        if (!passes(two, 2, first.value, 0.87f * cell)) continue;
+        result.add(Junction(material[a], material[b]), local);
+        for (int c = b + 1; c < kept; ++c) add_curve(p, f, material, a, b, c, kept, first.value, local, result);
+      }
+  }
+
+  NACRE_HD void add_curve(const Vec3f& p, const FieldSample* f, const std::uint32_t* material, int a, int b, int c,
+                          int kept, float highest, const Int3& local, CellJunctions& result) const {
+    const float cell = spacing();
+    const FieldSample three[3] = {f[a], f[b], f[c]};
+    const Junction curve(material[a], material[b], material[c]);
+    if (!passes(three, 3, highest, 1.2f * cell) || !exists(curve, p, 2 * cell)) return;
+    result.add(curve, local);
+    for (int d = c + 1; d < kept; ++d) {
+      const FieldSample four[4] = {f[a], f[b], f[c], f[d]};
+      const Junction point(material[a], material[b], material[c], material[d]);
+      if (passes(four, 4, highest, 1.5f * cell) && exists(point, p, 3 * cell)) result.add(point, local);
+    }
+  }
+
+  /// One Newton step reaches the junction, and its materials are nearly the highest.
+  NACRE_HD bool passes(const FieldSample* f, int count, float highest, float reach) const {
+    Vec3f step;
+    JunctionPoint at;
+    if (!junction_step(f, count, step, at) || !(dot(step, step) <= reach * reach)) return false;
+    for (int m = 0; m < count; ++m)
+      if (highest - f[m].value > 2 * reach * at.steepness) return false;
+    return true;
+  }
+
+  NACRE_HD bool exists(const Junction& j, const Vec3f& p, float reach) const {
+    JunctionPoint at;
+    return project(field, j, p, reach, at) && junction_margin(field, j, at.p, at.steepness) > -0.3f * spacing();
+  }
+
+  /// Materials around a point, ascending: of its eight voxels, and where those are of two or more and there are more in
+  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels.
+  NACRE_HD int materials_around(const Vec3f& p, std::uint32_t* material) const {
+    const Int3 low = voxel(p);
+    int count = 0;
+    collect(low, 2, material, count);
+    if (count < 2) return count;
+    const std::int64_t block = field.block_at(p);
+    if (field.block_start[block + 1] - field.block_start[block] > std::uint32_t(count))
+      collect(low - Int3(1), 4, material, count);
+    return count;
+  }
+
+  NACRE_HD void collect(const Int3& low, int width, std::uint32_t* material, int& count) const {
+    for (int z = low.z; z < low.z + width; ++z)
+      for (int y = low.y; y < low.y + width; ++y)
+        for (int x = low.x; x < low.x + width; ++x) {
+          const std::uint32_t m = field.voxel_material[field.voxel_number(x, y, z)];
+          int place = 0;
+          while (place < count && material[place] < m) ++place;
+          if ((place < count && material[place] == m) || count == most) continue;
+          for (int j = count; j > place; --j) material[j] = material[j - 1];
+          material[place] = m;
+          ++count;
+        }
+  }
+};
+
+struct CountJunctions {
+  SearchCoarseCell search;
+  std::uint32_t* count;
+  NACRE_HD void operator()(std::int64_t c) const {
+    CellJunctions junctions;
+    search(c, junctions);
+    count[c] = std::uint32_t(junctions.count);
+  }
+};
+
+struct ListJunctions {
+  SearchCoarseCell search;
+  const std::uint32_t* start;
+  FoundJunction* found;
+  std::uint64_t* packed;
+  NACRE_HD void operator()(std::int64_t c) const {
+    CellJunctions junctions;
+    if (start[c] == start[c + 1]) return;
+    search(c, junctions);
+    for (int k = 0; k < junctions.count; ++k) {
+      found[start[c] + k] = {junctions.junction[k], std::uint32_t(c), junctions.window[k]};
+      packed[start[c] + k] = junctions.junction[k].packed;
+    }
+  }
+};
+
+struct FirstOfJunction {
+  const std::uint64_t* packed;
+  std::uint32_t* first;
+  NACRE_HD void operator()(std::int64_t i) const { first[i] = i == 0 || packed[i] != packed[i - 1] ? 1 : 0; }
+};
+
+struct ListFirst {
+  const std::uint64_t* packed;
+  const std::uint32_t* number;
+  Junction* table;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (i == 0 || packed[i] != packed[i - 1]) table[number[i]].packed = packed[i];
+  }
+};
+
+/// Junction points near the coarse cells in which one was found: place and size; size 0 where there is none.
+struct FindJunctionPoints {
+  MaterialBricksView field;
+  SizingFieldView size;
+  Int3 coarse;
+  float cells_per_voxel;
+  const FoundJunction* found;
+  Float4* point;
+  NACRE_HD void operator()(std::int64_t i) const {
+    point[i] = {0, 0, 0, 0};
+    const FoundJunction f = found[i];
+    if (f.junction.order() != 0) return;
+    const Int3 b{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
+    Vec3f middle;
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = b[axis] * 4 + 0.5f * float(f.low(axis) + f.high(axis) + 1);
+    JunctionPoint at;
+    if (!project(field, f.junction, middle / cells_per_voxel, cells_per_voxel < 1 ? 6 / cells_per_voxel : 6.0f, at))
+      return;
+    if (junction_margin(field, f.junction, at.p, at.steepness) < -0.1f) return;
+    point[i] = {at.p.x, at.p.y, at.p.z, size(at.p)};
+  }
+};
+
+}  // namespace detail
+
+/// Searches the cells along the interfaces. Temporary memory.
+template <class Backend>
+JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, const Int3& coarse,
+                              float cells_per_voxel) {
+  Arena& arena = exec.arena();
+  const std::int64_t cells = std::int64_t(coarse.x) * coarse.y * coarse.z;
+  if (cells >= std::int64_t(1) << 32)
+    throw Error("embedding too large", "more than 2^32 coarse cells", "lower --mesh-subcells");
+  const detail::SearchCoarseCell search{b.view(), coarse, cells_per_voxel};
+  JunctionSearch result;
+  Array<std::uint32_t> start = arena.temporary<std::uint32_t>(cells + 1);
+  start.fill_bytes(0);
+  exec.for_each(cells, detail::CountJunctions{search, start.data()});
+  result.count = exec.exclusive_scan(start.data(), start.data(), cells + 1);
+  result.found = arena.temporary<FoundJunction>(result.count);
+  Array<std::uint64_t> packed = arena.temporary<std::uint64_t>(result.count);
+  exec.for_each(cells, detail::ListJunctions{search, start.data(), result.found.data(), packed.data()});
+  exec.sort(packed.data(), result.count);
+  Array<std::uint32_t> number = arena.temporary<std::uint32_t>(result.count);
+  exec.for_each(result.count, detail::FirstOfJunction{packed.data(), number.data()});
+  const std::uint32_t different = exec.exclusive_scan(number.data(), number.data(), result.count);
+  Array<Junction> table = arena.temporary<Junction>(different);
+  exec.for_each(result.count, detail::ListFirst{packed.data(), number.data(), table.data()});
+  for (const Junction& j : table.download())
+    if (j.order() > 0) result.table.push_back(j);
+  return result;
+}
+
+/// The junction points. Where several lie within a third of h of each other, as where more than four materials meet, the
+/// first stands for all.
+template <class Backend>
+void junction_points(Executor<Backend>& exec, const MaterialBricks& b, const SizingField& size,
+                     const JunctionSearch& search, const Int3& coarse, float cells_per_voxel,
+                     std::vector<Float4>& points, std::vector<Junction>& junctions) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  Array<Float4> place = arena.temporary<Float4>(search.count);
+  exec.for_each(search.count, detail::FindJunctionPoints{b.view(), size.view(), coarse, cells_per_voxel,
+                                                         search.found.data(), place.data()});
+  const std::vector<Float4> all = place.download();
+  const std::vector<FoundJunction> found = search.found.download(0, search.count);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].w <= 0) continue;
+    bool known = false;
+    for (std::size_t k = points.size(); k-- > 0 && !known;) {
+      const Vec3f r(points[k].x - all[i].x, points[k].y - all[i].y, points[k].z - all[i].z);
+      known = dot(r, r) < 0.1f * all[i].w * all[i].w;
+    }
+    if (known) continue;
+    points.push_back(all[i]);
+    junctions.push_back(found[i].junction);
+  }
+}
+
+}  // namespace nacre

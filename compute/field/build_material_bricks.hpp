@@ -1,0 +1,290 @@
+// Nacre: which blocks of a volume need bricks of which materials, and the functions of indicator and scalar volumes.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "compute/device/executor.hpp"
+#include "compute/field/material_bricks.hpp"
+
+namespace nacre {
+
+/// A volume's bricks on a device. `brick_block` and `neighbour` serve what works on whole bricks.
+struct MaterialBricks {
+  Int3 dims{};    ///< voxels of the volume itself
+  Int3 blocks{};  ///< of the padded volume
+  Vec3f cells_per_unit{1, 1, 1};
+  CubicKernel kernel = CubicKernel::catmull_rom;
+  std::int64_t bricks = 0;  ///< the two constant ones included
+  Array<std::uint32_t> block_start;
+  Array<std::uint16_t> brick_material;
+  Array<std::uint32_t> brick_block;
+  Array<std::uint16_t> voxel_material;
+  Array<float> value;
+
+  MaterialBricksView view() const {
+    return {blocks,       cells_per_unit,       kernel, block_start.data(), brick_material.data(),
+            value.data(), voxel_material.data()};
+  }
+  std::int64_t block_count() const { return std::int64_t(blocks.x) * blocks.y * blocks.z; }
+  std::int64_t voxel_count() const { return block_count() * brick_voxels; }
+  std::int64_t bytes() const {
+    return std::int64_t(block_start.bytes() + brick_material.bytes() + brick_block.bytes() + voxel_material.bytes() +
+                        value.bytes());
+  }
+};
+
+/// Most materials within 4 voxels of one block.
+inline constexpr int max_block_materials = 64;
+
+namespace detail {
+
+/// Position of an element of the padded volume in the file's; outside of it material 0 begins.
+struct PaddedVolume {
+  Int3 dims, padded;
+  NACRE_HD Int3 voxel(std::int64_t i) const {
+    return Int3(int(i % padded.x), int(i / padded.x % padded.y), int(i / padded.x / padded.y)) - Int3(volume_padding);
+  }
+  NACRE_HD bool inside(const Int3& v) const {
+    return unsigned(v.x) < unsigned(dims.x) && unsigned(v.y) < unsigned(dims.y) && unsigned(v.z) < unsigned(dims.z);
+  }
+  NACRE_HD std::int64_t number(const Int3& v) const { return (std::int64_t(v.z) * dims.y + v.y) * dims.x + v.x; }
+  NACRE_HD std::int64_t nearest(Int3 v) const {
+    for (int axis = 0; axis < 3; ++axis) v[axis] = v[axis] < 0 ? 0 : v[axis] >= dims[axis] ? dims[axis] - 1 : v[axis];
+    return number(v);
+  }
+};
+
+struct PadMaterials {
+  PaddedVolume volume;
+  const std::uint16_t* from;
+  std::uint16_t* to;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Int3 v = volume.voxel(i);
+    to[i] = volume.inside(v) ? from[volume.number(v)] : 0;
+  }
+};
+
+/// The materials within 4 voxels of a block, ascending; calls visit(material) if there are two or more. Returns how many
+/// there are.
+struct BlockMaterials {
+  Int3 blocks;
+  const std::uint16_t* voxel_material;
+
+  template <class Visit>
+  NACRE_HD int operator()(std::int64_t block, const Visit& visit) const {
+    const int reach = 4;
+    const Int3 n = blocks * Int3(block_size);
+    const Int3 b{int(block % blocks.x), int(block / blocks.x % blocks.y), int(block / blocks.x / blocks.y)};
+    std::uint16_t found[max_block_materials];
+    int count = 0;
+    int last = -1;
+    for (int z = at_least(b.z * block_size - reach); z < at_most((b.z + 1) * block_size + reach, n.z); ++z)
+      for (int y = at_least(b.y * block_size - reach); y < at_most((b.y + 1) * block_size + reach, n.y); ++y) {
+        const std::uint16_t* line = voxel_material + (std::int64_t(z) * n.y + y) * n.x;
+        for (int x = at_least(b.x * block_size - reach); x < at_most((b.x + 1) * block_size + reach, n.x); ++x) {
+          if (line[x] == last) continue;
+          last = line[x];
+          int place = 0;
+          while (place < count && found[place] < last) ++place;
+          if (place < count && found[place] == last) continue;
+          if (count == max_block_materials) return max_block_materials + 1;
+          for (int k = count; k > place; --k) found[k] = found[k - 1];
+          found[place] = std::uint16_t(last);
+          ++count;
+        }
+      }
+    if (count > 1)
+      for (int k = 0; k < count; ++k) visit(found[k]);
+    return count;
+  }
+
+ private:
+  NACRE_HD static int at_least(int v) { return v < 0 ? 0 : v; }
+  NACRE_HD static int at_most(int v, int n) { return v < n ? v : n; }
+};
+
+struct CountBlockMaterials {
+  BlockMaterials materials;
+  std::uint32_t* count;
+  std::uint32_t* crowded;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const int n = materials(i, [](std::uint16_t) {});
+    if (n > max_block_materials) relaxed_store(crowded, 1);
+    count[i] = n > 1 ? std::uint32_t(n) : 0;
+  }
+};
+
+struct ListBlockMaterials {
+  BlockMaterials materials;
+  std::uint32_t* start;  ///< in: brick numbers without the constant ones
+  std::uint16_t* brick_material;
+  std::uint32_t* brick_block;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t first = start[i] + 2;
+    std::uint32_t at = first;
+    materials(i, [&](std::uint16_t m) {
+      brick_material[at] = m;
+      brick_block[at] = std::uint32_t(i);
+      ++at;
+    });
+    start[i] = first;
+  }
+};
+
+struct FillConstantBricks {
+  float* value;
+  float absent, present;
+  NACRE_HD void operator()(std::int64_t i) const { value[i] = i < brick_voxels ? absent : present; }
+};
+
+/// Where the value of a brick's voxel comes from.
+struct BrickVoxels {
+  PaddedVolume volume;
+  MaterialBricksView field;
+  const std::uint32_t* brick_block;
+
+  /// The voxel of the padded volume behind element i of the bricks after the constant ones.
+  NACRE_HD Int3 operator()(std::int64_t i) const {
+    const std::uint32_t block = brick_block[i / brick_voxels + 2];
+    const int k = int(i % brick_voxels);
+    const Int3 b{int(block % field.blocks.x), int(block / field.blocks.x % field.blocks.y),
+                 int(block / field.blocks.x / field.blocks.y)};
+    return b * Int3(block_size) + Int3(k % block_size, k / block_size % block_size, k / (block_size * block_size));
+  }
+};
+
+/// Fills in what comes from the values of material `from_material`. Beyond the volume's faces the outside and the winner
+/// of the nearest voxel change places, so that the face lies half a voxel outside of the last centres.
+struct FillIndicator {
+  BrickVoxels voxels;
+  const std::uint16_t* winner;  ///< per voxel of the file
+  const float* from;
+  std::uint32_t from_material;
+  float scale;
+  float* value;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint32_t material = voxels.field.brick_material[i / brick_voxels + 2];
+    const Int3 v = voxels(i) - Int3(volume_padding);
+    const std::int64_t at = voxels.volume.nearest(v);
+    if (!voxels.volume.inside(v)) material = material == 0 ? winner[at] : material == winner[at] ? 0 : material;
+    if (material == from_material) value[i + 2 * brick_voxels] = from[at] * scale;
+  }
+};
+
+/// Material m of a scalar volume lies between levels[m - 1] and levels[m].
+struct FillScalar {
+  BrickVoxels voxels;
+  const float* from;
+  const float* levels;
+  int level_count;
+  float scale;
+  float* value;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const int m = voxels.field.brick_material[i / brick_voxels + 2];
+    const Int3 v = voxels(i) - Int3(volume_padding);
+    float x = from[voxels.volume.nearest(v)];
+    if (!voxels.volume.inside(v)) x = levels[0] - std::fabs(x - levels[0]);
+    float f = 3e38f;
+    if (m > 0) f = x - levels[m - 1];
+    if (m < level_count) f = std::fmin(f, levels[m] - x);
+    value[i + 2 * brick_voxels] = f * scale;
+  }
+};
+
+struct NumberBricks {
+  std::int64_t blocks;
+  ListBlockMaterials list;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (i < blocks)
+      list(i);
+    else
+      list.start[blocks] += 2;
+  }
+};
+
+}  // namespace detail
+
+/// Lays out the bricks: blocks, lists of materials, voxels' materials; `value` is not filled yet. `material`: per voxel of
+/// the file. `kernel` and `spacing` (per axis, in units of the smallest) are kept. Throws Error where more than
+/// max_block_materials lie within 4 voxels of one block.
+template <class Backend>
+MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const Vec3d& spacing, CubicKernel kernel,
+                              std::span<const std::uint16_t> material) {
+  Arena& arena = exec.arena();
+  MaterialBricks b;
+  b.dims = dims;
+  for (int axis = 0; axis < 3; ++axis) b.blocks[axis] = (dims[axis] + 2 * volume_padding + block_size - 1) / block_size;
+  b.cells_per_unit = Vec3f(float(1 / spacing.x), float(1 / spacing.y), float(1 / spacing.z));
+  b.kernel = kernel;
+  const std::int64_t blocks = b.block_count();
+  if (b.voxel_count() >= std::int64_t(1) << 40) throw Error("volume too large", "more than 2^40 voxels", "crop it");
+  b.voxel_material = arena.permanent<std::uint16_t>(b.voxel_count());
+  b.block_start = arena.permanent<std::uint32_t>(blocks + 1);
+  Arena::Scope scope(arena);
+  {
+    Arena::Scope upload(arena);
+    Array<std::uint16_t> from = arena.temporary<std::uint16_t>(material.size());
+    from.upload(material);
+    exec.for_each(b.voxel_count(),
+                  detail::PadMaterials{{dims, b.blocks * Int3(block_size)}, from.data(), b.voxel_material.data()});
+  }
+  const detail::BlockMaterials materials{b.blocks, b.voxel_material.data()};
+  Array<std::uint32_t> crowded = arena.temporary<std::uint32_t>(1);
+  crowded.fill_bytes(0);
+  b.block_start.fill_bytes(0);
+  exec.for_each(blocks, detail::CountBlockMaterials{materials, b.block_start.data(), crowded.data()});
+  if (crowded.download()[0])
+    throw Error(
+        "too many materials in one place", "more than " + std::to_string(max_block_materials) + " within a few voxels",
+        "merge some with --merge, drop speckle with --min-component, or name the ones to keep with --materials");
+  const std::uint32_t total = exec.exclusive_scan(b.block_start.data(), b.block_start.data(), blocks + 1);
+  b.bricks = total + 2;
+  b.brick_material = arena.permanent<std::uint16_t>(b.bricks);
+  b.brick_block = arena.permanent<std::uint32_t>(b.bricks);
+  b.brick_material.fill_bytes(0xff);
+  b.brick_block.fill_bytes(0);
+  exec.for_each(
+      blocks + 1,
+      detail::NumberBricks{blocks, {materials, b.block_start.data(), b.brick_material.data(), b.brick_block.data()}});
+  b.value = arena.permanent<float>(std::size_t(b.bricks) * brick_voxels);
+  return b;
+}
+
+/// Values of indicator functions, one array per material, all divided by `scale`.
+template <class Backend>
+void fill_indicators(Executor<Backend>& exec, MaterialBricks& b, std::span<const std::uint16_t> material,
+                     std::span<const std::vector<float>> values, float scale) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  Array<std::uint16_t> winner = arena.temporary<std::uint16_t>(material.size());
+  winner.upload(material);
+  Array<float> from = arena.temporary<float>(material.size());
+  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 1});
+  const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
+  for (std::size_t m = 0; m < values.size(); ++m) {
+    from.upload(values[m]);
+    exec.for_each((b.bricks - 2) * brick_voxels, detail::FillIndicator{voxels, winner.data(), from.data(),
+                                                                       std::uint32_t(m), 1 / scale, b.value.data()});
+  }
+}
+
+/// Functions of the layers between the levels of a scalar volume, divided by `scale`.
+template <class Backend>
+void fill_scalar(Executor<Backend>& exec, MaterialBricks& b, std::span<const float> values,
+                 std::span<const float> levels, float scale) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  Array<float> from = arena.temporary<float>(values.size()), cuts = arena.temporary<float>(levels.size());
+  from.upload(values);
+  cuts.upload(levels);
+  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 1});
+  const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
+  exec.for_each((b.bricks - 2) * brick_voxels,
+                detail::FillScalar{voxels, from.data(), cuts.data(), int(levels.size()), 1 / scale, b.value.data()});
+}
+
+}  // namespace nacre

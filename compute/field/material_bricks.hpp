@@ -1,0 +1,208 @@
+// Nacre: the indicator functions of all materials in bricks of 8^3 voxels near the interfaces, and how they are read.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "compute/device/backend.hpp"
+#include "compute/field/cubic.hpp"
+#include "compute/grid/vec.hpp"
+
+namespace nacre {
+
+/// A function's value and gradient, per voxel (the smallest voxel edge).
+struct FieldSample {
+  float value = 0;
+  Vec3f gradient;
+};
+
+/// ... and its second derivatives.
+struct FieldCurvature : FieldSample {
+  float xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;
+};
+
+inline constexpr int block_size = 8;  ///< voxels per block and axis
+inline constexpr int brick_voxels = block_size * block_size * block_size;
+inline constexpr int volume_padding = 8;  ///< voxels of outside around the volume
+
+/// Material m's indicator function f_m: material i is where f_i is the largest (sec. 3.6, with > for the misprinted <).
+/// A block lists those materials that occur within 4 voxels of it, if there are two or more, and has a brick of values for
+/// each. Two bricks serve all others: number 0 holds the value of a material that is absent, 1 of one that fills a block.
+/// Points are in voxels, isotropic: the smallest spacing is 1; voxel (i, j, k) of the padded volume has its centre at
+/// ((i, j, k) + 0.5) / cells_per_unit.
+struct MaterialBricksView {
+  Int3 blocks{};
+  Vec3f cells_per_unit{1, 1, 1};  ///< at most 1, per axis
+  CubicKernel kernel = CubicKernel::catmull_rom;
+  const std::uint32_t* block_start = nullptr;     ///< per block, and one more: where its bricks begin
+  const std::uint16_t* brick_material = nullptr;  ///< ascending within a block
+  const float* value = nullptr;                   ///< brick_voxels per brick, x fastest
+  const std::uint16_t* voxel_material = nullptr;  ///< per voxel of all blocks, x fastest
+
+  NACRE_HD Int3 voxels() const { return blocks * Int3(block_size); }
+  NACRE_HD std::int64_t block_number(int x, int y, int z) const {
+    return (std::int64_t(z) * blocks.y + y) * blocks.x + x;
+  }
+  NACRE_HD std::int64_t voxel_number(int x, int y, int z) const {
+    return (std::int64_t(z) * blocks.y * block_size + y) * blocks.x * block_size + x;
+  }
+
+  /// The brick that holds `material` in a block.
+  NACRE_HD std::uint32_t brick(std::int64_t block, std::uint32_t material) const {
+    const std::uint32_t first = block_start[block], last = block_start[block + 1];
+    for (std::uint32_t k = first; k < last; ++k)
+      if (brick_material[k] == material) return k;
+    if (first != last) return 0;
+    const int bx = int(block % blocks.x), by = int(block / blocks.x % blocks.y), bz = int(block / blocks.x / blocks.y);
+    return voxel_material[voxel_number(bx * block_size, by * block_size, bz * block_size)] == material ? 1 : 0;
+  }
+
+  /// The block of a point that is inside of the volume.
+  NACRE_HD std::int64_t block_at(const Vec3f& p) const {
+    const Vec3f u = p * cells_per_unit;
+    return block_number(int(u.x) / block_size, int(u.y) / block_size, int(u.z) / block_size);
+  }
+
+  NACRE_HD bool inside(const Vec3f& p, float margin) const {
+    const Vec3f u = p * cells_per_unit;
+    const Int3 n = voxels();
+    return u.x >= margin && u.y >= margin && u.z >= margin && u.x < n.x - margin && u.y < n.y - margin &&
+           u.z < n.z - margin;
+  }
+};
+
+/// The 4^3 voxels around a point: found once, then read for as many materials as needed.
+class CubicStencil {
+ public:
+  /// `p` at least two voxels inside of the padded volume.
+  NACRE_HD CubicStencil(const MaterialBricksView& field, const Vec3f& p)
+      : CubicStencil(field, p * field.cells_per_unit - Vec3f(0.5f), 0) {}
+
+  NACRE_HD FieldSample sample(const MaterialBricksView& field, std::uint32_t material) const {
+    Rows rows(*this, field, material);
+    Lanes v = lanes(0, 0, 0), dy = v, dz = v;
+    for (int c = 0; c < 4; ++c) {
+      Lanes line = lanes(0, 0, 0), slope = line;
+      for (int b = 0; b < 4; ++b) {
+        const Lanes r = rows(b, c);
+        line = line + r * wy_[b];
+        slope = slope + r * sy_[b];
+      }
+      v = v + line * wz_[c];
+      dy = dy + slope * wz_[c];
+      dz = dz + line * sz_[c];
+    }
+    return {sum(v * x_.value), Vec3f(sum(v * x_.slope), sum(dy * x_.value), sum(dz * x_.value)) * field.cells_per_unit};
+  }
+
+  NACRE_HD float value(const MaterialBricksView& field, std::uint32_t material) const {
+    Rows rows(*this, field, material);
+    Lanes v = lanes(0, 0, 0);
+    for (int c = 0; c < 4; ++c)
+      for (int b = 0; b < 4; ++b) v = v + rows(b, c) * (wy_[b] * wz_[c]);
+    return sum(v * x_.value);
+  }
+
+  NACRE_HD FieldCurvature curvature(const MaterialBricksView& field, std::uint32_t material) const {
+    Rows rows(*this, field, material);
+    Lanes v = lanes(0, 0, 0), dy = v, dz = v, dyy = v, dzz = v, dyz = v;
+    for (int c = 0; c < 4; ++c)
+      for (int b = 0; b < 4; ++b) {
+        const Lanes r = rows(b, c);
+        v = v + r * (wy_[b] * wz_[c]);
+        dy = dy + r * (sy_[b] * wz_[c]);
+        dz = dz + r * (wy_[b] * sz_[c]);
+        dyy = dyy + r * (cy_[b] * wz_[c]);
+        dyz = dyz + r * (sy_[b] * sz_[c]);
+        dzz = dzz + r * (wy_[b] * cz_[c]);
+      }
+    const Vec3f s = field.cells_per_unit;
+    FieldCurvature result;
+    result.value = sum(v * x_.value);
+    result.gradient = Vec3f(sum(v * x_.slope), sum(dy * x_.value), sum(dz * x_.value)) * s;
+    result.xx = sum(v * x_.curve) * s.x * s.x;
+    result.yy = sum(dyy * x_.value) * s.y * s.y;
+    result.zz = sum(dzz * x_.value) * s.z * s.z;
+    result.xy = sum(dy * x_.slope) * s.x * s.y;
+    result.yz = sum(dyz * x_.value) * s.y * s.z;
+    result.zx = sum(dz * x_.slope) * s.z * s.x;
+    return result;
+  }
+
+ private:
+  NACRE_HD CubicStencil(const MaterialBricksView& field, const Vec3f& u, int)
+      : first_{int(std::floor(u.x)) - 1, int(std::floor(u.y)) - 1, int(std::floor(u.z)) - 1},
+        x_(field.kernel, u.x - float(first_.x + 1)) {
+    const CubicWeights y(field.kernel, u.y - float(first_.y + 1)), z(field.kernel, u.z - float(first_.z + 1));
+    put(y, wy_, sy_, cy_);
+    put(z, wz_, sz_, cz_);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int block = first_[axis] / block_size;
+      local_[axis] = first_[axis] - block * block_size;
+      split_[axis] = block_size - local_[axis];
+      first_[axis] = block;
+    }
+  }
+
+  NACRE_HD static void put(const CubicWeights& from, float* value, float* slope, float* curve) {
+    store4(from.value, value);
+    store4(from.slope, slope);
+    store4(from.curve, curve);
+  }
+  NACRE_HD static void store4(Lanes from, float* to) {
+    const Float4 f = store(from);
+    to[0] = f.x, to[1] = f.y, to[2] = f.z, to[3] = f.w;
+  }
+
+  /// The stencil's rows of one material, wherever its up to eight bricks lie.
+  class Rows {
+   public:
+    NACRE_HD Rows(const CubicStencil& stencil, const MaterialBricksView& field, std::uint32_t material) : at_(stencil) {
+      for (int z = 0; z < (at_.split_[2] < 4 ? 2 : 1); ++z)
+        for (int y = 0; y < (at_.split_[1] < 4 ? 2 : 1); ++y)
+          for (int x = 0; x < (at_.split_[0] < 4 ? 2 : 1); ++x)
+            base_[z][y][x] =
+                field.value +
+                std::size_t(brick_voxels) *
+                    field.brick(field.block_number(at_.first_.x + x, at_.first_.y + y, at_.first_.z + z), material);
+    }
+
+    NACRE_HD_INLINE Lanes operator()(int b, int c) const {
+      const int hy = b >= at_.split_[1], hz = c >= at_.split_[2];
+      const int y = at_.local_[1] + b - hy * block_size, z = at_.local_[2] + c - hz * block_size;
+      const int line = (z * block_size + y) * block_size;
+      const float* lower = base_[hz][hy][0] + line + at_.local_[0];
+      if (at_.split_[0] >= 4) return lanes(lower[0], lower[1], lower[2], lower[3]);
+      const float* upper = base_[hz][hy][1] + line - at_.split_[0];
+      return lanes(lower[0], (1 < at_.split_[0] ? lower : upper)[1], (2 < at_.split_[0] ? lower : upper)[2], upper[3]);
+    }
+
+   private:
+    const CubicStencil& at_;
+    const float* base_[2][2][2];
+  };
+
+  Int3 first_;  ///< after construction: the lowest block
+  CubicWeights x_;
+  float wy_[4], sy_[4], cy_[4], wz_[4], sz_[4], cz_[4];
+  int local_[3], split_[3];
+};
+
+/// The material of a point: the one whose function is the largest there; ties go to the lower number.
+NACRE_HD inline std::uint32_t material_at(const MaterialBricksView& field, const Vec3f& p) {
+  if (!field.inside(p, 2)) return 0;
+  const std::int64_t block = field.block_at(p);
+  const std::uint32_t first = field.block_start[block], last = field.block_start[block + 1];
+  const Vec3f u = p * field.cells_per_unit;
+  if (first == last) return field.voxel_material[field.voxel_number(int(u.x), int(u.y), int(u.z))];
+  const CubicStencil stencil(field, p);
+  std::uint32_t best = field.brick_material[first];
+  float most = stencil.value(field, best);
+  for (std::uint32_t k = first + 1; k < last; ++k) {
+    const float v = stencil.value(field, field.brick_material[k]);
+    if (v > most) most = v, best = field.brick_material[k];
+  }
+  return best;
+}
+
+}  // namespace nacre

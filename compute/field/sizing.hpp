@@ -1,0 +1,218 @@
+// Nacre: the sizing field: how far apart particles shall be (Meyer et al. 2007; source notes).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "compute/field/distance.hpp"
+
+namespace nacre {
+
+/// What shapes the field; lengths in voxels.
+struct SizingRule {
+  float epsilon = 0.5f, delta = 0.4f, min_size = 0.5f, max_size = 1;
+  bool curvature = false;
+
+  /// Whatever the smallest size says: where the medial ball or the radius of curvature is small, h stays below this share
+  /// of it, or thin things, small islands and sharp bends would have no particles to stand on; but not below `smallest` voxels.
+  static constexpr float resolve = 1.2f, smallest = 0.35f;
+
+  /// h where the medial ball and the radius of curvature are this large.
+  NACRE_HD float size(float feature, float bend) const {
+    const float least = std::fmin(feature, bend);
+    const float wanted = std::fmin(std::fmax(epsilon * (curvature ? least : feature), min_size), max_size);
+    return std::fmin(wanted, std::fmax(resolve * least, smallest));
+  }
+  /// Radius from which on a medial ball makes no difference.
+  float reach() const { return max_size / (min_size < max_size ? std::fmin(epsilon, resolve) : resolve); }
+};
+
+/// h at a point, trilinear between the centres of a lattice.
+struct SizingFieldView {
+  Lattice lattice;
+  const float* h = nullptr;
+
+  NACRE_HD_INLINE float operator()(const Vec3f& p) const {
+    int first[3];
+    float f[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const float u = p[axis] / lattice.spacing[axis] - 0.5f, most = float(lattice.cells[axis]) - 1.001f;
+      const float limited = u < 0 ? 0 : u > most ? most : u;
+      first[axis] = int(limited);
+      f[axis] = limited - float(first[axis]);
+    }
+    const std::int64_t row = lattice.cells.x, slab = row * lattice.cells.y;
+    const float* at = h + first[2] * slab + first[1] * row + first[0];
+    const auto line = [&](const float* a) { return a[0] + (a[1] - a[0]) * f[0]; };
+    const float low = line(at) + (line(at + row) - line(at)) * f[1];
+    const float high = line(at + slab) + (line(at + slab + row) - line(at + slab)) * f[1];
+    return low + (high - low) * f[2];
+  }
+};
+
+namespace detail {
+
+/// The medial axis by shrinking balls (Ma, Bae & Choi 2012): the largest ball that touches the interface at a point and
+/// holds no other interface point. Its radius is the distance to the medial axis along the normal; a ball that is stopped
+/// by points seen under less than 75 degrees from its centre goes on growing: noise and wide wedges make no medial axis.
+struct MedialRadius {
+  DistanceFieldView distance;
+  float most;       ///< no ball is larger
+  float tolerance;  ///< voxels
+
+  NACRE_HD float operator()(const Vec3f& p, const Vec3f& towards) const {
+    float r = most;
+    for (int k = 0; k < 16; ++k) {
+      const Vec3f centre = p + towards * r;
+      float d = 0;
+      const std::uint32_t q = distance.closest(centre, d);
+      if (q == none || d >= r - tolerance) return r;
+      const Float4 at = distance.point[q].place;
+      const Vec3f to_q = Vec3f(at.x, at.y, at.z) - p;
+      const float along = dot(to_q, towards), square = dot(to_q, to_q);
+      if (along <= 0.02f || square < 0.05f) return r;
+      const float smaller = square / (2 * along);
+      const Vec3f c = p + towards * smaller, from_c = Vec3f(at.x, at.y, at.z) - c;
+      if (dot(from_c, p - c) > 0.26f * smaller * smaller) return r;  // cos 75 degrees
+      if (smaller >= r - 1e-3f) return r;
+      r = smaller;
+    }
+    return r;
+  }
+};
+
+struct SizeAtInterface {
+  MedialRadius radius;
+  SizingRule rule;
+  float* at_point;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const InterfacePoint& q = radius.distance.point[i];
+    if (q.place.w < 0) {
+      at_point[i] = rule.max_size;
+      return;
+    }
+    const Vec3f p{q.place.x, q.place.y, q.place.z}, n{q.normal.x, q.normal.y, q.normal.z};
+    at_point[i] = rule.size(std::fmin(radius(p, n), radius(p, -n)), 1 / std::fmax(q.normal.w, 1e-3f));
+  }
+};
+
+/// h at a voxel: that of its closest interface point plus delta times the distance.
+struct SpreadSize {
+  DistanceFieldView distance;
+  SizingRule rule;
+  const float* at_point;
+  float* h;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t q = distance.nearest[i];
+    if (q == none) {
+      h[i] = rule.max_size;
+      return;
+    }
+    const Float4 at = distance.point[q].place;
+    h[i] = std::fmin(
+        rule.max_size,
+        at_point[q] + rule.delta * length(Vec3f(at.x, at.y, at.z) - distance.lattice.centre(distance.lattice.cell(i))));
+  }
+};
+
+/// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis.
+struct LimitSlope {
+  Lattice lattice;
+  float delta;
+  const float* from;
+  float* to;
+  std::uint32_t* changed;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Int3 v = lattice.cell(i);
+    const std::int64_t stride[3] = {1, lattice.cells.x, std::int64_t(lattice.cells.x) * lattice.cells.y};
+    float low[3], step[3];
+    int count = 0;
+    const float own = from[i];
+    for (int axis = 0; axis < 3; ++axis) {
+      float a = 3e38f;
+      if (v[axis] > 0) a = from[i - stride[axis]];
+      if (v[axis] + 1 < lattice.cells[axis]) a = std::fmin(a, from[i + stride[axis]]);
+      if (a >= own) continue;
+      int place = count++;
+      for (; place > 0 && low[place - 1] > a; --place) low[place] = low[place - 1], step[place] = step[place - 1];
+      low[place] = a;
+      step[place] = lattice.spacing[axis];
+    }
+    float best = own;
+    // sum over the used axes of ((x - low) / step)^2 = delta^2; more axes as long as x lies above their values.
+    float a = 0, b = 0, c = -delta * delta;
+    for (int k = 0; k < count; ++k) {
+      const float w = 1 / (step[k] * step[k]);
+      a += w, b += w * low[k], c += w * low[k] * low[k];
+      const float root = b * b - a * c;
+      if (root < 0) break;
+      const float x = (b + std::sqrt(root)) / a;
+      if (k > 0 && x < low[k]) break;
+      best = x;
+      if (k + 1 < count && x <= low[k + 1]) break;
+    }
+    to[i] = std::fmin(own, best);
+    if (best < own - 1e-3f) relaxed_store(changed, 1);
+  }
+};
+
+struct CountSmaller {
+  const float* value;
+  float limit;
+  NACRE_HD std::uint64_t operator()(std::int64_t i) const { return value[i] < limit ? 1 : 0; }
+};
+
+struct AddCounts {
+  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
+}  // namespace detail
+
+struct SizingField {
+  Lattice lattice;
+  Array<float> h;
+  float small = 1;  ///< all but a tenth of the interface points have this size or more
+  SizingFieldView view() const { return {lattice, h.data()}; }
+};
+
+/// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball (with
+/// `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On the
+/// lattice of `distance`, whose reach bounds the medial balls.
+template <class Backend>
+SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule) {
+  Arena& arena = exec.arena();
+  SizingField field;
+  field.lattice = distance.lattice;
+  const std::int64_t n = field.lattice.count(), points = std::int64_t(distance.point.size());
+  field.h = arena.permanent<float>(n);
+  Arena::Scope scope(arena);
+  const DistanceFieldView view = distance.view();
+  Array<float> at_point = arena.temporary<float>(points);
+  const Vec3f& s = field.lattice.spacing;
+  exec.for_each(points, detail::SizeAtInterface{
+                            {view, rule.reach() + 0.5f, 0.1f * std::max({s.x, s.y, s.z})}, rule, at_point.data()});
+  float low = SizingRule::smallest, high = rule.max_size;
+  for (int k = 0; k < 10; ++k) {
+    const float middle = 0.5f * (low + high);
+    const std::uint64_t smaller =
+        exec.reduce(points, std::uint64_t(0), detail::CountSmaller{at_point.data(), middle}, detail::AddCounts{});
+    (smaller * 10 > std::uint64_t(points) ? high : low) = middle;
+  }
+  field.small = low;
+  Array<float> other = arena.temporary<float>(n);
+  Array<std::uint32_t> changed = arena.temporary<std::uint32_t>(1);
+  exec.for_each(n, detail::SpreadSize{view, rule, at_point.data(), field.h.data()});
+  float *from = field.h.data(), *to = other.data();
+  const int most_rounds = field.lattice.cells.x + field.lattice.cells.y + field.lattice.cells.z;
+  for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {
+    changed.fill_bytes(0);
+    exec.for_each(n, detail::LimitSlope{field.lattice, rule.delta, from, to, changed.data()});
+    std::swap(from, to);
+    if (changed.download()[0] == 0 && from == field.h.data()) break;
+  }
+  return field;
+}
+
+}  // namespace nacre

@@ -1,0 +1,254 @@
+// Nacre: smooth indicator functions for binary labels that keep every voxel on its side.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "compute/field/build_material_bricks.hpp"
+
+namespace nacre {
+
+/// Taps of a Gaussian along one axis, -Reach .. Reach.
+template <int Reach>
+struct GaussianTaps {
+  float tap[2 * Reach + 1];
+
+  /// `width`: standard deviation in voxels.
+  explicit GaussianTaps(double width) {
+    double sum = 0;
+    for (int k = -Reach; k <= Reach; ++k) sum += std::exp(-0.5 * k * k / (width * width));
+    for (int k = -Reach; k <= Reach; ++k) tap[k + Reach] = float(std::exp(-0.5 * k * k / (width * width)) / sum);
+  }
+};
+
+namespace detail {
+
+struct StartTightening {
+  BrickVoxels voxels;
+  float* source;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Int3 v = voxels(i);
+    const std::uint32_t m = voxels.field.voxel_material[voxels.field.voxel_number(v.x, v.y, v.z)];
+    source[i + 2 * brick_voxels] = m == voxels.field.brick_material[i / brick_voxels + 2] ? 1.0f : 0.0f;
+  }
+};
+
+/// Adds a brick smoothed with what surrounds it, `share[k]` times by each of the Gaussians, if it or one around it has
+/// changed.
+template <int Reach, int Gaussians>
+struct SmoothBrick {
+  static constexpr int wide = block_size + 2 * Reach;
+
+  MaterialBricksView source;  ///< `value` is the unsmoothed function
+  const std::uint32_t* brick_block;
+  const std::uint32_t* changed;  ///< per brick
+  std::uint32_t* smoothed;       ///< per brick: whether it was smoothed now
+  GaussianTaps<Reach> taps[Gaussians];
+  float share[Gaussians];
+  float* smooth;
+
+  static constexpr std::size_t scratch_bytes() {
+    return sizeof(float) * (wide * wide * wide + wide * wide * block_size + wide * block_size * block_size) +
+           27 * sizeof(std::uint32_t);
+  }
+
+  NACRE_HD void operator()(Team& team, std::int64_t i) const {
+    const std::uint32_t brick = std::uint32_t(i) + 2;
+    float* halo = reinterpret_cast<float*>(team.scratch());
+    float* rows = halo + wide * wide * wide;
+    float* slabs = rows + wide * wide * block_size;
+    auto* around = reinterpret_cast<std::uint32_t*>(slabs + wide * block_size * block_size);
+    const bool needed = find_neighbours(team, brick, around);
+    if (team.first()) smoothed[brick] = needed ? 1 : 0;
+    if (!needed) return;
+    team.each(wide * wide, [&](int line) { load_line(around, line % wide, line / wide, halo + line * wide); });
+    float* to = smooth + std::size_t(brick) * brick_voxels;
+    for (int g = 0; g < Gaussians; ++g) {
+      const float* tap = taps[g].tap;
+      team.each(wide * wide, [&](int line) {
+        const float* from = halo + line * wide;
+        float sum[block_size] = {};
+        for (int k = 0; k <= 2 * Reach; ++k)
+          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * from[x + k];
+        for (int x = 0; x < block_size; ++x) rows[line * block_size + x] = sum[x];
+      });
+      team.each(wide * block_size, [&](int line) {  // (y, z) of the result in a wide stack of slabs
+        const int y = line % block_size, z = line / block_size;
+        float sum[block_size] = {};
+        for (int k = 0; k <= 2 * Reach; ++k)
+          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * rows[(z * wide + y + k) * block_size + x];
+        for (int x = 0; x < block_size; ++x) slabs[line * block_size + x] = sum[x];
+      });
+      team.each(block_size * block_size, [&](int line) {
+        float sum[block_size] = {};
+        for (int k = 0; k <= 2 * Reach; ++k)
+          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * slabs[(line + k * block_size) * block_size + x];
+        for (int x = 0; x < block_size; ++x) to[line * block_size + x] += share[g] * sum[x];
+      });
+    }
+  }
+
+ private:
+  /// Numbers of the 27 bricks of the same material around; false where none of them has changed.
+  NACRE_HD bool find_neighbours(Team& team, std::uint32_t brick, std::uint32_t* around) const {
+    const std::uint32_t block = brick_block[brick];
+    const Int3 n = source.blocks;
+    const Int3 b{int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)};
+    team.each(27, [&](int k) {
+      const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const bool inside =
+          unsigned(c.x) < unsigned(n.x) && unsigned(c.y) < unsigned(n.y) && unsigned(c.z) < unsigned(n.z);
+      around[k] = inside ? source.brick(source.block_number(c.x, c.y, c.z), source.brick_material[brick])
+                  : source.brick_material[brick] == 0 ? 1
+                                                      : 0;
+    });
+    for (int k = 0; k < 27; ++k)
+      if (changed[around[k]]) return true;
+    return false;
+  }
+
+  NACRE_HD void load_line(const std::uint32_t* around, int y, int z, float* line) const {
+    y -= Reach, z -= Reach;
+    const int by = y < 0 ? 0 : y < block_size ? 1 : 2, bz = z < 0 ? 0 : z < block_size ? 1 : 2;
+    const int offset = ((z + block_size) % block_size * block_size + (y + block_size) % block_size) * block_size;
+    const float* part[3];
+    for (int k = 0; k < 3; ++k)
+      part[k] = source.value + std::size_t(around[(bz * 3 + by) * 3 + k]) * brick_voxels + offset;
+    for (int x = 0; x < Reach; ++x) line[x] = part[0][block_size - Reach + x];
+    for (int x = 0; x < block_size; ++x) line[Reach + x] = part[1][x];
+    for (int x = 0; x < Reach; ++x) line[Reach + block_size + x] = part[2][x];
+  }
+};
+
+/// At voxels that smoothing puts on the wrong side of the boundary, asks for more of their own material and for less of
+/// its strongest rival. Looks at a brick's voxels of its own material, if a brick of its block was smoothed anew.
+struct HoldVoxels {
+  MaterialBricksView smooth;
+  const std::uint32_t* brick_block;
+  const std::uint32_t* smoothed;  ///< per brick
+  float margin, thin_margin;      ///< by how much a voxel's own material shall win; the latter is the larger
+  float gain;                     ///< what to ask for a unit of smoothed value
+  float* correction;
+  std::uint32_t* changed;
+  std::uint64_t* held;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t brick = std::uint32_t(i) + 2, block = brick_block[brick], own = smooth.brick_material[brick];
+    const std::uint32_t first = smooth.block_start[block], last = smooth.block_start[block + 1];
+    bool any = false;
+    for (std::uint32_t k = first; k < last; ++k) any = any || smoothed[k];
+    if (!any) return;
+    const Int3 n = smooth.blocks;
+    const Int3 low = Int3(int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)) * Int3(block_size);
+    std::uint64_t count = 0;
+    for (int place = 0; place < brick_voxels; ++place) {
+      const Int3 v = low + Int3(place % block_size, place / block_size % block_size, place / (block_size * block_size));
+      if (smooth.voxel_material[smooth.voxel_number(v.x, v.y, v.z)] != own) continue;
+      count += hold(v, place, brick, first, last) ? 1 : 0;
+    }
+    if (count > 0) atomic_add(held, count);
+  }
+
+ private:
+  NACRE_HD bool hold(const Int3& v, int place, std::uint32_t mine, std::uint32_t first, std::uint32_t last) const {
+    std::uint32_t rival = first;
+    float most = -3e38f;
+    for (std::uint32_t k = first; k < last; ++k) {
+      const float f = smooth.value[std::size_t(k) * brick_voxels + place];
+      if (k != mine && f > most) most = f, rival = k;
+    }
+    const float lead = smooth.value[std::size_t(mine) * brick_voxels + place] - most;
+    if (lead >= thin_margin) return false;
+    const float wanted = is_thin(v, smooth.brick_material[mine]) ? thin_margin : margin;
+    if (lead >= wanted) return false;
+    const float share = 0.5f * gain * (1.2f * wanted - lead);  // a little more, so that rounds come to an end
+    correction[std::size_t(mine) * brick_voxels + place] = share;
+    relaxed_store(changed + mine, 1);
+    // Others may lower the same rival's brick at this place only for this voxel: the place is the voxel's own.
+    correction[std::size_t(rival) * brick_voxels + place] = -share;
+    relaxed_store(changed + rival, 1);
+    return true;
+  }
+
+  /// No 2^3 voxels of the same material hold this one.
+  NACRE_HD bool is_thin(const Int3& v, std::uint32_t own) const {
+    const Int3 n = smooth.voxels();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Int3 low = v - Int3(corner & 1, corner >> 1 & 1, corner >> 2);
+      if (low.x < 0 || low.y < 0 || low.z < 0 || low.x + 1 >= n.x || low.y + 1 >= n.y || low.z + 1 >= n.z) return false;
+      bool full = true;
+      for (int k = 0; k < 8 && full; ++k)
+        full =
+            smooth.voxel_material[smooth.voxel_number(low.x + (k & 1), low.y + (k >> 1 & 1), low.z + (k >> 2))] == own;
+      if (full) return false;
+    }
+    return true;
+  }
+};
+
+}  // namespace detail
+
+/// What tightening came to.
+struct TightenResult {
+  std::int64_t held = 0;  ///< most voxels that had to be held in one round
+  std::int64_t left = 0;  ///< of the last round: still off by more than nothing
+  int rounds = 0;
+};
+
+/// Fills the bricks of a label volume. Whitaker 2000 moves the binary boundary by its curvature and holds it in the shell
+/// between the inner and outer voxel centres. Here the indicators of all materials are diffused at once, which is that
+/// motion (Merriman, Bence & Osher 1992), by 2 G - G G, which leaves quadratics alone, so that boundaries do not shrink
+/// with their curvature to leading order. Voxels that would change sides are then held by narrow Gaussians: the result is
+/// smooth everywhere, and every voxel's centre stays in its material, thin ones by a wider margin. `width`: of G in voxels,
+/// up to 1.5; 0: the binary functions as they are.
+template <class Backend>
+TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width) {
+  constexpr int reach = 6, narrow_reach = 2;
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  TightenResult result;
+  const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
+  const std::int64_t elements = (b.bricks - 2) * brick_voxels;
+  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
+  if (width <= 0) {
+    exec.for_each(elements, detail::StartTightening{voxels, b.value.data()});
+    return result;
+  }
+  Array<float> source = arena.temporary<float>(b.value.size());
+  Array<std::uint32_t> changed = arena.temporary<std::uint32_t>(b.bricks),
+                       smoothed = arena.temporary<std::uint32_t>(b.bricks);
+  Array<std::uint64_t> held = arena.temporary<std::uint64_t>(1);
+  MaterialBricksView from = b.view();
+  from.value = source.data();
+  b.value.fill_bytes(0);
+  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{source.data(), 0, 1});
+  exec.for_each(elements, detail::StartTightening{voxels, source.data()});
+  changed.fill_bytes(1);
+  exec.for_each_team(b.bricks - 2, detail::SmoothBrick<reach, 2>{
+                                       from,
+                                       b.brick_block.data(),
+                                       changed.data(),
+                                       smoothed.data(),
+                                       {GaussianTaps<reach>(width), GaussianTaps<reach>(width * std::sqrt(2.0))},
+                                       {2, -1},
+                                       b.value.data()});
+  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
+  const GaussianTaps<narrow_reach> narrow(0.6);
+  const float gain = 0.9f / (narrow.tap[narrow_reach] * narrow.tap[narrow_reach] * narrow.tap[narrow_reach]);
+  for (result.rounds = 1; result.rounds <= 60; ++result.rounds) {
+    source.fill_bytes(0);
+    changed.fill_bytes(0);
+    held.fill_bytes(0);
+    exec.for_each(b.bricks - 2, detail::HoldVoxels{b.view(), b.brick_block.data(), smoothed.data(), 0.04f, 0.25f, gain,
+                                                   source.data(), changed.data(), held.data()});
+    result.left = std::int64_t(held.download()[0]);
+    result.held = std::max(result.held, result.left);
+    if (result.left == 0) break;
+    exec.for_each_team(b.bricks - 2,
+                       detail::SmoothBrick<narrow_reach, 1>{
+                           from, b.brick_block.data(), changed.data(), smoothed.data(), {narrow}, {1}, b.value.data()});
+  }
+  return result;
+}
+
+}  // namespace nacre

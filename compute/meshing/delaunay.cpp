@@ -1,0 +1,252 @@
+// Nacre: the Delaunay triangulation of the particles, by CGAL, brought into an order that threads do not change.
+#include "compute/meshing/delaunay.hpp"
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_3.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+#include <CGAL/property_map.h>
+#include <CGAL/spatial_sort.h>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "compute/device/error.hpp"
+#include "compute/meshing/circumcentre.hpp"
+
+namespace nacre {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Kernel>;
+using CellBase =
+    CGAL::Triangulation_cell_base_with_info_3<std::int32_t, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+// Without a lock grid the parallel one works sequentially: one instantiation serves both.
+using Structure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, CGAL::Parallel_tag>;
+using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, Structure>;
+using LockGrid = Triangulation::Lock_data_structure;
+
+#ifdef __SANITIZE_THREAD__
+constexpr bool may_thread = false;  // false alarms within oneTBB
+#else
+constexpr bool may_thread = true;
+#endif
+
+constexpr std::size_t few_points = 4096;  // locks cost more than they gain
+constexpr int lock_cells = 50;            // per axis
+
+void check_points(std::span<const Vec3d> points) {
+  const std::string what = "the particles cannot be triangulated";
+  if (points.size() >= std::size_t(std::numeric_limits<std::int32_t>::max()) / 8)
+    throw Error(what, "there are more than 268 million", "choose a larger --min-size");
+  if (points.size() < 4) throw Error(what, "there are fewer than four", "choose a smaller --max-size");
+  for (const Vec3d& p : points)
+    if (!is_finite(p)) throw Error(what, "one of them is not at a finite place");
+}
+
+CGAL::Bbox_3 box_of(std::span<const Vec3d> points) {
+  Vec3d lower = points[0], upper = points[0];
+  for (const Vec3d& p : points) lower = min(lower, p), upper = max(upper, p);
+  return {lower.x, lower.y, lower.z, upper.x, upper.y, upper.z};
+}
+
+/// Order of insertion: random rounds of growing size, each along a Hilbert curve.
+std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& points, bool threaded) {
+  using Map = CGAL::Pointer_property_map<Kernel::Point_3>::const_type;
+  using Traits = CGAL::Spatial_sort_traits_adapter_3<Kernel, Map>;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  const Traits traits(CGAL::make_property_map(points));
+  if (threaded)
+    CGAL::spatial_sort<CGAL::Parallel_tag>(order.begin(), order.end(), traits);
+  else
+    CGAL::spatial_sort<CGAL::Sequential_tag>(order.begin(), order.end(), traits);
+  return order;
+}
+
+/// Puts points into a triangulation, one after the other or on many threads.
+class Insertion {
+ public:
+  Insertion(Triangulation& triangulation, std::span<const Vec3d> points, bool threaded, const std::atomic<bool>* stop)
+      : triangulation_(triangulation), stop_(stop) {
+    points_.reserve(points.size());
+    for (const Vec3d& p : points) points_.emplace_back(p.x, p.y, p.z);
+    order_ = insertion_order(points_, threaded);
+  }
+
+  void run() {
+    Triangulation::Vertex_handle hint;
+    std::size_t begin = 0;
+    const std::size_t alone = triangulation_.is_parallel() ? 100 : order_.size();
+    for (; begin < order_.size() && (begin < alone || triangulation_.dimension() < 3) && !stopped(); ++begin)
+      insert(order_[begin], hint, nullptr);
+    if (begin < order_.size() && !stopped()) {
+      tbb::enumerable_thread_specific<Triangulation::Vertex_handle> hints(hint);
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, order_.size()), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end() && !stopped(); ++i)
+          insert_locked(order_[i], hints.local());
+      });
+    }
+    if (stopped()) throw Interrupted();
+  }
+
+ private:
+  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+
+  bool insert(std::size_t point, Triangulation::Vertex_handle& hint, bool* could_lock) {
+    const auto vertex = triangulation_.insert(points_[point], hint, could_lock);
+    if (could_lock && !*could_lock) return false;
+    if (vertex == Triangulation::Vertex_handle()) return true;
+    hint = vertex;
+    hint->info() = std::uint32_t(point);
+    return true;
+  }
+
+  void insert_locked(std::size_t point, Triangulation::Vertex_handle& hint) {
+    for (bool done = false; !done;) {
+      bool could_lock = false;
+      if (triangulation_.try_lock_vertex(hint) && triangulation_.try_lock_point(points_[point]))
+        done = insert(point, hint, &could_lock);
+      triangulation_.unlock_all_elements();
+      if (!done) std::this_thread::yield();  // who holds the lock may be waiting for this processor
+    }
+  }
+
+  Triangulation& triangulation_;
+  const std::atomic<bool>* stop_;
+  std::vector<Kernel::Point_3> points_;
+  std::vector<std::size_t> order_;
+};
+
+/// Per point the first one at its place, which stands for all of them; which one CGAL kept depends on threads.
+std::vector<std::uint32_t> first_of_equals(std::span<const Vec3d> points) {
+  std::vector<std::uint32_t> order(points.size()), first(points.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const Vec3d &p = points[i], &q = points[j];
+    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z != q.z ? p.z < q.z : i < j;
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
+  return first;
+}
+
+using Cell = std::array<std::uint32_t, 4>;
+using Neighbours = std::array<std::int32_t, 4>;
+
+/// Corners ascending, then the last two swapped where the permutation is odd; neighbours along with them.
+void bring_into_order(Cell& cell, Neighbours& neighbours) {
+  const auto exchange = [&](int i, int j) {
+    std::swap(cell[i], cell[j]);
+    std::swap(neighbours[i], neighbours[j]);
+  };
+  bool odd = false;
+  for (int end = 3; end > 0; --end)
+    for (int i = 0; i < end; ++i)
+      if (cell[i] > cell[i + 1]) {
+        exchange(i, i + 1);
+        odd = !odd;
+      }
+  if (odd) exchange(2, 3);
+}
+
+/// Copies the finite cells as the triangulation happens to hold them.
+DelaunayCells copy_cells(const Triangulation& triangulation, const std::vector<std::uint32_t>& first) {
+  std::vector<Triangulation::Cell_handle> handles;
+  handles.reserve(triangulation.number_of_cells());
+  for (auto cell = triangulation.all_cells_begin(); cell != triangulation.all_cells_end(); ++cell) {
+    const bool finite = !triangulation.is_infinite(cell);
+    cell->info() = finite ? std::int32_t(handles.size()) : -1;
+    if (finite) handles.push_back(cell);
+  }
+  DelaunayCells cells;
+  cells.vertices.resize(handles.size());
+  cells.neighbours.resize(handles.size());
+  tbb::parallel_for(std::size_t(0), handles.size(), [&](std::size_t i) {
+    for (int k = 0; k < 4; ++k) {
+      const std::uint32_t vertex = handles[i]->vertex(k)->info();
+      cells.vertices[i][k] = first.empty() ? vertex : first[vertex];
+      cells.neighbours[i][k] = handles[i]->neighbor(k)->info();
+    }
+    bring_into_order(cells.vertices[i], cells.neighbours[i]);
+  });
+  return cells;
+}
+
+/// Order of the cells by their sorted vertices: counted into buckets by the smallest, then sorted there.
+std::vector<std::int32_t> canonical_order(const std::vector<Cell>& vertices, std::size_t points) {
+  std::vector<std::uint32_t> begin(points + 1);
+  for (const Cell& cell : vertices) ++begin[cell[0] + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<std::int32_t> order(vertices.size());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t i = 0; i < vertices.size(); ++i) order[next[vertices[i][0]]++] = std::int32_t(i);
+  const auto before = [&](std::int32_t i, std::int32_t j) {
+    const Cell &a = vertices[i], &b = vertices[j];
+    if (a[1] != b[1]) return a[1] < b[1];
+    const auto [a2, a3] = std::minmax(a[2], a[3]);
+    const auto [b2, b3] = std::minmax(b[2], b[3]);
+    return a2 != b2 ? a2 < b2 : a3 < b3;
+  };
+  tbb::parallel_for(std::size_t(0), points,
+                    [&](std::size_t p) { std::sort(order.begin() + begin[p], order.begin() + begin[p + 1], before); });
+  return order;
+}
+
+/// The same cells in canonical order, with their circumcentres.
+DelaunayCells sorted(const DelaunayCells& raw, std::span<const Vec3d> points) {
+  const std::size_t count = raw.vertices.size();
+  const std::vector<std::int32_t> order = canonical_order(raw.vertices, points.size());
+  std::vector<std::int32_t> rank(count);
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) { rank[order[i]] = std::int32_t(i); });
+  DelaunayCells cells;
+  cells.vertices.resize(count);
+  cells.neighbours.resize(count);
+  cells.circumcentres.resize(count);
+  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
+    const Cell& v = cells.vertices[i] = raw.vertices[order[i]];
+    for (int k = 0; k < 4; ++k) {
+      const std::int32_t neighbour = raw.neighbours[order[i]][k];
+      cells.neighbours[i][k] = neighbour < 0 ? -1 : rank[neighbour];
+    }
+    cells.circumcentres[i] = circumcentre(points[v[0]], points[v[1]], points[v[2]], points[v[3]]);
+  });
+  return cells;
+}
+
+DelaunayCells triangulate(std::span<const Vec3d> points, bool threaded, const std::atomic<bool>* stop) {
+  std::unique_ptr<LockGrid> locks;
+  if (threaded) locks = std::make_unique<LockGrid>(box_of(points), lock_cells);
+  DelaunayCells raw;
+  {
+    Triangulation triangulation{Kernel(), locks.get()};
+    Insertion(triangulation, points, threaded, stop).run();
+    if (triangulation.dimension() < 3)
+      throw Error("the particles cannot be triangulated", "they all lie in one plane",
+                  "check that the volume holds a body with a thickness");
+    const bool coincide = triangulation.number_of_vertices() < points.size();
+    raw = copy_cells(triangulation, coincide ? first_of_equals(points) : std::vector<std::uint32_t>());
+  }
+  return sorted(raw, points);
+}
+
+}  // namespace
+
+DelaunayCells delaunay(std::span<const Vec3d> points, int threads, const std::atomic<bool>* stop) {
+  check_points(points);
+  tbb::task_arena arena(threads > 0 ? threads : tbb::this_task_arena::max_concurrency());
+  const bool threaded = may_thread && arena.max_concurrency() > 1 && points.size() > few_points;
+  return arena.execute([&] { return triangulate(points, threaded, stop); });
+}
+
+}  // namespace nacre

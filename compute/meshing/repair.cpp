@@ -1,0 +1,328 @@
+// Nacre: labels of Delaunay cells changed where the surface between them would touch itself.
+#include "compute/meshing/repair.hpp"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "compute/meshing/cell_rings.hpp"
+#include "compute/meshing/incidence.hpp"
+#include "compute/meshing/interface_facets.hpp"
+#include "compute/meshing/umbrellas.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr std::size_t most_cells = 16;  // that one change may touch
+constexpr double flat = 0.02;           // volume by longest edge^3; 0.118 in a regular cell
+
+/// An edge (a < b), or the vertex a where a == b, and a cell that has it.
+struct Place {
+  std::uint32_t a, b;
+  std::int32_t cell;
+  friend bool operator<(const Place& s, const Place& t) { return s.a != t.a ? s.a < t.a : s.b < t.b; }
+  friend bool operator==(const Place& s, const Place& t) { return s.a == t.a && s.b == t.b; }
+};
+
+/// Cells that might all get another label.
+struct Change {
+  std::vector<std::int32_t> cells;
+  std::uint16_t label;
+  double volume;
+};
+
+class Repair {
+ public:
+  Repair(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label)
+      : points_(points), cells_(cells), label_(label), rings_(cells), left_(std::size_t(0x10000)) {
+    for (const std::uint16_t m : label) ++left_[m];
+  }
+
+  LabelRepair run() {
+    fill_pockets();
+    for (const Place& place : find_places()) waiting_.push_back(place);
+    std::vector<Place> given_up;
+    while (!waiting_.empty()) {
+      const Place place = waiting_.front();
+      waiting_.pop_front();
+      if (excess(place) > 0 && !improve(place)) given_up.push_back(place);
+    }
+    std::sort(given_up.begin(), given_up.end());
+    given_up.erase(std::unique(given_up.begin(), given_up.end()), given_up.end());
+    for (const Place& place : given_up) result_.left += excess(place) > 0;
+    return result_;
+  }
+
+ private:
+  std::uint16_t label_at(std::int32_t cell) const { return cell < 0 ? std::uint16_t(0) : label_[cell]; }
+
+  double volume(std::int32_t cell) const {
+    const auto& v = cells_.vertices[cell];
+    const Vec3d a = points_[v[0]];
+    return std::abs(dot(points_[v[1]] - a, cross(points_[v[2]] - a, points_[v[3]] - a))) / 6;
+  }
+
+  bool is_flat(std::int32_t cell) const {
+    double longest = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j) {
+        const Vec3d edge = points_[cells_.vertices[cell][i]] - points_[cells_.vertices[cell][j]];
+        longest = std::max(longest, dot(edge, edge));
+      }
+    return volume(cell) < flat * longest * std::sqrt(longest);
+  }
+
+  bool is_alone(std::int32_t cell) const {
+    return std::none_of(cells_.neighbours[cell].begin(), cells_.neighbours[cell].end(),
+                        [&](std::int32_t n) { return n >= 0 && label_[n] == label_[cell]; });
+  }
+
+  // ---- how badly a place touches itself
+
+  /// Wedges or umbrellas of each material beyond its first, summed.
+  int excess(const Place& place) { return place.a == place.b ? vertex_excess(place) : edge_excess(place); }
+
+  int edge_excess(const Place& edge) {
+    const auto& ring = rings_.around_edge(edge.a, edge.b, edge.cell);
+    std::array<std::uint16_t, 64> seen;  // labels of wedges so far; more than that do not fit around an edge
+    std::size_t wedges = 0;
+    int extra = 0;
+    for (std::size_t i = 0; i < ring.size() && wedges < seen.size(); ++i) {
+      const std::uint16_t here = label_at(ring[i]);
+      if (here == label_at(ring[i == 0 ? ring.size() - 1 : i - 1])) continue;
+      extra += std::find(seen.begin(), seen.begin() + wedges, here) != seen.begin() + wedges;
+      seen[wedges++] = here;
+    }
+    return extra;
+  }
+
+  int vertex_excess(const Place& vertex) {
+    facets_.clear();
+    for (const std::int32_t cell : rings_.around_vertex(vertex.a, vertex.cell)) {
+      const auto& v = cells_.vertices[cell];
+      for (int k = 0; k < 4; ++k) {
+        const std::int32_t beyond = cells_.neighbours[cell][k];
+        if (v[k] == vertex.a || (beyond >= 0 && beyond < cell)) continue;
+        const std::uint16_t s = label_[cell], t = label_at(beyond);
+        if (s == t) continue;
+        std::array<std::uint32_t, 2> others{};
+        for (int i = 0, n = 0; i < 4; ++i)
+          if (i != k && v[i] != vertex.a) others[n++] = v[i];
+        facets_.push_back({others[0], others[1], {s, t}});
+      }
+    }
+    int extra = 0;
+    for (const MaterialCount& c : counter_.umbrellas(facets_)) extra += c.count - 1;
+    return extra;
+  }
+
+  /// The edges and vertices of some cells, each once, ascending.
+  std::vector<Place> places_of(const std::vector<std::int32_t>& cells) const {
+    std::vector<Place> places;
+    for (const std::int32_t cell : cells)
+      for (int i = 0; i < 4; ++i)
+        for (int j = 0; j <= i; ++j) {
+          const auto [a, b] = std::minmax(cells_.vertices[cell][i], cells_.vertices[cell][j]);
+          places.push_back({a, b, cell});
+        }
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    return places;
+  }
+
+  int excess(const std::vector<Place>& places) {
+    int sum = 0;
+    for (const Place& place : places) sum += excess(place);
+    return sum;
+  }
+
+  // ---- changes
+
+  /// Puts the new label on the cells one after the other; takes all back and says no where a component would be lost.
+  bool apply(const Change& change, std::uint16_t old) {
+    for (std::size_t i = 0; i < change.cells.size(); ++i) {
+      const std::int32_t cell = change.cells[i];
+      if (left_[old] == 1 || (is_alone(cell) && !is_flat(cell))) {
+        take_back(change, i, old);
+        return false;
+      }
+      label_[cell] = change.label;
+      --left_[old];
+      ++left_[change.label];
+    }
+    return true;
+  }
+
+  void take_back(const Change& change, std::size_t applied, std::uint16_t old) {
+    for (std::size_t i = 0; i < applied; ++i) label_[change.cells[i]] = old;
+    left_[old] += std::int64_t(applied);
+    left_[change.label] -= std::int64_t(applied);
+  }
+
+  /// Makes the change if that lowers the excess around it by `gain` at least.
+  bool try_change(const Change& change, int gain) {
+    const std::uint16_t old = label_[change.cells[0]];
+    const std::vector<Place> places = places_of(change.cells);
+    const int before = excess(places);
+    if (!apply(change, old)) return false;
+    if (before - excess(places) >= gain) {
+      result_.changed += std::int64_t(change.cells.size());
+      for (const Place& place : places) waiting_.push_back(place);
+      return true;
+    }
+    take_back(change, change.cells.size(), old);
+    return false;
+  }
+
+  /// The smallest change at a place that helps.
+  bool improve(const Place& place) {
+    std::vector<Change> changes = place.a == place.b ? changes_at_vertex(place) : changes_at_edge(place);
+    std::stable_sort(changes.begin(), changes.end(),
+                     [](const Change& s, const Change& t) { return s.volume < t.volume; });
+    return std::any_of(changes.begin(), changes.end(), [&](const Change& c) { return try_change(c, 1); });
+  }
+
+  void add_changes(std::vector<Change>& changes, const std::vector<std::int32_t>& cells,
+                   std::vector<std::uint16_t> labels) const {
+    if (cells.empty() || cells.size() > most_cells || cells[0] < 0) return;
+    double sum = 0;
+    for (const std::int32_t cell : cells) {
+      if (cell < 0) return;
+      sum += volume(cell);
+    }
+    std::sort(labels.begin(), labels.end());
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    for (const std::uint16_t m : labels)
+      if (m != label_[cells[0]]) changes.push_back({cells, m, sum});
+  }
+
+  /// Each wedge around the edge could become part of one of its two neighbours.
+  std::vector<Change> changes_at_edge(const Place& edge) {
+    std::vector<std::int32_t> ring = rings_.around_edge(edge.a, edge.b, edge.cell);
+    std::size_t begin = 0;
+    while (begin < ring.size() && label_at(ring[begin]) == label_at(ring.back())) ++begin;
+    std::rotate(ring.begin(), ring.begin() + std::ptrdiff_t(begin % ring.size()), ring.end());
+    std::vector<Change> changes;
+    for (std::size_t i = 0; i < ring.size();) {
+      const std::uint16_t before = label_at(ring[(i + ring.size() - 1) % ring.size()]);
+      std::vector<std::int32_t> wedge;
+      const std::uint16_t here = label_at(ring[i]);
+      while (i < ring.size() && label_at(ring[i]) == here) wedge.push_back(ring[i++]);
+      add_changes(changes, wedge, {before, label_at(ring[i % ring.size()])});
+    }
+    return changes;
+  }
+
+  /// Cells at the vertex that hang together by facets at it could get the label of any of their neighbours there.
+  std::vector<Change> changes_at_vertex(const Place& vertex) {
+    const std::vector<std::int32_t> star = rings_.around_vertex(vertex.a, vertex.cell);
+    std::vector<char> done(star.size());
+    std::vector<Change> changes;
+    for (std::size_t first = 0; first < star.size(); ++first) {
+      if (done[first]) continue;
+      done[first] = 1;
+      std::vector<std::int32_t> part = {star[first]};
+      std::vector<std::uint16_t> beside;
+      for (std::size_t next = 0; next < part.size(); ++next)
+        for (int k = 0; k < 4; ++k) {
+          if (cells_.vertices[part[next]][k] == vertex.a) continue;
+          const std::int32_t beyond = cells_.neighbours[part[next]][k];
+          if (label_at(beyond) != label_[star[first]]) {
+            beside.push_back(label_at(beyond));
+          } else if (beyond >= 0) {
+            const auto i = std::find(star.begin(), star.end(), beyond) - star.begin();
+            if (!std::exchange(done[std::size_t(i)], 1)) part.push_back(beyond);
+          }
+        }
+      add_changes(changes, part, std::move(beside));
+    }
+    return changes;
+  }
+
+  // ---- where to begin
+
+  /// Flat cells that are a component of their own are no body but a rounding error: their circumcentre, far from all
+  /// four corners, fell into a material that is not there. They join the neighbour with the largest common facets.
+  void fill_pockets() {
+    tbb::enumerable_thread_specific<std::vector<std::int32_t>> found;
+    tbb::parallel_for(std::int32_t(0), std::int32_t(cells_.vertices.size()), [&](std::int32_t i) {
+      if (is_alone(i) && is_flat(i)) found.local().push_back(i);
+    });
+    std::vector<std::int32_t> pockets;
+    for (const auto& some : found) pockets.insert(pockets.end(), some.begin(), some.end());
+    std::sort(pockets.begin(), pockets.end());
+    for (const std::int32_t pocket : pockets) {
+      const std::uint16_t wanted = largest_neighbour(pocket);
+      if (!is_alone(pocket) || wanted == label_[pocket]) continue;
+      result_.pockets += try_change({{pocket}, wanted, 0}, 0);
+    }
+    waiting_.clear();  // all of it is looked at afterwards
+  }
+
+  std::uint16_t largest_neighbour(std::int32_t cell) const {
+    std::array<std::pair<double, std::uint16_t>, 4> areas;  // per facet: area shared with its label so far
+    for (int k = 0; k < 4; ++k) {
+      const auto [a, b, c] = facet_corners[k];
+      const auto& v = cells_.vertices[cell];
+      const Vec3d p = points_[v[a]];
+      areas[k] = {length(cross(points_[v[b]] - p, points_[v[c]] - p)), label_at(cells_.neighbours[cell][k])};
+      for (int j = 0; j < k; ++j)
+        if (areas[j].second == areas[k].second) areas[k].first += std::exchange(areas[j].first, 0);
+    }
+    return std::max_element(areas.begin(), areas.end(),
+                            [](const auto& s, const auto& t) {
+                              return s.first != t.first ? s.first < t.first : s.second > t.second;
+                            })
+        ->second;
+  }
+
+  /// Edges and vertices that touch themselves.
+  std::vector<Place> find_places() {
+    const InterfaceFacets facets = interface_facets(cells_, label_);
+    std::vector<Place> places;
+    const EdgeTable edges(facets.triangles, points_.size());
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      if (edges.uses(e).size() < 4) continue;
+      const Place place{edges.a(e), edges.b(e), facets.cell[edges.uses(e)[0] / 3]};
+      if (edge_excess(place) > 0) places.push_back(place);
+    }
+    const VertexTable vertices(facets.triangles, points_.size());
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+      facets_.clear();
+      for (const std::uint32_t corner : vertices.corners(v)) {
+        const Triangle& t = facets.triangles[corner / 3];
+        facets_.push_back({t[int((corner + 1) % 3)], t[int((corner + 2) % 3)], facets.materials[corner / 3]});
+      }
+      const auto& counts = counter_.umbrellas(facets_);
+      if (std::any_of(counts.begin(), counts.end(), [](const MaterialCount& c) { return c.count > 1; }))
+        places.push_back({std::uint32_t(v), std::uint32_t(v), facets.cell[vertices.corners(v)[0] / 3]});
+    }
+    return places;
+  }
+
+  std::span<const Vec3d> points_;
+  const DelaunayCells& cells_;
+  std::vector<std::uint16_t>& label_;
+  CellRings rings_;
+  UmbrellaCounter counter_;
+  std::vector<UmbrellaCounter::Facet> facets_;
+  std::vector<std::int64_t> left_;  // cells per label
+  std::deque<Place> waiting_;
+  LabelRepair result_;
+};
+
+}  // namespace
+
+LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells,
+                          std::vector<std::uint16_t>& label) {
+  return Repair(points, cells, label).run();
+}
+
+}  // namespace nacre

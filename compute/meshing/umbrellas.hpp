@@ -1,0 +1,92 @@
+// Nacre: how often the surface of a material passes through an edge or a vertex.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compute/grid/vec.hpp"
+
+namespace nacre {
+
+using MaterialPair = std::array<std::uint16_t, 2>;
+
+/// Count of one material's facets, or umbrellas.
+struct MaterialCount {
+  std::uint16_t material;
+  int count;
+};
+
+/// Counts facets or umbrellas by material. Made to be used again, so that it allocates but once.
+class UmbrellaCounter {
+ public:
+  /// Facets per material among those with the given materials; the materials ascend.
+  template <class Uses, class MaterialsOf>
+  const std::vector<MaterialCount>& facets(const Uses& uses, const MaterialsOf& materials_of) {
+    counts_.clear();
+    for (const auto use : uses)
+      for (const std::uint16_t m : materials_of(use)) add(m);
+    std::sort(counts_.begin(), counts_.end(), [](const auto& s, const auto& t) { return s.material < t.material; });
+    return counts_;
+  }
+
+  /// One facet at a vertex: its other two corners and its materials.
+  struct Facet {
+    std::uint32_t from, to;
+    MaterialPair materials;
+  };
+
+  /// Umbrellas per material: sets of a material's facets that hang together by edges at the vertex; the materials
+  /// ascend.
+  const std::vector<MaterialCount>& umbrellas(std::span<const Facet> facets) {
+    counts_.clear();
+    for (const Facet& f : facets)
+      for (const std::uint16_t m : f.materials) add(m);
+    std::sort(counts_.begin(), counts_.end(), [](const auto& s, const auto& t) { return s.material < t.material; });
+    for (MaterialCount& c : counts_) c.count = sets_of(c.material, facets);
+    return counts_;
+  }
+
+ private:
+  void add(std::uint16_t material) {
+    for (MaterialCount& c : counts_)
+      if (c.material == material) {
+        ++c.count;
+        return;
+      }
+    counts_.push_back({material, 1});
+  }
+
+  /// Index of a corner's set; the list is short, so it is searched from the front.
+  std::size_t find(std::uint32_t corner) {
+    std::size_t i = std::size_t(std::find(corners_.begin(), corners_.end(), corner) - corners_.begin());
+    if (i == corners_.size()) {
+      corners_.push_back(corner);
+      parent_.push_back(i);
+    }
+    while (parent_[i] != i) i = parent_[i];
+    return i;
+  }
+
+  int sets_of(std::uint16_t material, std::span<const Facet> facets) {
+    corners_.clear();
+    parent_.clear();
+    for (const Facet& f : facets) {
+      if (f.materials[0] != material && f.materials[1] != material) continue;
+      const std::size_t s = find(f.from), t = find(f.to);
+      parent_[std::max(s, t)] = std::min(s, t);
+    }
+    int sets = 0;
+    for (std::size_t i = 0; i < parent_.size(); ++i) sets += parent_[i] == i;
+    return sets;
+  }
+
+  std::vector<MaterialCount> counts_;
+  std::vector<std::uint32_t> corners_;
+  std::vector<std::size_t> parent_;
+};
+
+}  // namespace nacre

@@ -1,0 +1,58 @@
+// Nacre: the particles as arrays, and the rule by which their number is controlled. What all three solvers share.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/device/arena.hpp"
+#include "compute/device/array.hpp"
+#include "compute/field/interface.hpp"
+#include "compute/grid/lanes.hpp"
+#include "compute/particles/energy.hpp"
+
+namespace nacre {
+
+/// All particles that matter to one junction order: first the `fixed` ones of lower orders, then those that move. Arrays
+/// are larger than `count` and hold nothing behind it.
+struct ParticleSet {
+  std::int64_t fixed = 0, count = 0;
+  Array<Float4> place;             ///< x, y, z in voxels; h, the sizing field there
+  Array<Float4> direction;         ///< unit normal (surface) or tangent (curve); the particle's energy
+  Array<std::uint32_t> interface;  ///< number of its junction in the table of Junctions
+  std::int64_t capacity() const { return std::int64_t(place.size()); }
+};
+
+/// When particles are added and deleted (sec. 3.1.3 and the source notes: a random share of the deviation decides, so that
+/// neighbours do not all split at once).
+struct PopulationRule {
+  float ideal_energy = hexagonal_energy;
+  float add_below = 0.65f, delete_above = 1.75f;  ///< shares of the ideal energy
+  bool by_density = true;                         ///< false: the original program's rule (see population_fate)
+  float certain_above = 4;                        ///< deleted whatever chance says (a share, too)
+  bool may_add = true;
+  std::uint32_t seed = 1;
+};
+
+/// What an iteration did.
+struct IterationResult {
+  double energy = 0;  ///< mean per moving particle
+  std::int64_t added = 0, deleted = 0;
+};
+
+/// The force on a particle at p from one at q: E, and dE/dp through the scaled distance |p - q| / (support min(h_p, h_q))
+/// (Eq. 3.2, 3.3 with the chain factor that is missing there).
+struct PairForce {
+  float energy;
+  Vec3f gradient;   ///< of the energy with respect to p
+  float stiffness;  ///< second derivative along the line between the two
+};
+
+NACRE_HD_INLINE PairForce pair_force(const Vec3f& p, float h_p, const Vec3f& q, float h_q) {
+  const float unit = 1 / (support * (h_p < h_q ? h_p : h_q));
+  const Vec3f r = p - q;
+  const float distance = std::sqrt(dot(r, r));
+  const PairEnergy e = cotangent_energy(distance * unit);
+  const float inverse = distance > 1e-12f ? 1 / distance : 0.0f;
+  return {e.energy, r * (e.slope * unit * inverse), e.curve * unit * unit};
+}
+
+}  // namespace nacre

@@ -1,0 +1,311 @@
+// Nacre: the Barnes-Hut octree of the particles, one root per interface (sec. 4.1), and the walk through it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "compute/device/executor.hpp"
+#include "compute/grid/morton.hpp"
+#include "compute/particles/particle_set.hpp"
+
+namespace nacre {
+
+/// A node: particles [first, last) of the sorted arrays, and what stands for them from afar: the mean of their places,
+/// sizes and normals, and their number as mass.
+struct TreeNode {
+  std::uint32_t first = 0, last = 0;
+  std::uint32_t child = 0;     ///< number of the first child; children are consecutive
+  std::uint32_t children = 0;  ///< 0: a leaf
+  Vec3f low, high;             ///< bounds of the particles
+  float largest = 0;           ///< h among them
+  Float4 centre{};             ///< of mass; mean h
+  Float4 normal{};             ///< mean of the normals (not unit)
+
+  NACRE_HD float mass() const { return float(last - first); }
+  NACRE_HD float size() const { return std::fmax(high.x - low.x, std::fmax(high.y - low.y, high.z - low.z)); }
+};
+
+/// Squared distance between two boxes.
+NACRE_HD_INLINE float box_distance2(const Vec3f& low_a, const Vec3f& high_a, const Vec3f& low_b, const Vec3f& high_b) {
+  const Vec3f gap = max(max(low_a - high_b, low_b - high_a), Vec3f(0.0f));
+  return dot(gap, gap);
+}
+
+/// The tree of one ParticleSet in Morton order within each interface. Nodes 0 .. interfaces - 1 are the roots.
+struct TreeView {
+  static constexpr int leaf_size = 24;
+  static constexpr int bits = 16;  ///< Morton levels
+
+  const TreeNode* node = nullptr;
+  const Float4* place = nullptr;      ///< sorted
+  const Float4* direction = nullptr;  ///< sorted
+  float theta = 0;
+
+  /// Walks from `root` to all that is within `reach` of the box: calls particles(first, last) for leaves, and far(node)
+  /// for nodes that count as one particle: smaller than theta times their distance from the box (their own, not that of
+  /// the particle's node as sec. 4.1 has it). Nodes that the box may lie in are always opened.
+  template <class Particles, class Far>
+  NACRE_HD void walk(std::uint32_t root, const Vec3f& low, const Vec3f& high, float reach, const Particles& particles,
+                     const Far& far) const {
+    std::uint32_t stack[8 * bits];
+    int depth = 0;
+    stack[depth++] = root;
+    while (depth > 0) {
+      const TreeNode& n = node[stack[--depth]];
+      if (n.first == n.last) continue;
+      const float limit = std::fmin(reach, support * n.largest);
+      const float gap2 = box_distance2(n.low, n.high, low, high);
+      if (gap2 > limit * limit) continue;
+      if (n.children == 0) {
+        particles(n.first, n.last);
+        continue;
+      }
+      const Vec3f c(n.centre.x, n.centre.y, n.centre.z);
+      const float away2 = box_distance2(c, c, low, high), size = n.size();
+      if (size * size < theta * theta * away2 && gap2 > 0) {
+        far(n);
+        continue;
+      }
+      for (std::uint32_t k = n.children; k-- > 0;) stack[depth++] = n.child + k;
+    }
+  }
+};
+
+namespace detail {
+
+/// Sorting key: interface, then Morton code of the place on a grid of 2^16 per axis over the volume.
+struct TreeKey {
+  const Float4* place;
+  const std::uint32_t* interface;
+  float scale;
+  std::uint64_t* key;
+  std::uint32_t* number;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Float4 p = place[i];
+    const auto digit = [&](float x) {
+      const float d = x * scale;
+      return d <= 0 ? 0 : d >= 65535 ? 65535 : int(d);
+    };
+    key[i] = std::uint64_t(interface[i]) << 48 | morton({digit(p.x), digit(p.y), digit(p.z)});
+    number[i] = std::uint32_t(i);
+  }
+};
+
+NACRE_HD inline std::uint32_t first_key_from(const std::uint64_t* key, std::uint32_t low, std::uint32_t high,
+                                             std::uint64_t value) {
+  while (low < high) {
+    const std::uint32_t middle = low + (high - low) / 2;
+    if (key[middle] < value)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+struct MakeRoots {
+  const std::uint64_t* key;
+  std::uint32_t count;
+  TreeNode* node;
+  NACRE_HD void operator()(std::int64_t i) const {
+    TreeNode root;
+    root.first = first_key_from(key, 0, count, std::uint64_t(i) << 48);
+    root.last = first_key_from(key, root.first, count, std::uint64_t(i + 1) << 48);
+    node[i] = root;
+  }
+};
+
+/// Splits the nodes of a level by the next three bits of the Morton code.
+struct SplitNodes {
+  const std::uint64_t* key;
+  TreeNode* node;
+  std::uint32_t begin;  ///< of the level
+  int shift;
+
+  template <class Visit>
+  NACRE_HD void children(std::int64_t i, const Visit& visit) const {
+    const TreeNode& n = node[begin + i];
+    if (n.last - n.first <= TreeView::leaf_size || shift < 0) return;
+    const std::uint64_t prefix = key[n.first] >> (shift + 3) << (shift + 3);
+    std::uint32_t from = n.first;
+    for (std::uint64_t octant = 0; octant < 8 && from < n.last; ++octant) {
+      const std::uint32_t to =
+          octant == 7 ? n.last : first_key_from(key, from, n.last, prefix + ((octant + 1) << shift));
+      if (to > from) visit(from, to);
+      from = to;
+    }
+  }
+};
+
+struct CountChildren {
+  SplitNodes split;
+  std::uint32_t* count;
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint32_t n = 0;
+    split.children(i, [&](std::uint32_t, std::uint32_t) { ++n; });
+    count[i] = n;
+  }
+};
+
+struct MakeChildren {
+  SplitNodes split;
+  const std::uint32_t* start;
+  std::uint32_t end;  ///< of the level: where children begin
+  NACRE_HD void operator()(std::int64_t i) const {
+    TreeNode& parent = split.node[split.begin + i];
+    std::uint32_t at = end + start[i];
+    parent.child = at;
+    split.children(i, [&](std::uint32_t from, std::uint32_t to) {
+      TreeNode child;
+      child.first = from;
+      child.last = to;
+      split.node[at++] = child;
+    });
+    parent.children = at - parent.child;
+  }
+};
+
+/// Bounds and means of a level's nodes from their particles or children.
+struct SummariseNodes {
+  TreeNode* node;
+  const Float4* place;
+  const Float4* direction;
+  std::uint32_t begin;
+  NACRE_HD void operator()(std::int64_t i) const {
+    TreeNode& n = node[begin + i];
+    if (n.first == n.last) return;
+    Vec3f low(3e38f), high(-3e38f), centre(0.0f), normal(0.0f);
+    float h = 0, largest = 0;
+    if (n.children == 0) {
+      for (std::uint32_t k = n.first; k < n.last; ++k) {
+        const Vec3f p(place[k].x, place[k].y, place[k].z);
+        low = min(low, p), high = max(high, p);
+        centre += p;
+        normal += Vec3f(direction[k].x, direction[k].y, direction[k].z);
+        h += place[k].w;
+        largest = std::fmax(largest, place[k].w);
+      }
+    } else {
+      for (std::uint32_t k = n.child; k < n.child + n.children; ++k) {
+        const TreeNode& c = node[k];
+        const float m = c.mass();
+        low = min(low, c.low), high = max(high, c.high);
+        centre += Vec3f(c.centre.x, c.centre.y, c.centre.z) * m;
+        normal += Vec3f(c.normal.x, c.normal.y, c.normal.z) * m;
+        h += c.centre.w * m;
+        largest = std::fmax(largest, c.largest);
+      }
+    }
+    const float inverse = 1 / n.mass();
+    n.low = low, n.high = high, n.largest = largest;
+    n.centre = {centre.x * inverse, centre.y * inverse, centre.z * inverse, h * inverse};
+    n.normal = {normal.x * inverse, normal.y * inverse, normal.z * inverse, 0};
+  }
+};
+
+struct GatherParticles {
+  const std::uint32_t* number;
+  const Float4* place;
+  const Float4* direction;
+  const std::uint32_t* interface;
+  const Float4* velocity;
+  Float4* to_place;
+  Float4* to_direction;
+  std::uint32_t* to_interface;
+  Float4* to_velocity;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t k = number[i];
+    to_place[i] = place[k];
+    to_direction[i] = direction[k];
+    to_interface[i] = interface[k];
+    to_velocity[i] = velocity[k];
+  }
+};
+
+struct IsLeaf {
+  const TreeNode* node;
+  std::uint32_t* count;
+  NACRE_HD void operator()(std::int64_t i) const {
+    count[i] = node[i].children == 0 && node[i].last > node[i].first ? 1 : 0;
+  }
+};
+
+struct ListLeaves {
+  const TreeNode* node;
+  const std::uint32_t* start;
+  std::uint32_t* leaf;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (node[i].children == 0 && node[i].last > node[i].first) leaf[start[i]] = std::uint32_t(i);
+  }
+};
+
+}  // namespace detail
+
+/// Memory for trees of up to `capacity` particles on `interfaces` interfaces.
+class Tree {
+ public:
+  template <class Backend>
+  Tree(Executor<Backend>& exec, std::int64_t capacity, std::int64_t interfaces)
+      : interfaces_(interfaces),
+        node_(exec.arena().template permanent<TreeNode>(capacity / 3 + 9 * interfaces + 4096)),
+        leaf_(exec.arena().template permanent<std::uint32_t>(node_.size())) {}
+
+  /// Builds the tree over particles that are sorted by `key`, level by level on the device.
+  template <class Backend>
+  void build(Executor<Backend>& exec, const Array<std::uint64_t>& key, std::int64_t particles) {
+    Arena::Scope scope(exec.arena());
+    level_.assign(1, 0);
+    exec.for_each(interfaces_, detail::MakeRoots{key.data(), std::uint32_t(particles), node_.data()});
+    std::uint32_t begin = 0, end = std::uint32_t(interfaces_);
+    for (int shift = 3 * TreeView::bits - 3; begin < end; shift -= 3) {
+      level_.push_back(end);
+      const std::int64_t n = end - begin;
+      Arena::Scope level(exec.arena());
+      Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n);
+      const detail::SplitNodes split{key.data(), node_.data(), begin, shift};
+      exec.for_each(n, detail::CountChildren{split, start.data()});
+      const std::uint32_t total = exec.exclusive_scan(start.data(), start.data(), n);
+      if (end + std::size_t(total) > node_.size())
+        throw Error("the tree of particles is full", std::to_string(node_.size()) + " nodes",
+                    "use another --seed or raise --min-size");
+      exec.for_each(n, detail::MakeChildren{split, start.data(), end});
+      begin = end;
+      end += total;
+    }
+    list_leaves(exec);
+  }
+
+  /// Bounds and means for where the particles are now; their order stays.
+  template <class Backend>
+  void summarise(Executor<Backend>& exec, const ParticleSet& particles) {
+    for (std::size_t l = level_.size() - 1; l-- > 0;)
+      exec.for_each(level_[l + 1] - level_[l], detail::SummariseNodes{node_.data(), particles.place.data(),
+                                                                      particles.direction.data(), level_[l]});
+  }
+
+  TreeView view(const ParticleSet& particles, float theta) const {
+    return {node_.data(), particles.place.data(), particles.direction.data(), theta};
+  }
+  const std::uint32_t* leaves() const { return leaf_.data(); }
+  std::int64_t leaf_count() const { return leaf_count_; }
+  std::int64_t nodes() const { return level_.back(); }
+
+ private:
+  template <class Backend>
+  void list_leaves(Executor<Backend>& exec) {
+    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(nodes());
+    exec.for_each(nodes(), detail::IsLeaf{node_.data(), start.data()});
+    leaf_count_ = exec.exclusive_scan(start.data(), start.data(), nodes());
+    exec.for_each(nodes(), detail::ListLeaves{node_.data(), start.data(), leaf_.data()});
+  }
+
+  std::int64_t interfaces_;
+  Array<TreeNode> node_;
+  Array<std::uint32_t> leaf_;
+  std::int64_t leaf_count_ = 0;
+  std::vector<std::uint32_t> level_;  ///< where each level's nodes begin, and where the last one's end
+};
+
+}  // namespace nacre

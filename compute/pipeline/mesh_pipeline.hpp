@@ -1,0 +1,141 @@
+// Nacre: from a volume of materials to a conformal mesh. The other of the two public doors.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compute/device/device.hpp"
+#include "compute/device/stage_timers.hpp"
+#include "compute/grid/vec.hpp"
+#include "compute/meshing/surface_mesh.hpp"
+
+namespace nacre {
+
+/// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp). Lengths are in voxels: edges of the
+/// volume's smallest voxel spacing.
+struct MeshParameters {
+  std::string solver = "tree";         ///< tree (ch. 4), redblack (sec. 3.2), serial (sec. 3.1)
+  double tighten = 1.2;                ///< width of the smoothing of label boundaries; 0: keep the stairs
+  double epsilon = 0.5;                ///< sizing: share of the local feature size
+  double delta = 0.4;                  ///< sizing: largest slope (Lipschitz constant)
+  double min_size = 0.5;               ///< sizing: smallest distance of particles
+  double max_size = 1.0;               ///< sizing: largest distance of particles
+  bool curvature = false;              ///< sizing: bound by epsilon / largest curvature, too
+  int subcells = 2;                    ///< closest-point cells per voxel and axis
+  std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
+  double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
+  int iterations = 60;                 ///< at most, per junction order
+  double stagnation = 0.0015;          ///< ends when the energy falls by less, (E_prev - E) / E
+  double step = 1.2;                   ///< tree: share of the Newton step
+  double momentum = 0.85;              ///< tree: heavy ball
+  double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)
+  double add_below = 0.65;             ///< split particles with less than this share of the ideal energy
+  double delete_above = 1.75;          ///< delete particles with more
+  int control_every = 10;              ///< iterations between two controls of the population
+  int particles = 0;                   ///< seed this many and add none (sec. 3.4.3); 0: as the sizing field says
+  std::uint32_t seed = 1;
+};
+
+/// A volume on the host. Voxel (i, j, k), x fastest, has its centre at origin + axes * (index * spacing).
+struct MeshVolume {
+  enum class Kind {
+    labels,      ///< `material` alone: boundaries are binary and get tightened
+    indicators,  ///< one function per material in `values`: the largest wins
+    scalar,      ///< one function in `values`, cut at `levels`: material m lies between levels[m - 1] and levels[m]
+  };
+
+  Kind kind = Kind::labels;
+  Int3 dims{};
+  Vec3d spacing{1, 1, 1};  ///< > 0, world units
+  Vec3d origin{};          ///< world position of voxel (0, 0, 0)'s centre
+  std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};  ///< unit, orthogonal; may be left-handed
+  std::vector<std::uint16_t> material;     ///< per voxel: 0 is the outside, then 1 .. labels.size() - 1
+  std::vector<std::vector<float>> values;  ///< no NaN; see Kind
+  std::vector<float> levels;               ///< ascending
+  std::vector<std::int64_t> labels;        ///< per material: its label in the file; [0]: the outside's
+  std::vector<std::string> names;          ///< per material; may be empty
+
+  int materials() const { return int(labels.size()); }
+  std::size_t voxels() const { return std::size_t(dims.x) * dims.y * dims.z; }
+};
+
+/// What became of the fields and particles, for the report.
+struct MeshInfo {
+  Int3 blocks{};  ///< of 8^3 voxels
+  std::int64_t field_bytes = 0, embedding_bytes = 0, embedding_cells = 0;
+  int surfaces = 0, curves = 0;                ///< interfaces of two materials, junction curves of three
+  int points = 0;                              ///< junction points of four materials
+  int crowded_points = 0;                      ///< of these, where more than four materials meet
+  std::int64_t constrained_voxels = 0;         ///< where tightening was held back to keep a voxel on its side
+  double smallest_size = 0, largest_size = 0;  ///< of the sizing field on the interfaces, voxels
+  double expected_particles = 0;               ///< from area and sizing field
+  std::int64_t seeded = 0, final = 0;
+  std::int64_t points_final = 0, curves_final = 0, surfaces_final = 0;  ///< of `final`, by junction order
+  int iterations = 0;                                                   ///< of the surfaces
+  std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
+  std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
+};
+
+/// Where the particles are, world coordinates.
+struct MeshParticles {
+  std::vector<Vec3d> points;
+  std::vector<float> size;  ///< h, world units
+  std::vector<float> energy;
+  std::vector<Vec3f> normal;        ///< of its surface; the tangent on a curve; zero on a junction point
+  std::vector<std::uint8_t> order;  ///< 0 on junction points, 1 on curves, 2 on surfaces
+  std::vector<std::array<std::uint16_t, 4>> materials;  ///< that meet there; unused ones are 0xffff
+};
+
+/// Mean and largest distance, in voxels, of vertices and facet centres from the interface that they stand for.
+struct SurfaceDistance {
+  double vertex_mean = 0, vertex_max = 0, facet_mean = 0, facet_max = 0;
+};
+
+/// Told after every iteration: stage name, how far the whole command is (0..1), iteration, particles and mean energy.
+struct MeshProgress {
+  std::string_view stage;
+  double fraction = 0;
+  int iteration = 0;
+  std::int64_t particles = 0;
+  double energy = 0;
+};
+using MeshProgressCallback = std::function<void(const MeshProgress&)>;
+
+/// load, build_fields, relax, triangulate, in this order; `parameters` may be changed between calls and are read by the
+/// step that they belong to. A step may be repeated without those before it. Throws Error for bad input and too little
+/// memory, Interrupted when the watched flag is set; after an Interrupted from `relax`, `watch(nullptr)` and
+/// `triangulate` give the mesh of the particles so far.
+class MeshPipeline {
+ public:
+  virtual ~MeshPipeline() = default;
+
+  MeshParameters parameters;
+  MeshProgressCallback progress;
+
+  virtual void load(const MeshVolume& volume) = 0;  ///< stage materials
+  virtual void build_fields() = 0;                  ///< stages tighten, distance, sizing, embed
+  virtual void relax() = 0;                         ///< stages seed, relax, population
+  virtual SurfaceMesh triangulate() = 0;            ///< stage triangulate; world coordinates
+
+  virtual MeshParticles particles() const = 0;
+  virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
+  /// Material at points of the world (the outside beyond the volume).
+  virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;
+  /// Sizing field at points of the world, world units.
+  virtual std::vector<float> size_at(std::span<const Vec3d> points) = 0;
+
+  virtual const MeshInfo& info() const = 0;
+  virtual StageTimers& timers() = 0;
+  virtual std::size_t peak_bytes() const = 0;  ///< of the arena
+  virtual void watch(const std::atomic<bool>* stop) = 0;
+};
+
+std::unique_ptr<MeshPipeline> make_mesh_pipeline(Device& device);
+
+}  // namespace nacre

@@ -1,0 +1,401 @@
+// Nacre: the mesh pipeline: order of the stages and who owns what. Backends instantiate it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "compute/embedding/build_interface_grid.hpp"
+#include "compute/field/tighten.hpp"
+#include "compute/meshing/delaunay.hpp"
+#include "compute/meshing/interfaces.hpp"
+#include "compute/meshing/repair.hpp"
+#include "compute/particles/seed.hpp"
+#include "compute/particles/tree_solver.hpp"
+#include "compute/pipeline/mesh_kernels.hpp"
+#include "compute/pipeline/volume_frame.hpp"
+
+namespace nacre {
+
+template <class Backend>
+class MeshPipelineOf : public MeshPipeline {
+ public:
+  explicit MeshPipelineOf(Device& device) : exec_(device) {}
+
+  void load(const MeshVolume& volume) override;
+  void build_fields() override;
+  void relax() override;
+  SurfaceMesh triangulate() override;
+
+  MeshParticles particles() const override;
+  SurfaceDistance surface_distance(const SurfaceMesh& mesh) override;
+  std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) override;
+  std::vector<float> size_at(std::span<const Vec3d> points) override;
+
+  const MeshInfo& info() const override { return info_; }
+  StageTimers& timers() override { return exec_.timers(); }
+  std::size_t peak_bytes() const override { return const_cast<Executor<Backend>&>(exec_).arena().peak_bytes(); }
+  void watch(const std::atomic<bool>* stop) override { exec_.watch(stop); }
+
+ private:
+  void tell(std::string_view stage, double fraction, int iteration = 0, double energy = 0) {
+    if (progress) progress({stage, fraction, iteration, solver_ ? solver_->particles().count : 0, energy});
+  }
+  void relate_interfaces();
+  void make_solver();
+  void add_points();
+  void relax_order(int order, double from, double to);
+  RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
+  TreeRule tree_rule() const {
+    return {float(parameters.theta), float(parameters.step), float(parameters.momentum), 0.3f};
+  }
+  PopulationRule population_rule(int order) const;
+  Array<Vec3f> upload_points(std::span<const Vec3d> points);
+
+  Executor<Backend> exec_;
+  VolumeFrame frame_;
+  MeshInfo info_;
+  const MeshVolume* volume_ = nullptr;
+  MaterialBricks bricks_;
+  DistanceField distance_;
+  SizingField size_;
+  InterfaceGrid grid_;
+  std::vector<Junction> junctions_;  ///< surfaces and curves as in the grid, then points
+  Array<Junction> junction_;
+  Array<std::uint32_t> related_start_, related_;
+  Array<std::uint8_t> order_;
+  std::unique_ptr<TreeSolver> solver_;
+  std::size_t volume_mark_ = 0, field_mark_ = 0;
+  bool fields_ = false;
+};
+
+template <class Backend>
+void MeshPipelineOf<Backend>::load(const MeshVolume& volume) {
+  auto stage = exec_.stage("materials");
+  Arena& arena = exec_.arena();
+  solver_.reset();
+  fields_ = false;
+  info_ = {};
+  arena.rewind(0);
+  volume_ = &volume;
+  frame_ = VolumeFrame(volume);
+  tell("materials", 0);
+  const CubicKernel kernel = parameters.kernel == "b-spline" ? CubicKernel::b_spline : CubicKernel::catmull_rom;
+  bricks_ = lay_out_bricks(exec_, volume.dims, frame_.relative_spacing(), kernel, volume.material);
+  if (bricks_.bricks == 2)
+    throw Error("one material only", "every voxel of the volume is of the same material",
+                "choose others with --materials or --isovalue");
+  float scale = 0;
+  for (const std::vector<float>& values : volume.values)
+    for (const float v : values) scale = std::max(scale, std::fabs(v));
+  if (!(scale > 0)) scale = 1;
+  if (volume.kind == MeshVolume::Kind::indicators)
+    fill_indicators(exec_, bricks_, volume.material, volume.values, scale);
+  else if (volume.kind == MeshVolume::Kind::scalar)
+    fill_scalar(exec_, bricks_, volume.values.at(0), volume.levels, scale);
+  info_.blocks = bricks_.blocks;
+  volume_mark_ = arena.mark();
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::build_fields() {
+  if (!volume_) throw Error("no volume loaded");
+  Arena& arena = exec_.arena();
+  solver_.reset();
+  fields_ = false;
+  arena.rewind(volume_mark_);
+  if (volume_->kind == MeshVolume::Kind::labels) {
+    auto stage = exec_.stage("tighten");
+    tell("tighten", 0.02);
+    const TightenResult result = tighten(exec_, bricks_, parameters.tighten);
+    info_.constrained_voxels = result.held;
+  }
+  const SizingRule rule{float(parameters.epsilon), float(parameters.delta), float(parameters.min_size),
+                        float(std::max(parameters.min_size, parameters.max_size)), parameters.curvature};
+  {
+    auto stage = exec_.stage("distance");
+    tell("distance", 0.05);
+    distance_ = distance_field(exec_, bricks_, 0.5f * rule.min_size, std::min(rule.reach() + 2, 64.0f));
+  }
+  {
+    auto stage = exec_.stage("sizing");
+    tell("sizing", 0.08);
+    size_ = sizing_field(exec_, distance_, rule);
+  }
+  {
+    auto stage = exec_.stage("embed");
+    tell("embed", 0.12);
+    // Cells of half the smallest distance of particles suffice for the stencils.
+    grid_ =
+        embed_interfaces(exec_, bricks_, distance_, size_, std::min(double(parameters.subcells), 2.0 / size_.small));
+  }
+  relate_interfaces();
+  info_.field_bytes = bricks_.bytes() + distance_.bytes() + std::int64_t(size_.h.bytes());
+  info_.embedding_bytes = grid_.bytes();
+  info_.embedding_cells = grid_.cells();
+  info_.surfaces = info_.curves = 0;
+  for (const Junction& j : grid_.junctions) ++(j.order() == 2 ? info_.surfaces : info_.curves);
+  info_.points = int(grid_.points.size());
+  info_.expected_particles = info_.points;
+  for (const int order : {1, 2}) info_.expected_particles += expected_particles(exec_, grid_, order_.data(), order);
+  field_mark_ = arena.mark();
+  fields_ = true;
+}
+
+/// Which interfaces bound which, and the kinds of junction points as interfaces of their own.
+template <class Backend>
+void MeshPipelineOf<Backend>::relate_interfaces() {
+  junctions_ = grid_.junctions;
+  std::vector<Junction> points = grid_.point_junction;
+  std::sort(points.begin(), points.end(), [](const Junction& a, const Junction& b) { return a.packed < b.packed; });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  junctions_.insert(junctions_.end(), points.begin(), points.end());
+  std::vector<std::uint32_t> start{0}, related;
+  std::vector<std::uint8_t> order;
+  for (std::size_t k = 0; k < junctions_.size(); ++k) {
+    related.push_back(std::uint32_t(k));
+    for (std::size_t l = 0; l < junctions_.size(); ++l)
+      if (l != k && junctions_[l].order() < junctions_[k].order() && junctions_[l].bounds(junctions_[k]))
+        related.push_back(std::uint32_t(l));
+    start.push_back(std::uint32_t(related.size()));
+    order.push_back(std::uint8_t(junctions_[k].order()));
+  }
+  Arena& arena = exec_.arena();
+  junction_ = arena.permanent_copy<Junction>(junctions_);
+  related_start_ = arena.permanent_copy<std::uint32_t>(start);
+  related_ = arena.permanent_copy<std::uint32_t>(related);
+  order_ = arena.permanent_copy<std::uint8_t>(order);
+}
+
+template <class Backend>
+PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
+  PopulationRule rule;
+  const double hexagonal = parameters.ideal_energy > 0 ? parameters.ideal_energy : hexagonal_energy;
+  rule.ideal_energy = float(order == 2 ? hexagonal : hexagonal * row_energy / hexagonal_energy);
+  rule.add_below = float(order == 2 ? parameters.add_below : std::max(parameters.add_below, 0.75));
+  rule.delete_above = float(order == 2 ? parameters.delete_above : std::max(parameters.delete_above, 3.5));
+  rule.certain_above = order == 2 ? 4.0f : 8.0f;
+  rule.may_add = parameters.particles == 0;
+  rule.seed = parameters.seed;
+  return rule;
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::make_solver() {
+  Arena& arena = exec_.arena();
+  arena.rewind(field_mark_);
+  const double wanted = parameters.particles > 0 ? parameters.particles : info_.expected_particles;
+  // Crowded places relax to fewer, holes fill: half as many again has always been enough.
+  const double capacity = 1.6 * wanted + 20000;
+  const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);
+  if (capacity > 4e9 || bytes > double(arena.free_bytes()))
+    throw Error("too many particles for the memory",
+                "the sizing field asks for about " + std::to_string(std::int64_t(wanted)) + ", which take " +
+                    std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " +
+                    std::to_string(arena.free_bytes() >> 20) + " MiB are free",
+                "raise --max-size and --min-size, or --epsilon");
+  solver_ = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
+                                         float(frame_.extent()));
+  solver_->particles().count = 0;
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::add_points() {
+  const std::size_t n = grid_.points.size();
+  if (n == 0) return;
+  std::vector<std::uint32_t> interface;
+  for (const Junction& j : grid_.point_junction)
+    for (std::size_t k = grid_.junctions.size(); k < junctions_.size(); ++k)
+      if (junctions_[k] == j) interface.push_back(std::uint32_t(k));
+  const std::vector<Float4> zero(n, Float4{0, 0, 0, 0});
+  ParticleSet& set = solver_->particles();
+  set.place.upload(grid_.points);
+  set.direction.upload(zero);
+  set.interface.upload(interface);
+  solver_->velocity().upload(zero);
+  set.count = std::int64_t(n);
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::relax() {
+  if (!fields_) throw Error("no fields built");
+  make_solver();
+  info_.energy.clear();
+  info_.count.clear();
+  info_.iterations = 0;
+  add_points();
+  relax_order(1, 0.18, 0.22);
+  relax_order(2, 0.22, 0.85);
+  auto stage = exec_.stage("relax");
+  const ParticleSet& set = solver_->particles();
+  exec_.for_each(set.count, detail::PolishParticle{bricks_.view(), junction_.data(), set.interface.data(),
+                                                   set.place.data(), set.direction.data()});
+}
+
+/// Seeds the particles of an order, moves them, controls their number until little changes, and lets them settle.
+template <class Backend>
+void MeshPipelineOf<Backend>::relax_order(int order, double from, double to) {
+  ParticleSet& set = solver_->particles();
+  {
+    auto stage = exec_.stage("seed");
+    double scale = 1;
+    if (order == 2 && parameters.particles > 0)
+      scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
+    info_.seeded += seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
+  }
+  const RelatedView related = this->related();
+  std::int64_t movers = solver_->movers(exec_, related, order);
+  if (movers == 0) return;
+  const TreeRule rule = tree_rule();
+  const PopulationRule population = population_rule(order);
+  const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
+  const int last_control = iterations - 2 * every;
+  bool controls = true, sorted = false;
+  double before = 0;
+  for (int k = 0; k < iterations; ++k) {
+    double energy = 0;
+    {
+      auto stage = exec_.stage("relax");
+      if (!sorted || k % 5 == 0) solver_->rebuild(exec_);
+      sorted = true;
+      energy = solver_->forces(exec_, related, order, rule.theta, movers);
+    }
+    if (controls && k > 0 && k % every == 0 && k <= last_control) {
+      auto stage = exec_.stage("population");
+      const IterationResult changed = solver_->control(exec_, grid_.view(), related, order, rule.theta, population, k);
+      movers = solver_->movers(exec_, related, order);
+      controls = changed.added + changed.deleted > 0;
+      sorted = false;
+      continue;
+    }
+    auto stage = exec_.stage("relax");
+    solver_->move(exec_, grid_.view(), related, order, rule);
+    tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, energy);
+    if (order == 2) {
+      info_.energy.push_back(energy);
+      info_.count.push_back(movers);
+      ++info_.iterations;
+    }
+    const bool settled = !controls || k > last_control;
+    if (settled && before > 0 && std::fabs(before - energy) < parameters.stagnation * energy && k % every == every - 1)
+      break;
+    before = energy;
+  }
+}
+
+template <class Backend>
+Array<Vec3f> MeshPipelineOf<Backend>::upload_points(std::span<const Vec3d> points) {
+  std::vector<Vec3f> host(points.size());
+  const float far = 1e6f;
+  std::transform(points.begin(), points.end(), host.begin(), [&](const Vec3d& w) {
+    const Vec3f p(frame_.to_voxels(w));
+    return is_finite(p) ? max(min(p, Vec3f(far)), Vec3f(-far)) : Vec3f(-far);
+  });
+  Array<Vec3f> array = exec_.arena().template temporary<Vec3f>(host.size());
+  array.upload(host);
+  return array;
+}
+
+template <class Backend>
+std::vector<std::uint16_t> MeshPipelineOf<Backend>::material_at(std::span<const Vec3d> points) {
+  Arena::Scope scope(exec_.arena());
+  const Array<Vec3f> place = upload_points(points);
+  Array<std::uint16_t> material = exec_.arena().template temporary<std::uint16_t>(points.size());
+  exec_.for_each(std::int64_t(points.size()), detail::MaterialAt{bricks_.view(), place.data(), material.data()});
+  return material.download();
+}
+
+template <class Backend>
+std::vector<float> MeshPipelineOf<Backend>::size_at(std::span<const Vec3d> points) {
+  Arena::Scope scope(exec_.arena());
+  const Array<Vec3f> place = upload_points(points);
+  Array<float> h = exec_.arena().template temporary<float>(points.size());
+  exec_.for_each(std::int64_t(points.size()), detail::SizeAt{size_.view(), place.data(), h.data()});
+  std::vector<float> result = h.download();
+  for (float& x : result) x *= float(frame_.unit);
+  return result;
+}
+
+template <class Backend>
+MeshParticles MeshPipelineOf<Backend>::particles() const {
+  MeshParticles result;
+  if (!solver_) return result;
+  const ParticleSet& set = solver_->particles();
+  const std::size_t n = std::size_t(set.count);
+  const std::vector<Float4> place = set.place.download(0, n), direction = set.direction.download(0, n);
+  const std::vector<std::uint32_t> interface = set.interface.download(0, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Junction j = junctions_[interface[i]];
+    result.points.push_back(frame_.to_world(Vec3d(place[i].x, place[i].y, place[i].z)));
+    result.size.push_back(place[i].w * float(frame_.unit));
+    result.energy.push_back(direction[i].w);
+    result.normal.push_back(frame_.direction_to_world({direction[i].x, direction[i].y, direction[i].z}));
+    result.order.push_back(std::uint8_t(j.order()));
+    std::array<std::uint16_t, 4> materials;
+    for (int k = 0; k < 4; ++k) materials[k] = std::uint16_t(j.material(k));
+    result.materials.push_back(materials);
+  }
+  return result;
+}
+
+template <class Backend>
+SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
+  if (!solver_) throw Error("no particles");
+  auto stage = exec_.stage("triangulate");
+  tell("triangulate", 0.86);
+  const MeshParticles particles = this->particles();
+  info_.final = std::int64_t(particles.points.size());
+  info_.points_final = std::count(particles.order.begin(), particles.order.end(), 0);
+  info_.curves_final = std::count(particles.order.begin(), particles.order.end(), 1);
+  info_.surfaces_final = std::count(particles.order.begin(), particles.order.end(), 2);
+  const DelaunayCells cells = delaunay(particles.points, exec_.device().threads());
+  tell("triangulate", 0.92);
+  std::vector<std::uint16_t> label = material_at(cells.circumcentres);
+  repair_labels(particles.points, cells, label);
+  return extract_interfaces(particles.points, cells, label);
+}
+
+template <class Backend>
+SurfaceDistance MeshPipelineOf<Backend>::surface_distance(const SurfaceMesh& mesh) {
+  auto stage = exec_.stage("quality");
+  std::vector<Vec3d> points;
+  std::vector<Junction> junctions;
+  std::vector<std::uint32_t> facet(mesh.points.size(), none);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) facet[mesh.triangles[t][k]] = std::uint32_t(t);
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (facet[v] == none) continue;
+    points.push_back(mesh.points[v]);
+    junctions.emplace_back(mesh.materials[facet[v]][0], mesh.materials[facet[v]][1]);
+  }
+  const std::size_t vertices = points.size();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& c = mesh.triangles[t];
+    points.push_back((mesh.points[c.a] + mesh.points[c.b] + mesh.points[c.c]) / 3.0);
+    junctions.emplace_back(mesh.materials[t][0], mesh.materials[t][1]);
+  }
+  Arena& arena = exec_.arena();
+  Arena::Scope scope(arena);
+  const Array<Vec3f> place = upload_points(points);
+  Array<Junction> junction = arena.template temporary<Junction>(junctions.size());
+  junction.upload(junctions);
+  Array<float> distance = arena.template temporary<float>(points.size());
+  exec_.for_each(std::int64_t(points.size()),
+                 detail::DistanceToInterface{bricks_.view(), place.data(), junction.data(), distance.data()});
+  const std::vector<float> d = distance.download();
+  SurfaceDistance result;
+  const auto measure = [&](std::size_t first, std::size_t last, double& mean, double& largest) {
+    std::size_t n = 0;
+    for (std::size_t i = first; i < last; ++i) {
+      if (d[i] < 0) continue;
+      mean += d[i];
+      largest = std::max(largest, double(d[i]));
+      ++n;
+    }
+    mean /= double(std::max<std::size_t>(n, 1));
+  };
+  measure(0, vertices, result.vertex_mean, result.vertex_max);
+  measure(vertices, points.size(), result.facet_mean, result.facet_max);
+  return result;
+}
+
+}  // namespace nacre

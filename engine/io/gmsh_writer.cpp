@@ -1,0 +1,75 @@
+// Nacre: meshes written for Gmsh (.msh, version 2.2, binary).
+#include "engine/io/gmsh_writer.hpp"
+
+#include <bit>
+#include <limits>
+
+#include "compute/device/error.hpp"
+#include "engine/io/chunks.hpp"
+
+namespace nacre {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);  // a reader takes the order from the number 1 in the header
+
+std::string quoted(const std::string& name) {
+  std::string out = "\"";
+  for (const char c : name) out += c == '"' || static_cast<unsigned char>(c) < 32 ? '_' : c;
+  return out + '"';
+}
+
+void write_points(Chunks& out, std::span<const Vec3d> points) {
+  out.print("$Nodes\n{}\n", points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out.raw(std::int32_t(i + 1));
+    out.raw(points[i]);
+  }
+  out.print("\n$EndNodes\n");
+}
+
+void write_cells(Chunks& out, const GmshMesh& mesh) {
+  constexpr std::int32_t triangle = 2, tetrahedron = 4, tags = 2;
+  out.print("$Elements\n{}\n", mesh.cells);
+  out.raw(mesh.corners == 3 ? triangle : tetrahedron);
+  out.raw(std::int32_t(mesh.cells));
+  out.raw(tags);
+  for (std::size_t i = 0; i < mesh.cells; ++i) {
+    const std::int32_t group = mesh.group(i);
+    out.raw(std::int32_t(i + 1));
+    out.raw(group);  // physical
+    out.raw(group);  // elementary
+    for (int k = 0; k < mesh.corners; ++k) out.raw(std::int32_t(mesh.corner(i, k) + 1));
+  }
+  out.print("\n$EndElements\n");
+}
+
+void write_numbers(Chunks& out, const GmshMesh::Numbers& numbers, std::size_t cells) {
+  out.print("$ElementData\n1\n{}\n1\n0\n3\n0\n1\n{}\n", quoted(numbers.name), cells);
+  for (std::size_t i = 0; i < cells; ++i) {
+    out.raw(std::int32_t(i + 1));
+    out.raw(numbers.of(i));
+  }
+  out.print("\n$EndElementData\n");
+}
+
+}  // namespace
+
+void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh) {
+  constexpr auto most = std::size_t(std::numeric_limits<std::int32_t>::max());
+  if (mesh.points.size() > most || mesh.cells > most)
+    throw Error("cannot write " + file.string(), "Gmsh's format counts to 2,147,483,647", "use .vtp or .vtu");
+  OutputFile target(file);
+  Chunks out(target);
+  out.print("$MeshFormat\n2.2 1 8\n");
+  out.raw(std::int32_t(1));
+  out.print("\n$EndMeshFormat\n$PhysicalNames\n{}\n", mesh.groups.size());
+  for (const auto& [tag, name] : mesh.groups) out.print("{} {} {}\n", mesh.corners - 1, tag, quoted(name));
+  out.print("$EndPhysicalNames\n");
+  write_points(out, mesh.points);
+  write_cells(out, mesh);
+  for (const GmshMesh::Numbers& numbers : mesh.numbers) write_numbers(out, numbers, mesh.cells);
+  out.flush();
+  target.commit();
+}
+
+}  // namespace nacre

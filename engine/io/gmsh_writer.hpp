@@ -1,0 +1,40 @@
+// Nacre: meshes written for Gmsh (.msh, version 2.2, binary).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compute/grid/vec.hpp"
+
+namespace nacre {
+
+/// What a .msh is made of: cells of one kind, each in one physical group.
+struct GmshMesh {
+  struct Group {
+    std::int32_t tag;  ///< > 0
+    std::string name;
+  };
+  struct Numbers {
+    std::string name;
+    std::function<double(std::size_t cell)> of;
+  };
+
+  std::span<const Vec3d> points;
+  int corners = 3;  ///< per cell: 3 triangles, 4 tetrahedra
+  std::size_t cells = 0;
+  std::function<std::uint32_t(std::size_t cell, int k)> corner;
+  std::function<std::int32_t(std::size_t cell)> group;  ///< its tag
+  std::vector<Group> groups;
+  std::vector<Numbers> numbers;  ///< written as $ElementData
+};
+
+/// Readable by Gmsh, meshio and others that know version 2.2. Throws Error where there are more than 2^31 - 1 points or
+/// cells, or the file cannot be written.
+void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh);
+
+}  // namespace nacre

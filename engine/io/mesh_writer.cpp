@@ -1,0 +1,268 @@
+// Nacre: meshes of materials written in the format that the file's extension names.
+#include "engine/io/mesh_writer.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <system_error>
+
+#include "compute/device/error.hpp"
+#include "engine/io/chunks.hpp"
+#include "engine/io/gmsh_writer.hpp"
+#include "engine/io/surface_writer.hpp"
+#include "engine/io/vtk_appended.hpp"
+#include "engine/io/vtp_writer.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+using Labels = std::span<const std::int64_t>;
+using Pair = std::array<std::uint16_t, 2>;
+
+std::string checked_extension(const fs::path& file, const std::vector<std::string>& known) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  if (std::find(known.begin(), known.end(), extension) == known.end())
+    throw Error(fmt::format("cannot write {}", file.string()),
+                extension.empty() ? "its name has no extension" : fmt::format("{} is not written", extension),
+                fmt::format("use one of {}", fmt::join(known, " ")));
+  return extension;
+}
+
+[[noreturn]] void fail(const fs::path& file, const std::string& why) {
+  throw Error(fmt::format("cannot write {}", file.string()), why);
+}
+
+void check(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+  if (mesh.triangles.empty()) fail(file, "the mesh has no triangles");
+  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max())
+    fail(file, "it has more than 4,294,967,295 triangles");
+  if (mesh.materials.size() != mesh.triangles.size()) fail(file, "its triangles have no materials");
+  for (const Triangle& t : mesh.triangles)
+    if (std::max({t.a, t.b, t.c}) >= mesh.points.size()) fail(file, "a triangle refers to a point that does not exist");
+  for (const Pair& pair : mesh.materials)
+    if (std::max(pair[0], pair[1]) >= labels.size()) fail(file, "a triangle has a material without a label");
+}
+
+void check(const fs::path& file, const TetrahedralMesh& mesh, Labels labels) {
+  if (mesh.cells.empty()) fail(file, "the mesh has no cells");
+  if (mesh.material.size() != mesh.cells.size()) fail(file, "its cells have no materials");
+  for (const auto& cell : mesh.cells)
+    if (*std::max_element(cell.begin(), cell.end()) >= mesh.points.size())
+      fail(file, "a cell refers to a point that does not exist");
+  for (const std::uint16_t m : mesh.material)
+    if (m >= labels.size()) fail(file, "a cell has a material without a label");
+}
+
+CellNumbers cell_numbers(const std::string& name, Labels labels, std::function<std::uint16_t(std::uint64_t)> of) {
+  const auto [lower, upper] = std::minmax_element(labels.begin(), labels.end());
+  return {name, *lower, *upper, [=](std::uint64_t i) { return labels[of(i)]; }};
+}
+
+/// The labels on both sides of each triangle.
+std::array<CellNumbers, 2> side_numbers(const SurfaceMesh& mesh, Labels labels) {
+  const auto side = [&](std::size_t k) {
+    return cell_numbers(fmt::format("material_{}", k), labels,
+                        [&mesh, k](std::uint64_t i) { return mesh.materials[i][k]; });
+  };
+  return {side(0), side(1)};
+}
+
+/// The pairs that occur, numbered from 1, ascending.
+std::map<Pair, std::int32_t> numbered_pairs(const SurfaceMesh& mesh) {
+  std::map<Pair, std::int32_t> pairs;
+  for (const Pair& pair : mesh.materials) pairs.emplace(pair, 0);
+  std::int32_t number = 0;
+  for (auto& entry : pairs) entry.second = ++number;
+  return pairs;
+}
+
+std::string pair_name(const Pair& pair, Labels labels) {
+  return fmt::format("material_{}_{}", labels[pair[0]], labels[pair[1]]);
+}
+
+void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+  const auto [lower, upper] = std::minmax_element(labels.begin(), labels.end());
+  using Narrow = std::numeric_limits<std::int32_t>;
+  if (*lower < Narrow::min() || *upper > Narrow::max())
+    throw Error(fmt::format("cannot write {}", file.string()), "PLY has no labels beyond 32 bits", "use .vtp");
+  OutputFile target(file);
+  Chunks out(target);
+  out.print("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.points.size());
+  out.print("property double x\nproperty double y\nproperty double z\nelement face {}\n", mesh.triangles.size());
+  out.print("property list uchar uint vertex_indices\nproperty int material_0\nproperty int material_1\nend_header\n");
+  for (const Vec3d& p : mesh.points) out.raw(p);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    out.raw(std::uint8_t(3));
+    out.raw(mesh.triangles[i]);
+    for (const std::uint16_t m : mesh.materials[i]) out.raw(std::int32_t(labels[m]));
+  }
+  out.flush();
+  target.commit();
+}
+
+/// Triangles by pair of materials, each pair a group.
+void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+  std::vector<std::uint32_t> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t i, std::uint32_t j) { return mesh.materials[i] < mesh.materials[j]; });
+  OutputFile target(file);
+  Chunks out(target);
+  for (const Vec3d& p : mesh.points) out.point(p, "v ");
+  const Pair* last = nullptr;
+  for (const std::uint32_t i : order) {
+    const Pair& pair = mesh.materials[i];
+    if (!last || *last != pair) out.print("g {}\n", pair_name(pair, labels));
+    last = &pair;
+    const Triangle& t = mesh.triangles[i];
+    out.print("f {} {} {}\n", std::uint64_t(t.a) + 1, std::uint64_t(t.b) + 1, std::uint64_t(t.c) + 1);
+  }
+  out.flush();
+  target.commit();
+}
+
+void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+  const std::map<Pair, std::int32_t> pairs = numbered_pairs(mesh);
+  GmshMesh out;
+  out.points = mesh.points;
+  out.cells = mesh.triangles.size();
+  out.corner = [&](std::size_t i, int k) { return mesh.triangles[i][k]; };
+  out.group = [&](std::size_t i) { return pairs.at(mesh.materials[i]); };
+  for (const auto& [pair, tag] : pairs) out.groups.push_back({tag, pair_name(pair, labels)});
+  for (CellNumbers& side : side_numbers(mesh, labels))
+    out.numbers.push_back({side.name, [of = side.of](std::size_t i) { return double(of(i)); }});
+  write_gmsh(file, out);
+}
+
+/// The facets of one material, turned so that their normals point out of it, with the points that they use.
+Surface surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
+  constexpr std::uint32_t none = 0xffffffff;
+  std::vector<std::uint32_t> number(mesh.points.size(), none);
+  Surface surface;
+  const auto use = [&](std::uint32_t p) {
+    if (number[p] == none) {
+      number[p] = std::uint32_t(surface.points.size());
+      surface.points.push_back(mesh.points[p]);
+    }
+    return number[p];
+  };
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    if (mesh.materials[i][1] == material)
+      surface.triangles.push_back({use(t.a), use(t.b), use(t.c)});
+    else if (mesh.materials[i][0] == material)
+      surface.triangles.push_back({use(t.a), use(t.c), use(t.b)});
+  }
+  return surface;
+}
+
+void write_one_material(const fs::path& file, const Surface& surface, const std::string& name) {
+  if (checked_extension(file, surface_mesh_extensions()) != ".msh") return write_surface(file, surface);
+  GmshMesh out;
+  out.points = surface.points;
+  out.cells = surface.triangles.size();
+  out.corner = [&](std::size_t i, int k) { return surface.triangles[i][k]; };
+  out.group = [](std::size_t) { return 1; };
+  out.groups = {{1, name}};
+  write_gmsh(file, out);
+}
+
+void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels) {
+  constexpr int vtk_tetrahedron = 10;
+  const std::uint64_t cells = mesh.cells.size();
+  const CellNumbers material = cell_numbers("material", labels, [&mesh](std::uint64_t i) { return mesh.material[i]; });
+  Appended appended;
+  std::string xml = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+      mesh.points.size(), cells);
+  xml += announce_cell_data(appended, cells, std::span(&material, 1));
+  const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3d);
+  xml += "<Points>\n" + appended.announce("Float64", "Points", 3, bytes, [&](OutputFile& file) {
+    file.write(mesh.points.data(), bytes);
+  }) + "</Points>\n<Cells>\n";
+  xml += announce_indices(appended, "connectivity", 4 * cells, mesh.points.size(),
+                          [&mesh](std::uint64_t i) { return mesh.cells[i / 4][i % 4]; });
+  xml += announce_indices(appended, "offsets", cells, 4 * cells, [](std::uint64_t i) { return 4 * i + 4; });
+  xml += appended.announce("UInt8", "types", 1, cells, [cells](OutputFile& file) {
+    write_generated<std::uint8_t>(file, cells, [](std::uint64_t) { return vtk_tetrahedron; });
+  });
+  OutputFile file(path);
+  file.write(xml + "</Cells>\n</Piece>\n</UnstructuredGrid>\n");
+  appended.write(file);
+  file.write("</VTKFile>\n");
+  file.commit();
+}
+
+/// Physical groups are the labels themselves where those are positive, else the materials' numbers.
+void write_msh(const fs::path& file, const TetrahedralMesh& mesh, Labels labels) {
+  const std::set<std::uint16_t> present(mesh.material.begin(), mesh.material.end());
+  const bool usable = std::all_of(present.begin(), present.end(), [&](std::uint16_t m) {
+    return labels[m] > 0 && labels[m] <= std::numeric_limits<std::int32_t>::max();
+  });
+  const auto tag = [&, usable](std::uint16_t m) { return usable ? std::int32_t(labels[m]) : std::int32_t(m); };
+  GmshMesh out;
+  out.points = mesh.points;
+  out.corners = 4;
+  out.cells = mesh.cells.size();
+  out.corner = [&](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; };
+  out.group = [&](std::size_t i) { return tag(mesh.material[i]); };
+  for (const std::uint16_t m : present) out.groups.push_back({tag(m), fmt::format("material_{}", labels[m])});
+  out.numbers = {{"material", [&](std::size_t i) { return double(labels[mesh.material[i]]); }}};
+  write_gmsh(file, out);
+}
+
+}  // namespace
+
+std::vector<std::string> surface_mesh_extensions() { return {".vtp", ".ply", ".msh", ".obj", ".off", ".stl"}; }
+
+std::vector<std::string> tetrahedral_mesh_extensions() { return {".vtu", ".msh"}; }
+
+void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+  const std::string extension = checked_extension(file, surface_mesh_extensions());
+  check(file, mesh, labels);
+  if (extension == ".vtp")
+    return write_vtp(file, std::span<const Vec3d>(mesh.points), mesh.triangles, {}, std::nullopt,
+                     side_numbers(mesh, labels));
+  if (extension == ".ply") return write_ply(file, mesh, labels);
+  if (extension == ".obj") return write_obj(file, mesh, labels);
+  if (extension == ".msh") return write_msh(file, mesh, labels);
+  write_surface(file, {mesh.points, mesh.triangles, {}});
+}
+
+std::vector<fs::path> write_material_surfaces(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+  checked_extension(file, surface_mesh_extensions());
+  check(file, mesh, labels);
+  std::vector<fs::path> written;
+  try {
+    for (std::size_t m = 1; m < labels.size(); ++m) {
+      const Surface surface = surface_of(mesh, std::uint16_t(m));
+      if (surface.triangles.empty()) continue;
+      const std::string name = fmt::format("{}_{}{}", file.stem().string(), labels[m], file.extension().string());
+      write_one_material(file.parent_path() / name, surface, fmt::format("material_{}", labels[m]));
+      written.push_back(file.parent_path() / name);
+    }
+  } catch (...) {
+    std::error_code ignored;
+    for (const fs::path& done : written) fs::remove(done, ignored);
+    throw;
+  }
+  return written;
+}
+
+void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, Labels labels) {
+  const std::string extension = checked_extension(file, tetrahedral_mesh_extensions());
+  check(file, mesh, labels);
+  if (extension == ".vtu") return write_vtu(file, mesh, labels);
+  write_msh(file, mesh, labels);
+}
+
+}  // namespace nacre

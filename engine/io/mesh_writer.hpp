@@ -1,0 +1,39 @@
+// Nacre: meshes of materials written in the format that the file's extension names.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "compute/meshing/surface_mesh.hpp"
+
+namespace nacre {
+
+/// Writes `mesh`, world coordinates, as .vtp, .ply (binary), .msh (Gmsh 2.2, binary), .obj, .off or .stl (binary).
+/// `labels` has the file's label of each material, that of the outside first.
+/// .vtp, .ply and .msh have `material_0` and `material_1` per triangle: the labels on its two sides, in the order of
+/// SurfaceMesh::materials, so that corners run counter-clockwise as seen from the side of `material_0`. .msh moreover
+/// has one physical group per pair of materials; .obj has one group per pair, named by the labels. .stl keeps 32-bit
+/// coordinates. Throws Error for other extensions, for an empty or broken mesh, and where writing fails.
+void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh,
+                        std::span<const std::int64_t> labels);
+
+/// Writes the closed surface of each material but the outside into a file of its own, with normals that point out of
+/// it: `file` F.ext becomes F_LABEL.ext. Materials without a surface are left out; points are those that it uses. If
+/// one fails, those already written are removed. Returns the files. Formats and errors as above; nothing is written per
+/// triangle.
+std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem::path& file, const SurfaceMesh& mesh,
+                                                           std::span<const std::int64_t> labels);
+
+/// Writes `mesh` as .vtu or .msh (Gmsh 2.2, binary) with the label of each cell as `material`; .msh has one physical
+/// group per material, too. Throws Error for other extensions, for an empty or broken mesh, and where writing fails.
+void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh,
+                            std::span<const std::int64_t> labels);
+
+/// Extensions, lower case, with dot.
+std::vector<std::string> surface_mesh_extensions();
+std::vector<std::string> tetrahedral_mesh_extensions();
+
+}  // namespace nacre

@@ -1,0 +1,247 @@
+// Nacre: reads NIfTI-1, NIfTI-2 and ANALYZE: the header through the nifti library, the values ourselves, since the
+// library turns NaN into 0.
+#include <fmt/format.h>
+#include <nifti/nifti2_io.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "engine/io/byte_order.hpp"
+#include "engine/io/file_bytes.hpp"
+#include "engine/io/volume_geometry.hpp"
+#include "engine/io/volume_readers.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Free {
+  void operator()(nifti_image* image) const { nifti_image_free(image); }
+};
+using Image = std::unique_ptr<nifti_image, Free>;
+
+/// A file that may be packed with gzip, read from its beginning.
+class PackedFile {
+ public:
+  explicit PackedFile(const fs::path& path) : path_(path), file_(gzopen(path.c_str(), "rb")) {
+    if (!file_) fail_reading(path, "the system refuses it", "check the file's permissions");
+    gzbuffer(file_, 1 << 18);
+  }
+  ~PackedFile() { gzclose(file_); }
+  PackedFile(const PackedFile&) = delete;
+  PackedFile& operator=(const PackedFile&) = delete;
+
+  /// Up to `size` bytes; how many there were.
+  std::size_t read(void* bytes, std::size_t size) {
+    std::size_t done = 0;
+    while (done < size) {
+      const unsigned part = unsigned(std::min<std::size_t>(size - done, 1u << 30));
+      const int got = gzread(file_, static_cast<char*>(bytes) + done, part);
+      if (got < 0) fail_reading(path_, "its gzip data are damaged");
+      if (got == 0) break;
+      done += std::size_t(got);
+    }
+    return done;
+  }
+
+  void skip(std::size_t size) {
+    std::array<char, 4096> bytes{};
+    while (size > 0) {
+      const std::size_t got = read(bytes.data(), std::min(size, bytes.size()));
+      if (got == 0) fail_reading(path_, "it ends before its values begin");
+      size -= got;
+    }
+  }
+
+ private:
+  fs::path path_;
+  gzFile file_;
+};
+
+/// The file with the header: the .hdr beside an .img.
+fs::path header_path(const fs::path& path) {
+  if (format_extension(path) != "img") return path;
+  const bool packed = path.extension() == ".gz";
+  const fs::path stem =
+      packed ? fs::path(path).replace_extension().replace_extension() : fs::path(path).replace_extension();
+  for (const char* extension : {".hdr", ".hdr.gz", ".HDR"}) {
+    fs::path header = stem;
+    header += extension;
+    std::error_code code;
+    if (fs::is_regular_file(header, code)) return header;
+  }
+  fail_reading(path, "there is no .hdr file beside it", "put its header there");
+}
+
+/// What is checked before the library sees a header: it crashes on some, and makes up for others.
+struct RawHeader {
+  int version = 1;
+  std::int64_t rank = 0;
+  std::array<std::int64_t, 7> dims{};
+  std::array<double, 3> spacing{};
+  double offset = 0;  ///< of the values; 0 in a file of its own
+  int type = 0;
+};
+
+RawHeader parse(const char* bytes, int version, std::endian order) {
+  RawHeader header{version, 0, {}, {}, 0, 0};
+  const bool one = version == 1;
+  const auto dim = [&](std::size_t i) -> std::int64_t {
+    return one ? load_number<std::int16_t>(bytes + 40 + 2 * i, order)
+               : load_number<std::int64_t>(bytes + 16 + 8 * i, order);
+  };
+  header.rank = dim(0);
+  for (std::size_t i = 0; i < 7; ++i) header.dims[i] = dim(i + 1);
+  for (std::size_t i = 0; i < 3; ++i)
+    header.spacing[i] =
+        one ? double(load_number<float>(bytes + 80 + 4 * i, order)) : load_number<double>(bytes + 112 + 8 * i, order);
+  header.offset =
+      one ? double(load_number<float>(bytes + 108, order)) : double(load_number<std::int64_t>(bytes + 168, order));
+  header.type = load_number<std::int16_t>(bytes + (one ? 70 : 12), order);
+  return header;
+}
+
+/// The header's bytes. Throws Error if the file does not begin like one.
+RawHeader raw_header(const fs::path& path) {
+  std::array<char, 540> head{};
+  const std::size_t got = PackedFile(path).read(head.data(), head.size());
+  for (const std::endian order : {std::endian::little, std::endian::big})
+    for (const int version : {1, 2}) {
+      const std::size_t size = version == 1 ? 348 : 540;
+      if (std::size_t(load_number<std::uint32_t>(head.data(), order)) != size) continue;
+      if (got < size) fail_reading(path, fmt::format("its header has {} of {} bytes", got, size));
+      return parse(head.data(), version, order);
+    }
+  fail_reading(path, "it does not begin like a NIfTI header", "check that it is NIfTI");
+}
+
+Image read_header(const fs::path& path) {
+  nifti_set_debug_level(0);
+  Image image(nifti_image_read(path.c_str(), 0));
+  if (!image) fail_reading(path, "its header is damaged");
+  return image;
+}
+
+void check_dimensions(const RawHeader& header, const fs::path& path) {
+  constexpr std::array<const char*, 7> names{"", "", "", "time", "values per voxel", "dimension 6", "dimension 7"};
+  if (header.rank < 1 || header.rank > 7) fail_reading(path, fmt::format("it has {} dimensions", header.rank));
+  if (header.rank < 3) fail_reading(path, fmt::format("it has {} dimensions", header.rank), "open a volume");
+  for (std::size_t d = 3; d < std::size_t(header.rank); ++d)
+    if (header.dims[d] != 1 && header.dims[d] != 0)
+      fail_reading(path, fmt::format("it has {} entries along its dimension {} ({})", header.dims[d], d + 1, names[d]),
+                   "take one of them out: one value per voxel is needed");
+  if (!(header.offset >= 0 && header.offset < 1e15))
+    fail_reading(path, fmt::format("its values begin at byte {:.6g}", header.offset));
+}
+
+/// Calls `use(zero)` with a zero of the type of the values. Throws Error for complex numbers, colours and bits.
+template <class Use>
+void with_datatype(int type, const fs::path& path, Use use) {
+  switch (type) {
+    case DT_UINT8: return use(std::uint8_t{});
+    case DT_INT8: return use(std::int8_t{});
+    case DT_UINT16: return use(std::uint16_t{});
+    case DT_INT16: return use(std::int16_t{});
+    case DT_UINT32: return use(std::uint32_t{});
+    case DT_INT32: return use(std::int32_t{});
+    case DT_UINT64: return use(std::uint64_t{});
+    case DT_INT64: return use(std::int64_t{});
+    case DT_FLOAT32: return use(float{});
+    case DT_FLOAT64: return use(double{});
+    default:
+      fail_reading(path, fmt::format("its values are of type {}, no plain numbers", nifti_datatype_string(type)),
+                   "convert it to integers or floats");
+  }
+}
+
+std::array<Vec3d, 3> steps_of(const nifti_dmat44& to_world) {
+  std::array<Vec3d, 3> steps;
+  for (int axis = 0; axis < 3; ++axis) steps[axis] = {to_world.m[0][axis], to_world.m[1][axis], to_world.m[2][axis]};
+  return steps;
+}
+
+/// sform before qform; a sheared sform gives way to a qform, which cannot be sheared.
+void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& header, const fs::path& path) {
+  bool by_s = image.sform_code > 0;
+  const bool by_q = image.qform_code > 0;
+  if (by_s && by_q && shear_of(steps_of(image.sto_xyz)) > 1e-3) {
+    by_s = false;
+    volume.warnings.push_back("Its sform is sheared: the qform is taken for its place in the world.");
+  }
+  const std::array<double, 3>& sizes = header.spacing;
+  const std::array<Vec3d, 3> straight{Vec3d(std::abs(sizes[0]), 0, 0), Vec3d(0, std::abs(sizes[1]), 0),
+                                      Vec3d(0, 0, std::abs(sizes[2]))};
+  if (!by_s) set_steps(volume, straight, path);  // for its errors: the library makes 1 of what is 0 or no number
+  if (by_s || by_q) {
+    const nifti_dmat44& to_world = by_s ? image.sto_xyz : image.qto_xyz;
+    volume.origin = {to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]};
+    volume.space = "right-anterior-superior";
+    if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+    set_steps(volume, steps_of(to_world), path);
+    return;
+  }
+  if (image.nifti_type == NIFTI_FTYPE_ANALYZE)
+    volume.warnings.push_back("It is an ANALYZE file, which does not say where its axes point to.");
+  else
+    volume.warnings.push_back("It has neither sform nor qform: its axes are those of the world.");
+}
+
+/// value * slope + intercept, where the file has a slope.
+template <class T>
+void set_values(Volume& volume, std::vector<T> values, double slope, double intercept) {
+  const bool scaled = std::isfinite(slope) && std::isfinite(intercept) && slope != 0 && !(slope == 1 && intercept == 0);
+  if (!scaled) {
+    volume.values = std::move(values);
+    return;
+  }
+  using Scaled = std::conditional_t<(sizeof(T) > 2 && !std::is_same_v<T, float>), double, float>;
+  std::vector<Scaled> result(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) result[i] = Scaled(double(values[i]) * slope + intercept);
+  volume.values = std::move(result);
+}
+
+fs::path image_path(const nifti_image& image, const fs::path& header) {
+  std::error_code code;
+  if (!image.iname || !fs::is_regular_file(image.iname, code))
+    fail_reading(header, "the file with its values is not there", "put it beside the header");
+  return image.iname;
+}
+
+}  // namespace
+
+Volume read_nifti(const fs::path& path) {
+  const fs::path header = header_path(path);
+  const RawHeader raw = raw_header(header);
+  check_dimensions(raw, path);
+  Volume volume;
+  with_datatype(raw.type, path, [&](auto zero) {
+    set_dims(volume, {raw.dims[0], raw.dims[1], raw.dims[2]}, sizeof(zero), path);
+  });
+  const Image image = read_header(header);
+  set_orientation(volume, *image, raw, path);
+  with_datatype(raw.type, path, [&](auto zero) {
+    using T = decltype(zero);
+    const fs::path data = image_path(*image, header);
+    std::error_code code;
+    const std::size_t needed = volume.voxels() * sizeof(T);
+    const std::string name = data.string();
+    const bool packed = name.size() > 3 && name.ends_with(".gz");
+    check_stored(fs::file_size(data, code), needed, packed ? double(largest_gzip_ratio) : 1.0, path);
+    PackedFile file(data);
+    file.skip(std::size_t(std::max<std::int64_t>(image->iname_offset, 0)));
+    std::vector<T> values(volume.voxels());
+    if (file.read(values.data(), needed) != needed) fail_reading(path, "it ends before its last voxel");
+    if (image->byteorder != nifti_short_order()) swap_bytes(values);
+    set_values(volume, std::move(values), image->scl_slope, image->scl_inter);
+  });
+  return volume;
+}
+
+}  // namespace nacre

@@ -1,0 +1,182 @@
+// Nacre: reads NRRD through teem.
+#include <fmt/format.h>
+#include <teem/nrrd.h>
+
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "engine/io/file_bytes.hpp"
+#include "engine/io/nrrd_header.hpp"
+#include "engine/io/volume_geometry.hpp"
+#include "engine/io/volume_readers.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Delete {
+  void operator()(Nrrd* nrrd) const { nrrdNuke(nrrd); }
+  void operator()(NrrdIoState* state) const { nrrdIoStateNix(state); }
+  void operator()(char* text) const { std::free(text); }
+};
+
+/// The innermost of teem's complaints: "[nrrd] function: what is wrong".
+std::string complaint() {
+  const std::unique_ptr<char, Delete> text(biffGetDone(NRRD));
+  if (!text) return "teem gives no reason";
+  std::string lines = text.get();
+  while (!lines.empty() && lines.back() == '\n') lines.pop_back();
+  std::string last = lines.substr(lines.rfind('\n') + 1);
+  if (const std::size_t colon = last.find(": "); colon != last.npos) last = last.substr(colon + 2);
+  for (char& c : last)
+    if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
+  return last.substr(0, 200);
+}
+
+/// Reads the header, and the values as well unless `header_only`.
+std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, const NrrdEncoding** encoding = nullptr) {
+  const std::unique_ptr<NrrdIoState, Delete> state(nrrdIoStateNew());
+  std::unique_ptr<Nrrd, Delete> nrrd(nrrdNew());
+  if (!state || !nrrd) throw std::bad_alloc();
+  nrrdStateVerboseIO = 0;
+  state->skipData = header_only;
+  if (nrrdLoad(nrrd.get(), path.c_str(), state.get()) != 0) fail_reading(path, complaint());
+  if (encoding) *encoding = state->encoding;
+  if (state->byteSkip < -1)
+    fail_reading(path, fmt::format("its byte skip is {}", state->byteSkip), "correct its header");
+  return nrrd;
+}
+
+/// How many bytes a stored byte may become; what is not packed takes at least half a character per byte.
+double ratio_of(const NrrdEncoding* encoding, std::size_t bytes_per_voxel) {
+  if (encoding == nrrdEncodingRaw) return 1;
+  if (encoding == nrrdEncodingHex) return 0.5;
+  if (encoding == nrrdEncodingAscii) return double(bytes_per_voxel);
+  if (encoding == nrrdEncodingGzip) return double(largest_gzip_ratio);
+  return 50000;  // bzip2 makes 45 bytes of a block of 900,000 zeros
+}
+
+Vec3d direction_of(const Nrrd& nrrd, unsigned axis) {
+  const double* d = nrrd.axis[axis].spaceDirection;
+  return {d[0], d[1], d[2]};
+}
+
+/// Does this axis run through space? By its direction where the file has directions, else by its kind.
+bool is_spatial(const Nrrd& nrrd, unsigned axis) {
+  const NrrdAxisInfo& info = nrrd.axis[axis];
+  if (nrrd.spaceDim > 0) {
+    const Vec3d direction = direction_of(nrrd, axis);
+    const bool only_in_time = nrrd.spaceDim == 4 && direction == Vec3d() && info.spaceDirection[3] != 0;
+    return !std::isnan(info.spaceDirection[0]) && !only_in_time;
+  }
+  return info.kind == nrrdKindUnknown || info.kind == nrrdKindDomain || info.kind == nrrdKindSpace;
+}
+
+std::string describe_axis(const Nrrd& nrrd, unsigned axis) {
+  const NrrdAxisInfo& info = nrrd.axis[axis];
+  const std::string kind = info.kind == nrrdKindUnknown ? "" : std::string(airEnumStr(nrrdKind, info.kind)) + ", ";
+  return fmt::format("axis {} ({}{} entries)", axis, kind, info.size);
+}
+
+/// The three axes of the volume. Others may have one entry; of four that say nothing of themselves, one with a single
+/// entry counts as time, or as the only component.
+std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
+  std::vector<unsigned> axes;
+  unsigned spatial = 0;
+  for (unsigned a = 0; a < nrrd.dim; ++a) spatial += is_spatial(nrrd, a);
+  for (unsigned a = 0; a < nrrd.dim; ++a) {
+    const bool single = nrrd.axis[a].size == 1;
+    if (is_spatial(nrrd, a) && !(single && spatial > 3 && (a == 0 || a + 1 == nrrd.dim))) {
+      axes.push_back(a);
+    } else if (!single) {
+      fail_reading(path, describe_axis(nrrd, a) + " is not one of space: one value per voxel is needed",
+                   "take one entry out of that axis, for example with `unu slice`");
+    } else {
+      spatial -= is_spatial(nrrd, a);
+    }
+  }
+  if (axes.size() > 3)
+    fail_reading(path,
+                 fmt::format("it has {} dimensions; {} is too many", axes.size(), describe_axis(nrrd, axes.back())),
+                 "take one entry out of that axis, for example with `unu slice`");
+  if (axes.size() < 3)
+    fail_reading(path, fmt::format("it has {} of the 3 axes of space", axes.size()), "open a volume");
+  return {axes[0], axes[1], axes[2]};
+}
+
+/// The signed spacing of an axis of a file without directions; 1 with a warning where it says nothing.
+double spacing_of(const NrrdAxisInfo& info, unsigned axis, Volume& volume) {
+  if (!std::isnan(info.spacing)) return info.spacing;
+  if (!std::isnan(info.min) && !std::isnan(info.max)) {
+    const double steps = info.center == nrrdCenterCell ? double(info.size) : double(info.size) - 1;
+    return (info.max - info.min) / steps;
+  }
+  volume.warnings.push_back(fmt::format("The file gives no spacing for axis {}: 1 is taken.", axis));
+  return 1;
+}
+
+void set_orientation(Volume& volume, const Nrrd& nrrd, const std::array<unsigned, 3>& axes, const fs::path& path) {
+  std::array<Vec3d, 3> steps;
+  for (int i = 0; i < 3; ++i) {
+    if (nrrd.spaceDim > 0) {
+      steps[i] = direction_of(nrrd, axes[i]);
+    } else {
+      const NrrdAxisInfo& info = nrrd.axis[axes[i]];
+      steps[i][i] = spacing_of(info, axes[i], volume);
+      const double half = info.center == nrrdCenterCell ? 0.5 * steps[i][i] : 0;
+      if (std::isfinite(info.min)) volume.origin[i] = info.min + half;
+    }
+  }
+  if (nrrd.spaceDim > 0)
+    for (int i = 0; i < 3; ++i)
+      if (!std::isnan(nrrd.spaceOrigin[i])) volume.origin[i] = nrrd.spaceOrigin[i];
+  if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+  if (nrrd.space != nrrdSpaceUnknown) volume.space = airEnumStr(nrrdSpace, nrrd.space);
+  set_steps(volume, steps, path);
+}
+
+void copy_values(Volume& volume, const Nrrd& nrrd) {
+  const bool real = nrrd.type == nrrdTypeFloat || nrrd.type == nrrdTypeDouble;
+  const bool is_signed =
+      nrrd.type == nrrdTypeChar || nrrd.type == nrrdTypeShort || nrrd.type == nrrdTypeInt || nrrd.type == nrrdTypeLLong;
+  with_number_type(real, is_signed, int(nrrdElementSize(&nrrd)), [&](auto zero) {
+    std::vector<decltype(zero)> values(volume.voxels());
+    std::memcpy(values.data(), nrrd.data, values.size() * sizeof(zero));
+    volume.values = std::move(values);
+  });
+}
+
+}  // namespace
+
+Volume read_nrrd(const fs::path& path) {
+  static std::mutex one_at_a_time;  // teem keeps its complaints in one place
+  const std::lock_guard lock(one_at_a_time);
+  const NrrdStorage storage = look_into_nrrd(path);
+  const NrrdEncoding* encoding = nullptr;
+  const auto header = load(path, true, &encoding);
+  if (header->type <= nrrdTypeUnknown || header->type >= nrrdTypeBlock)
+    fail_reading(path, "its values are blocks of bytes, no numbers", "convert it to a numeric type");
+  if (header->spaceDim != 0 && header->spaceDim != 3 && header->spaceDim != 4)
+    fail_reading(path, fmt::format("its space has {} dimensions", header->spaceDim), "open a volume");
+  const std::array<unsigned, 3> axes = spatial_axes(*header, path);
+
+  Volume volume;
+  const std::size_t bytes_per_voxel = nrrdElementSize(header.get());
+  std::array<std::int64_t, 3> dims{};
+  for (int i = 0; i < 3; ++i) dims[i] = std::int64_t(std::min<std::size_t>(header->axis[axes[i]].size, INT64_MAX));
+  set_dims(volume, dims, bytes_per_voxel, path);
+  set_orientation(volume, *header, axes, path);
+  check_stored(storage.bytes, volume.voxels() * bytes_per_voxel, ratio_of(encoding, bytes_per_voxel), path);
+
+  const auto nrrd = load(path, false);
+  if (!nrrd->data || nrrdElementNumber(nrrd.get()) != volume.voxels())
+    fail_reading(path, "it changed while it was read");
+  copy_values(volume, *nrrd);
+  return volume;
+}
+
+}  // namespace nacre

@@ -1,0 +1,15 @@
+// Nacre: volumes written as NRRD.
+#pragma once
+
+#include <filesystem>
+
+#include "engine/scene/volume.hpp"
+
+namespace nacre {
+
+/// Writes one .nrrd file with header and data: little-endian, in the type of the values, with space, axes, spacing and
+/// origin. Whole numbers are compressed (gzip), the others are left as they are. Throws Error for another extension and
+/// where writing fails.
+void write_nrrd(const std::filesystem::path& file, const Volume& volume);
+
+}  // namespace nacre

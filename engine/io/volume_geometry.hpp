@@ -1,0 +1,58 @@
+// Nacre: sizes and orientations that a file of a volume states, checked before anything is made of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+
+#include "engine/scene/volume.hpp"
+
+namespace nacre {
+
+/// Sets the number of voxels along each axis. Throws Error if one is below 2 (no volume) or beyond 32 bits, or if
+/// `bytes_per_voxel` times all is more than this machine's memory.
+void set_dims(Volume& volume, const std::array<std::int64_t, 3>& dims, std::size_t bytes_per_voxel,
+              const std::filesystem::path& path);
+
+/// Sets spacing and axes from the steps in the world from one voxel to the next along each axis. Steps that are nearly
+/// at right angles (cosine below 1e-3) are made orthogonal. Throws Error if a step is zero or no number, or if two are
+/// further from a right angle.
+void set_steps(Volume& volume, const std::array<Vec3d, 3>& steps, const std::filesystem::path& path);
+
+/// The largest cosine between two of the steps: 0 where all stand at right angles.
+double shear_of(const std::array<Vec3d, 3>& steps);
+
+/// Throws Error if a file of `stored` bytes cannot hold `needed` bytes that are packed at most `ratio` to one.
+void check_stored(std::uintmax_t stored, std::uintmax_t needed, double ratio, const std::filesystem::path& path);
+
+/// What gzip can make of zeros: 1032 bytes out of one.
+inline constexpr std::size_t largest_gzip_ratio = 1100;
+
+/// Calls `use(zero)` with a zero of the type of `bytes` bytes and returns true; false where there is no such type.
+template <class Use>
+bool with_number_type(bool real, bool is_signed, int bytes, Use use) {
+  if (real) {
+    if (bytes == 4) return use(float{}), true;
+    if (bytes == 8) return use(double{}), true;
+    return false;
+  }
+  switch (bytes) {
+    case 1: return is_signed ? use(std::int8_t{}) : use(std::uint8_t{}), true;
+    case 2: return is_signed ? use(std::int16_t{}) : use(std::uint16_t{}), true;
+    case 4: return is_signed ? use(std::int32_t{}) : use(std::uint32_t{}), true;
+    case 8: return is_signed ? use(std::int64_t{}) : use(std::uint64_t{}), true;
+    default: return false;
+  }
+}
+
+/// Turns the bytes of every number around.
+template <class T>
+void swap_bytes(std::vector<T>& values) {
+  if constexpr (sizeof(T) > 1)
+    for (T& value : values) {
+      char* bytes = reinterpret_cast<char*>(&value);
+      for (std::size_t i = 0; i < sizeof(T) / 2; ++i) std::swap(bytes[i], bytes[sizeof(T) - 1 - i]);
+    }
+}
+
+}  // namespace nacre

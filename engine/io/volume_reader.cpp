@@ -1,0 +1,90 @@
+// Nacre: volumes by extension.
+#include "engine/io/volume_reader.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <fstream>
+#include <new>
+
+#include "compute/device/error.hpp"
+#include "engine/io/file_bytes.hpp"
+#include "engine/io/volume_readers.hpp"
+#include "engine/io/vtk_child.hpp"
+
+namespace nacre {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The third or fourth line of a legacy file names its kind of data.
+bool is_legacy_image(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(1024, '\0');
+  file.read(head.data(), std::streamsize(head.size()));
+  head.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
+  std::transform(head.begin(), head.end(), head.begin(), [](unsigned char c) { return std::toupper(c); });
+  const std::size_t dataset = head.find("\nDATASET");
+  return dataset != head.npos && head.find("STRUCTURED_POINTS", dataset) < dataset + 40;
+}
+
+}  // namespace
+
+const std::vector<VolumeFormat>& volume_formats() {
+  static const std::vector<VolumeFormat> formats = {
+      {"NRRD", {"nrrd", "nhdr"}, false, false, read_nrrd},
+      {"NIfTI", {"nii", "hdr", "img"}, true, false, read_nifti},
+      {"INR", {"inr"}, true, false, read_inr},
+      {"VTK image", {"vti"}, false, false, read_vti},
+      {"MetaImage", {"mhd", "mha"}, false, false, read_metaimage},
+      {"SLC", {"slc"}, false, true, read_vtk_volume},
+      {"VTK image", {"vtk"}, false, true, read_vtk_volume},
+  };
+  return formats;
+}
+
+const VolumeFormat* find_volume_format(const fs::path& path) {
+  const std::string extension = format_extension(path);
+  const std::string last = path.extension().string();
+  const bool packed = last.size() == 3 && (last == ".gz" || last == ".GZ" || last == ".Gz");
+  for (const VolumeFormat& format : volume_formats()) {
+    const auto& extensions = format.extensions;
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) continue;
+    if (packed && !format.gzip) return nullptr;
+    if (extension == "vtk" && !is_legacy_image(path)) return nullptr;
+    return &format;
+  }
+  return nullptr;
+}
+
+bool is_volume_file(const fs::path& path) { return find_volume_format(path) != nullptr; }
+
+Volume read_volume(const fs::path& path) {
+  require_file(path);
+  const VolumeFormat* format = find_volume_format(path);
+  if (!format)
+    fail_reading(path, "its name is not that of a volume",
+                 fmt::format("known are {}", fmt::join(volume_extensions(), " ")));
+  try {
+    Volume volume = format->read(path);
+    volume.name = path.filename().string();
+    return volume;
+  } catch (const std::bad_alloc&) {
+    fail_reading(path, "it does not fit in memory", "open a smaller volume");
+  }
+}
+
+std::vector<std::string> volume_extensions() {
+  const bool vtk = vtk_child_available();
+  std::vector<std::string> extensions;
+  for (const VolumeFormat& format : volume_formats())
+    if (vtk || !format.through_vtk)
+      for (const std::string& extension : format.extensions) {
+        extensions.push_back("." + extension);
+        if (format.gzip) extensions.push_back("." + extension + ".gz");
+      }
+  return extensions;
+}
+
+}  // namespace nacre

@@ -1,0 +1,118 @@
+// Nacre: the appended raw data of VTK XML files that we write.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/system/output_file.hpp"
+
+namespace nacre {
+
+static_assert(std::endian::native == std::endian::little, "appended data are written as they are in memory");
+
+inline std::string xml_escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else if (static_cast<unsigned char>(c) < 32)
+      out += ' ';
+    else
+      out += c;
+  }
+  return out;
+}
+
+/// The blocks behind the XML: each is announced first, which gives it its offset, and written afterwards.
+class Appended {
+ public:
+  /// The XML element of a block of `bytes` that `write` will put into the file.
+  std::string announce(const std::string& type, const std::string& name, int components, std::uint64_t bytes,
+                       std::function<void(OutputFile&)> write) {
+    const std::string element = fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
+        xml_escaped(name), components, offset_);
+    offset_ += sizeof(std::uint64_t) + bytes;
+    blocks_.push_back({bytes, std::move(write)});
+    return element;
+  }
+
+  void write(OutputFile& file) const {
+    file.write("<AppendedData encoding=\"raw\">\n_");
+    for (const Block& block : blocks_) {
+      file.write(&block.bytes, sizeof block.bytes);
+      block.write(file);
+    }
+    file.write("\n</AppendedData>\n");
+  }
+
+ private:
+  struct Block {
+    std::uint64_t bytes;
+    std::function<void(OutputFile&)> write;
+  };
+  std::vector<Block> blocks_;
+  std::uint64_t offset_ = 0;
+};
+
+/// Writes value(0), value(1), ... value(count - 1) by way of a small buffer.
+template <class Index, class Value>
+void write_generated(OutputFile& file, std::uint64_t count, const Value& value) {
+  std::vector<Index> buffer(std::min<std::uint64_t>(count, 1 << 16));
+  for (std::uint64_t begin = 0; begin < count; begin += buffer.size()) {
+    const std::uint64_t n = std::min<std::uint64_t>(buffer.size(), count - begin);
+    for (std::uint64_t i = 0; i < n; ++i) buffer[i] = Index(value(begin + i));
+    file.write(buffer.data(), n * sizeof(Index));
+  }
+}
+
+/// One DataArray of `count` whole numbers from `lower` to `upper`, 32-bit where that is wide enough.
+template <class Value>
+std::string announce_numbers(Appended& appended, const std::string& name, std::uint64_t count, std::int64_t lower,
+                             std::int64_t upper, Value value) {
+  using Narrow = std::numeric_limits<std::int32_t>;
+  if (lower >= Narrow::min() && upper <= Narrow::max())
+    return appended.announce("Int32", name, 1, 4 * count,
+                             [=](OutputFile& file) { write_generated<std::int32_t>(file, count, value); });
+  return appended.announce("Int64", name, 1, 8 * count,
+                           [=](OutputFile& file) { write_generated<std::int64_t>(file, count, value); });
+}
+
+/// The same for indices from 0 to `largest`.
+template <class Value>
+std::string announce_indices(Appended& appended, const char* name, std::uint64_t count, std::uint64_t largest,
+                             Value value) {
+  return announce_numbers(appended, name, count, 0, std::int64_t(largest), value);
+}
+
+/// A whole number per cell, made as it is written.
+struct CellNumbers {
+  std::string name;
+  std::int64_t lower = 0, upper = 0;  ///< what `of` may give
+  std::function<std::int64_t(std::uint64_t cell)> of;
+};
+
+/// The CellData of `cells` cells; nothing where there are no arrays.
+inline std::string announce_cell_data(Appended& appended, std::uint64_t cells, std::span<const CellNumbers> arrays) {
+  if (arrays.empty()) return {};
+  std::string xml = "<CellData>\n";
+  for (const CellNumbers& a : arrays) xml += announce_numbers(appended, a.name, cells, a.lower, a.upper, a.of);
+  return xml + "</CellData>\n";
+}
+
+}  // namespace nacre

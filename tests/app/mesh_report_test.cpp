@@ -1,0 +1,132 @@
+// Nacre: tests of the report, the sessions and the repeatability of `nacre mesh`.
+#include <tuple>
+
+#include "tests/app/mesh_program.hpp"
+
+namespace nacre::test {
+namespace {
+
+using nlohmann::json;
+
+class MeshReport : public MeshTest {};
+
+TEST_F(MeshReport, HasEveryKeyOfTheContract) {
+  const Outcome run = nacre(small_mesh + Words{"--report", path("r.json"), "--out", path("a.vtp"), "--particles-out",
+                                               path("p.vtp"), "--image", path("a.png"), "--size", "64x48"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json r = read_json("r.json");
+  EXPECT_EQ(r["command"], "mesh");
+  EXPECT_TRUE(r["nacre"].is_string());
+  EXPECT_GT(r["memory"]["peak_bytes"], 1 << 20);
+  EXPECT_GT(r["memory"]["device_peak_bytes"], 1 << 10);
+  EXPECT_EQ(r["outputs"], json({path("a.vtp"), path("p.vtp"), path("a.png")}));
+  EXPECT_EQ(r["input"]["name"], "two-spheres");
+  EXPECT_EQ(r["input"]["kind"], "labels");
+  EXPECT_EQ(r["input"]["dimensions"], json({24, 24, 24}));
+  EXPECT_EQ(r["input"]["materials"].size(), 2u);
+  EXPECT_GT(r["fields"]["expected_particles"], 100);
+  EXPECT_EQ(r["fields"]["surfaces"], 3);
+  EXPECT_EQ(r["fields"]["curves"], 1);
+  EXPECT_GT(r["particles"]["seeded"], 100);
+  EXPECT_GT(r["particles"]["final"], 100);
+  EXPECT_EQ(r["particles"]["energy"].size(), r["particles"]["iterations"]);
+  EXPECT_EQ(r["particles"]["interrupted"], false);
+  const json& m = r["mesh"];
+  for (const char* key : {"vertices", "triangles", "components", "nonmanifold_edges", "boundary_edges"})
+    EXPECT_TRUE(m[key].is_number_integer()) << key;
+  for (const json& of : {m, m["away_from_junctions"]}) {
+    EXPECT_GT(of["radius_ratio"]["mean"], of["radius_ratio"]["min"]);
+    EXPECT_EQ(of["radius_ratio"]["histogram"].size(), 50u);
+    EXPECT_GT(of["angle_degrees"]["max"], of["angle_degrees"]["mean_min"]);
+    EXPECT_GT(of["angle_degrees"]["mean_min"], of["angle_degrees"]["min"]);
+  }
+  EXPECT_GE(m["surface_distance_voxels"]["max"], m["surface_distance_voxels"]["mean"]);
+  expect_sound(r);
+  ASSERT_EQ(m["materials"].size(), 2u) << "the outside is none";
+  for (const json& material : m["materials"]) EXPECT_EQ(material["euler"], 2);
+  EXPECT_EQ(m["materials"][0]["label"], 1);
+  // Two balls of radius 13 less a cap of height 6 each; voxels of 2.04 and their smoothing cost some of it.
+  for (const json& material : m["materials"]) EXPECT_NEAR(material["volume"], 7958.7, 0.07 * 7958.7);
+}
+
+TEST_F(MeshReport, StageNamesAreTheFixedOnes) {
+  ASSERT_EQ(nacre(small_mesh + Words{"--report", path("r.json"), "--out", path("a.vtu"), "--image", path("a.png"),
+                                     "--size", "64x48"})
+                .status,
+            0);
+  Words names;
+  const json r = read_json("r.json");
+  for (const json& stage : r["stages"]) names.push_back(stage["name"]);
+  for (const char* name : {"read", "materials", "tighten", "distance", "sizing", "embed", "seed", "relax",
+                           "triangulate", "quality", "tetrahedra", "render", "write"})
+    EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+}
+
+TEST_F(MeshReport, ParametersAreTheKnobsAsSet) {
+  ASSERT_EQ(nacre(small_mesh + Words{"--report", path("r.json"), "--seed", "7", "--set", "delta=0.7", "--epsilon",
+                                     "0.6", "--curvature", "--labels"})
+                .status,
+            0);
+  const json p = read_json("r.json")["parameters"];
+  EXPECT_EQ(p["seed"], 7);
+  EXPECT_EQ(p["delta"], 0.7);
+  EXPECT_EQ(p["epsilon"], 0.6);
+  EXPECT_EQ(p["curvature"], true);
+  EXPECT_EQ(p["labels"], true);
+  EXPECT_EQ(p["solver"], "tree");
+}
+
+TEST_F(MeshReport, LabelsAreTheFilesOwn) {
+  const std::string file = write("a.nrrd", nrrd<int>({16, 16, 16}, "short", unit_spacing, [](int i, int j, int k) {
+                                   return !ball(i, j, k) ? 0 : i < 8 ? -5 : 700;
+                                 }));
+  const json r = mesh(file);
+  ASSERT_EQ(r["mesh"]["materials"].size(), 2u);
+  EXPECT_EQ(r["mesh"]["materials"][0]["label"], -5);
+  EXPECT_EQ(r["mesh"]["materials"][1]["label"], 700);
+  EXPECT_EQ(r["input"]["outside"], 0);
+}
+
+class MeshSession : public MeshTest {};
+
+TEST_F(MeshSession, RoundTripGivesTheSameBytes) {
+  const std::string file = write("a.nrrd", ball_nrrd());
+  const Words first = {"mesh",        file,          "--quiet", "--max-size",     "1.5",
+                       "--seed",      "11",          "--out",   path("a.vtp"),    "--set",
+                       "tighten=0.8", "--materials", "1",       "--save-session", path("s.json")};
+  ASSERT_EQ(nacre(first).status, 0);
+  const Outcome again = nacre({"mesh", "--session", path("s.json"), "--quiet", "--out", path("b.vtp")});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(content("a.vtp"), content("b.vtp"));
+  ASSERT_EQ(nacre({"mesh", "--session", path("s.json"), "--quiet", "--max-size", "2", "--out", path("c.vtp")}).status,
+            0);
+  EXPECT_NE(content("a.vtp"), content("c.vtp")) << "words on the command line go over the session's";
+}
+
+TEST_F(MeshSession, KeepsTheSampleWithItsDetail) {
+  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("a.vtp"), "--save-session", path("s.json")}).status, 0);
+  ASSERT_EQ(nacre({"mesh", "--session", path("s.json"), "--quiet", "--out", path("b.vtp")}).status, 0);
+  EXPECT_EQ(content("a.vtp"), content("b.vtp"));
+}
+
+class MeshRepeats : public MeshTest,
+                    public ::testing::WithParamInterface<std::tuple<const char*, const char*, const char*>> {};
+
+TEST_P(MeshRepeats, TheSameFileOnOneAndTwoThreads) {
+  const auto [sample, solver, extension] = GetParam();
+  const Words words = {"mesh",     "--sample", sample,         "--detail", "24",     "--quiet",
+                       "--solver", solver,     "--iterations", "12",       "--seed", "5"};
+  const std::string one = "one" + std::string(extension), two = "two" + std::string(extension);
+  ASSERT_EQ(nacre(words + Words{"--threads", "1", "--out", path(one)}).status, 0);
+  ASSERT_EQ(nacre(words + Words{"--threads", "2", "--out", path(two)}).status, 0);
+  EXPECT_EQ(content(one), content(two));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, MeshRepeats,
+    ::testing::Values(std::tuple{"three-sectors", "tree", ".vtp"}, std::tuple{"torso", "tree", ".ply"},
+                      std::tuple{"three-sectors", "redblack", ".vtp"}, std::tuple{"two-spheres", "serial", ".vtp"},
+                      std::tuple{"nested-shells", "tree", ".vtu"}, std::tuple{"ellipsoid", "tree", ".stl"}));
+
+}  // namespace
+}  // namespace nacre::test

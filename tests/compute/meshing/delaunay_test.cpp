@@ -1,0 +1,137 @@
+// Nacre: tests of the Delaunay triangulation of points.
+#include "compute/meshing/delaunay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "compute/device/error.hpp"
+#include "compute/meshing/circumcentre.hpp"
+#include "tests/compute/meshing/labelled_points.hpp"
+
+namespace nacre {
+namespace {
+
+std::vector<Vec3d> random_points(int count, std::uint32_t seed = 1) {
+  std::vector<Vec3d> points;
+  for (int i = 0; i < count; ++i) {
+    std::uint64_t state = seed * 7919ull + std::uint64_t(i) * 2654435761ull;
+    const auto next = [&] {
+      state = state * 6364136223846793005ull + 1442695040888963407ull;
+      return double(state >> 11) * 0x1p-53;
+    };
+    next();
+    const double x = next(), y = next(), z = next();
+    points.push_back({x, y, z});
+  }
+  return points;
+}
+
+double volume(std::span<const Vec3d> points, const std::array<std::uint32_t, 4>& v) {
+  const Vec3d a = points[v[0]];
+  return dot(points[v[1]] - a, cross(points[v[2]] - a, points[v[3]] - a)) / 6;
+}
+
+TEST(Circumcentre, OfACornerOfACubeIsTheCubesCentre) {
+  const Vec3d c = circumcentre({1, 1, 1}, {3, 1, 1}, {1, 3, 1}, {1, 1, 3});
+  EXPECT_EQ(c, Vec3d(2, 2, 2));
+}
+
+TEST(Circumcentre, OfFlatCellsIsFiniteAndOnTheRightSide) {
+  // Four points on a flat cap: the centre is far below, at -1 / (2 bulge), until that is out of reach.
+  for (const double bulge : {1e-1, 1e-6, 1e-17, 0.0}) {
+    const auto on_cap = [&](double x, double y) { return Vec3d(x, y, -bulge * (x * x + y * y)); };
+    const Vec3d c = circumcentre(on_cap(0, 0), on_cap(1, 1), on_cap(1, 0), on_cap(0, 1.5));
+    ASSERT_TRUE(is_finite(c)) << bulge;
+    EXPECT_LE(length(c), circumcentre_reach * 2.0);
+    if (bulge > 1e-10) {
+      EXPECT_LT(c.z, 0) << bulge;
+    }
+  }
+  EXPECT_TRUE(is_finite(circumcentre({1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3})));
+}
+
+TEST(Delaunay, FiveCellsOrFewerOfACube) {
+  std::vector<Vec3d> points;
+  for (int i = 0; i < 8; ++i) points.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  const DelaunayCells cells = delaunay(points);  // all eight on one sphere
+  double total = 0;
+  for (std::size_t i = 0; i < cells.vertices.size(); ++i) {
+    EXPECT_GT(volume(points, cells.vertices[i]), 0);
+    total += volume(points, cells.vertices[i]);
+    EXPECT_NEAR(length(cells.circumcentres[i] - Vec3d(0.5)), 0, 1e-12);
+  }
+  EXPECT_NEAR(total, 1, 1e-12);
+  EXPECT_TRUE(cells.vertices.size() == 5 || cells.vertices.size() == 6) << cells.vertices.size();
+}
+
+TEST(Delaunay, SpheresAreEmptyAndNeighboursAgree) {
+  const std::vector<Vec3d> points = random_points(300);
+  const DelaunayCells cells = delaunay(points);
+  double total = 0;
+  for (std::size_t i = 0; i < cells.vertices.size(); ++i) {
+    const auto& v = cells.vertices[i];
+    total += volume(points, v);
+    ASSERT_GT(volume(points, v), 0);
+    ASSERT_TRUE(v[0] < v[1] && v[1] < v[2] && v[1] < v[3]);
+    const double radius = length(points[v[0]] - cells.circumcentres[i]);
+    for (const Vec3d& p : points) ASSERT_GE(length(p - cells.circumcentres[i]), std::min(radius, 10.0) * (1 - 1e-9));
+    for (int k = 0; k < 4; ++k) {
+      const std::int32_t n = cells.neighbours[i][k];
+      if (n < 0) continue;
+      const auto& back = cells.neighbours[n];
+      const auto side = std::find(back.begin(), back.end(), std::int32_t(i)) - back.begin();
+      ASSERT_LT(side, 4);
+      for (int j = 0; j < 4; ++j)  // they share all corners but the two opposite of the facet
+        ASSERT_EQ(std::count(cells.vertices[n].begin(), cells.vertices[n].end(), v[j]), j != k);
+    }
+  }
+  EXPECT_GT(total, 0.7);  // the hull of 300 points in a unit cube
+  EXPECT_LT(total, 1);
+}
+
+TEST(Delaunay, ThreadsAndDoublesChangeNothing) {
+  std::vector<Vec3d> points = random_points(8000);
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 8; ++k) points.push_back({2 + i / 8., j / 8., k / 8.});  // full of ties
+  for (int i = 0; i < 1000; ++i) points.push_back(points[std::size_t(i) * 7]);     // twice
+  const DelaunayCells one = delaunay(points, 1);
+  for (const int threads : {2, 0}) {
+    const DelaunayCells more = delaunay(points, threads);
+    EXPECT_TRUE(one.vertices == more.vertices) << threads;
+    EXPECT_TRUE(one.neighbours == more.neighbours) << threads;
+    EXPECT_TRUE(one.circumcentres == more.circumcentres) << threads;
+  }
+  for (const auto& cell : one.vertices)
+    for (const std::uint32_t v : cell) ASSERT_LT(v, 8000u + 8 * 8 * 8);
+}
+
+TEST(Delaunay, RefusesWhatHasNoCells) {
+  const std::vector<Vec3d> three = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_THROW(delaunay(three), Error);
+  EXPECT_THROW(delaunay({}), Error);
+  std::vector<Vec3d> flat = random_points(100), same(10, Vec3d(1, 2, 3));
+  EXPECT_THROW(delaunay(same), Error);
+  for (Vec3d& p : flat) p.z = 0.25;
+  EXPECT_THROW(delaunay(flat), Error);
+  flat = random_points(6000);
+  for (Vec3d& p : flat) p.x = 0;
+  EXPECT_THROW(delaunay(flat), Error);  // on many threads
+  std::vector<Vec3d> broken = random_points(100);
+  broken[50].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(delaunay(broken), Error);
+  broken[50].y = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(delaunay(broken), Error);
+}
+
+TEST(Delaunay, StopsWhenTold) {
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(delaunay(random_points(100), 1, &stop), Interrupted);
+  EXPECT_THROW(delaunay(random_points(20000), 2, &stop), Interrupted);
+}
+
+}  // namespace
+}  // namespace nacre

@@ -1,0 +1,13 @@
+# Nacre: finds nifti's library for NIfTI-1 and -2 headers.
+include(FindPackageHandleStandardArgs)
+find_path(NIFTI2_INCLUDE nifti/nifti2_io.h)
+find_library(NIFTI2_LIBRARY nifti2)
+find_library(NIFTI2_ZNZ_LIBRARY znz)
+mark_as_advanced(NIFTI2_INCLUDE NIFTI2_LIBRARY NIFTI2_ZNZ_LIBRARY)
+find_package_handle_standard_args(Nifti2 DEFAULT_MSG NIFTI2_INCLUDE NIFTI2_LIBRARY NIFTI2_ZNZ_LIBRARY)
+if(Nifti2_FOUND AND NOT TARGET nifti::nifti2)
+  add_library(nifti::nifti2 UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(nifti::nifti2 PROPERTIES IMPORTED_LOCATION ${NIFTI2_LIBRARY})
+  target_include_directories(nifti::nifti2 SYSTEM INTERFACE ${NIFTI2_INCLUDE} ${NIFTI2_INCLUDE}/nifti)
+  target_link_libraries(nifti::nifti2 INTERFACE ${NIFTI2_ZNZ_LIBRARY})
+endif()

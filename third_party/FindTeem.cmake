@@ -1,0 +1,12 @@
+# Nacre: finds teem, the library that reads NRRD.
+include(FindPackageHandleStandardArgs)
+find_path(TEEM_INCLUDE teem/nrrd.h)
+find_library(TEEM_LIBRARY teem PATHS /usr/lib)
+mark_as_advanced(TEEM_INCLUDE TEEM_LIBRARY)
+nacre_header_version(Teem_VERSION "${TEEM_INCLUDE}/teem/air.h" TEEM_VERSION_STRING)
+find_package_handle_standard_args(Teem REQUIRED_VARS TEEM_INCLUDE TEEM_LIBRARY VERSION_VAR Teem_VERSION)
+if(Teem_FOUND AND NOT TARGET teem::teem)
+  add_library(teem::teem UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(teem::teem PROPERTIES IMPORTED_LOCATION ${TEEM_LIBRARY})
+  target_include_directories(teem::teem SYSTEM INTERFACE ${TEEM_INCLUDE})
+endif()
