@@ -25,6 +25,7 @@ void apply_source_preset(Settings& settings) {
   m.add_below = 0.75;
   m.delete_above = 1.35;
   m.subcells = 3;
+  m.mend = 0;
 }
 
 Session make_session(const MeshOptions& options, const KnobOptions& knobs) {

@@ -165,15 +165,14 @@ std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const Mes
     open += t.materials[m].facets > 0 && !t.materials[m].closed;
   }
   const std::size_t materials = input.labels.size() - 1;
-  std::string text = fmt::format(
-      "{} particles, {} triangles around {} material{}, {}\nradius ratio {:.3f} mean, {:.3f} min; {:.3f} voxels from "
-      "the "
-      "interface on average",
-      info.final, t.triangles, materials, materials == 1 ? "" : "s",
-      open > 0   ? fmt::format("{} not closed", open)
-      : lost > 0 ? fmt::format("{} lost", lost)
-                 : "all closed",
-      result.quality.all.radius_ratio_mean, result.quality.all.radius_ratio_min, result.distance.vertex_mean);
+  const std::string state = open > 0   ? fmt::format("{} not closed", open)
+                            : lost > 0 ? fmt::format("{} lost", lost)
+                                       : "all closed";
+  std::string text = fmt::format("{} particles, {} triangles around {} material{}, {}\n", info.final, t.triangles,
+                                 materials, materials == 1 ? "" : "s", state);
+  text += fmt::format("radius ratio {:.3f} mean, {:.3f} min; triangles {:.3f} voxels off the interface on average",
+                      result.quality.all.radius_ratio_mean, result.quality.all.radius_ratio_min,
+                      result.distance.facet_mean);
   if (result.cells)
     text += fmt::format("\n{} tetrahedra, dihedral angles {:.1f} to {:.1f} degrees, {:.2f}% within 10 to 160",
                         result.cell_quality.cells, result.cell_quality.dihedral_min, result.cell_quality.dihedral_max,

@@ -155,22 +155,25 @@ struct BrickVoxels {
   }
 };
 
-/// Fills in what comes from the values of material `from_material`. Beyond the volume's faces the outside and the winner
-/// of the nearest voxel change places, so that the face lies half a voxel outside of the last centres.
+/// Adds what comes from the values of material `from_material`. Beyond the volume's faces all functions go on as they end,
+/// but the outside's, which is mirrored at that of the nearest voxel's winner: the face lies half a voxel outside of the
+/// last centres, and interfaces that run into it stay straight.
 struct FillIndicator {
   BrickVoxels voxels;
   const std::uint16_t* winner;  ///< per voxel of the file
   const float* from;
   std::uint32_t from_material;
   float scale;
-  float* value;
+  float* value;  ///< zeros before the first material
 
   NACRE_HD void operator()(std::int64_t i) const {
-    std::uint32_t material = voxels.field.brick_material[i / brick_voxels + 2];
+    const std::uint32_t material = voxels.field.brick_material[i / brick_voxels + 2];
     const Int3 v = voxels(i) - Int3(volume_padding);
     const std::int64_t at = voxels.volume.nearest(v);
-    if (!voxels.volume.inside(v)) material = material == 0 ? winner[at] : material == winner[at] ? 0 : material;
-    if (material == from_material) value[i + 2 * brick_voxels] = from[at] * scale;
+    const bool mirrored = material == 0 && !voxels.volume.inside(v);
+    float share = material == from_material ? mirrored ? -1.0f : 1.0f : 0.0f;
+    if (mirrored && winner[at] == from_material) share += 2;
+    if (share != 0) value[i + 2 * brick_voxels] += share * from[at] * scale;
   }
 };
 
@@ -263,6 +266,7 @@ void fill_indicators(Executor<Backend>& exec, MaterialBricks& b, std::span<const
   Array<std::uint16_t> winner = arena.temporary<std::uint16_t>(material.size());
   winner.upload(material);
   Array<float> from = arena.temporary<float>(material.size());
+  b.value.fill_bytes(0);
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 1});
   const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
   for (std::size_t m = 0; m < values.size(); ++m) {

@@ -18,11 +18,33 @@ struct TreeRule {
   float longest = 0.3f;    ///< of a step, in h
 };
 
+/// How particles get back onto their interface: by the closest points of the embedding (sec. 4.2.1) ...
+struct EmbeddedGround {
+  InterfaceGridView grid;
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, EmbeddedPoint& on) const {
+    return nacre::project(grid, interface, p, on);
+  }
+};
+
+/// ... or by Newton's method on the fields themselves, for the last steps: the embedding was a guide, not the truth.
+struct FieldGround {
+  MaterialBricksView field;
+  const Junction* junction;
+  SizingFieldView size;
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, EmbeddedPoint& on) const {
+    JunctionPoint at;
+    if (!nacre::project(field, junction[interface], p, 1, at, 0.01f)) return false;
+    on = {at.p, at.direction, size(at.p), junction_margin(field, junction[interface], at.p, at.steepness)};
+    return true;
+  }
+};
+
 namespace detail {
 
 /// One step in the tangent space, then back onto the interface.
+template <class Ground>
 struct MoveParticle {
-  InterfaceGridView grid;
+  Ground ground;
   RelatedView related;
   TreeRule rule;
   int order;
@@ -63,7 +85,7 @@ struct MoveParticle {
 
  private:
   NACRE_HD bool arrives(std::uint32_t group, const Vec3f& p, const Vec3f& v, float h, EmbeddedPoint& on) const {
-    if (!project(grid, group, p + v, on) || on.margin < 0) return false;
+    if (!ground.project(group, p + v, on) || on.margin < 0) return false;
     const Vec3f off = on.p - p - v;
     return dot(off, off) < h * h;
   }
@@ -290,13 +312,13 @@ class TreeSolver {
   }
 
   /// A step from the forces. The tree's order is kept; its bounds follow.
-  template <class Backend>
-  void move(Executor<Backend>& exec, const InterfaceGridView& grid, const RelatedView& related, int order,
+  template <class Backend, class Ground>
+  void move(Executor<Backend>& exec, const Ground& ground, const RelatedView& related, int order,
             const TreeRule& rule) {
     ParticleSet& set = set_[0];
-    exec.for_each(set.count,
-                  detail::MoveParticle{grid, related, rule, order, set.interface.data(), gradient_.data(),
-                                       energy_.data(), set.place.data(), set.direction.data(), velocity_[0].data()});
+    exec.for_each(set.count, detail::MoveParticle<Ground>{ground, related, rule, order, set.interface.data(),
+                                                          gradient_.data(), energy_.data(), set.place.data(),
+                                                          set.direction.data(), velocity_[0].data()});
     tree_.summarise(exec, set);
   }
 

@@ -7,19 +7,24 @@
 
 namespace nacre::detail {
 
-/// Puts the particles onto the fields themselves after the last move: the embedding was their guide, not the truth.
+/// Puts the particles onto the fields themselves after the last move, and marks those that have no interface nearby.
 struct PolishParticle {
   MaterialBricksView field;
   const Junction* junction;
   const std::uint32_t* interface;
   Float4* place;
   Float4* direction;
+  std::uint8_t* lost;
   NACRE_HD void operator()(std::int64_t i) const {
     const Float4 at = place[i];
     const Junction j = junction[interface[i]];
+    lost[i] = 0;
+    if (j.order() == 0) return;
     JunctionPoint on;
-    if (j.order() == 0 || !project(field, j, {at.x, at.y, at.z}, 0.5f, on)) return;
-    if (junction_margin(field, j, on.p, on.steepness) < 0) return;
+    lost[i] = 1;
+    if (!project(field, j, {at.x, at.y, at.z}, 0.7f, on)) return;
+    if (junction_margin(field, j, on.p, on.steepness) < -0.02f) return;
+    lost[i] = 0;
     place[i] = {on.p.x, on.p.y, on.p.z, at.w};
     direction[i] = {on.direction.x, on.direction.y, on.direction.z, direction[i].w};
   }

@@ -6,10 +6,12 @@
 
 #include "compute/embedding/build_interface_grid.hpp"
 #include "compute/field/tighten.hpp"
+#include "compute/meshing/defects.hpp"
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/repair.hpp"
 #include "compute/particles/seed.hpp"
+#include "compute/particles/solver_state.hpp"
 #include "compute/particles/tree_solver.hpp"
 #include "compute/pipeline/mesh_kernels.hpp"
 #include "compute/pipeline/volume_frame.hpp"
@@ -44,6 +46,13 @@ class MeshPipelineOf : public MeshPipeline {
   void make_solver();
   void add_points();
   void relax_order(int order, double from, double to);
+  void relax_by_tree(int order, double from, double to);
+  void relax_by_turns(int order, double from, double to);
+  void note_iteration(int order, double energy, std::int64_t movers);
+  void polish();
+  bool mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles,
+            std::span<const std::uint32_t> point_of);
+  void change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
   TreeRule tree_rule() const {
     return {float(parameters.theta), float(parameters.step), float(parameters.momentum), 0.3f};
@@ -63,7 +72,8 @@ class MeshPipelineOf : public MeshPipeline {
   Array<Junction> junction_;
   Array<std::uint32_t> related_start_, related_;
   Array<std::uint8_t> order_;
-  std::unique_ptr<TreeSolver> solver_;
+  std::unique_ptr<TreeSolver> solver_;  ///< holds the particles, whichever solver moves them
+  SolverState turns_;                   ///< of the serial and the red-black solver
   std::size_t volume_mark_ = 0, field_mark_ = 0;
   bool fields_ = false;
 };
@@ -167,122 +177,6 @@ void MeshPipelineOf<Backend>::relate_interfaces() {
 }
 
 template <class Backend>
-PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
-  PopulationRule rule;
-  const double hexagonal = parameters.ideal_energy > 0 ? parameters.ideal_energy : hexagonal_energy;
-  rule.ideal_energy = float(order == 2 ? hexagonal : hexagonal * row_energy / hexagonal_energy);
-  rule.add_below = float(order == 2 ? parameters.add_below : std::max(parameters.add_below, 0.75));
-  rule.delete_above = float(order == 2 ? parameters.delete_above : std::max(parameters.delete_above, 3.5));
-  rule.certain_above = order == 2 ? 4.0f : 8.0f;
-  rule.may_add = parameters.particles == 0;
-  rule.seed = parameters.seed;
-  return rule;
-}
-
-template <class Backend>
-void MeshPipelineOf<Backend>::make_solver() {
-  Arena& arena = exec_.arena();
-  arena.rewind(field_mark_);
-  const double wanted = parameters.particles > 0 ? parameters.particles : info_.expected_particles;
-  // Crowded places relax to fewer, holes fill: half as many again has always been enough.
-  const double capacity = 1.6 * wanted + 20000;
-  const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);
-  if (capacity > 4e9 || bytes > double(arena.free_bytes()))
-    throw Error("too many particles for the memory",
-                "the sizing field asks for about " + std::to_string(std::int64_t(wanted)) + ", which take " +
-                    std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " +
-                    std::to_string(arena.free_bytes() >> 20) + " MiB are free",
-                "raise --max-size and --min-size, or --epsilon");
-  solver_ = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
-                                         float(frame_.extent()));
-  solver_->particles().count = 0;
-}
-
-template <class Backend>
-void MeshPipelineOf<Backend>::add_points() {
-  const std::size_t n = grid_.points.size();
-  if (n == 0) return;
-  std::vector<std::uint32_t> interface;
-  for (const Junction& j : grid_.point_junction)
-    for (std::size_t k = grid_.junctions.size(); k < junctions_.size(); ++k)
-      if (junctions_[k] == j) interface.push_back(std::uint32_t(k));
-  const std::vector<Float4> zero(n, Float4{0, 0, 0, 0});
-  ParticleSet& set = solver_->particles();
-  set.place.upload(grid_.points);
-  set.direction.upload(zero);
-  set.interface.upload(interface);
-  solver_->velocity().upload(zero);
-  set.count = std::int64_t(n);
-}
-
-template <class Backend>
-void MeshPipelineOf<Backend>::relax() {
-  if (!fields_) throw Error("no fields built");
-  make_solver();
-  info_.energy.clear();
-  info_.count.clear();
-  info_.iterations = 0;
-  add_points();
-  relax_order(1, 0.18, 0.22);
-  relax_order(2, 0.22, 0.85);
-  auto stage = exec_.stage("relax");
-  const ParticleSet& set = solver_->particles();
-  exec_.for_each(set.count, detail::PolishParticle{bricks_.view(), junction_.data(), set.interface.data(),
-                                                   set.place.data(), set.direction.data()});
-}
-
-/// Seeds the particles of an order, moves them, controls their number until little changes, and lets them settle.
-template <class Backend>
-void MeshPipelineOf<Backend>::relax_order(int order, double from, double to) {
-  ParticleSet& set = solver_->particles();
-  {
-    auto stage = exec_.stage("seed");
-    double scale = 1;
-    if (order == 2 && parameters.particles > 0)
-      scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
-    info_.seeded += seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
-  }
-  const RelatedView related = this->related();
-  std::int64_t movers = solver_->movers(exec_, related, order);
-  if (movers == 0) return;
-  const TreeRule rule = tree_rule();
-  const PopulationRule population = population_rule(order);
-  const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
-  const int last_control = iterations - 2 * every;
-  bool controls = true, sorted = false;
-  double before = 0;
-  for (int k = 0; k < iterations; ++k) {
-    double energy = 0;
-    {
-      auto stage = exec_.stage("relax");
-      if (!sorted || k % 5 == 0) solver_->rebuild(exec_);
-      sorted = true;
-      energy = solver_->forces(exec_, related, order, rule.theta, movers);
-    }
-    if (controls && k > 0 && k % every == 0 && k <= last_control) {
-      auto stage = exec_.stage("population");
-      const IterationResult changed = solver_->control(exec_, grid_.view(), related, order, rule.theta, population, k);
-      movers = solver_->movers(exec_, related, order);
-      controls = changed.added + changed.deleted > 0;
-      sorted = false;
-      continue;
-    }
-    auto stage = exec_.stage("relax");
-    solver_->move(exec_, grid_.view(), related, order, rule);
-    tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, energy);
-    if (order == 2) {
-      info_.energy.push_back(energy);
-      info_.count.push_back(movers);
-      ++info_.iterations;
-    }
-    const bool settled = !controls || k > last_control;
-    if (settled && before > 0 && std::fabs(before - energy) < parameters.stagnation * energy && k % every == every - 1)
-      break;
-    before = energy;
-  }
-}
-
-template <class Backend>
 Array<Vec3f> MeshPipelineOf<Backend>::upload_points(std::span<const Vec3d> points) {
   std::vector<Vec3f> host(points.size());
   const float far = 1e6f;
@@ -340,18 +234,26 @@ MeshParticles MeshPipelineOf<Backend>::particles() const {
 template <class Backend>
 SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
   if (!solver_) throw Error("no particles");
-  auto stage = exec_.stage("triangulate");
-  tell("triangulate", 0.86);
+  SurfaceMesh mesh;
+  for (int round = 0;; ++round) {
+    tell("triangulate", 0.86);
+    const MeshParticles particles = this->particles();
+    std::vector<std::uint32_t> point_of;
+    {
+      auto stage = exec_.stage("triangulate");
+      const DelaunayCells cells = delaunay(particles.points, exec_.device().threads());
+      std::vector<std::uint16_t> label = material_at(cells.circumcentres);
+      repair_labels(particles.points, cells, label);
+      mesh = extract_interfaces(particles.points, cells, label, &point_of);
+    }
+    if (round == parameters.mend || !mend(round, mesh, particles, point_of)) break;
+  }
   const MeshParticles particles = this->particles();
   info_.final = std::int64_t(particles.points.size());
   info_.points_final = std::count(particles.order.begin(), particles.order.end(), 0);
   info_.curves_final = std::count(particles.order.begin(), particles.order.end(), 1);
   info_.surfaces_final = std::count(particles.order.begin(), particles.order.end(), 2);
-  const DelaunayCells cells = delaunay(particles.points, exec_.device().threads());
-  tell("triangulate", 0.92);
-  std::vector<std::uint16_t> label = material_at(cells.circumcentres);
-  repair_labels(particles.points, cells, label);
-  return extract_interfaces(particles.points, cells, label);
+  return mesh;
 }
 
 template <class Backend>

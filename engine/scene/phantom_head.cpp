@@ -13,8 +13,8 @@ const Vec3d cerebellum(99, 188, 104), cerebellum_semi(44, 34, 24);
 
 /// The folds: turn these to change the area. Lengths in voxels.
 struct Folds {
-  double wave = 10.5;         ///< from gyrus to gyrus is about half of it
-  double half_width = 1.5;  ///< of a sulcus
+  double wave = 10;         ///< from gyrus to gyrus is about half of it
+  double half_width = 1.35;  ///< of a sulcus
   double depth = 32;        ///< of a sulcus, on average
   double depth_varies = 7;
 };

@@ -5,7 +5,7 @@ namespace nacre {
 namespace {
 
 constexpr Int3 chest_dims{268, 129, 177};
-constexpr double marrow_radius = 2.0;  // ribs are hollow
+constexpr double marrow_radius = 2.2;  // ribs are hollow
 
 ChestFrame chest() {
   ChestFrame c;

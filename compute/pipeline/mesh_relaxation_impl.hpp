@@ -1,0 +1,244 @@
+// Nacre: the part of the mesh pipeline that moves particles: seeds, the three solvers, population, mending.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "compute/particles/control.hpp"
+#include "compute/particles/field_surface.hpp"
+#include "compute/particles/redblack.hpp"
+#include "compute/particles/serial.hpp"
+#include "compute/pipeline/mesh_pipeline_impl.hpp"
+
+namespace nacre {
+
+template <class Backend>
+PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
+  PopulationRule rule;
+  const double hexagonal = parameters.ideal_energy > 0 ? parameters.ideal_energy : hexagonal_energy;
+  rule.ideal_energy = float(order == 2 ? hexagonal : hexagonal * row_energy / hexagonal_energy);
+  rule.add_below = float(order == 2 ? parameters.add_below : std::max(parameters.add_below, 0.75));
+  rule.delete_above = float(order == 2 ? parameters.delete_above : std::max(parameters.delete_above, 3.5));
+  rule.certain_above = order == 2 ? 4.0f : 8.0f;
+  rule.by_density = parameters.by_density;
+  rule.may_add = parameters.particles == 0;
+  rule.seed = parameters.seed;
+  return rule;
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::make_solver() {
+  Arena& arena = exec_.arena();
+  arena.rewind(field_mark_);
+  const double wanted = parameters.particles > 0 ? parameters.particles : info_.expected_particles;
+  // Crowded places relax to fewer, holes fill: half as many again has always been enough.
+  const double capacity = 1.6 * wanted + 20000;
+  const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);
+  if (capacity > 4e9 || bytes > double(arena.free_bytes()))
+    throw Error("too many particles for the memory",
+                "the sizing field asks for about " + std::to_string(std::int64_t(wanted)) + ", which take " +
+                    std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " +
+                    std::to_string(arena.free_bytes() >> 20) + " MiB are free",
+                "raise --max-size and --min-size, or --epsilon");
+  solver_ = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
+                                         float(frame_.extent()));
+  solver_->particles().count = 0;
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::add_points() {
+  const std::size_t n = grid_.points.size();
+  if (n == 0) return;
+  std::vector<std::uint32_t> interface;
+  for (const Junction& j : grid_.point_junction)
+    for (std::size_t k = grid_.junctions.size(); k < junctions_.size(); ++k)
+      if (junctions_[k] == j) interface.push_back(std::uint32_t(k));
+  const std::vector<Float4> zero(n, Float4{0, 0, 0, 0});
+  ParticleSet& set = solver_->particles();
+  set.place.upload(grid_.points);
+  set.direction.upload(zero);
+  set.interface.upload(interface);
+  solver_->velocity().upload(zero);
+  set.count = std::int64_t(n);
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::relax() {
+  if (!fields_) throw Error("no fields built");
+  make_solver();
+  info_.energy.clear();
+  info_.count.clear();
+  info_.iterations = 0;
+  add_points();
+  relax_order(1, 0.18, 0.22);
+  relax_order(2, 0.22, 0.85);
+  auto stage = exec_.stage("relax");
+  polish();
+}
+
+/// Brings all particles onto the fields; those that have strayed from their interface are taken out.
+template <class Backend>
+void MeshPipelineOf<Backend>::polish() {
+  const ParticleSet& set = solver_->particles();
+  Arena::Scope scope(exec_.arena());
+  Array<std::uint8_t> lost = exec_.arena().template temporary<std::uint8_t>(set.count);
+  exec_.for_each(set.count, detail::PolishParticle{bricks_.view(), junction_.data(), set.interface.data(),
+                                                   set.place.data(), set.direction.data(), lost.data()});
+  const std::vector<std::uint8_t> gone = lost.download();
+  if (std::find(gone.begin(), gone.end(), 1) != gone.end()) change_particles(gone, {});
+}
+
+/// Takes particles out and puts new ones in; all then rest.
+template <class Backend>
+void MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gone,
+                                               std::span<const MeshDefects::NewPoint> born) {
+  ParticleSet& set = solver_->particles();
+  const std::size_t n = std::size_t(set.count);
+  std::vector<Float4> place = set.place.download(0, n), direction = set.direction.download(0, n);
+  std::vector<std::uint32_t> interface = set.interface.download(0, n);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < n; ++i)
+    if (!gone[i]) place[kept] = place[i], direction[kept] = direction[i], interface[kept++] = interface[i];
+  place.resize(kept), direction.resize(kept), interface.resize(kept);
+  for (const MeshDefects::NewPoint& p : born) {
+    const auto k = std::find(junctions_.begin(), junctions_.end(), Junction(p.materials[0], p.materials[1]));
+    if (k == junctions_.end() || place.size() == std::size_t(set.capacity())) continue;
+    const Vec3d at = frame_.to_voxels(p.place);
+    place.push_back({float(at.x), float(at.y), float(at.z), float(parameters.min_size)});
+    direction.push_back({0, 0, 0, 0});
+    interface.push_back(std::uint32_t(k - junctions_.begin()));
+  }
+  set.count = std::int64_t(place.size());
+  set.place.upload(place);
+  set.direction.upload(direction);
+  set.interface.upload(interface);
+  solver_->velocity().upload(std::vector<Float4>(place.size(), Float4{0, 0, 0, 0}));
+}
+
+/// Seeds the particles of an order and moves them by the solver that was asked for.
+template <class Backend>
+void MeshPipelineOf<Backend>::relax_order(int order, double from, double to) {
+  ParticleSet& set = solver_->particles();
+  set.fixed = set.count;
+  {
+    auto stage = exec_.stage("seed");
+    double scale = 1;
+    if (order == 2 && parameters.particles > 0)
+      scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
+    info_.seeded += seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
+  }
+  if (set.count == set.fixed) return;
+  if (parameters.solver == "tree")
+    relax_by_tree(order, from, to);
+  else
+    relax_by_turns(order, from, to);
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::note_iteration(int order, double energy, std::int64_t movers) {
+  if (order != 2) return;
+  info_.energy.push_back(energy);
+  info_.count.push_back(movers);
+  ++info_.iterations;
+}
+
+/// All at once (ch. 4): control of the number until nothing changes, then the rest of the iterations to settle.
+template <class Backend>
+void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
+  const RelatedView related = this->related();
+  std::int64_t movers = solver_->movers(exec_, related, order);
+  const TreeRule rule = tree_rule();
+  const PopulationRule population = population_rule(order);
+  const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
+  const int last_control = iterations - 2 * every;
+  bool controls = true, sorted = false;
+  double before = 0;
+  for (int k = 0; k < iterations; ++k) {
+    double energy = 0;
+    {
+      auto stage = exec_.stage("relax");
+      if (!sorted || k % 5 == 0) solver_->rebuild(exec_);
+      sorted = true;
+      energy = solver_->forces(exec_, related, order, rule.theta, movers);
+    }
+    if (controls && k > 0 && k % every == 0 && k <= last_control) {
+      auto stage = exec_.stage("population");
+      const IterationResult changed = solver_->control(exec_, grid_.view(), related, order, rule.theta, population, k);
+      movers = solver_->movers(exec_, related, order);
+      controls = changed.added + changed.deleted > 0;
+      sorted = false;
+      continue;
+    }
+    auto stage = exec_.stage("relax");
+    solver_->move(exec_, EmbeddedGround{grid_.view()}, related, order, rule);
+    tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, energy);
+    note_iteration(order, energy, movers);
+    const bool settled = !controls || k > last_control;
+    if (settled && k % every == every - 1 && before > 0 && std::fabs(before - energy) < parameters.stagnation * energy)
+      break;
+    before = energy;
+  }
+}
+
+/// One after the other, in turns (ch. 3): serial or red-black, on the fields themselves.
+template <class Backend>
+void MeshPipelineOf<Backend>::relax_by_turns(int order, double from, double to) {
+  ParticleSet& set = solver_->particles();
+  SolverParameters rule;
+  rule.population = population_rule(order);
+  turns_ = make_solver_state(exec_, set, rule);
+  const FieldSurface<SizingFieldView> surface{bricks_.view(), size_.view(), junction_.data()};
+  const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
+  const int last_control = every == 1 ? iterations : iterations - 2 * every;
+  double before = 0;
+  for (int k = 0; k < iterations; ++k) {
+    IterationResult turn;
+    {
+      auto stage = exec_.stage("relax");
+      turn = parameters.solver == "serial" ? serial_iteration(exec_, set, turns_, junction_, surface, rule)
+                                           : redblack_iteration(exec_, set, turns_, junction_, surface, rule);
+    }
+    note_iteration(order, turn.energy, set.count - set.fixed);
+    tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, turn.energy);
+    bool changed = false;
+    if ((k + 1) % every == 0 && k < last_control) {
+      auto stage = exec_.stage("population");
+      const IterationResult population = control_population(exec_, set, turns_, junction_, surface, rule);
+      changed = 200 * (population.added + population.deleted) > set.count - set.fixed;
+    }
+    if (!changed && before > 0 && std::fabs(before - turn.energy) < parameters.stagnation * turn.energy) break;
+    before = turn.energy;
+  }
+  solver_->velocity().upload(std::vector<Float4>(std::size_t(set.count), Float4{0, 0, 0, 0}));
+}
+
+/// Takes away the particles that spoil triangles, adds some where a surface touches itself, and lets the others close up.
+/// False where nothing is left to mend.
+template <class Backend>
+bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles,
+                                   std::span<const std::uint32_t> point_of) {
+  auto stage = exec_.stage("mend");
+  std::vector<std::uint8_t> order(point_of.size());
+  std::vector<float> size(point_of.size());
+  for (std::size_t v = 0; v < point_of.size(); ++v)
+    order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
+  const MeshDefects defects = find_defects(mesh, order, size);
+  if (defects.remove.empty() && defects.insert.empty()) return false;
+  std::vector<std::uint8_t> gone(particles.points.size(), 0);
+  for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
+  change_particles(gone, defects.insert);
+  polish();                     // also brings new points onto their interfaces
+  if (round >= 2) return true;  // moving all would spoil others
+  const RelatedView related = this->related();
+  TreeRule rule = tree_rule();
+  rule.momentum = 0.6f;
+  for (int k = 0; k < 8; ++k) {
+    if (k % 4 == 0) solver_->rebuild(exec_);
+    solver_->forces(exec_, related, 2, rule.theta, solver_->particles().count);
+    solver_->move(exec_, FieldGround{bricks_.view(), junction_.data(), size_.view()}, related, 2, rule);
+  }
+  polish();
+  return true;
+}
+
+}  // namespace nacre
