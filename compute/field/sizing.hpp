@@ -164,6 +164,21 @@ struct CountSmaller {
   NACRE_HD std::uint64_t operator()(std::int64_t i) const { return value[i] < limit ? 1 : 0; }
 };
 
+struct SizeRange {
+  float low = 3e38f, high = 0;
+};
+
+struct SizeRangeAt {
+  const float* value;
+  NACRE_HD SizeRange operator()(std::int64_t i) const { return {value[i], value[i]}; }
+};
+
+struct JoinSizeRanges {
+  NACRE_HD SizeRange operator()(const SizeRange& a, const SizeRange& b) const {
+    return {a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high};
+  }
+};
+
 struct AddCounts {
   NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
 };
@@ -173,7 +188,8 @@ struct AddCounts {
 struct SizingField {
   Lattice lattice;
   Array<float> h;
-  float small = 1;  ///< all but a tenth of the interface points have this size or more
+  float smallest = 0, largest = 0;  ///< on the interfaces
+  float small = 1;                  ///< all but a tenth of the interface points have this size or more
   SizingFieldView view() const { return {lattice, h.data()}; }
 };
 
@@ -193,6 +209,10 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   const Vec3f& s = field.lattice.spacing;
   exec.for_each(points, detail::SizeAtInterface{
                             {view, rule.reach() + 0.5f, 0.1f * std::max({s.x, s.y, s.z})}, rule, at_point.data()});
+  const detail::SizeRange range =
+      exec.reduce(points, detail::SizeRange{}, detail::SizeRangeAt{at_point.data()}, detail::JoinSizeRanges{});
+  field.smallest = range.low;
+  field.largest = range.high;
   float low = SizingRule::smallest, high = rule.max_size;
   for (int k = 0; k < 10; ++k) {
     const float middle = 0.5f * (low + high);

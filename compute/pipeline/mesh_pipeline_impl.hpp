@@ -36,7 +36,7 @@ class MeshPipelineOf : public MeshPipeline {
   const MeshInfo& info() const override { return info_; }
   StageTimers& timers() override { return exec_.timers(); }
   std::size_t peak_bytes() const override { return const_cast<Executor<Backend>&>(exec_).arena().peak_bytes(); }
-  void watch(const std::atomic<bool>* stop) override { exec_.watch(stop); }
+  void watch(const std::atomic<bool>* stop) override { exec_.watch(stop_ = stop); }
 
  private:
   void tell(std::string_view stage, double fraction, int iteration = 0, double energy = 0) {
@@ -45,6 +45,7 @@ class MeshPipelineOf : public MeshPipeline {
   void relate_interfaces();
   void make_solver();
   void add_points();
+  void seed_order(int order);
   void relax_order(int order, double from, double to);
   void relax_by_tree(int order, double from, double to);
   void relax_by_turns(int order, double from, double to);
@@ -76,6 +77,7 @@ class MeshPipelineOf : public MeshPipeline {
   SolverState turns_;                   ///< of the serial and the red-black solver
   std::size_t volume_mark_ = 0, field_mark_ = 0;
   bool fields_ = false;
+  const std::atomic<bool>* stop_ = nullptr;
 };
 
 template <class Backend>
@@ -139,6 +141,8 @@ void MeshPipelineOf<Backend>::build_fields() {
         embed_interfaces(exec_, bricks_, distance_, size_, std::min(double(parameters.subcells), 2.0 / size_.small));
   }
   relate_interfaces();
+  info_.smallest_size = size_.smallest;
+  info_.largest_size = size_.largest;
   info_.field_bytes = bricks_.bytes() + distance_.bytes() + std::int64_t(size_.h.bytes());
   info_.embedding_bytes = grid_.bytes();
   info_.embedding_cells = grid_.cells();

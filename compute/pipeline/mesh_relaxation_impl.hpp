@@ -69,9 +69,21 @@ void MeshPipelineOf<Backend>::relax() {
   info_.energy.clear();
   info_.count.clear();
   info_.iterations = 0;
+  info_.seeded = 0;
   add_points();
-  relax_order(1, 0.18, 0.22);
-  relax_order(2, 0.22, 0.85);
+  int order = 1;
+  try {
+    relax_order(1, 0.18, 0.22);
+    order = 2;
+    relax_order(2, 0.22, 0.85);
+  } catch (const Interrupted&) {
+    // What has been done so far can be triangulated, if every interface has its particles.
+    exec_.watch(nullptr);
+    if (order == 1) seed_order(2);
+    polish();
+    exec_.watch(stop_);
+    throw;
+  }
   auto stage = exec_.stage("relax");
   polish();
 }
@@ -115,19 +127,23 @@ void MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gon
   solver_->velocity().upload(std::vector<Float4>(place.size(), Float4{0, 0, 0, 0}));
 }
 
+/// Puts the seeds of an order behind the particles of lower ones, which stay where they are from now on.
+template <class Backend>
+void MeshPipelineOf<Backend>::seed_order(int order) {
+  auto stage = exec_.stage("seed");
+  ParticleSet& set = solver_->particles();
+  set.fixed = set.count;
+  double scale = 1;
+  if (order == 2 && parameters.particles > 0)
+    scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
+  info_.seeded += seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
+}
+
 /// Seeds the particles of an order and moves them by the solver that was asked for.
 template <class Backend>
 void MeshPipelineOf<Backend>::relax_order(int order, double from, double to) {
-  ParticleSet& set = solver_->particles();
-  set.fixed = set.count;
-  {
-    auto stage = exec_.stage("seed");
-    double scale = 1;
-    if (order == 2 && parameters.particles > 0)
-      scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
-    info_.seeded += seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
-  }
-  if (set.count == set.fixed) return;
+  seed_order(order);
+  if (solver_->particles().count == solver_->particles().fixed) return;
   if (parameters.solver == "tree")
     relax_by_tree(order, from, to);
   else
