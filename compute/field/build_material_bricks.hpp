@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "compute/device/executor.hpp"
 #include "compute/field/material_bricks.hpp"
@@ -155,25 +158,24 @@ struct BrickVoxels {
   }
 };
 
-/// Adds what comes from the values of material `from_material`. Beyond the volume's faces all functions go on as they end,
-/// but the outside's, which is mirrored at that of the nearest voxel's winner: the face lies half a voxel outside of the
-/// last centres, and interfaces that run into it stay straight.
+/// Values of one material: how far it is behind the winner, cut off at 1. Beyond the volume's faces all functions go on as
+/// they end, but the outside's, which is mirrored at the winner's: the face lies half a voxel outside of the last centres,
+/// and interfaces that run into it stay straight.
 struct FillIndicator {
   BrickVoxels voxels;
-  const std::uint16_t* winner;  ///< per voxel of the file
+  const float* top;  ///< per voxel of the file: the winner's value
   const float* from;
   std::uint32_t from_material;
   float scale;
-  float* value;  ///< zeros before the first material
+  float* value;
 
   NACRE_HD void operator()(std::int64_t i) const {
-    const std::uint32_t material = voxels.field.brick_material[i / brick_voxels + 2];
+    if (voxels.field.brick_material[i / brick_voxels + 2] != from_material) return;
     const Int3 v = voxels(i) - Int3(volume_padding);
     const std::int64_t at = voxels.volume.nearest(v);
-    const bool mirrored = material == 0 && !voxels.volume.inside(v);
-    float share = material == from_material ? mirrored ? -1.0f : 1.0f : 0.0f;
-    if (mirrored && winner[at] == from_material) share += 2;
-    if (share != 0) value[i + 2 * brick_voxels] += share * from[at] * scale;
+    const bool mirrored = from_material == 0 && !voxels.volume.inside(v);
+    const float behind = (from[at] - top[at]) * (mirrored ? -scale : scale);
+    value[i + 2 * brick_voxels] = std::fmin(std::fmax(behind, -1.0f), 1.0f);
   }
 };
 
@@ -257,23 +259,44 @@ MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const V
   return b;
 }
 
-/// Values of indicator functions, one array per material, all divided by `scale`.
+/// Values of indicator functions, one array per material. Only how far each is behind the winner matters: that is stored, in
+/// units of `range` and cut off at -1, since a function that is far behind would ring through the interpolation.
 template <class Backend>
 void fill_indicators(Executor<Backend>& exec, MaterialBricks& b, std::span<const std::uint16_t> material,
-                     std::span<const std::vector<float>> values, float scale) {
+                     std::span<const std::vector<float>> values, float range) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  Array<std::uint16_t> winner = arena.temporary<std::uint16_t>(material.size());
-  winner.upload(material);
-  Array<float> from = arena.temporary<float>(material.size());
-  b.value.fill_bytes(0);
-  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 1});
+  std::vector<float> highest(material.size());
+  for (std::size_t i = 0; i < material.size(); ++i) highest[i] = values[material[i]][i];
+  Array<float> from = arena.temporary<float>(material.size()), top = arena.temporary<float>(material.size());
+  top.upload(highest);
+  exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 0});
   const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
   for (std::size_t m = 0; m < values.size(); ++m) {
     from.upload(values[m]);
-    exec.for_each((b.bricks - 2) * brick_voxels, detail::FillIndicator{voxels, winner.data(), from.data(),
-                                                                       std::uint32_t(m), 1 / scale, b.value.data()});
+    exec.for_each((b.bricks - 2) * brick_voxels,
+                  detail::FillIndicator{voxels, top.data(), from.data(), std::uint32_t(m), 1 / range, b.value.data()});
   }
+}
+
+/// Two and a half times the mean jump of the difference of two functions from a voxel to the next, where the winner
+/// changes between them: the range in which indicator functions are worth knowing.
+inline float indicator_range(const Int3& dims, std::span<const std::uint16_t> material,
+                             std::span<const std::vector<float>> values) {
+  double sum = 0;
+  std::int64_t count = 0;
+  for (std::int64_t row = 0; row < std::int64_t(dims.y) * dims.z; ++row)
+    for (std::int64_t i = row * dims.x + 1; i < (row + 1) * dims.x; ++i) {
+      const std::uint16_t a = material[i - 1], b = material[i];
+      if (a == b || a == 0 || b == 0) continue;
+      sum += std::fabs(double(values[a][i - 1]) - values[b][i - 1] - values[a][i] + values[b][i]);
+      ++count;
+    }
+  if (count > 0 && sum > 0) return float(2.5 * sum / double(count));
+  double most = 0;
+  for (const std::vector<float>& v : values.subspan(std::min<std::size_t>(1, values.size())))
+    for (const float x : v) most = std::max(most, std::fabs(double(x)));
+  return most > 0 ? float(most) : 1.0f;
 }
 
 /// Functions of the layers between the levels of a scalar volume, divided by `scale`.

@@ -52,15 +52,15 @@ struct DistanceFieldView {
 
   NACRE_HD Vec3f place(std::uint32_t q) const { return {point[q].place.x, point[q].place.y, point[q].place.z}; }
 
-  /// The closest of the points that the eight cells around `p` know; `none` where they know none.
+  /// The closest of the points that the eight cells around `p` know (outside of the lattice: the cells nearest to it);
+  /// `none` where they know none.
   NACRE_HD std::uint32_t closest(const Vec3f& p, float& distance) const {
     const Int3 first{int(std::floor(p.x / lattice.spacing.x - 0.5f)), int(std::floor(p.y / lattice.spacing.y - 0.5f)),
                      int(std::floor(p.z / lattice.spacing.z - 0.5f))};
     std::uint32_t best = none;
     float least = 3e38f;
     for (int k = 0; k < 8; ++k) {
-      const Int3 c = first + Int3(k & 1, k >> 1 & 1, k >> 2);
-      if (!lattice.holds(c)) continue;
+      const Int3 c = max(Int3(0), min(first + Int3(k & 1, k >> 1 & 1, k >> 2), lattice.cells - Int3(1)));
       const std::uint32_t q = nearest[lattice.number(c.x, c.y, c.z)];
       if (q == none || q == best) continue;
       const Vec3f r = place(q) - p;

@@ -14,15 +14,15 @@ struct SizingRule {
   float epsilon = 0.5f, delta = 0.4f, min_size = 0.5f, max_size = 1;
   bool curvature = false;
 
-  /// Whatever the smallest size says: where the medial ball or the radius of curvature is small, h stays below this share
-  /// of it, or thin things, small islands and sharp bends would have no particles to stand on; but not below `smallest` voxels.
+  /// Whatever the smallest size says: where the medial ball is small, h stays below this share of its radius, or thin
+  /// things and small islands would have no particles to stand on; but not below `smallest` voxels.
   static constexpr float resolve = 1.2f, smallest = 0.35f;
 
-  /// h where the medial ball and the radius of curvature are this large.
+  /// h where the medial ball has this radius and the sharpest bend that one.
   NACRE_HD float size(float feature, float bend) const {
-    const float least = std::fmin(feature, bend);
-    const float wanted = std::fmin(std::fmax(epsilon * (curvature ? least : feature), min_size), max_size);
-    return std::fmin(wanted, std::fmax(resolve * least, smallest));
+    const float bound = curvature ? std::fmin(feature, bend) : feature;
+    const float wanted = std::fmin(std::fmax(epsilon * bound, min_size), max_size);
+    return std::fmin(wanted, std::fmax(resolve * feature, smallest));
   }
   /// Radius from which on a medial ball makes no difference.
   float reach() const { return max_size / (min_size < max_size ? std::fmin(epsilon, resolve) : resolve); }

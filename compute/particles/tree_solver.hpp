@@ -6,6 +6,7 @@
 
 #include "compute/device/random.hpp"
 #include "compute/embedding/interface_grid.hpp"
+#include "compute/field/sizing.hpp"
 #include "compute/particles/tree_forces.hpp"
 
 namespace nacre {
@@ -18,24 +19,26 @@ struct TreeRule {
   float longest = 0.3f;    ///< of a step, in h
 };
 
-/// How particles get back onto their interface: by the closest points of the embedding (sec. 4.2.1) ...
-struct EmbeddedGround {
-  InterfaceGridView grid;
-  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, EmbeddedPoint& on) const {
-    return nacre::project(grid, interface, p, on);
-  }
-};
-
-/// ... or by Newton's method on the fields themselves, for the last steps: the embedding was a guide, not the truth.
+/// How particles get back onto their interface: by Newton's method on the fields themselves, for the last steps ...
 struct FieldGround {
   MaterialBricksView field;
   const Junction* junction;
   SizingFieldView size;
-  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, EmbeddedPoint& on) const {
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
     JunctionPoint at;
     if (!nacre::project(field, junction[interface], p, 1, at, 0.01f)) return false;
     on = {at.p, at.direction, size(at.p), junction_margin(field, junction[interface], at.p, at.steepness)};
     return true;
+  }
+};
+
+/// ... or by the closest points of the embedding (sec. 4.2.1), wherever particles are farther apart than its cells.
+struct EmbeddedGround {
+  InterfaceGridView grid;
+  FieldGround fields;
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on) const {
+    return h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
+                                           : nacre::project(grid, interface, p, on);
   }
 };
 
@@ -85,7 +88,7 @@ struct MoveParticle {
 
  private:
   NACRE_HD bool arrives(std::uint32_t group, const Vec3f& p, const Vec3f& v, float h, EmbeddedPoint& on) const {
-    if (!ground.project(group, p + v, on) || on.margin < 0) return false;
+    if (!ground.project(group, p + v, h, on) || on.margin < 0) return false;
     const Vec3f off = on.p - p - v;
     return dot(off, off) < h * h;
   }
@@ -96,7 +99,7 @@ struct MoveParticle {
 struct JudgeParticle {
   TreeView tree;
   RelatedView related;
-  InterfaceGridView grid;
+  EmbeddedGround ground;
   PopulationRule rule;
   int order;
   std::uint32_t round;
@@ -115,8 +118,9 @@ struct JudgeParticle {
     const Float4 at = tree.place[i], d = tree.direction[i];
     const float ideal = rule.ideal_energy;
     const float bias = uniform_random(rule.seed, std::uint32_t(i), round) * (energy[i] - ideal) / ideal;
+    const bool few = tree.node[group].mass() <= 24;  // an island needs them all
     if (bias > rule.delete_above - 1 || energy[i] > rule.certain_above * ideal)
-      deletion[i] = energy[i];
+      deletion[i] = few ? 0 : energy[i];
     else if (rule.may_add && bias < rule.add_below - 1)
       split(i, group, at, d);
   }
@@ -134,7 +138,7 @@ struct JudgeParticle {
       away = order == 2 ? s * std::cos(angle) + t * std::sin(angle) : n * (angle < pi ? 1.0f : -1.0f);
     }
     EmbeddedPoint on;
-    if (!project(grid, group, p + normalized(away) * (0.8f * at.w), on) || on.margin < 0) return;
+    if (!ground.project(group, p + normalized(away) * (0.8f * at.w), at.w, on) || on.margin < 0) return;
     const Vec3f r = on.p - p;
     if (dot(r, r) < 0.16f * at.w * at.w) return;
     // Only where there is room: its energy there must not be that of a crowd.
@@ -324,7 +328,7 @@ class TreeSolver {
 
   /// Splits and deletes by the energies of the last `forces`. The tree is out of date after it.
   template <class Backend>
-  IterationResult control(Executor<Backend>& exec, const InterfaceGridView& grid, const RelatedView& related, int order,
+  IterationResult control(Executor<Backend>& exec, const EmbeddedGround& ground, const RelatedView& related, int order,
                           float theta, const PopulationRule& rule, int round) {
     ParticleSet &from = set_[0], &to = set_[1];
     const std::int64_t n = from.count;
@@ -333,7 +337,7 @@ class TreeSolver {
     Array<Float4> child = arena.temporary<Float4>(n), child_direction = arena.temporary<Float4>(n);
     Array<float> deletion = arena.temporary<float>(n);
     Array<std::uint32_t> copies = arena.temporary<std::uint32_t>(n), start = arena.temporary<std::uint32_t>(n);
-    exec.for_each(n, detail::JudgeParticle{view(theta), related, grid, rule, order, std::uint32_t(round),
+    exec.for_each(n, detail::JudgeParticle{view(theta), related, ground, rule, order, std::uint32_t(round),
                                            from.interface.data(), gradient_.data(), energy_.data(), child.data(),
                                            child_direction.data(), deletion.data()});
     exec.for_each(n, detail::SettleConflicts{view(0), related, order, from.interface.data(), child.data(),

@@ -55,6 +55,8 @@ class MeshPipelineOf : public MeshPipeline {
             std::span<const std::uint32_t> point_of);
   void change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
+  FieldGround field_ground() const { return {bricks_.view(), junction_.data(), size_.view()}; }
+  EmbeddedGround embedded_ground() const { return {grid_.view(), field_ground()}; }
   TreeRule tree_rule() const {
     return {float(parameters.theta), float(parameters.step), float(parameters.momentum), 0.3f};
   }
@@ -96,14 +98,14 @@ void MeshPipelineOf<Backend>::load(const MeshVolume& volume) {
   if (bricks_.bricks == 2)
     throw Error("one material only", "every voxel of the volume is of the same material",
                 "choose others with --materials or --isovalue");
-  float scale = 0;
-  for (const std::vector<float>& values : volume.values)
-    for (const float v : values) scale = std::max(scale, std::fabs(v));
-  if (!(scale > 0)) scale = 1;
-  if (volume.kind == MeshVolume::Kind::indicators)
-    fill_indicators(exec_, bricks_, volume.material, volume.values, scale);
-  else if (volume.kind == MeshVolume::Kind::scalar)
-    fill_scalar(exec_, bricks_, volume.values.at(0), volume.levels, scale);
+  if (volume.kind == MeshVolume::Kind::indicators) {
+    fill_indicators(exec_, bricks_, volume.material, volume.values,
+                    indicator_range(volume.dims, volume.material, volume.values));
+  } else if (volume.kind == MeshVolume::Kind::scalar) {
+    float scale = 0;
+    for (const float v : volume.values.at(0)) scale = std::max(scale, std::fabs(v));
+    fill_scalar(exec_, bricks_, volume.values[0], volume.levels, scale > 0 ? scale : 1);
+  }
   info_.blocks = bricks_.blocks;
   volume_mark_ = arena.mark();
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "compute/particles/control.hpp"
 #include "compute/particles/field_surface.hpp"
@@ -179,14 +180,14 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
     }
     if (controls && k > 0 && k % every == 0 && k <= last_control) {
       auto stage = exec_.stage("population");
-      const IterationResult changed = solver_->control(exec_, grid_.view(), related, order, rule.theta, population, k);
+      const IterationResult changed = solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, k);
       movers = solver_->movers(exec_, related, order);
       controls = changed.added + changed.deleted > 0;
       sorted = false;
       continue;
     }
     auto stage = exec_.stage("relax");
-    solver_->move(exec_, EmbeddedGround{grid_.view()}, related, order, rule);
+    solver_->move(exec_, embedded_ground(), related, order, rule);
     tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, energy);
     note_iteration(order, energy, movers);
     const bool settled = !controls || k > last_control;
@@ -240,8 +241,13 @@ bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const Mes
     order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
   const MeshDefects defects = find_defects(mesh, order, size);
   if (defects.remove.empty() && defects.insert.empty()) return false;
+  // An island of a few particles needs them all.
+  constexpr std::int64_t few = 24;
   std::vector<std::uint8_t> gone(particles.points.size(), 0);
-  for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
+  std::map<std::array<std::uint16_t, 4>, std::int64_t> count;
+  for (const auto& materials : particles.materials) ++count[materials];
+  for (const std::uint32_t v : defects.remove)
+    if (count[particles.materials[point_of[v]]] > few || particles.order[point_of[v]] < 2) gone[point_of[v]] = 1;
   change_particles(gone, defects.insert);
   polish();                     // also brings new points onto their interfaces
   if (round >= 2) return true;  // moving all would spoil others
@@ -251,7 +257,7 @@ bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const Mes
   for (int k = 0; k < 8; ++k) {
     if (k % 4 == 0) solver_->rebuild(exec_);
     solver_->forces(exec_, related, 2, rule.theta, solver_->particles().count);
-    solver_->move(exec_, FieldGround{bricks_.view(), junction_.data(), size_.view()}, related, 2, rule);
+    solver_->move(exec_, field_ground(), related, 2, rule);
   }
   polish();
   return true;
