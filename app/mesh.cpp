@@ -26,6 +26,7 @@ void apply_source_preset(Settings& settings) {
   m.delete_above = 1.35;
   m.subcells = 3;
   m.mend = 0;
+  m.by_density = false;
 }
 
 Session make_session(const MeshOptions& options, const KnobOptions& knobs) {

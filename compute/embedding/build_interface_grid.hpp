@@ -20,6 +20,7 @@ struct InterfaceGrid {
   Array<Junction> junction;         ///< the same on the device
   std::vector<Float4> points;       ///< junction points: place in voxels, sizing field
   std::vector<Junction> point_junction;
+  int crowded_points = 0;  ///< of the points, those where more than four materials meet
   std::int64_t bricks = 0;
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
   Array<Float4> offset, direction;
@@ -163,7 +164,7 @@ struct EmbedInterface {
       const Vec3f r = p - at.p;
       const Vec3f along =
           j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
-      if (dot(along, along) < 1e-3f) break;
+      if (dot(along, along) < 4e-3f) break;
       JunctionPoint better;
       if (!project(field, j, at.p + along, 4, better, last_step) || dot(better.p - p, better.p - p) >= dot(r, r)) break;
       at = better;
@@ -175,7 +176,7 @@ struct EmbedInterface {
   }
 
  private:
-  static constexpr float last_step = 0.03f;
+  static constexpr float last_step = 0.04f;
 
   /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
   /// also for a surface farther away than the stencils around its points reach, two cells along each axis.
@@ -184,7 +185,7 @@ struct EmbedInterface {
     const std::uint32_t q = j.order() == 2 ? distance.closest(p, away) : none;
     if (q == none || !(distance.point[q].surface == j)) return project(field, j, p, 5 / cells_per_voxel, at, last_step);
     const Float4 n = distance.point[q].normal;
-    const float reach = 2.6f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.5f;
+    const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
     if (away > reach) return false;
     const Vec3f normal(n.x, n.y, n.z), on = distance.place(q), r = p - on;
     Vec3f along = r - normal * dot(r, normal);
@@ -287,7 +288,8 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
                                      found.data()};
   exec.for_each(grid.cells(), embed);
   exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});
-  junction_points(exec, b, size, search, grid.coarse, grid.cells_per_voxel, grid.points, grid.point_junction);
+  grid.crowded_points =
+      junction_points(exec, b, size, search, grid.coarse, grid.cells_per_voxel, grid.points, grid.point_junction);
   return grid;
 }
 

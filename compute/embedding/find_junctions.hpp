@@ -287,11 +287,11 @@ JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, 
 }
 
 /// The junction points. Where several lie within a third of h of each other, as where more than four materials meet, the
-/// first stands for all.
+/// first stands for all. Returns how many stand for junctions of other materials, too.
 template <class Backend>
-void junction_points(Executor<Backend>& exec, const MaterialBricks& b, const SizingField& size,
-                     const JunctionSearch& search, const Int3& coarse, float cells_per_voxel,
-                     std::vector<Float4>& points, std::vector<Junction>& junctions) {
+int junction_points(Executor<Backend>& exec, const MaterialBricks& b, const SizingField& size,
+                    const JunctionSearch& search, const Int3& coarse, float cells_per_voxel,
+                    std::vector<Float4>& points, std::vector<Junction>& junctions) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
   Array<Float4> place = arena.temporary<Float4>(search.count);
@@ -299,17 +299,23 @@ void junction_points(Executor<Backend>& exec, const MaterialBricks& b, const Siz
                                                          search.found.data(), place.data()});
   const std::vector<Float4> all = place.download();
   const std::vector<FoundJunction> found = search.found.download(0, search.count);
+  std::vector<bool> crowded;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].w <= 0) continue;
-    bool known = false;
-    for (std::size_t k = points.size(); k-- > 0 && !known;) {
+    std::size_t known = points.size();
+    for (std::size_t k = points.size(); k-- > 0 && known == points.size();) {
       const Vec3f r(points[k].x - all[i].x, points[k].y - all[i].y, points[k].z - all[i].z);
-      known = dot(r, r) < 0.1f * all[i].w * all[i].w;
+      if (dot(r, r) < 0.1f * all[i].w * all[i].w) known = k;
     }
-    if (known) continue;
+    if (known < points.size()) {
+      if (!(junctions[known] == found[i].junction)) crowded[known] = true;
+      continue;
+    }
     points.push_back(all[i]);
     junctions.push_back(found[i].junction);
+    crowded.push_back(false);
   }
+  return int(std::count(crowded.begin(), crowded.end(), true));
 }
 
 }  // namespace nacre

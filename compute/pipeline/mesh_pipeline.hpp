@@ -30,8 +30,8 @@ struct MeshParameters {
   int subcells = 2;                    ///< closest-point cells per voxel and axis
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
-  int iterations = 100;                ///< at most, per junction order
-  double stagnation = 0.0001;          ///< ends when the energy falls by less, (E_prev - E) / E
+  int iterations = 120;                ///< at most, per junction order
+  double stagnation = 0.00005;         ///< ends when the energy falls by less, (E_prev - E) / E
   double step = 1.2;                   ///< tree: share of the Newton step
   double momentum = 0.85;              ///< tree: heavy ball
   double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)
@@ -39,7 +39,7 @@ struct MeshParameters {
   double delete_above = 1.75;          ///< delete particles with more
   bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the source's rule
   int control_every = 10;              ///< iterations between two controls of the population
-  int mend = 4;                        ///< rounds of mending bad triangles after the first triangulation, at most
+  int mend = 3;                        ///< rounds of mending bad triangles after the first triangulation, at most
   int particles = 0;                   ///< seed this many and add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };

@@ -151,6 +151,7 @@ void MeshPipelineOf<Backend>::build_fields() {
   info_.surfaces = info_.curves = 0;
   for (const Junction& j : grid_.junctions) ++(j.order() == 2 ? info_.surfaces : info_.curves);
   info_.points = int(grid_.points.size());
+  info_.crowded_points = grid_.crowded_points;
   info_.expected_particles = info_.points;
   for (const int order : {1, 2}) info_.expected_particles += expected_particles(exec_, grid_, order_.data(), order);
   field_mark_ = arena.mark();
@@ -252,7 +253,7 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
       repair_labels(particles.points, cells, label);
       mesh = extract_interfaces(particles.points, cells, label, &point_of);
     }
-    if (round == parameters.mend || !mend(round, mesh, particles, point_of)) break;
+    if (parameters.mend == 0 || !mend(round, mesh, particles, point_of)) break;
   }
   const MeshParticles particles = this->particles();
   info_.final = std::int64_t(particles.points.size());

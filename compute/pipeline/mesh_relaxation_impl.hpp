@@ -180,7 +180,8 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
     }
     if (controls && k > 0 && k % every == 0 && k <= last_control) {
       auto stage = exec_.stage("population");
-      const IterationResult changed = solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, k);
+      const IterationResult changed =
+          solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, k);
       movers = solver_->movers(exec_, related, order);
       controls = changed.added + changed.deleted > 0;
       sorted = false;
@@ -239,8 +240,10 @@ bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const Mes
   std::vector<float> size(point_of.size());
   for (std::size_t v = 0; v < point_of.size(); ++v)
     order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
-  const MeshDefects defects = find_defects(mesh, order, size);
-  if (defects.remove.empty() && defects.insert.empty()) return false;
+  MeshDefects defects = find_defects(mesh, order, size);
+  if (round >= parameters.mend)
+    defects.remove.clear();  // only what makes the surface touch itself is worth more rounds
+  if (round >= parameters.mend + 4 || (defects.remove.empty() && defects.insert.empty())) return false;
   // An island of a few particles needs them all.
   constexpr std::int64_t few = 24;
   std::vector<std::uint8_t> gone(particles.points.size(), 0);

@@ -92,7 +92,7 @@ std::vector<Knob> mesh_knobs(Settings& s) {
        0,
        most,
        {}},
-      {"tighten", "fields", "voxels", "smoothing of label boundaries; 0: keep the stairs", &m.tighten, 0, 4, {}},
+      {"tighten", "fields", "voxels", "smoothing of label boundaries; 0: keep the stairs", &m.tighten, 0, 1.5, {}},
       {"kernel", "fields", "", "reconstruction of fields", &m.kernel, 0, 0, {"catmull-rom", "b-spline"}},
       {"mesh_subcells", "fields", "", "closest-point cells per voxel and axis", &m.subcells, 1, 8, {}},
       {"epsilon",

@@ -1,9 +1,9 @@
 // Nacre: meshes of real volumes: no label lost, closed, near the interfaces.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <set>
 
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
@@ -29,13 +29,13 @@ MeshRun mesh_of(const MeshVolume& volume, const char* name, const MeshParameters
     EXPECT_GT(report.materials[m].facets, 0) << name << " has lost label " << volume.labels[m];
   }
   const SurfaceQuality q = surface_quality(run.mesh);
-  std::printf("%s: %zu triangles, %d surfaces, %d curves, %d points (%d crowded), ratio mean %.4f min %.3f, away %.4f %.3f, "
-              "under 25 %.3f%%, distance vertex %.4f facet %.4f, max %.3f\n",
-              name, run.mesh.triangles.size(), run.info.surfaces, run.info.curves, run.info.points,
-              run.info.crowded_points, q.all.radius_ratio_mean, q.all.radius_ratio_min,
-              q.away_from_junctions.radius_ratio_mean, q.away_from_junctions.radius_ratio_min,
-              100 * q.away_from_junctions.share_under_25, run.distance.vertex_mean, run.distance.facet_mean,
-              run.distance.facet_max);
+  std::printf(
+      "%s: %zu triangles, %d surfaces, %d curves, %d points (%d crowded), ratio mean %.4f min %.3f, away %.4f %.3f, "
+      "under 25 %.3f%%, distance vertex %.4f facet %.4f, max %.3f\n",
+      name, run.mesh.triangles.size(), run.info.surfaces, run.info.curves, run.info.points, run.info.crowded_points,
+      q.all.radius_ratio_mean, q.all.radius_ratio_min, q.away_from_junctions.radius_ratio_mean,
+      q.away_from_junctions.radius_ratio_min, 100 * q.away_from_junctions.share_under_25, run.distance.vertex_mean,
+      run.distance.facet_mean, run.distance.facet_max);
   EXPECT_LE(run.distance.vertex_mean, 0.1) << name;
   EXPECT_LE(run.distance.facet_mean, 0.1) << name;
   return run;
@@ -47,18 +47,88 @@ MeshVolume read(const std::vector<std::string>& files, const MaterialOptions& op
   return make_mesh_volume(volumes, options);
 }
 
-TEST(MeshData, Everything) {
-  for (const char* f : {"420", "12323", "20012323", "40420", "quadDomainCube"}) {
-    const MeshVolume v = read({std::string("junctions/") + f + ".inr"});
-    std::printf("dims %d %d %d labels", v.dims.x, v.dims.y, v.dims.z);
-    for (auto l : v.labels) std::printf(" %ld", long(l));
-    for (auto m : v.material) if (v.material.size() < 30) std::printf(" %d", m);
-    puts("");
-    mesh_of(v, f);
+#define NEEDS_DATA(folder) \
+  if (!std::filesystem::exists(data / folder)) GTEST_SKIP() << "no " << (data / folder)
+
+/// What the issue asks of shapes: away from junctions no small angle in 99.9% and no small ratio; no sliver anywhere.
+void expect_good_shapes(const MeshRun& run, double mean = 0.95) {
+  const SurfaceQuality q = surface_quality(run.mesh);
+  EXPECT_GE(q.all.radius_ratio_mean, mean);
+  EXPECT_GE(q.all.radius_ratio_min, 0.15);
+  EXPECT_GE(q.away_from_junctions.radius_ratio_min, 0.3);
+  EXPECT_LE(q.away_from_junctions.share_under_25, 0.001);
+}
+
+/// Images of 2 x 2 x 2 voxels around which curves of three materials end in points of four, or do not.
+TEST(MeshData, TinyImagesHaveTheirJunctions) {
+  NEEDS_DATA("junctions");
+  const struct {
+    const char* name;
+    int surfaces, curves, points;
+  } images[] = {{"420", 3, 1, 0},    // 2 between 4 and the outside's corner: one curve around
+                {"40420", 3, 1, 0},  // the same with a notch
+                {"12323", 6, 4, 1},  // 1 touches 2 and 3, all meet the outside
+                {"20012323", 6, 4, 2}};
+  for (const auto& image : images) {
+    SCOPED_TRACE(image.name);
+    const MeshRun run = mesh_of(read({std::string("junctions/") + image.name + ".inr"}), image.name);
+    EXPECT_EQ(run.info.surfaces, image.surfaces);
+    EXPECT_EQ(run.info.curves, image.curves);
+    EXPECT_EQ(run.info.points, image.points);
   }
-  mesh_of(read({"cleaver/mickey.nrrd"}), "mickey");
-  mesh_of(read({"cleaver/spheres1.nrrd", "cleaver/spheres2.nrrd", "cleaver/spheres3.nrrd", "cleaver/spheres4.nrrd"}), "spheres");
-  mesh_of(read({"nested-head/standard_seg.nrrd"}), "standard_seg");
+}
+
+/// A cube of four quadrants, whose axis is a line where four materials meet: it survives as curves of three. Triangles along
+/// the axis may be slivers: no curve of four materials is stable.
+TEST(MeshData, FourQuadrants) {
+  NEEDS_DATA("junctions");
+  const MeshVolume volume = read({"junctions/quadDomainCube.inr"});
+  const MeshRun run = mesh_of(volume, "quadrants");
+  const TopologyReport report = check_topology(run.mesh, 5);
+  EXPECT_TRUE(report.sound());
+  for (int m = 1; m < 5; ++m) {
+    const double voxels = double(std::count(volume.material.begin(), volume.material.end(), m));
+    const double cell = volume.spacing.x * volume.spacing.y * volume.spacing.z;
+    EXPECT_EQ(report.materials[m].euler, 2) << m;
+    EXPECT_NEAR(report.materials[m].volume, voxels * cell, 0.04 * voxels * cell) << m;
+  }
+  EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.95);
+}
+
+/// Its smallest label has 27 voxels, 3 to an edge: smoothing takes its corners.
+TEST(MeshData, Mickey) {
+  NEEDS_DATA("cleaver");
+  const MeshVolume volume = read({"cleaver/mickey.nrrd"});
+  const MeshRun run = mesh_of(volume, "mickey");
+  expect_good_shapes(run, 0.97);
+  const TopologyReport report = check_topology(run.mesh, volume.materials());
+  for (int m = 1; m < volume.materials(); ++m) {
+    const double voxels = double(std::count(volume.material.begin(), volume.material.end(), m));
+    EXPECT_NEAR(report.materials[m].volume, voxels, 0.04 * voxels + 12) << "label " << volume.labels[m];
+  }
+}
+
+TEST(MeshData, FourSpheresAsIndicators) {  // they fill the volume: all interfaces end at its faces
+  NEEDS_DATA("cleaver");
+  const MeshVolume volume =
+      read({"cleaver/spheres1.nrrd", "cleaver/spheres2.nrrd", "cleaver/spheres3.nrrd", "cleaver/spheres4.nrrd"});
+  const MeshRun run = mesh_of(volume, "four spheres");
+  expect_good_shapes(run);
+  const TopologyReport report = check_topology(run.mesh, volume.materials());
+  for (int m = 1; m < volume.materials(); ++m) EXPECT_EQ(report.materials[m].components, 1) << m;
+  EXPECT_NEAR(-report.materials[0].volume, 28 * 28 * 28, 0.01 * 28 * 28 * 28);
+}
+
+TEST(MeshData, NestedHead) {  // shells that touch in a few places at most
+  NEEDS_DATA("nested-head");
+  MeshParameters parameters;
+  parameters.min_size = 2;
+  parameters.max_size = 4;
+  const MeshVolume volume = read({"nested-head/standard_seg.nrrd"});
+  const MeshRun run = mesh_of(volume, "nested head", parameters);
+  EXPECT_GE(run.info.surfaces, 3);
+  EXPECT_TRUE(check_topology(run.mesh, volume.materials()).sound());
+  EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.95);
 }
 
 }  // namespace

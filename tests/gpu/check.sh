@@ -55,7 +55,7 @@ pack() {
   done
   install -m 755 "$here/check.sh" "$pack/run.sh"
   install -m 644 "$root/tests/bench/report.sh" "$pack/"
-  "$build/bin/nacre" sample torus --detail 100 --out "$pack/data/torus.pvd" >/dev/null
+  "$build/bin/nacre" sample torus --detail 70 --out "$pack/data/torus.pvd" >/dev/null
   size=$(du -sm "$pack" | cut -f 1)
   ((size < pack_limit_mib)) || fail "$pack has $size MiB, more than $pack_limit_mib"
   say "packed $size MiB into $pack"
@@ -109,6 +109,38 @@ program_test() {
   elif [[ $(surface_cells cpu) != "$(surface_cells cuda)" ]]; then
     failures+=("torus.pvd has other surface cells on cuda than on cpu")
   fi
+}
+
+# mesh_alike SAMPLE: the report of its mesh on cuda has as many particles (to 1%) and as good triangles (mean radius ratio
+# to 0.005) as that on cpu.
+mesh_alike() {
+  local device key values=(-v name="$1")
+  for device in cpu cuda; do
+    for key in particles.final mesh.radius_ratio.mean; do
+      values+=(-v "${device}_${key##*.}=$(report_value "$out/mesh-$1-$device.json" "$key")")
+    done
+  done
+  awk "${values[@]}" '
+    function size(x) { return x < 0 ? -x : x }
+    BEGIN {
+      printf "mesh of %s: %d particles and mean ratio %.4f on cpu, %d and %.4f on cuda\n",
+        name, cpu_final, cpu_mean, cuda_final, cuda_mean
+      exit !(cpu_final > 0 && size(cuda_final / cpu_final - 1) < 0.01 && size(cuda_mean - cpu_mean) < 0.005)
+    }'
+}
+
+# Meshes from the program, on both.
+mesh_test() {
+  local device sample
+  for sample in two-spheres three-sectors torso; do
+    for device in cpu cuda; do
+      timeout "$(left)" "$pack/bin/nacre" mesh --sample "$sample" --detail 64 --quiet --device "$device" \
+        --out "$out/mesh.vtp" --report "$out/mesh-$sample-$device.json" >"$out/mesh-$sample-$device.log" 2>&1 ||
+        failures+=("nacre mesh $sample --device $device: $(head -n 1 "$out/mesh-$sample-$device.log")")
+    done
+    mesh_alike "$sample" || failures+=("the mesh of $sample on cuda is not that on cpu")
+  done
+  rm -f "$out/mesh.vtp"
 }
 
 interop_test() {
@@ -205,6 +237,7 @@ run() {
   device_info
   unit_tests
   program_test
+  mesh_test
   interop_test
   benchmarks
   write_results

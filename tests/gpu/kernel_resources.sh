@@ -26,8 +26,9 @@ echo '|---|---:|---:|---:|---:|---:|'
 awk '
   /Compiling entry function/ {
     name = ""
-    if (match($0, /for_each_kernel<.*>\(long/)) {
-      name = substr($0, RSTART + 16, RLENGTH - 22)
+    if (match($0, /for_each(_team)?_kernel<.*>\(long/)) {
+      name = substr($0, RSTART, RLENGTH - 6)
+      sub(/^for_each(_team)?_kernel</, "", name)
       gsub(/nacre::|detail::/, "", name)
       gsub(/ +>/, ">", name)
       sub(/ +$/, "", name)

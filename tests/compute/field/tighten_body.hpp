@@ -1,0 +1,133 @@
+// Nacre: test bodies for tightening: nothing changes sides, and no stairs are left.
+#pragma once
+
+#include "compute/device/random.hpp"
+#include "tests/compute/field/field_cases.hpp"
+
+namespace nacre::test {
+
+/// Tightens and asks that every voxel's centre is in its own material.
+template <class Backend>
+void expect_kept(Executor<Backend>& exec, const char* what, const MeshVolume& volume) {
+  TightenResult result;
+  const std::size_t mark = exec.arena().mark();
+  const MaterialBricks b = bricks_of(exec, volume, 1.2, CubicKernel::catmull_rom, &result);
+  EXPECT_EQ(result.left, 0) << what;
+  EXPECT_EQ(stray_voxels(exec, b), 0u) << what;
+  exec.arena().rewind(mark);
+}
+
+template <class Backend>
+void EveryVoxelStaysInItsMaterial(Executor<Backend>& exec) {
+  const Int3 n(20, 21, 19);
+  const Vec3d c(9.6, 10.2, 9.1);
+  expect_kept(exec, "ball", label_volume(n, 2, [&](const Vec3d& p) { return length(p - c) < 6.2; }));
+  expect_kept(exec, "plate", label_volume(n, 2, [](const Vec3d& p) { return p.z == 9 && p.x > 3 && p.x < 15; }));
+  expect_kept(exec, "rod", label_volume(n, 2, [](const Vec3d& p) { return p.z == 9 && p.x == 8; }));
+  expect_kept(exec, "oblique plate",
+              label_volume(n, 2, [&](const Vec3d& p) { return std::fabs(dot(p - c, Vec3d(0.6, 0.48, 0.64))) < 0.5; }));
+  expect_kept(exec, "shell", label_volume(n, 3, [&](const Vec3d& p) {
+                const double r = length(p - c);
+                return r < 5.6 ? 2 : r < 6.6 ? 1 : 0;
+              }));
+  expect_kept(exec, "single voxel",
+              label_volume(n, 2, [](const Vec3d& p) { return p.x == 9 && p.y == 9 && p.z == 9; }));
+  expect_kept(exec, "touching faces", label_volume(n, 3, [](const Vec3d& p) { return p.x < 9 ? 1 : 2; }));
+}
+
+template <class Backend>
+void EvenTheWorstVoxelsStay(Executor<Backend>& exec) {
+  const Int3 n(13, 12, 11);
+  expect_kept(exec, "checkerboard", label_volume(n, 2, [](const Vec3d& p) { return int(p.x + p.y + p.z) % 2; }));
+  expect_kept(exec, "noise of two", label_volume(n, 2, [](const Vec3d& p) {
+                return uniform_random(5, int(p.x + 16 * p.y), int(p.z)) < 0.5f;
+              }));
+  expect_kept(exec, "noise of five", label_volume(n, 5, [](const Vec3d& p) {
+                return int(5 * uniform_random(6, int(p.x + 16 * p.y), int(p.z)));
+              }));
+}
+
+template <class Backend>
+void WithoutWidthTheLabelsAreLeftAlone(Executor<Backend>& exec) {
+  const MeshVolume volume = label_volume({16, 16, 16}, 2, [](const Vec3d& p) { return p.x + 2 * p.y > 20; });
+  const MaterialBricks b = bricks_of(exec, volume, 0);
+  std::vector<Vec3f> centres;
+  for_each_voxel(volume.dims, [&](std::size_t, const Vec3d& p) { centres.push_back(in_fields(p)); });
+  const auto found = sample_all(exec, b, centres, 1);
+  for (std::size_t k = 0; k < found.size(); ++k) ASSERT_EQ(found[k].value, float(volume.material[k]));
+}
+
+/// Angles between the interface's normals and `normal`, degrees, at places along it.
+template <class Backend>
+std::vector<double> normal_errors(Executor<Backend>& exec, const MaterialBricks& b, const std::vector<Vec3f>& places,
+                                  const std::function<Vec3f(const Vec3f&)>& normal) {
+  std::vector<double> errors;
+  for (const JunctionPoint& at : bring_onto(exec, b, Junction(0, 1), places))
+    errors.push_back(length(at.direction) > 0 ? degrees_between(at.direction, normal(at.p)) : 90);
+  return errors;
+}
+
+template <class Backend>
+void AnObliquePlaneHasNoStairs(Executor<Backend>& exec) {
+  const Vec3d n = normalized(Vec3d(0.8, 0.33, 0.21)), c(20.2, 17.1, 16.6);
+  const MeshVolume volume = label_volume({40, 34, 33}, 2, [&](const Vec3d& p) { return dot(p - c, n) > 0; });
+  const Vec3d s = normalized(cross(n, Vec3d(0, 0, 1))), t = cross(n, s);
+  std::vector<Vec3f> places;
+  for (int i = -40; i <= 40; ++i)
+    for (int j = -40; j <= 40; ++j) places.push_back(in_fields(c + s * (i * 0.23) + t * (j * 0.23)));
+  const auto normal = [&](const Vec3f&) { return Vec3f(n); };
+  const auto smooth = normal_errors(exec, bricks_of(exec, volume), places, normal);
+  const auto stairs = normal_errors(exec, bricks_of(exec, volume, 0), places, normal);
+  std::printf("oblique plane: median normal error %.2f degrees, largest %.2f; untightened %.2f\n", median_of(smooth),
+              *std::max_element(smooth.begin(), smooth.end()), median_of(stairs));
+  EXPECT_LE(median_of(smooth), 3);
+  EXPECT_GE(median_of(stairs), 4 * median_of(smooth));
+  for (const JunctionPoint& at : bring_onto(exec, bricks_of(exec, volume), Junction(0, 1), places))
+    EXPECT_LT(std::fabs(dot(Vec3d(at.p) - Vec3d(volume_padding + 0.5) - c, n)), 0.5);
+}
+
+/// The cube between eight voxel centres that holds a point has corners of both materials: its voxel shell.
+inline bool in_shell(const MeshVolume& volume, const Vec3f& p) {
+  const Vec3d at = Vec3d(p) - Vec3d(volume_padding + 0.5);
+  bool found[2] = {};
+  for (int k = 0; k < 8; ++k) {
+    const Int3 v(int(std::floor(at.x)) + (k & 1), int(std::floor(at.y)) + (k >> 1 & 1),
+                 int(std::floor(at.z)) + (k >> 2));
+    found[volume.material[(std::size_t(v.z) * volume.dims.y + v.y) * volume.dims.x + v.x]] = true;
+  }
+  return found[0] && found[1];
+}
+
+template <class Backend>
+void ABallOfLabelsBecomesRound(Executor<Backend>& exec) {
+  const Vec3d c(24.8, 25.3, 25.1);
+  const double radius = 20;
+  const MeshVolume volume = label_volume({51, 51, 51}, 2, [&](const Vec3d& p) { return length(p - c) < radius; });
+  const MaterialBricks b = bricks_of(exec, volume);
+  std::vector<Vec3f> places;
+  for (const Vec3d& d : even_directions(20000)) places.push_back(in_fields(c + d * radius));
+  const Vec3f centre = in_fields(c);
+  const auto errors = normal_errors(exec, b, places, [&](const Vec3f& p) { return normalized(p - centre); });
+  double away = 0, most = 0, outside = 0;
+  for (const JunctionPoint& at : bring_onto(exec, b, Junction(0, 1), places)) {
+    const double off = std::fabs(length(at.p - centre) - radius);
+    away += off / double(places.size());
+    most = std::max(most, off);
+    outside += in_shell(volume, at.p) ? 0 : 1;
+  }
+  std::printf(
+      "ball of labels: distance mean %.3f max %.3f, median normal error %.2f degrees, out of the shell %.0f of %zu\n",
+      away, most, median_of(errors), outside, places.size());
+  EXPECT_LE(away, 0.25);
+  EXPECT_LE(most, 1);
+  EXPECT_LE(median_of(errors), 5);
+  EXPECT_EQ(outside, 0);
+}
+
+NACRE_DEVICE_TEST(Tighten, EveryVoxelStaysInItsMaterial)
+NACRE_DEVICE_TEST(Tighten, EvenTheWorstVoxelsStay)
+NACRE_DEVICE_TEST(Tighten, WithoutWidthTheLabelsAreLeftAlone)
+NACRE_DEVICE_TEST(Tighten, AnObliquePlaneHasNoStairs)
+NACRE_DEVICE_TEST(Tighten, ABallOfLabelsBecomesRound)
+
+}  // namespace nacre::test

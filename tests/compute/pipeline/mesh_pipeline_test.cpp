@@ -1,0 +1,233 @@
+// Nacre: the mesh pipeline as a whole: determinism, stopping, repeated steps, errors.
+#include "compute/pipeline/mesh_pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "compute/device/error.hpp"
+#include "compute/meshing/topology.hpp"
+#include "tests/compute/pipeline/mesh_volumes.hpp"
+
+namespace nacre::test {
+namespace {
+
+/// A ball and half a shell around it, and a voxel alone: surfaces, a curve, an island.
+MeshVolume three_materials() {
+  const Vec3d c(12.2, 11.7, 12.4);
+  return label_volume({26, 25, 26}, 4, [=](const Vec3d& p) {
+    const double r = length(p - c);
+    return p == Vec3d(23, 3, 2) ? 3 : r < 6.3 ? 1 : r < 9.8 && p.x > 11 ? 2 : 0;
+  });
+}
+
+MeshRun on_threads(int threads, bool remote, std::uint32_t seed, const std::string& solver = "tree") {
+  const auto device = make_cpu_device(threads, remote);
+  MeshParameters parameters;
+  parameters.seed = seed;
+  parameters.solver = solver;
+  parameters.iterations = 40;
+  return run_mesh(*device, three_materials(), parameters);
+}
+
+void expect_same(const SurfaceMesh& a, const SurfaceMesh& b) {
+  ASSERT_EQ(a.points.size(), b.points.size());
+  EXPECT_TRUE(std::equal(a.points.begin(), a.points.end(), b.points.begin()));
+  EXPECT_TRUE(a.triangles == b.triangles);
+  EXPECT_EQ(a.materials, b.materials);
+}
+
+TEST(MeshPipeline, OneSeedGivesOneMeshOnAnyNumberOfThreads) {
+  const MeshRun one = on_threads(1, false, 1);
+  const TopologyReport report = check_topology(one.mesh, 4);
+  EXPECT_TRUE(report.sound());
+  EXPECT_EQ(report.materials[3].euler, 2);  // the voxel alone
+  expect_same(one.mesh, on_threads(2, false, 1).mesh);
+  expect_same(one.mesh, on_threads(2, true, 1).mesh);  // memory that the host cannot look into
+}
+
+TEST(MeshPipeline, SoDoTheOtherSolvers) {
+  for (const char* solver : {"redblack", "serial"}) {
+    const MeshRun one = on_threads(1, false, 1, solver);
+    expect_same(one.mesh, on_threads(2, false, 1, solver).mesh);
+    EXPECT_TRUE(check_topology(one.mesh, 4).sound()) << solver;
+  }
+}
+
+TEST(MeshPipeline, EachSolverGoesItsOwnWay) {
+  const MeshRun tree = on_threads(2, false, 1), redblack = on_threads(2, false, 1, "redblack"),
+                serial = on_threads(2, false, 1, "serial");
+  EXPECT_NE(tree.info.energy, redblack.info.energy);
+  EXPECT_NE(tree.info.energy, serial.info.energy);
+  EXPECT_NE(redblack.info.energy, serial.info.energy);
+  EXPECT_NEAR(double(redblack.info.final), double(tree.info.final), 0.1 * double(tree.info.final));
+  EXPECT_NEAR(double(serial.info.final), double(tree.info.final), 0.1 * double(tree.info.final));
+}
+
+TEST(MeshPipeline, StopsSoonAndKeepsWhatThereIs) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  const MeshVolume volume = three_materials();
+  pipeline->parameters.min_size = pipeline->parameters.max_size = 0.35;
+  pipeline->parameters.subcells = 3;
+  pipeline->parameters.stagnation = 0;
+  pipeline->parameters.iterations = 100000;
+  pipeline->load(volume);
+  pipeline->build_fields();
+  std::atomic<bool> stop = false;
+  std::chrono::steady_clock::time_point asked;
+  int iterations = 0;
+  pipeline->progress = [&](const MeshProgress& p) {
+    if (p.stage != "relax" || ++iterations != 12) return;
+    asked = std::chrono::steady_clock::now();
+    stop = true;
+  };
+  pipeline->watch(&stop);
+  EXPECT_THROW(pipeline->relax(), Interrupted);
+  EXPECT_GE(iterations, 12);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count(), 2);
+  pipeline->watch(nullptr);
+  const SurfaceMesh mesh = pipeline->triangulate();
+  const TopologyReport report = check_topology(mesh, 4);
+  for (int m = 0; m < 4; ++m) EXPECT_GT(report.materials[m].facets, 0) << m;
+  EXPECT_EQ(report.boundary_edges, 0);
+}
+
+TEST(MeshPipeline, StopsInTheFieldsToo) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  const MeshVolume volume = three_materials();
+  pipeline->load(volume);
+  std::atomic<bool> stop = true;
+  pipeline->watch(&stop);
+  EXPECT_THROW(pipeline->build_fields(), Interrupted);
+  pipeline->watch(nullptr);
+  EXPECT_THROW(pipeline->relax(), Error) << "no fields";
+  pipeline->build_fields();
+  pipeline->relax();
+  EXPECT_TRUE(check_topology(pipeline->triangulate(), 4).sound());
+}
+
+/// Steps may be repeated without those before them, and give what a fresh pipeline gives.
+TEST(MeshPipeline, StepsCanBeRepeated) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  const MeshVolume volume = three_materials();
+  pipeline->load(volume);
+  pipeline->build_fields();
+  pipeline->relax();
+  const SurfaceMesh first = pipeline->triangulate();
+  const double expected = pipeline->info().expected_particles;
+  pipeline->parameters.max_size = pipeline->parameters.min_size = 0.8;
+  pipeline->build_fields();
+  EXPECT_NE(pipeline->info().expected_particles, expected);
+  pipeline->relax();
+  const SurfaceMesh finer = pipeline->triangulate();
+  MeshParameters parameters;
+  parameters.min_size = parameters.max_size = 0.8;
+  expect_same(finer, run_mesh(*device, volume, parameters).mesh);
+  pipeline->parameters = {};
+  pipeline->build_fields();
+  pipeline->relax();
+  expect_same(first, pipeline->triangulate());
+  pipeline->load(scalar_volume({20, 20, 20}, ball({9, 9.5, 10}, 6)));
+  EXPECT_THROW(pipeline->triangulate(), Error) << "the particles were those of the last volume";
+}
+
+TEST(MeshPipeline, ANumberOfParticlesIsSeededAndNoneAdded) {
+  const auto device = make_cpu_device();
+  const MeshVolume volume = scalar_volume({27, 26, 27}, ball({13.2, 12.7, 13.1}, 8.3));  // asks for about 1000
+  MeshParameters parameters;
+  parameters.particles = 800;
+  const MeshRun few = run_mesh(*device, volume, parameters);
+  EXPECT_NEAR(double(few.info.seeded), 800, 8);
+  EXPECT_LE(few.info.final, few.info.seeded);
+  EXPECT_GE(few.info.final, few.info.seeded * 95 / 100);
+  parameters.particles = 3000;
+  const MeshRun many = run_mesh(*device, volume, parameters);
+  EXPECT_NEAR(double(many.info.seeded), 3000, 30);
+  for (std::size_t k = 1; k < many.info.count.size(); ++k) EXPECT_LE(many.info.count[k], many.info.count[k - 1]);
+}
+
+TEST(MeshPipeline, TellsHowFarItIs) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  double last = 0;
+  int calls = 0;
+  std::int64_t particles = 0;
+  pipeline->progress = [&](const MeshProgress& p) {
+    EXPECT_GE(p.fraction, last - 0.08) << p.stage;  // mending goes back a little
+    last = p.fraction;
+    EXPECT_LE(p.fraction, 1);
+    particles = std::max(particles, p.particles);
+    ++calls;
+  };
+  const MeshVolume volume = three_materials();
+  pipeline->load(volume);
+  pipeline->build_fields();
+  pipeline->relax();
+  const SurfaceMesh mesh = pipeline->triangulate();
+  EXPECT_GT(calls, 20);
+  EXPECT_GT(particles, 1000);
+  const MeshInfo& info = pipeline->info();
+  EXPECT_EQ(info.final, info.points_final + info.curves_final + info.surfaces_final);
+  EXPECT_GT(info.curves_final, 10);
+  EXPECT_EQ(info.surfaces, 4);
+  const MeshParticles set = pipeline->particles();
+  EXPECT_EQ(std::int64_t(set.points.size()), info.final);
+  EXPECT_GT(pipeline->peak_bytes(), std::size_t(info.field_bytes));
+}
+
+TEST(MeshPipeline, PointsOfTheWorldHaveMaterialsAndSizes) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  MeshVolume volume = three_materials();
+  volume.spacing = {0.5, 1, 0.8};
+  volume.origin = {100, -20, 3};
+  volume.axes = {Vec3d(0, 1, 0), Vec3d(-1, 0, 0), Vec3d(0, 0, 1)};
+  pipeline->load(volume);
+  pipeline->build_fields();
+  const auto world = [&](const Vec3d& index) {
+    return volume.origin + volume.axes[0] * (index.x * 0.5) + volume.axes[1] * index.y +
+           volume.axes[2] * (index.z * 0.8);
+  };
+  const std::vector<Vec3d> points{world({12, 12, 12}), world({20, 12, 12}), world({2, 2, 20}),
+                                  world({23, 3, 2}),   {0, 0, 0},           {NAN, 0, 0}};
+  EXPECT_EQ(pipeline->material_at(points), (std::vector<std::uint16_t>{1, 2, 0, 3, 0, 0}));
+  for (const float h : pipeline->size_at(std::span(points).first(4))) {
+    EXPECT_GT(h, 0.1f);
+    EXPECT_LE(h, 0.5f * 1.001f);  // the largest size is one edge of the smallest spacing
+  }
+}
+
+void expect_error(const std::function<void()>& call, const std::string& part) {
+  try {
+    call();
+    FAIL() << "no error about " << part;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+TEST(MeshPipeline, SaysWhatItCannotDo) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  expect_error([&] { pipeline->build_fields(); }, "no volume");
+  expect_error([&] { pipeline->relax(); }, "no fields");
+  expect_error([&] { pipeline->triangulate(); }, "no particles");
+  const MeshVolume nothing = label_volume({9, 9, 9}, 2, [](const Vec3d&) { return 0; });
+  expect_error([&] { pipeline->load(nothing); }, "one material only");
+  const MeshVolume volume = three_materials();
+  pipeline->load(volume);
+  pipeline->build_fields();
+  pipeline->parameters.particles = 2000000000;
+  expect_error([&] { pipeline->relax(); }, "too many particles");
+  pipeline->parameters.particles = 0;
+  pipeline->relax();  // the pipeline works on
+  EXPECT_FALSE(pipeline->triangulate().triangles.empty());
+}
+
+}  // namespace
+}  // namespace nacre::test
