@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,6 +44,22 @@ class Arena {
     return array;
   }
 
+  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the array
+  /// as it was, when the block is full.
+  template <class T>
+  void resize_last(Array<T>& array, std::size_t count) {
+    const std::size_t start = std::size_t(reinterpret_cast<std::uint8_t*>(array.data()) - block_), head = head_;
+    assert(start + aligned(array.bytes()) == head_);
+    head_ = start;
+    if (!fits(count, sizeof(T))) {
+      head_ = head;
+      require(count, sizeof(T));
+    }
+    head_ += aligned(count * sizeof(T));
+    note_peak();
+    array = {device_, array.data(), count};
+  }
+
   /// `count` elements that last until the innermost Scope ends.
   template <class T>
   Array<T> temporary(std::size_t count) {
@@ -74,8 +91,12 @@ class Arena {
  private:
   static std::size_t aligned(std::size_t bytes) { return (bytes + 255) / 256 * 256; }
 
+  bool fits(std::size_t count, std::size_t size) const {
+    return count <= free_bytes() / size && aligned(count * size) <= free_bytes();
+  }
+
   void require(std::size_t count, std::size_t size) const {
-    if (count > free_bytes() / size || aligned(count * size) > free_bytes())
+    if (!fits(count, size))
       throw Error("not enough memory on the device",
                   std::to_string((count >> 10) * size >> 10) + " MiB asked, " + std::to_string(free_bytes() >> 20) +
                       " MiB free",

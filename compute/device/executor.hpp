@@ -66,6 +66,15 @@ NACRE_HD_INLINE void atomic_add(std::uint64_t* to, std::uint64_t value) {
 #endif
 }
 
+/// The same for 32 bits; gives the value before, which is another for each of those that add.
+NACRE_HD_INLINE std::uint32_t atomic_add(std::uint32_t* to, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(to, value);
+#else
+  return __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
+#endif
+}
+
 /// Writes a flag that several threads may write at once with the same value.
 NACRE_HD_INLINE void relaxed_store(std::uint32_t* to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "compute/device/executor.hpp"
+#include "compute/embedding/bricks_near.hpp"
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/embedding/clusters.hpp"
@@ -46,40 +47,6 @@ struct ClosestPointGrid {
 };
 
 namespace detail {
-
-/// The bricks that come within `radius` of a cluster.
-struct BricksNearCluster {
-  MeshView mesh;
-  const std::uint32_t* order;
-  const std::uint32_t* start;
-  const ClusterBound* bound;
-  Int3 bricks;
-  double cells_per_brick, radius;
-
-  template <class Visit>
-  NACRE_HD void operator()(std::int64_t k, Visit&& visit) const {
-    const double scale = 1.0 / cells_per_brick, margin = radius * scale;
-    auto emit = [&](const Int3& brick) { visit(std::uint32_t(morton(brick))); };
-    if (start[k + 1] - start[k] == 1) {
-      for_cells_near(mesh.corners(order[start[k]]) * scale, margin, bricks, emit);
-      return;
-    }
-    const Vec3d centre = Vec3d(bound[k].centre) * scale;
-    const double reach = bound[k].radius * scale * 1.0001 + margin + 1e-4;
-    Int3 first, last;
-    for (int axis = 0; axis < 3; ++axis) {
-      first[axis] = clamp_cell(centre[axis] - reach, bricks[axis]);
-      last[axis] = clamp_cell(centre[axis] + reach, bricks[axis]);
-    }
-    for (int z = first.z; z <= last.z; ++z)
-      for (int y = first.y; y <= last.y; ++y)
-        for (int x = first.x; x <= last.x; ++x) {
-          const Vec3d low{double(x), double(y), double(z)};
-          const Vec3d nearest = max(low, min(low + Vec3d(1.0), centre)) - centre;
-          if (dot(nearest, nearest) <= reach * reach) emit({x, y, z});
-        }
-  }
-};
 
 /// Writes what begins at the first key of each brick.
 struct BrickStart {
@@ -203,30 +170,6 @@ struct CellsTouched {
   }
 };
 
-/// First position whose key's upper half is at least the cell: the lists as offsets.
-struct TouchStart {
-  std::uint64_t pairs;
-  const std::uint64_t* keys;
-  std::uint32_t* start;
-  NACRE_HD void operator()(std::int64_t cell) const {
-    std::uint64_t low = 0, high = pairs;
-    while (low < high) {
-      const std::uint64_t middle = (low + high) / 2;
-      if (keys[middle] >> 32 < std::uint64_t(cell))
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    start[cell] = std::uint32_t(low);
-  }
-};
-
-struct LowHalf {
-  const std::uint64_t* keys;
-  std::uint32_t* value;
-  NACRE_HD void operator()(std::int64_t i) const { value[i] = std::uint32_t(keys[i]); }
-};
-
 }  // namespace detail
 
 /// Builds the grid around `triangles` triangles whose points are in cells, inside `bricks` coarse cells (each extent at
@@ -270,7 +213,7 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
   if (pairs.size() >= none) throw Error("the mesh is too fine", "over 2^32 pairs of triangle and cell");
   grid.touch_start = arena.permanent<std::uint32_t>(grid.cells + 1);
   grid.touch_triangle = arena.permanent<std::uint32_t>(pairs.size());
-  exec.for_each(grid.cells + 1, detail::TouchStart{pairs.size(), pairs.data(), grid.touch_start.data()});
+  exec.for_each(grid.cells + 1, detail::ListStart<std::uint32_t>{pairs.size(), pairs.data(), grid.touch_start.data()});
   exec.for_each(pairs.size(), detail::LowHalf{pairs.data(), grid.touch_triangle.data()});
   return grid;
 }

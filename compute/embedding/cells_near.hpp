@@ -2,13 +2,15 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "compute/embedding/triangle.hpp"
 #include "compute/grid/vec.hpp"
 
 namespace nacre {
 
-NACRE_HD inline int clamp_cell(double x, int cells) { return x < 0 ? 0 : x >= cells ? cells - 1 : int(x); }
+/// The cell of 0..cells-1 that holds `x` or is nearest to it; 0 of what is no number.
+NACRE_HD inline int clamp_cell(double x, int cells) { return x >= cells ? cells - 1 : x >= 0 ? int(x) : 0; }
 
 namespace detail {
 /// Unit normal of the triangle's plane; of a needle, of some plane through its longest edge.
@@ -26,35 +28,111 @@ NACRE_HD inline Vec3d plane_normal(const Corners& t) {
   axis[thin] = 1;
   return normalized(cross(e, axis));
 }
+
+/// What the triangle covers of axis `u` where axis `v` is in low .. high; `from` > `to` if that is nothing.
+NACRE_HD inline void extent_in_slab(const Corners& t, int u, int v, double low, double high, double& from, double& to) {
+  const Vec3d corner[3] = {t.a, t.b, t.c};
+  from = 1e300;
+  to = -1e300;
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d &p = corner[k], &q = corner[(k + 1) % 3];
+    const double d = q[v] - p[v];
+    if ((d >= 0 ? p[v] : q[v]) > high || (d >= 0 ? q[v] : p[v]) < low) continue;
+    for (int end = 0; end < 2; ++end) {
+      double s = end;  // of an edge along the slab: its ends
+      if (d != 0) s = ((end ? high : low) - p[v]) / d;
+      s = s > 0 ? (s < 1 ? s : 1) : 0;
+      const double x = p[u] + s * (q[u] - p[u]);
+      from = x < from ? x : from;
+      to = x > to ? x : to;
+    }
+  }
+}
+
+/// The columns of cells that come near a triangle, along the largest axis `w` of its normal, in rows along `u`.
+struct ColumnWalk {
+  Corners t;
+  Vec3d n;
+  double slack, reach;  // of the plane over the middle of a column: how far cells along w may be near
+  int u, v, w;
+  Int3 dims, first, last;
+  bool empty = true;
+
+  NACRE_HD ColumnWalk(const Corners& corners, double margin, Int3 dims_) : t(corners), dims(dims_) {
+    if (!is_finite(t.a + t.b + t.c)) return;
+    n = plane_normal(t);
+    slack = margin + 1e-7;
+    const Vec3d low = min(t.a, min(t.b, t.c)), high = max(t.a, max(t.b, t.c));
+    for (int axis = 0; axis < 3; ++axis) {
+      if (low[axis] - slack >= dims[axis] || high[axis] + slack < 0) return;
+      first[axis] = clamp_cell(low[axis] - slack, dims[axis]);
+      last[axis] = clamp_cell(high[axis] + slack, dims[axis]);
+    }
+    empty = false;
+    const double ax = std::fabs(n.x), ay = std::fabs(n.y), az = std::fabs(n.z);
+    w = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
+    u = w == 0 ? 1 : 0;
+    v = w == 2 ? 1 : 2;
+    const double off_b = std::fabs(dot(n, t.b - t.a)), off_c = std::fabs(dot(n, t.c - t.a));  // of a needle's plane
+    const double thickness = slack + (off_b > off_c ? off_b : off_c);
+    reach = (0.5 * (std::fabs(n[u]) + std::fabs(n[v])) + thickness) / std::fabs(n[w]);
+  }
+
+  /// Where the triangle's plane passes over the middle of a column.
+  NACRE_HD_INLINE double plane(double middle_u, int iv) const {
+    return t.a[w] - (n[u] * (middle_u - t.a[u]) + n[v] * (iv + 0.5 - t.a[v])) / n[w];
+  }
+
+  /// The columns of a row, those left out whose cells near the plane lie outside. False if there are none.
+  NACRE_HD bool row(int iv, int& from, int& to) const {
+    double low, high;
+    extent_in_slab(t, u, v, iv - slack, iv + 1 + slack, low, high);
+    low -= slack + 1e-7;
+    high += slack + 1e-7;
+    const double slope = -n[u] / n[w];
+    if (std::fabs(slope) * dims[u] > 1) {
+      const double base = plane(0, iv), a = (-reach - base) / slope, b = (dims[w] + reach - base) / slope;
+      low = std::fmax(low, (a < b ? a : b) - 1.5);
+      high = std::fmin(high, (a < b ? b : a) + 1.5);
+    }
+    if (!(low <= high && low < dims[u] && high >= 0)) return false;
+    from = clamp_cell(low, dims[u]);
+    to = clamp_cell(high, dims[u]);
+    return true;
+  }
+};
 }  // namespace detail
+
+/// About how many columns of cells lie under a triangle: `for_cells_near` visits no fewer cells.
+NACRE_HD inline std::uint64_t columns_under(const Corners& t, Int3 dims) {
+  const detail::ColumnWalk walk(t, 0.0, dims);
+  if (walk.empty) return 0;
+  std::uint64_t columns = 0;
+  const int stride = 1 + (walk.last[walk.v] - walk.first[walk.v]) / 1024;  // some rows stand for all of many
+  int from = 0, to = 0;
+  for (int iv = walk.first[walk.v]; iv <= walk.last[walk.v]; iv += stride)
+    if (walk.row(iv, from, to)) columns += std::uint64_t(stride) * std::uint64_t(to - from + 1);
+  return columns;
+}
 
 /// Calls visit(Int3) for every cell (unit cubes, 0..dims-1 per axis) that comes within `margin` of the triangle. With
 /// margin 0 exactly those that the triangle touches (closed cells, with a slack of 1e-7); else those whose bounding
-/// sphere comes that near, which are all that do and some more. Walks the columns along the normal's largest axis, so
-/// that a triangle thousands of cells wide costs its area, not its bounding box.
+/// sphere comes that near, which are all that do and some more. Walks the columns along the normal's largest axis that lie
+/// under the triangle, so that one thousands of cells wide costs its area, not its bounding box. A triangle whose
+/// coordinates are no numbers is near nothing.
 template <class Visit>
 NACRE_HD void for_cells_near(const Corners& t, double margin, Int3 dims, Visit&& visit) {
-  const Vec3d low = min(t.a, min(t.b, t.c)), high = max(t.a, max(t.b, t.c));
-  const Vec3d n = detail::plane_normal(t);
-  const double slack = margin + 1e-7;
-  Int3 first, last;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (low[axis] - slack >= dims[axis] || high[axis] + slack < 0) return;
-    first[axis] = clamp_cell(low[axis] - slack, dims[axis]);
-    last[axis] = clamp_cell(high[axis] + slack, dims[axis]);
-  }
-  const double ax = std::fabs(n.x), ay = std::fabs(n.y), az = std::fabs(n.z);
-  const int w = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
-  const int u = w == 0 ? 1 : 0, v = w == 2 ? 1 : 2;
-  const double off_b = std::fabs(dot(n, t.b - t.a)), off_c = std::fabs(dot(n, t.c - t.a));  // of a needle's plane
-  const double thickness = slack + (off_b > off_c ? off_b : off_c);
-  const double reach = (0.5 * (std::fabs(n[u]) + std::fabs(n[v])) + thickness) / std::fabs(n[w]);
+  const detail::ColumnWalk walk(t, margin, dims);
+  if (walk.empty) return;
+  const int u = walk.u, v = walk.v, w = walk.w;
   const double sphere = margin + 0.8660254037844387;  // half the diagonal of a cell
 
-  for (int iv = first[v]; iv <= last[v]; ++iv)
-    for (int iu = first[u]; iu <= last[u]; ++iu) {
-      int from = first[w], to = last[w];
-      const double plane = t.a[w] - (n[u] * (iu + 0.5 - t.a[u]) + n[v] * (iv + 0.5 - t.a[v])) / n[w];
+  for (int iv = walk.first[v]; iv <= walk.last[v]; ++iv) {
+    int iu_first = 0, iu_last = -1;
+    if (!walk.row(iv, iu_first, iu_last)) continue;
+    for (int iu = iu_first; iu <= iu_last; ++iu) {
+      int from = walk.first[w], to = walk.last[w];
+      const double plane = walk.plane(iu + 0.5, iv), reach = walk.reach;
       if (plane - reach >= to + 1 || plane + reach < from) continue;
       from = from > plane - reach ? from : int(std::floor(plane - reach));
       to = to < plane + reach ? to : int(std::floor(plane + reach));
@@ -74,6 +152,7 @@ NACRE_HD void for_cells_near(const Corners& t, double margin, Int3 dims, Visit&&
         if (near) visit(cell);
       }
     }
+  }
 }
 
 }  // namespace nacre

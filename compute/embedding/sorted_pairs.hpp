@@ -10,25 +10,20 @@ namespace nacre {
 
 namespace detail {
 
+/// Counts the places of an item where `keys` is null, else writes them: one kernel for both, because a compiler may round
+/// two instantiations of the same geometry differently.
 template <class Enumerate>
-struct CountKeys {
+struct EnumerateKeys {
   Enumerate enumerate;
-  std::uint64_t* count;
-  NACRE_HD void operator()(std::int64_t i) const {
-    std::uint64_t n = 0;
-    enumerate(i, [&](std::uint32_t) { ++n; });
-    count[i] = n;
-  }
-};
-
-template <class Enumerate>
-struct WriteKeys {
-  Enumerate enumerate;
-  const std::uint64_t* start;
+  std::uint64_t* count;  // later: where the item's keys begin
   std::uint64_t* keys;
   NACRE_HD void operator()(std::int64_t i) const {
-    std::uint64_t* to = keys + start[i];
-    enumerate(i, [&](std::uint32_t place) { *to++ = std::uint64_t(place) << 32 | std::uint64_t(i); });
+    std::uint64_t at = keys ? count[i] : 0;
+    enumerate(i, [&](std::uint64_t place) {
+      if (keys) keys[at] = place << 32 | std::uint64_t(i);
+      ++at;
+    });
+    if (!keys) count[i] = at;
   }
 };
 
@@ -38,18 +33,43 @@ struct HeadFlag {
   NACRE_HD void operator()(std::int64_t i) const { head[i] = i == 0 || keys[i] >> 32 != keys[i - 1] >> 32 ? 1 : 0; }
 };
 
+/// First position whose key's place is at least i: the lists of all places as offsets.
+template <class Offset>
+struct ListStart {
+  std::uint64_t pairs;
+  const std::uint64_t* keys;
+  Offset* start;
+  NACRE_HD void operator()(std::int64_t place) const {
+    std::uint64_t low = 0, high = pairs;
+    while (low < high) {
+      const std::uint64_t middle = (low + high) / 2;
+      if (keys[middle] >> 32 < std::uint64_t(place))
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    start[place] = Offset(low);
+  }
+};
+
+struct LowHalf {
+  const std::uint64_t* keys;
+  std::uint32_t* value;
+  NACRE_HD void operator()(std::int64_t i) const { value[i] = std::uint32_t(keys[i]); }
+};
+
 }  // namespace detail
 
-/// `enumerate(i, visit)` calls visit(place) for every place of item i (deterministically: it runs twice). Returns all
+/// `enumerate(i, visit)` calls visit(place) for every 32-bit place of item i (it runs twice). Returns all
 /// (place, item) pairs in ascending order, counted in 64 bits, in temporary memory of the caller's scope.
 template <class Backend, class Enumerate>
 Array<std::uint64_t> sorted_pairs(Executor<Backend>& exec, std::int64_t items, const Enumerate& enumerate) {
   Arena& arena = exec.arena();
   Array<std::uint64_t> start = arena.temporary<std::uint64_t>(items);
-  exec.for_each(items, detail::CountKeys<Enumerate>{enumerate, start.data()});
+  exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, start.data(), nullptr});
   const std::uint64_t total = exec.exclusive_scan(start.data(), start.data(), items);
   Array<std::uint64_t> keys = arena.temporary<std::uint64_t>(total);
-  exec.for_each(items, detail::WriteKeys<Enumerate>{enumerate, start.data(), keys.data()});
+  exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, start.data(), keys.data()});
   exec.sort(keys.data(), total);
   return keys;
 }

@@ -11,6 +11,7 @@ namespace nacre {
 namespace {
 
 constexpr int max_bricks = 1024;  // per axis: 30 bits of Morton code
+constexpr int max_octree_resolution = 1 << 20;
 
 struct Bounds {
   Vec3d lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
@@ -89,14 +90,79 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
          surface * (4 + 16 + 4 + 24 + 8 * parameters.ttl + 4 * 5 + 1) + pairs * 24 + triangles * 120 + 64e6;
 }
 
-void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available) {
-  const double needed = estimate_flow_bytes(mesh, parameters);
+int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain) {
+  if (mesh.triangles.empty()) throw Error("no triangles", "", "give a surface");
+  const Bounds b = bounds_of(mesh);
+  const double longest = largest(b.upper - b.lower);
+  if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
+  const int n = parameters.resolution;
+  if (n > max_octree_resolution)
+    throw Error("--resolution " + std::to_string(n) + " is too fine", "at most 2^20 cells per axis",
+                "use --resolution " + std::to_string(max_octree_resolution) + " or less");
+  domain.radius = parameters.radius > 0 ? parameters.radius : octree_radius;
+  if (domain.radius < 1) throw Error("--radius is too small for an octree", "", "use 1 or more, or 0");
+  domain.margin = int(std::ceil(domain.radius)) + 1;
+  const int inner = n - 2 * domain.margin - 1;
+  if (inner < 1)
+    throw Error("--resolution " + std::to_string(n) + " is too coarse", "the band fills it",
+                "use --resolution " + std::to_string(2 * domain.margin + 16) + " or more");
+  domain.cell_size = longest / inner;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cells = (b.upper[axis] - b.lower[axis]) / domain.cell_size;
+    domain.extent[axis] = std::max(1, int(std::ceil(cells - 1e-9)));
+    // In the middle of the cube, but off the cell faces: an axis-aligned wall on a face would touch two layers of cells.
+    const double corner = std::floor(0.5 * (n - cells)) + 0.37;
+    domain.origin[axis] = b.lower[axis] - corner * domain.cell_size;
+  }
+  int levels = 0;
+  while ((8 << levels) < n) ++levels;
+  return levels;
+}
+
+double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& parameters) {
+  const Bounds b = bounds_of(mesh);
+  const double h = std::max(largest(b.upper - b.lower), 1e-300) / parameters.resolution;
+  const double radius = parameters.radius > 0 ? parameters.radius : octree_radius;
+  const bool brick = parameters.octree == "brick";
+  double cells = 0, surface = 0, edges = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d ab = mesh.points[t.b] - mesh.points[t.a], ac = mesh.points[t.c] - mesh.points[t.a];
+    const double area = 0.5 * length(cross(ab, ac)) / (h * h);
+    cells += area * 2 * radius;
+    surface += area * 1.5;
+    edges += (length(ab) + length(ac)) / h;
+  }
+  cells += 4.2 * radius * radius * radius;  // around a speck
+  const double triangles = double(mesh.triangles.size());
+  const double ttl = parameters.ttl;
+  const double bricks = std::min(surface / 40 + 8, cells / 8 + 8);
+  const double lists = (edges / 8 + triangles * 2 + bricks * 2) * 4;
+  const double seeds = brick ? surface : cells;
+  const double structure =
+      brick ? bricks * 340 + lists * 4 : cells * (8 + 5 + (parameters.neighbour_index ? 24 : 0) + 24);
+  return cells * (12 + 4 * (ttl + 1)) + seeds * (8 * ttl + 16) + structure + triangles * 150 + 256e6;
+}
+
+namespace {
+/// Throws Error with the largest resolution that fits where `estimate` says that the memory will not do.
+template <class Estimate>
+void require(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available, const Estimate& estimate) {
+  const double needed = estimate(mesh, parameters);
   if (needed <= double(available)) return;
   FlowParameters smaller = parameters;
-  while (smaller.resolution > 16 && estimate_flow_bytes(mesh, smaller) > double(available))
+  while (smaller.resolution > 16 && estimate(mesh, smaller) > double(available))
     smaller.resolution = smaller.resolution * 15 / 16;
   throw Error("--resolution " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
               gibibytes(double(available)) + " are free", "use --resolution " + std::to_string(smaller.resolution));
+}
+}  // namespace
+
+void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available) {
+  require(mesh, parameters, available, estimate_flow_bytes);
+}
+
+void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available) {
+  require(mesh, parameters, available, estimate_octree_bytes);
 }
 
 }  // namespace nacre

@@ -25,6 +25,16 @@ inline constexpr double stencil_radius = 4.47;
 /// Throws Error where the resolution is out of the key range.
 FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters);
 
+/// Radius of an octree's band: a cell that a linear interpolation on the surface asks lies at most sqrt 3 off it, and a
+/// path may drift by half a cell before it is noticed.
+inline constexpr double octree_radius = 2.24;
+
+/// The cube of `resolution` cells per axis around the surface, which leaves room for the band on all sides. Returns the
+/// levels of the octree that covers it (of bricks of 8^3 cells). Throws Error where the resolution is out of the key
+/// range.
+int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain);
+void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available);
+
 /// Throws Error, naming the largest resolution that fits, where the estimate is over `available` bytes.
 void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available);
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "compute/device/device.hpp"
@@ -19,10 +20,13 @@ namespace nacre {
 
 /// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp).
 struct FlowParameters {
-  int resolution = 1024;   ///< texture cells along the longest side
-  int refine = 4;          ///< texture cells per closest-point cell and axis (R)
-  int subcells = 4;        ///< closest-point cells per coarse cell and axis
-  double radius = 0;       ///< band around the surface, in closest-point cells; 0: what the stencils need
+  std::string method = "grid";   ///< embedding that the flow runs on: grid, octree
+  std::string octree = "brick";  ///< brick: two levels, by bit masks; source: a tree of cells, as in sec. 6.1
+  bool neighbour_index = false;  ///< of the source's octree (sec. 6.1.4)
+  int resolution = 1024;         ///< texture cells along the longest side; of an octree: cells of its domain per axis
+  int refine = 4;                ///< texture cells per closest-point cell and axis (R)
+  int subcells = 4;              ///< closest-point cells per coarse cell and axis
+  double radius = 0;       ///< band around the surface, in closest-point cells; 0: the least that the stencils need
   int ttl = 4;             ///< steps that a particle lives
   double step_cells = 8;   ///< texture cells that the 98th percentile speed moves in a step
   double speed_power = 1;  ///< displacement ~ speed^power: 1 true speeds, 0 all alike
@@ -51,6 +55,7 @@ struct FlowVectors {
 
 /// What the embedding became, for the report.
 struct EmbeddingInfo {
+  std::string kind = "grid";        ///< grid, brick octree, source octree
   Int3 dimensions{};                ///< texture cells of the surface's bounding box
   Int3 closest_point_dimensions{};  ///< the same in closest-point cells
   std::uint64_t cells = 0;          ///< texture cells stored
@@ -67,6 +72,19 @@ struct FlowValues {
   std::vector<float> value;
   std::vector<Vec3f> velocity, normal;  ///< tangential vector at the time of the frame; unit normal
   std::vector<Vec3d> closest_point;
+
+  FlowValues() = default;
+  explicit FlowValues(std::size_t n) : centre(n), value(n), velocity(n), normal(n), closest_point(n) {}
+};
+
+/// The look-up arrays of the closest-point grid on the host, for a renderer that looks the shown values up by itself
+/// (RefinedGridView says how).
+struct FlowLookup {
+  Int3 bricks{};
+  int subcells = 0, refine = 0;
+  Vec3d origin{};
+  double cell_size = 1;  ///< of a closest-point cell, world units
+  std::vector<std::uint32_t> brick_index, block, texel;
 };
 
 struct RenderOptions {
@@ -94,7 +112,13 @@ class FlowPipeline {
   virtual void start(const FlowVectors& vectors) = 0;  ///< noise and warm-up
   virtual void step() = 0;                             ///< stages velocity, advect, deposit, filter
   virtual double time() const = 0;                     ///< of the frame that is shown
-  virtual std::vector<float> shown() const = 0;        ///< per surface cell, 0..1, contrast stretched
+  virtual std::vector<float> shown()
+      const = 0;  ///< per surface cell (source octree: per cell), 0..1, contrast stretched
+  /// From the next step on, shown values go to `memory` of the device: one float per value of `shown`; null: to the
+  /// pipeline's own array, as after `start`.
+  virtual void show_into(float* memory) = 0;
+  /// Throws Error where the embedding is no grid.
+  virtual FlowLookup lookup() const = 0;
   virtual FlowValues values() const = 0;
   /// RGBA bytes, row 0 at the top (stage render).
   virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
@@ -109,7 +133,8 @@ class FlowPipeline {
 
 std::unique_ptr<FlowPipeline> make_flow_pipeline(Device& device);
 
-/// Bytes that `embed` and `start` will need, from the area of the surface: within some tens of percent.
+/// Bytes that `embed` and `start` will need (on the grid, on an octree), from the area of the surface: within some tens of percent.
 double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
+double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
 
 }  // namespace nacre

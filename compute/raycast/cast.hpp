@@ -1,54 +1,26 @@
-// Nacre: rays through the two-level grid: where one meets the surface, and what it looks like there.
+// Nacre: where a ray meets the surface of the two-level grid.
 #pragma once
 
 #include <cmath>
 
-#include "compute/embedding/refined_grid.hpp"
+#include "compute/raycast/ray.hpp"
 
 namespace nacre {
-
-/// A ray in cells of the closest-point grid; `direction` need not be a unit vector.
-struct Ray {
-  Vec3f origin, direction;
-};
-
-struct Hit {
-  float t = 1e30f;
-  std::uint32_t triangle = none;
-  Vec3f weights{};  ///< barycentric coordinates
-};
-
-/// Ray against triangle, both sides (Moeller-Trumbore). Keeps the nearer hit in `hit`.
-NACRE_HD inline void intersect(const MeshView& mesh, std::uint32_t t, const Ray& ray, Hit& hit) {
-  const Corners c = mesh.corners(t);
-  const Vec3f a(c.a - Vec3d(ray.origin)), ab(c.b - c.a), ac(c.c - c.a);
-  const Vec3f p = cross(ray.direction, ac);
-  const float determinant = dot(ab, p);
-  if (determinant == 0) return;
-  const float inverse = 1 / determinant, slack = -1e-5f;
-  const float v = -dot(a, p) * inverse;
-  if (v < slack || v > 1 - slack) return;
-  const Vec3f q = cross(-a, ab);
-  const float w = dot(ray.direction, q) * inverse;
-  if (w < slack || v + w > 1 - slack) return;
-  const float distance = dot(ac, q) * inverse;
-  if (distance <= 0 || distance >= hit.t) return;
-  hit = {distance, t, {1 - v - w, v, w}};
-}
 
 /// First hit of the ray with the surface. Empty bricks are crossed in one step; inside a brick the stored distance says
 /// how far the ray may go without meeting anything; in a cell that the surface passes through its triangles are tested.
 NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh, const Ray& ray, Hit& hit) {
   const Int3 dims = grid.dims();
-  const Vec3f inverse{1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
-  const float speed = length(ray.direction);
+  const Vec3f origin(ray.origin), direction(ray.direction);  // the grid is small: single precision finds the cells
+  const Vec3f inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
+  const float speed = length(direction);
   float t = 0, end = 1e30f;
   for (int axis = 0; axis < 3; ++axis) {
-    if (ray.direction[axis] == 0) {
-      if (ray.origin[axis] < 0 || ray.origin[axis] >= float(dims[axis])) return false;
+    if (direction[axis] == 0) {
+      if (origin[axis] < 0 || origin[axis] >= float(dims[axis])) return false;
       continue;
     }
-    float enter = -ray.origin[axis] * inverse[axis], leave = (float(dims[axis]) - ray.origin[axis]) * inverse[axis];
+    float enter = -origin[axis] * inverse[axis], leave = (float(dims[axis]) - origin[axis]) * inverse[axis];
     if (enter > leave) {
       const float swap = enter;
       enter = leave;
@@ -63,9 +35,9 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
   auto leave_box = [&](const Vec3f& low, float size) {
     float out = 1e30f;
     for (int axis = 0; axis < 3; ++axis) {
-      if (ray.direction[axis] == 0) continue;
-      const float wall = low[axis] + (ray.direction[axis] > 0 ? size : 0.0f);
-      const float at = (wall - ray.origin[axis]) * inverse[axis];
+      if (direction[axis] == 0) continue;
+      const float wall = low[axis] + (direction[axis] > 0 ? size : 0.0f);
+      const float at = (wall - origin[axis]) * inverse[axis];
       // Rounded onto the wall already: it is behind after 1e-4 cells along this axis, which is far for a ray that runs
       // along the wall; such a ray would stand still otherwise.
       const float later = at > t ? at : t + 1e-4f * std::fabs(inverse[axis]);
@@ -74,7 +46,7 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     return out;
   };
   while (t < end) {
-    const Int3 cell = floor_cell(ray.origin + ray.direction * t);
+    const Int3 cell = floor_cell(origin + direction * t);
     if (!grid.inside(cell)) return false;
     const std::uint32_t at = grid.address(cell);
     if (at == none) {

@@ -1,7 +1,10 @@
 // Nacre: one pixel of a picture of the flow: value times colour map, with light (design card, "picture").
 #pragma once
 
+#include "compute/embedding/refined_grid.hpp"
+#include "compute/flow/sample_band.hpp"
 #include "compute/raycast/cast.hpp"
+#include "compute/raycast/octree_cast.hpp"
 
 namespace nacre {
 
@@ -11,21 +14,20 @@ struct GridCamera {
   double distance = 1;            ///< from the eye to the target
   bool orthographic = false;
 
-  /// The ray through (x, y), begun at most `reach` cells in front of the target, so that single precision will do.
+  /// The ray through (x, y), begun at most `reach` cells in front of the target, so that single precision will do where
+  /// the grid is small.
   NACRE_HD Ray ray(double x, double y, double reach) const {
     const Vec3d across = right * x + up * y;
     const Vec3d direction = orthographic ? forward : normalized(forward * distance + across);
     const Vec3d origin = orthographic ? eye + across : eye;
     const double skip = distance - reach > 0 ? distance - reach : 0;
-    return {Vec3f(origin + direction * skip), Vec3f(direction)};
+    return {origin + direction * skip, direction};
   }
 };
 
-/// What is drawn and how.
-struct Scene {
-  ClosestPointGridView grid;
-  RefinedGridView texture;
-  MeshView mesh;
+/// What is drawn and how, whatever the rays go through.
+struct Look {
+  MeshView mesh{};
   const float* shown = nullptr;     ///< per surface cell, 0..1; null: plain surface
   const float* scalar = nullptr;    ///< per point of the mesh, to colour by; null: gray
   const Float4* colours = nullptr;  ///< 256 entries, linear light
@@ -36,37 +38,64 @@ struct Scene {
   float background_alpha = 1;
 };
 
+// What rays go through. A target gives find(mesh, ray, hit), which tells whether the ray meets the surface, and
+// texture(shown, ray, hit), the shown value there.
+
+/// The two-level grid, and its refined grid.
+struct GridTarget {
+  ClosestPointGridView grid;
+  RefinedGridView texels;
+
+  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const { return cast(grid, mesh, ray, hit); }
+  NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit) const {
+    return sample(texels, shown, Vec3f(ray.at(hit.t)) * float(texels.refine), 0.5f);
+  }
+};
+
+/// A band: either octree.
+template <class View>
+struct BandTarget {
+  View view;
+
+  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const { return cast(view, mesh, ray, hit); }
+  NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit) const {
+    return sample_band(view, shown, hit.point(ray), 0.5f);
+  }
+};
+
+template <class Target>
+struct Scene : Look {
+  Target target;
+};
+
 NACRE_HD inline Vec3f to_linear(const Vec3f& c) { return {c.x * c.x, c.y * c.y, c.z * c.z}; }  // gamma 2, near sRGB
 
-/// Colour of a point of the surface, linear light.
-NACRE_HD inline Vec3f shade(const Scene& scene, const Ray& ray, const Hit& hit) {
+/// Colour of a point of the surface, linear light. `value` is the texture's, where there is one.
+NACRE_HD inline Vec3f shade(const Look& look, const Ray& ray, const Hit& hit, float value) {
   Vec3f base(0.62f, 0.62f, 0.62f);
-  if (scene.scalar) {
-    const Triangle t = scene.mesh.triangles[hit.triangle];
+  if (look.scalar) {
+    const Triangle t = look.mesh.triangles[hit.triangle];
     const float s =
-        scene.scalar[t.a] * hit.weights.x + scene.scalar[t.b] * hit.weights.y + scene.scalar[t.c] * hit.weights.z;
-    const float x = (s - scene.low) / (scene.high - scene.low);
+        look.scalar[t.a] * hit.weights.x + look.scalar[t.b] * hit.weights.y + look.scalar[t.c] * hit.weights.z;
+    const float x = (s - look.low) / (look.high - look.low);
     const float at = (x > 0 ? x < 1 ? x : 1 : 0) * 255.0f;
     const int k = at < 254 ? int(at) : 254;
-    const Float4 a = scene.colours[k], b = scene.colours[k + 1];
+    const Float4 a = look.colours[k], b = look.colours[k + 1];
     const float f = at - float(k);
     base = {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.z + (b.z - a.z) * f};
   }
-  const Vec3f n = scene.mesh.normal(hit.triangle, hit.weights);
-  const float facing = dot(n, ray.direction) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
-  const float diffuse = dot(n, scene.light) * facing;
-  float brightness = scene.ambient + (1 - scene.ambient) * (diffuse > 0 ? diffuse : 0);
-  if (scene.shown) {
-    const Vec3f p = (ray.origin + ray.direction * hit.t) * float(scene.texture.refine);
-    const float value = sample(scene.texture, scene.shown, p, 0.5f);
-    brightness *= 0.25f + 1.15f * value;
-  }
+  const Vec3f n = look.mesh.normal(hit.triangle, hit.weights);
+  const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
+  const float diffuse = dot(n, look.light) * facing;
+  float brightness = look.ambient + (1 - look.ambient) * (diffuse > 0 ? diffuse : 0);
+  if (look.shown) brightness *= 0.25f + 1.15f * value;
   return base * brightness;
 }
 
 /// Renders pixel i of width x height: `samples`^2 rays, averaged in linear light; RGBA, 8 bits a channel.
+template <class Target>
 struct RenderPixel {
-  Scene scene;
+  Scene<Target> scene;
   GridCamera camera;
   int width, height, samples;
   double reach;  ///< radius of a ball around the target that holds the surface
@@ -74,6 +103,7 @@ struct RenderPixel {
 
   NACRE_HD void operator()(std::int64_t i) const {
     const int px = int(i % width), py = int(i / width);
+    const Look& look = scene;
     Vec3f sum{};
     float alpha = 0;
     for (int k = 0; k < samples * samples; ++k) {
@@ -81,9 +111,14 @@ struct RenderPixel {
       const double y = 1 - (py + (k / samples + 0.5) / samples) / height * 2;
       const Ray ray = camera.ray(x, y, reach);
       Hit hit;
-      const bool seen = cast(scene.grid, scene.mesh, ray, hit);
-      sum += seen ? shade(scene, ray, hit) : scene.background;
-      alpha += seen ? 1.0f : scene.background_alpha;
+      if (!scene.target.find(look.mesh, ray, hit)) {
+        sum += look.background;
+        alpha += look.background_alpha;
+        continue;
+      }
+      const float value = look.shown ? scene.target.texture(look.shown, ray, hit) : 0;
+      sum += shade(look, ray, hit, value);
+      alpha += 1;
     }
     const float n = 1.0f / float(samples * samples);
     pixels[i] = channel(std::sqrt(sum.x * n)) | channel(std::sqrt(sum.y * n)) << 8 |

@@ -38,7 +38,7 @@ std::string range_of(const Knob& knob) {
   if (!knob.choices.empty()) return fmt::format("{}", fmt::join(knob.choices, "|"));
   if (std::holds_alternative<bool*>(knob.value)) return "true|false";
   if (std::holds_alternative<std::string*>(knob.value)) return "text";
-  return fmt::format("{:g}..{:g}", knob.min, knob.max);
+  return fmt::format("{:.10g}..{:.10g}", knob.min, knob.max);
 }
 
 [[noreturn]] void out_of_range(const Knob& knob, const std::string& text) {

@@ -8,7 +8,8 @@
 
 namespace nacre {
 
-/// Points on an analytic surface with the exact outward unit normals there, and triangles wound outward.
+/// Points on an analytic surface with the exact unit normals there, and triangles wound by them; outward where the
+/// surface is closed.
 struct SampleShape {
   std::vector<Vec3d> points;
   std::vector<Vec3d> normals;
@@ -33,6 +34,7 @@ SampleDefinition torus_sample();
 SampleDefinition train_sample();
 SampleDefinition aircraft_sample();
 SampleDefinition cylinder_sample();
+SampleDefinition delta_wing_sample();
 
 /// The definition of that name; throws Error if there is none.
 const SampleDefinition& sample_definition(const std::string& name);

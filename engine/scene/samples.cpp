@@ -18,8 +18,9 @@ namespace {
 constexpr int kMaxDetail = 1024;  // millions of triangles: more would only fill memory
 
 const std::vector<SampleDefinition>& definitions() {
-  static const std::vector<SampleDefinition> all{sphere_sample(), sphere_rotation_sample(), torus_sample(),
-                                                 train_sample(),  aircraft_sample(),        cylinder_sample()};
+  static const std::vector<SampleDefinition> all{sphere_sample(),    sphere_rotation_sample(), torus_sample(),
+                                                 train_sample(),     aircraft_sample(),        cylinder_sample(),
+                                                 delta_wing_sample()};
   return all;
 }
 

@@ -25,7 +25,6 @@ struct Settings {
   MaterialWords materials;
   double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
-  std::string method = "grid";
   std::string vectors;  ///< array name or @field; empty: chosen
   double crease = 40;   ///< degrees
   std::string color = "speed";

@@ -160,8 +160,8 @@ TEST_F(BadInput, ResolutionsBeyondTheGrid) {
   const auto at = [&, file = save("s.vtp", square())](const std::string& resolution) {
     return nacre({"flow", file, "--image", path("a.png"), "--refine", "1", "--resolution", resolution});
   };
-  expect_clear_failure(at("999999"), 2, {"16..16384"});
-  expect_clear_failure(at("8"), 2, {"16..16384"});
+  expect_clear_failure(at("9999999"), 2, {"16..1048576"});
+  expect_clear_failure(at("8"), 2, {"16..1048576"});
   expect_clear_failure(at("16384"), 1, {"too fine", "use --resolution"});
 }
 

@@ -47,7 +47,8 @@ TEST_P(EverySample, Runs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, EverySample,
-                         ::testing::Values("sphere", "sphere-rotation", "torus", "train", "aircraft", "cylinder"));
+                         ::testing::Values("sphere", "sphere-rotation", "torus", "train", "aircraft", "cylinder",
+                                           "delta-wing"));
 
 TEST_F(Input, MeshesWithoutVectorsTakeAnalyticOnes) {
   Surface surface = octahedron(1);

@@ -92,7 +92,7 @@ TEST(Words, ResultsGoToStdoutTheRestToStderr) {
 TEST(Words, SampleListsAndWritesThem) {
   const Outcome list = nacre({"sample"});
   EXPECT_EQ(list.status, 0);
-  for (const char* name : {"sphere", "torus", "train", "aircraft", "cylinder"})
+  for (const char* name : {"sphere", "torus", "train", "aircraft", "cylinder", "delta-wing"})
     EXPECT_EQ(lines_with(list.out, std::string(name) + " "), 1) << name;
 
   const TemporaryFolder folder;

@@ -10,16 +10,25 @@
 namespace nacre {
 namespace {
 
-FlowParameters at_resolution(int resolution, int ttl = 4) {
+FlowParameters parameters_at(int resolution, int ttl, const std::string& embedding) {
   FlowParameters parameters;
+  parameters.method = embedding == "grid" ? "grid" : "octree";
+  if (embedding != "grid") parameters.octree = embedding;
   parameters.resolution = resolution;
   parameters.ttl = ttl;
   return parameters;
 }
 
+/// The same must hold on every embedding.
+class FlowEvidence : public testing::TestWithParam<const char*> {
+ protected:
+  FlowParameters at_resolution(int resolution, int ttl = 4) const { return parameters_at(resolution, ttl, GetParam()); }
+};
+
 /// Median angle between texture and flow over a sample, leaving out points at rest.
-double median_alignment(const std::string& sample, const std::function<Vec3d(Vec3d)>& onto_surface) {
-  FlowRun run(sample, at_resolution(384));
+double median_alignment(const std::string& sample, const FlowParameters& parameters,
+                        const std::function<Vec3d(Vec3d)>& onto_surface) {
+  FlowRun run(sample, parameters);
   run.steps(6);
   const FlowValues values = run.pipeline->values();
   std::vector<Vec3d> points;
@@ -31,16 +40,17 @@ double median_alignment(const std::string& sample, const std::function<Vec3d(Vec
     flow.push_back(values.velocity[i]);
   }
   const double error = median(alignment_errors(*run.pipeline, points, normals, flow, onto_surface));
-  std::printf("alignment on %s: median %.1f degrees\n", sample.c_str(), error);
+  std::printf("alignment on %s, %s: median %.1f degrees\n", sample.c_str(), run.pipeline->embedding().kind.c_str(),
+              error);
   return error;
 }
 
-TEST(FlowEvidence, StreaksAlignWithTheFlowOnASphere) {
-  EXPECT_LE(median_alignment("sphere", [](Vec3d x) { return normalized(x); }), 10);
+TEST_P(FlowEvidence, StreaksAlignWithTheFlowOnASphere) {
+  EXPECT_LE(median_alignment("sphere", at_resolution(384), [](Vec3d x) { return normalized(x); }), 10);
 }
 
-TEST(FlowEvidence, StreaksAlignWithTheFlowOnATorus) {
-  EXPECT_LE(median_alignment("torus",
+TEST_P(FlowEvidence, StreaksAlignWithTheFlowOnATorus) {
+  EXPECT_LE(median_alignment("torus", at_resolution(384),
                              [](Vec3d x) {
                                const Vec3d ring = normalized(Vec3d(x.x, x.y, 0));
                                return ring + normalized(x - ring) * 0.4;
@@ -58,7 +68,7 @@ std::vector<Vec3d> spiral_on_sphere(int n, double angle) {
 }
 
 /// Frame k must look most like frame k + 1 when that is turned back by what the flow turns in a step.
-TEST(FlowEvidence, TextureMovesWithTheFlow) {
+TEST_P(FlowEvidence, TextureMovesWithTheFlow) {
   for (const int ttl : {2, 4}) {
     FlowRun run("sphere-rotation", at_resolution(256, ttl));
     run.steps(2 * ttl);
@@ -79,7 +89,7 @@ TEST(FlowEvidence, TextureMovesWithTheFlow) {
 }
 
 /// The texture is on the surface, not on the screen: seen from a camera turned by half a degree it is the same.
-TEST(FlowEvidence, TextureStaysWhenTheCameraMoves) {
+TEST_P(FlowEvidence, TextureStaysWhenTheCameraMoves) {
   FlowRun run("sphere", at_resolution(384));
   run.steps(4);
   RenderOptions options;
@@ -120,22 +130,22 @@ TEST(FlowEvidence, TextureStaysWhenTheCameraMoves) {
   EXPECT_GE(c, 0.95);
 }
 
-std::vector<float> run_bytes(int threads, std::uint32_t seed) {
-  FlowParameters parameters = at_resolution(128, 3);
+std::vector<float> run_bytes(int threads, FlowParameters parameters, std::uint32_t seed) {
   parameters.seed = seed;
   FlowRun run("torus", parameters, threads, false, 60);
   run.steps(4);
   return run.pipeline->shown();
 }
 
-TEST(FlowEvidence, OneSeedGivesOneResultOnAnyNumberOfThreads) {
-  const std::vector<float> one = run_bytes(1, 7), two = run_bytes(2, 7), other = run_bytes(2, 8);
+TEST_P(FlowEvidence, OneSeedGivesOneResultOnAnyNumberOfThreads) {
+  const std::vector<float> one = run_bytes(1, at_resolution(128, 3), 7), two = run_bytes(2, at_resolution(128, 3), 7);
+  const std::vector<float> other = run_bytes(2, at_resolution(128, 3), 8);
   EXPECT_EQ(one, two);
   EXPECT_NE(one, other);
 }
 
 /// A flow that stands still on one half: there the texture is gray noise, neither black nor white nor flat.
-TEST(FlowEvidence, StagnantRegionsStayGrayNoise) {
+TEST_P(FlowEvidence, StagnantRegionsStayGrayNoise) {
   FlowRun run("sphere", at_resolution(128));
   const auto flow = run.vectors.get();
   FlowVectors half;
@@ -148,7 +158,7 @@ TEST(FlowEvidence, StagnantRegionsStayGrayNoise) {
   run.pipeline->start(half);
   run.steps(12);
   const FlowValues values = run.pipeline->values();
-  const std::vector<float> shown = run.pipeline->shown();
+  const std::vector<float> shown = run.pipeline->sample_shown(values.closest_point);
   double sum = 0, squares = 0;
   int n = 0, black = 0;
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -165,7 +175,7 @@ TEST(FlowEvidence, StagnantRegionsStayGrayNoise) {
 }
 
 /// Zero vectors everywhere are not an error: noise in, noise out.
-TEST(FlowEvidence, AllZeroVectorsGiveNoise) {
+TEST_P(FlowEvidence, AllZeroVectorsGiveNoise) {
   FlowRun run("torus", at_resolution(64), 0, true, 40);
   FlowVectors still;
   still.at = [](double, std::span<Vec3f> out) { std::fill(out.begin(), out.end(), Vec3f{}); };
@@ -175,10 +185,10 @@ TEST(FlowEvidence, AllZeroVectorsGiveNoise) {
 }
 
 /// The texture grid is the same whatever the closest-point grid below it.
-TEST(FlowEvidence, RefineDoesNotChangeWhereTheSurfaceIs) {
+TEST(FlowGrid, RefineDoesNotChangeWhereTheSurfaceIs) {
   std::map<int, std::uint64_t> cells;
   for (const int refine : {1, 2, 4, 8}) {
-    FlowParameters parameters = at_resolution(128);
+    FlowParameters parameters = parameters_at(128, 4, "grid");
     parameters.refine = refine;
     FlowRun run("torus", parameters, 0, true, 60);
     cells[refine] = run.pipeline->embedding().surface_cells;
@@ -187,6 +197,9 @@ TEST(FlowEvidence, RefineDoesNotChangeWhereTheSurfaceIs) {
   for (const auto& [refine, count] : cells)
     EXPECT_NEAR(double(count), double(cells[4]), 0.02 * double(cells[4])) << refine;
 }
+
+INSTANTIATE_TEST_SUITE_P(On, FlowEvidence, testing::Values("grid", "brick", "source"),
+                         [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
 }  // namespace nacre

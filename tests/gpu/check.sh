@@ -214,6 +214,45 @@ benchmarks() {
   done
 }
 
+# octree_bench BACKEND STEPS RESOLUTION: a line of the octree's table. Bytes: the fewest that a stage must move: embed 12
+# for each cell written; velocity 16 for each cell; advect 16 + 16 ttl and filter 36 for each surface cell.
+octree_bench() {
+  local name="octree-$1-$3" report="$out/octree-$1-$3.json"
+  if (($(left) < 20)); then
+    say "$name left out: out of time"
+  elif ! flow_run "$name" --sample train --method octree --device "$1" --resolution "$3" --ttl 2 --warmup 0 --steps "$2"; then
+    failures+=("$name: $(head -n 1 "$out/$name.log")")
+  else
+    local stage values=(-v backend="$1" -v n="$3" -v copy="$(device_value copy_bytes_per_second)"
+      -v cells="$(report_value "$report" embedding.cells)" -v surface="$(report_value "$report" embedding.surface_cells)"
+      -v step="$(report_value "$report" flow.seconds_per_step.median)"
+      -v memory="$(report_value "$report" memory.device_peak_bytes)")
+    for stage in embed velocity advect filter; do
+      values+=(-v "$stage=$(stage_seconds "$report" "$stage")" -v "${stage}_calls=$(stage_calls "$report" "$stage")")
+    done
+    awk "${values[@]}" '
+      function share(bytes, seconds, calls) {
+        return backend == "cuda" && copy > 0 && seconds > 0 ? sprintf("%.1f%%", 100 * bytes * calls / seconds / copy) : "-"
+      }
+      BEGIN {
+        printf "%-6s %6d %11d %11d %9.3f %9.2f %8.2f %6s %6s %6s %6s\n", backend, n, cells, surface, embed, step * 1e3,
+          memory / 1e9, share(12 * cells, embed, 1), share(16 * cells, velocity, velocity_calls),
+          share(48 * surface, advect, advect_calls), share(36 * surface, filter, filter_calls)
+      }' </dev/null
+  fi
+}
+
+octree_benchmarks() {
+  local resolution
+  echo "octree flow on the train, ttl 2: build in s, step in ms, memory in GB; the last four: the fewest bytes that build,"
+  echo "velocity, advect and filter can move, over their time, as a share of this device's copy rate"
+  printf '%-6s %6s %11s %11s %9s %9s %8s %6s %6s %6s %6s\n' device N cells surface build step memory bld vel adv fil
+  for resolution in 1024 2048 4096 8192; do octree_bench cuda 5 "$resolution"; done
+  for resolution in 1024 2048; do octree_bench cpu 2 "$resolution"; done
+  flow_run octree-largest --sample train --method octree --device cuda --resolution 1048576 || true
+  say "largest N on this device: $(sed -n 's/.*use --resolution \([0-9]*\).*/\1/p' "$out/octree-largest.log")"
+}
+
 # results.json: the device, the runs and what failed; the tests' own numbers are in tests.json.
 write_results() {
   {
@@ -240,6 +279,7 @@ run() {
   mesh_test
   interop_test
   benchmarks
+  octree_benchmarks
   write_results
   local failure
   for failure in ${failures[@]+"${failures[@]}"}; do

@@ -17,11 +17,13 @@ struct Frames {
   std::vector<std::uint8_t> picture;
 };
 
-/// Flow around the axis of a torus `scale` times as large, its speed swinging with time.
-Frames run(Device& device, double scale) {
+/// Flow around the axis of a torus `scale` times as large, its speed swinging with time; `embedding`: grid, brick, source.
+Frames run(Device& device, double scale, const std::string& embedding) {
   const Shape shape = torus(120, 48, scale);
   FlowParameters parameters;
   parameters.resolution = 160;
+  parameters.method = embedding == "grid" ? "grid" : "octree";
+  if (embedding != "grid") parameters.octree = embedding;
   parameters.ttl = 4;
   parameters.steps = 20;
   const auto pipeline = make_flow_pipeline(device);
@@ -71,26 +73,31 @@ void expect_alike(const Frames& a, const Frames& b, const char* what) {
   EXPECT_LE(picture, 1.0);
 }
 
+class FlowAgreement : public testing::TestWithParam<const char*> {};
+
 /// The same surface in another unit differs by rounding alone: what rounding does to a frame bounds what two backends
 /// may differ by, which round differently too.
-TEST(FlowAgreement, RoundingAloneMovesTheTextureLittle) {
+TEST_P(FlowAgreement, RoundingAloneMovesTheTextureLittle) {
   const auto device = make_cpu_device();
-  expect_alike(run(*device, 1), run(*device, 3), "CPU, another unit");
+  expect_alike(run(*device, 1, GetParam()), run(*device, 3, GetParam()), "CPU, another unit");
 }
 
-TEST(FlowAgreement, CudaShowsWhatTheCpuShows) {
+TEST_P(FlowAgreement, CudaShowsWhatTheCpuShows) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const auto cpu = make_cpu_device(), gpu = make_cuda_device(arena_limit);
-  expect_alike(run(*cpu, 1), run(*gpu, 1), "CPU and CUDA");
+  expect_alike(run(*cpu, 1, GetParam()), run(*gpu, 1, GetParam()), "CPU and CUDA");
 }
 
-TEST(FlowAgreement, CudaRepeatsItselfToTheBit) {
+TEST_P(FlowAgreement, CudaRepeatsItselfToTheBit) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const auto gpu = make_cuda_device(arena_limit);
-  const Frames a = run(*gpu, 1), b = run(*gpu, 1);
+  const Frames a = run(*gpu, 1, GetParam()), b = run(*gpu, 1, GetParam());
   EXPECT_EQ(a.last, b.last);
   EXPECT_EQ(a.picture, b.picture);
 }
+
+INSTANTIATE_TEST_SUITE_P(On, FlowAgreement, testing::Values("grid", "brick", "source"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(CudaDevice, TooLittleMemoryIsAnErrorThatNamesAResolution) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";

@@ -78,6 +78,30 @@ void AFullBlockIsAnError(Executor<Backend>& exec) {
 }
 
 template <class Backend>
+void TheLastArrayGrowsAndShrinks(Executor<Backend>& exec) {
+  Arena arena(exec.device(), 4096);
+  const Array<std::uint32_t> other = arena.permanent_copy<std::uint32_t>(std::vector<std::uint32_t>{1, 2, 3});
+  Array<std::uint32_t> array = arena.permanent<std::uint32_t>(0);
+  arena.resize_last(array, 2);
+  array.upload(std::vector<std::uint32_t>{7, 8});
+  arena.resize_last(array, 500);
+  EXPECT_EQ(array.size(), 500u);
+  EXPECT_EQ(arena.free_bytes(), 4096u - 256u - 2048u);
+  EXPECT_EQ(array.download(0, 2), (std::vector<std::uint32_t>{7, 8}));
+  EXPECT_THROW(arena.resize_last(array, 961), Error);
+  EXPECT_THROW(arena.resize_last(array, (~std::size_t(0) >> 2) + 2), Error);  // 4 times this is 4 once it has wrapped
+  EXPECT_EQ(array.size(), 500u);
+  EXPECT_EQ(arena.free_bytes(), 4096u - 256u - 2048u);
+  arena.resize_last(array, 960);
+  EXPECT_EQ(arena.free_bytes(), 0u);
+  arena.resize_last(array, 1);
+  EXPECT_EQ(array.download(), (std::vector<std::uint32_t>{7}));
+  EXPECT_EQ(other.download(), (std::vector<std::uint32_t>{1, 2, 3}));
+  EXPECT_NE(address(arena.permanent<std::uint8_t>(1).data()), address(array.data()));
+  EXPECT_EQ(arena.peak_bytes(), 4096u);
+}
+
+template <class Backend>
 void ArraysComeBackAsTheyWent(Executor<Backend>& exec) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
@@ -98,6 +122,7 @@ void ArraysComeBackAsTheyWent(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(Arena, HeadAndTailNeverOverlap)
 NACRE_DEVICE_TEST(Arena, ScopesGiveBackAndRewindDrops)
 NACRE_DEVICE_TEST(Arena, AFullBlockIsAnError)
+NACRE_DEVICE_TEST(Arena, TheLastArrayGrowsAndShrinks)
 NACRE_DEVICE_TEST(Arena, ArraysComeBackAsTheyWent)
 
 }  // namespace nacre::test

@@ -75,7 +75,7 @@ inline MeshCheck check_mesh(const std::vector<Vec3d>& points, const std::vector<
     check.open_half_edges += !std::binary_search(half_edges.begin(), half_edges.end(), std::pair{to, from});
   std::sort(corners.begin(), corners.end());
   check.pinched_points = count_pinched(corners, points.size());
-  check.euler = long(points.size()) - long(half_edges.size() / 2) + long(triangles.size());
+  check.euler = long(points.size()) - long((half_edges.size() + check.open_half_edges) / 2) + long(triangles.size());
   return check;
 }
 

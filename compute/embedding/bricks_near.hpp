@@ -1,0 +1,46 @@
+// Nacre: which bricks of cells lie near the triangles of a cluster, found without looking at the empty ones.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/embedding/cells_near.hpp"
+#include "compute/embedding/clusters.hpp"
+#include "compute/grid/morton.hpp"
+
+namespace nacre::detail {
+
+/// Calls visit(Morton code) for the bricks that come within `radius` cells of a cluster, and a few more.
+struct BricksNearCluster {
+  MeshView mesh;
+  const std::uint32_t* order;
+  const std::uint32_t* start;
+  const ClusterBound* bound;
+  Int3 bricks;
+  double cells_per_brick, radius;
+
+  template <class Visit>
+  NACRE_HD void operator()(std::int64_t k, Visit&& visit) const {
+    const double scale = 1.0 / cells_per_brick, margin = radius * scale;
+    auto emit = [&](const Int3& brick) { visit(morton(brick)); };
+    if (start[k + 1] - start[k] == 1) {
+      for_cells_near(mesh.corners(order[start[k]]) * scale, margin, bricks, emit);
+      return;
+    }
+    const Vec3d centre = Vec3d(bound[k].centre) * scale;
+    const double reach = bound[k].radius * scale * 1.0001 + margin + 1e-4;
+    Int3 first, last;
+    for (int axis = 0; axis < 3; ++axis) {
+      first[axis] = clamp_cell(centre[axis] - reach, bricks[axis]);
+      last[axis] = clamp_cell(centre[axis] + reach, bricks[axis]);
+    }
+    for (int z = first.z; z <= last.z; ++z)
+      for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+          const Vec3d low{double(x), double(y), double(z)};
+          const Vec3d nearest = max(low, min(low + Vec3d(1.0), centre)) - centre;
+          if (dot(nearest, nearest) <= reach * reach) emit({x, y, z});
+        }
+  }
+};
+
+}  // namespace nacre::detail

@@ -1,0 +1,277 @@
+// Nacre: the brick octree from triangles: bricks found from the triangles, cells brick by brick, the tree bottom-up.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "compute/device/executor.hpp"
+#include "compute/embedding/brick_octree.hpp"
+#include "compute/embedding/bricks_near.hpp"
+#include "compute/embedding/closest_in_brick.hpp"
+#include "compute/embedding/octree_nodes.hpp"
+#include "compute/embedding/place_lists.hpp"
+#include "compute/embedding/sorted_pairs.hpp"
+
+namespace nacre {
+
+/// A brick octree and who owns its arrays.
+struct BrickOctree {
+  int levels = 0;
+  float radius = 0, quantum = 0;
+  std::uint32_t brick_count = 0;
+  CellIndex cells = 0, surface_cells = 0;
+  Array<std::uint64_t> brick_code;
+  Array<OctreeBrick> brick;
+  Array<std::uint32_t> neighbour;
+  OctreeNodes nodes;
+  Array<CellPoint> point;
+  Array<std::uint64_t> list_start;
+  Array<std::uint32_t> list;
+
+  BrickOctreeView view() const {
+    return {levels,
+            radius,
+            quantum,
+            brick_count,
+            cells,
+            surface_cells,
+            brick_code.data(),
+            brick.data(),
+            neighbour.data(),
+            nodes.node.data(),
+            nodes.level_start.data(),
+            point.data(),
+            list_start.data(),
+            list.data()};
+  }
+
+  std::uint64_t bytes() const {
+    return brick_code.bytes() + brick.bytes() + neighbour.bytes() + nodes.node.bytes() + nodes.level_start.bytes() +
+           point.bytes() + list_start.bytes() + list.bytes();
+  }
+};
+
+namespace detail {
+
+struct FrameTriangle {
+  MeshView mesh;
+  const std::uint32_t* order;
+  TriangleFrame* frame;
+  NACRE_HD void operator()(std::int64_t i) const { frame[i] = triangle_frame(mesh.corners(order[i])); }
+};
+
+NACRE_HD_INLINE std::uint32_t cells_of(const CellMask& mask) {
+  int n = 0;
+  for (int z = 0; z < 8; ++z) n += count_bits(mask.word[z]);
+  return std::uint32_t(n);
+}
+
+struct CountCells {
+  const OctreeBrick* brick;
+  std::uint32_t* band;
+  std::uint32_t* surface;
+  NACRE_HD void operator()(std::int64_t i) const {
+    band[i] = cells_of(brick[i].band);
+    surface[i] = cells_of(brick[i].surface);
+  }
+};
+
+struct NumberCells {
+  OctreeBrick* brick;
+  const std::uint32_t* band;  // exclusive scans
+  const std::uint32_t* surface;
+  CellIndex first_cell, first_surface_cell;
+  NACRE_HD void operator()(std::int64_t i) const {
+    brick[i].band.number(first_cell + band[i]);
+    brick[i].surface.number(first_surface_cell + surface[i]);
+  }
+};
+
+/// Puts the points of bricks that have room for all cells side by side.
+struct GatherPoints {
+  const OctreeBrick* brick;
+  const CellPoint* from;
+  CellPoint* to;
+  std::size_t scratch_bytes() const { return 0; }
+  NACRE_HD void operator()(Team& team, std::int64_t i) const {
+    each_masked(team, brick[i].band, [&](CellIndex cell, int x, int y, int z) {
+      to[cell] = from[i * ClosestInBrick::cells + 64 * z + 8 * y + x];
+    });
+  }
+};
+
+struct FlagFilled {
+  const OctreeBrick* brick;
+  std::uint32_t* flag;
+  NACRE_HD void operator()(std::int64_t i) const { flag[i] = brick[i].band.count() ? 1 : 0; }
+};
+
+struct GatherBricks {
+  const OctreeBrick* from;
+  const std::uint64_t* code;
+  const std::uint32_t* number;
+  OctreeBrick* to;
+  std::uint64_t* to_code;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (from[i].band.count() == 0) return;
+    to[number[i]] = from[i];
+    to_code[number[i]] = code[i];
+  }
+};
+
+/// The bricks that a triangle touches.
+struct BricksTouched {
+  MeshView mesh;
+  BrickOctreeView tree;
+  template <class Visit>
+  NACRE_HD void operator()(std::int64_t t, Visit&& visit) const {
+    for_cells_near(mesh.corners(std::uint32_t(t)) * (1.0 / BrickOctreeView::width), 0.0, Int3(1 << tree.levels),
+                   [&](const Int3& b) {
+                     const std::uint32_t brick = tree.locate(b);
+                     if (brick != none) visit(brick);
+                   });
+  }
+};
+
+struct BricksUnder {
+  MeshView mesh;
+  int levels;
+  NACRE_HD std::uint64_t operator()(std::int64_t t) const {
+    return columns_under(mesh.corners(std::uint32_t(t)) * (1.0 / BrickOctreeView::width), Int3(1 << levels));
+  }
+};
+
+/// Fills a BrickOctree step by step.
+template <class Backend>
+class BrickOctreeBuilder {
+ public:
+  BrickOctreeBuilder(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels, double radius)
+      : exec_(exec), mesh_(mesh), triangles_(triangles), radius_(radius) {
+    tree_.levels = levels;
+    tree_.radius = float(radius);
+    tree_.quantum = CellPoint::quantum(radius);
+  }
+
+  BrickOctree build() {
+    Arena& arena = exec_.arena();
+    require_room();
+    {
+      Arena::Scope scope(arena);
+      const int size = BrickOctreeView::width << tree_.levels;
+      const Clusters clusters = make_clusters(exec_, mesh_, triangles_, Int3(size), 2);
+      Array<TriangleFrame> frame = arena.temporary<TriangleFrame>(triangles_);
+      exec_.for_each(triangles_, FrameTriangle{mesh_, clusters.order.data(), frame.data()});
+      // A brick's cells lie half a cell inside of it.
+      const BricksNearCluster near{mesh_,
+                                   clusters.order.data(),
+                                   clusters.start.data(),
+                                   clusters.bound.data(),
+                                   Int3(1 << tree_.levels),
+                                   double(BrickOctreeView::width),
+                                   radius_ - 0.499};
+      const PlaceLists lists = place_lists(exec_, clusters.count, near);
+      const ClusterView view{mesh_,        clusters.order.data(), clusters.start.data(), clusters.bound.data(),
+                             frame.data(), float(size) * 1.1e-7f};
+      find_cells(view, lists);
+    }
+    if (tree_.cells == 0)
+      throw Error("no cell lies near the surface", "no triangle is inside of the grid's domain", "give a surface");
+    tree_.nodes = build_octree_nodes(exec_, tree_.brick_code, tree_.levels);
+    tree_.neighbour = find_brick_neighbours(exec_, tree_.brick_code, tree_.levels);
+    list_triangles();
+    return tree_;
+  }
+
+ private:
+  static constexpr std::uint32_t bricks_at_once = 2048;  // 13 MB of points at most
+
+  /// Triangles of millions of cells squared would be walked for hours before it shows that they do not fit.
+  void require_room() {
+    const std::uint64_t bricks =
+        exec_.reduce(triangles_, std::uint64_t(0), BricksUnder{mesh_, tree_.levels}, AddNumbers{});
+    const std::uint64_t needed = 12 * bricks;  // a pair of brick and cluster
+    if (needed > exec_.arena().free_bytes())
+      throw Error("the band around the surface does not fit into memory",
+                  "over " + std::to_string(needed >> 30) + " GiB needed, " +
+                      std::to_string(exec_.arena().free_bytes() >> 30) + " GiB free",
+                  "lower the resolution");
+  }
+
+  void find_cells(const ClusterView& clusters, const PlaceLists& lists) {
+    Arena& arena = exec_.arena();
+    const std::uint32_t count = lists.places.count, most = std::min(count, bricks_at_once);
+    Array<OctreeBrick> found = arena.temporary<OctreeBrick>(count);
+    {
+      Arena::Scope scope(arena);
+      Array<CellPoint> point = arena.temporary<CellPoint>(std::size_t(most) * ClosestInBrick::cells);
+      Array<std::uint32_t> band = arena.temporary<std::uint32_t>(most), surface = arena.temporary<std::uint32_t>(most);
+      tree_.point = arena.permanent<CellPoint>(0);
+      for (std::uint64_t first = 0; first < count; first += most) {
+        const auto n = std::int64_t(std::min<std::uint64_t>(most, count - first));
+        OctreeBrick* brick = found.data() + first;
+        exec_.for_each_team(n,
+                            ClosestInBrick{clusters, radius_, tree_.quantum, lists.places.place.data() + first,
+                                           lists.places.start.data() + first, lists.item.data(), brick, point.data()});
+        exec_.for_each(n, CountCells{brick, band.data(), surface.data()});
+        const std::uint32_t cells = exec_.exclusive_scan(band.data(), band.data(), n);
+        const std::uint32_t surface_cells = exec_.exclusive_scan(surface.data(), surface.data(), n);
+        exec_.for_each(n, NumberCells{brick, band.data(), surface.data(), tree_.cells, tree_.surface_cells});
+        tree_.cells += cells;
+        tree_.surface_cells += surface_cells;
+        arena.resize_last(tree_.point, tree_.cells);
+        exec_.for_each_team(n, GatherPoints{brick, point.data(), tree_.point.data()});
+      }
+    }
+    keep_filled(found, lists.places.place);
+  }
+
+  /// Some bricks were found that have no cell within the radius.
+  void keep_filled(const Array<OctreeBrick>& found, const Array<std::uint64_t>& code) {
+    Arena& arena = exec_.arena();
+    const auto count = std::int64_t(found.size());
+    Array<std::uint32_t> number = arena.temporary<std::uint32_t>(count);
+    exec_.for_each(count, FlagFilled{found.data(), number.data()});
+    tree_.brick_count = exec_.exclusive_scan(number.data(), number.data(), count);
+    tree_.brick_code = arena.permanent<std::uint64_t>(tree_.brick_count);
+    tree_.brick = arena.permanent<OctreeBrick>(tree_.brick_count);
+    exec_.for_each(count,
+                   GatherBricks{found.data(), code.data(), number.data(), tree_.brick.data(), tree_.brick_code.data()});
+  }
+
+  void list_triangles() {
+    Arena& arena = exec_.arena();
+    Arena::Scope scope(arena);
+    const Array<std::uint64_t> pairs = sorted_pairs(exec_, triangles_, BricksTouched{mesh_, tree_.view()});
+    tree_.list_start = arena.permanent<std::uint64_t>(std::size_t(tree_.brick_count) + 1);
+    tree_.list = arena.permanent<std::uint32_t>(pairs.size());
+    exec_.for_each(std::int64_t(tree_.brick_count) + 1,
+                   ListStart<std::uint64_t>{pairs.size(), pairs.data(), tree_.list_start.data()});
+    exec_.for_each(std::int64_t(pairs.size()), LowHalf{pairs.data(), tree_.list.data()});
+  }
+
+  Executor<Backend>& exec_;
+  MeshView mesh_;
+  std::uint32_t triangles_;
+  double radius_;
+  BrickOctree tree_;
+};
+
+}  // namespace detail
+
+/// Builds the octree around `triangles` triangles whose points are in cells, in a domain of 8 << levels cells per axis,
+/// at most 2^20. Every cell whose centre is within `radius` (1 to 1000 cells) of a triangle is stored, with the closest
+/// point of the whole mesh, the lower triangle of equally near ones; what lies outside of the domain is cut off. Empty
+/// space costs nothing. Arrays are permanent in the executor's arena; while building, a brick takes some 500 bytes more.
+/// Throws Error where levels or radius are out of range, no cell is in the band, or memory does not suffice.
+template <class Backend>
+BrickOctree build_brick_octree(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
+                               double radius) {
+  if (levels < 0 || levels > 17)
+    throw Error("the grid is too fine", std::to_string(levels) + " levels; at most 2^20 cells per axis",
+                "lower the resolution");
+  if (!(radius >= 1 && radius <= 1000)) throw Error("the band's radius is out of range", "", "use 1 to 1000 cells");
+  return detail::BrickOctreeBuilder<Backend>(exec, mesh, triangles, levels, radius).build();
+}
+
+}  // namespace nacre

@@ -1,0 +1,124 @@
+// Nacre: which items lie at which place, where places are 64-bit codes: a list of items for each place that has one.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/device/error.hpp"
+#include "compute/device/executor.hpp"
+#include "compute/grid/vec.hpp"
+
+namespace nacre {
+
+/// Equal places side by side among sorted codes: `place` ascends; run k is codes start[k] .. start[k + 1] - 1.
+struct CodeRuns {
+  std::uint32_t count = 0;
+  Array<std::uint64_t> place;
+  Array<std::uint64_t> start;  ///< count + 1 entries
+};
+
+/// Places that hold items; items of place k: item[places.start[k]] .. item[places.start[k + 1] - 1], ascending.
+struct PlaceLists {
+  CodeRuns places;
+  Array<std::uint32_t> item;
+};
+
+namespace detail {
+
+/// Counts the places of an item where `place` is null, else writes them: one kernel for both, because a compiler may
+/// round two instantiations of the same geometry differently.
+template <class Enumerate>
+struct EnumeratePlaces {
+  Enumerate enumerate;
+  std::uint64_t* count;  // later: where the item's places begin
+  std::uint64_t* place;
+  std::uint32_t* item;
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint64_t at = place ? count[i] : 0;
+    enumerate(i, [&](std::uint64_t code) {
+      if (place) {
+        place[at] = code;
+        item[at] = std::uint32_t(i);
+      }
+      ++at;
+    });
+    if (!place) count[i] = at;
+  }
+};
+
+/// Whether another place begins at code i; places are codes without their lowest `shift` bits.
+struct RunHead {
+  const std::uint64_t* code;
+  int shift;
+  NACRE_HD std::uint64_t operator()(std::int64_t i) const {
+    return i == 0 || code[i] >> shift != code[i - 1] >> shift ? 1 : 0;
+  }
+};
+
+struct FlagRunHead {
+  RunHead head;
+  std::uint32_t* flag;
+  NACRE_HD void operator()(std::int64_t i) const { flag[i] = std::uint32_t(head(i)); }
+};
+
+struct WriteRun {
+  RunHead head;
+  std::uint64_t codes;
+  std::uint32_t runs;
+  const std::uint32_t* number;  // exclusive scan of the flags
+  std::uint64_t* place;
+  std::uint64_t* start;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (head(i)) {
+      place[number[i]] = head.code[i] >> head.shift;
+      start[number[i]] = std::uint64_t(i);
+    }
+    if (std::uint64_t(i) + 1 == codes) start[runs] = codes;
+  }
+};
+
+struct AddNumbers {
+  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
+};
+
+}  // namespace detail
+
+/// The runs among `n` sorted codes, whose places are the codes without their lowest `shift` bits; 16 bytes a run in
+/// temporary memory of the caller's scope.
+template <class Backend>
+CodeRuns runs_of(Executor<Backend>& exec, const std::uint64_t* code, std::uint64_t n, int shift) {
+  Arena& arena = exec.arena();
+  CodeRuns runs;
+  if (n == 0) return runs;
+  const detail::RunHead head{code, shift};
+  const std::uint64_t count = exec.reduce(std::int64_t(n), std::uint64_t(0), head, detail::AddNumbers{});
+  if (count >= none) throw Error("the grid is too fine", "over 2^32 bricks", "lower the resolution");
+  runs.count = std::uint32_t(count);
+  runs.place = arena.temporary<std::uint64_t>(count);
+  runs.start = arena.temporary<std::uint64_t>(count + 1);
+  Arena::Scope scope(arena);
+  Array<std::uint32_t> number = arena.temporary<std::uint32_t>(n);
+  exec.for_each(std::int64_t(n), detail::FlagRunHead{head, number.data()});
+  exec.exclusive_scan(number.data(), number.data(), std::int64_t(n));
+  exec.for_each(std::int64_t(n),
+                detail::WriteRun{head, n, runs.count, number.data(), runs.place.data(), runs.start.data()});
+  return runs;
+}
+
+/// `enumerate(i, visit)` calls visit(code) for every place of item i, at most once each. The lists are temporary in the
+/// caller's scope: 12 bytes per pair and 16 per place. Throws Error when they do not fit.
+template <class Backend, class Enumerate>
+PlaceLists place_lists(Executor<Backend>& exec, std::int64_t items, const Enumerate& enumerate) {
+  Arena& arena = exec.arena();
+  PlaceLists lists;
+  Array<std::uint64_t> count = arena.temporary<std::uint64_t>(items);
+  exec.for_each(items, detail::EnumeratePlaces<Enumerate>{enumerate, count.data(), nullptr, nullptr});
+  const std::uint64_t pairs = exec.exclusive_scan(count.data(), count.data(), items);
+  lists.item = arena.temporary<std::uint32_t>(pairs);
+  Array<std::uint64_t> code = arena.temporary<std::uint64_t>(pairs);
+  exec.for_each(items, detail::EnumeratePlaces<Enumerate>{enumerate, count.data(), code.data(), lists.item.data()});
+  exec.sort_pairs(code.data(), lists.item.data(), std::int64_t(pairs));
+  lists.places = runs_of(exec, code.data(), pairs, 0);
+  return lists;
+}
+
+}  // namespace nacre

@@ -1,0 +1,107 @@
+// Nacre: eight floats that belong to the eight corners of a cube and are computed with together.
+#pragma once
+
+#include <cmath>
+
+#include "compute/device/backend.hpp"
+#include "compute/grid/vec.hpp"
+
+#if !defined(__CUDACC__) && defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+namespace nacre {
+
+#if defined(__CUDACC__)
+
+/// On the device one thread computes all of them, in registers.
+struct Eight {
+  float v[8];
+  NACRE_HD_INLINE float operator[](int k) const { return v[k]; }
+};
+
+namespace detail {
+template <class F>
+NACRE_HD_INLINE Eight each_of_eight(const F& f) {
+  Eight r;
+  for (int k = 0; k < 8; ++k) r.v[k] = f(k);
+  return r;
+}
+}  // namespace detail
+
+NACRE_HD_INLINE Eight eight(float a) {
+  return detail::each_of_eight([&](int) { return a; });
+}
+NACRE_HD_INLINE Eight operator+(const Eight& a, const Eight& b) {
+  return detail::each_of_eight([&](int k) { return a.v[k] + b.v[k]; });
+}
+NACRE_HD_INLINE Eight operator-(const Eight& a, const Eight& b) {
+  return detail::each_of_eight([&](int k) { return a.v[k] - b.v[k]; });
+}
+NACRE_HD_INLINE Eight operator*(const Eight& a, const Eight& b) {
+  return detail::each_of_eight([&](int k) { return a.v[k] * b.v[k]; });
+}
+NACRE_HD_INLINE Eight operator+(const Eight& a, float b) { return a + eight(b); }
+NACRE_HD_INLINE Eight operator-(const Eight& a, float b) { return a - eight(b); }
+NACRE_HD_INLINE Eight operator*(const Eight& a, float b) { return a * eight(b); }
+NACRE_HD_INLINE Eight min(const Eight& a, const Eight& b) {
+  return detail::each_of_eight([&](int k) { return a.v[k] < b.v[k] ? a.v[k] : b.v[k]; });
+}
+NACRE_HD_INLINE Eight max(const Eight& a, const Eight& b) {
+  return detail::each_of_eight([&](int k) { return a.v[k] > b.v[k] ? a.v[k] : b.v[k]; });
+}
+NACRE_HD_INLINE Eight sqrt(const Eight& a) {
+  return detail::each_of_eight([&](int k) { return std::sqrt(a.v[k]); });
+}
+/// `a` where `sign` > 0, else `b`.
+NACRE_HD_INLINE Eight where_positive(const Eight& sign, const Eight& a, const Eight& b) {
+  return detail::each_of_eight([&](int k) { return sign.v[k] > 0 ? a.v[k] : b.v[k]; });
+}
+/// A bit for each `a` <= `b`.
+NACRE_HD_INLINE unsigned at_most(const Eight& a, const Eight& b) {
+  unsigned bits = 0;
+  for (int k = 0; k < 8; ++k) bits |= unsigned(a.v[k] <= b.v[k]) << k;
+  return bits;
+}
+/// `a`, to which go `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
+NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
+  return detail::each_of_eight([&](int k) { return a + (k & 1 ? x : -x) + ((k & 2 ? y : -y) + (k & 4 ? z : -z)); });
+}
+
+#else
+
+/// On the host they are one SIMD register.
+typedef float Eight __attribute__((vector_size(32)));
+
+NACRE_HD_INLINE Eight eight(float a) { return Eight{a, a, a, a, a, a, a, a}; }
+NACRE_HD_INLINE Eight min(Eight a, Eight b) { return a < b ? a : b; }
+NACRE_HD_INLINE Eight max(Eight a, Eight b) { return a > b ? a : b; }
+NACRE_HD_INLINE Eight sqrt(Eight a) {
+#if defined(__AVX__)
+  return _mm256_sqrt_ps(a);
+#else
+  for (int k = 0; k < 8; ++k) a[k] = std::sqrt(a[k]);
+  return a;
+#endif
+}
+/// `a` where `sign` > 0, else `b`.
+NACRE_HD_INLINE Eight where_positive(Eight sign, Eight a, Eight b) { return sign > 0 ? a : b; }
+/// A bit for each `a` <= `b`.
+NACRE_HD_INLINE unsigned at_most(Eight a, Eight b) {
+#if defined(__AVX__)
+  return unsigned(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
+#else
+  unsigned bits = 0;
+  for (int k = 0; k < 8; ++k) bits |= unsigned(a[k] <= b[k]) << k;
+  return bits;
+#endif
+}
+/// `a`, to which go `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
+NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
+  return Eight{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
+         (Eight{-1, -1, 1, 1, -1, -1, 1, 1} * y + Eight{-1, -1, -1, -1, 1, 1, 1, 1} * z);
+}
+
+#endif
+
+}  // namespace nacre

@@ -1,0 +1,231 @@
+// Nacre: what the methods of the flow pipeline have in common: the mesh on the device, time, the ring of steps, the view.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "compute/embedding/closest_point_grid.hpp"
+#include "compute/flow/filter.hpp"
+#include "compute/pipeline/flow_domain.hpp"
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/raycast/render.hpp"
+
+namespace nacre {
+
+/// A way to embed a surface and to move a texture on it; the calls are those of FlowPipeline.
+class FlowMethod {
+ public:
+  virtual ~FlowMethod() = default;
+  virtual void embed(const FlowMesh& mesh) = 0;
+  virtual void start(const FlowVectors& vectors) = 0;
+  virtual void step() = 0;
+  virtual double time() const = 0;
+  virtual std::vector<float> shown() const = 0;
+  virtual void show_into(float* memory) = 0;
+  virtual FlowValues values() const = 0;
+  virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
+  virtual std::vector<float> sample_shown(std::span<const Vec3d> points) = 0;
+  virtual const EmbeddingInfo& embedding() const = 0;
+  virtual FlowLookup lookup() const = 0;
+};
+
+/// The shared part on a backend. A derived class builds its embedding in `embed` (after `begin_embedding`), its arrays
+/// in `start` (after `begin_flow`), and advances by one step in `advance`.
+template <class Backend>
+class FlowMethodOn : public FlowMethod {
+ public:
+  FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters) : exec_(exec), parameters_(parameters) {}
+
+  void step() override {
+    if (!started_) throw Error("step before start");
+    advance(step_);
+    ++step_;
+  }
+
+  double time() const override { return time_of(step_); }
+  const EmbeddingInfo& embedding() const override { return info_; }
+
+ protected:
+  /// Moves on by step `k` of the data; those before 0 are the warm-up.
+  virtual void advance(int k) = 0;
+  /// Embeds the vectors on the device (one per point of the mesh, world units) as displacements of the step's slot.
+  virtual void fill_slot(const Array<Vec3f>& vectors, const SpeedScale& scale, int slot) = 0;
+
+  void require_embedded() const {
+    if (!embedded_) throw Error("no surface embedded");
+  }
+
+  /// Empties the arena and takes the mesh up, in cells of the domain.
+  void begin_embedding(const FlowMesh& mesh) {
+    points_.clear();
+    for (const Vec3d& p : mesh.points) points_.push_back(domain_.to_grid(p));
+    Arena& arena = exec_.arena();
+    device_points_ = arena.permanent_copy<Vec3d>(points_);
+    corners_ = arena.permanent_copy<Triangle>(mesh.triangles);
+    normals_ = arena.permanent_copy<Vec3f>(mesh.corner_normals);
+    mesh_ = {device_points_.data(), corners_.data(), normals_.data()};
+    triangles_ = std::uint32_t(mesh.triangles.size());
+  }
+
+  void end_embedding() {
+    embedding_mark_ = exec_.arena().mark();
+    embedded_ = true;
+  }
+
+  /// Gives the last run's arrays back. `texel` is the edge of a texture cell in cells of the domain.
+  void begin_flow(const FlowVectors& vectors, double texel) {
+    require_embedded();
+    vectors_ = vectors;
+    texel_ = texel;
+    ttl_ = std::clamp(parameters_.ttl, 1, max_ttl);
+    steady_ = !(vectors.end > vectors.start);
+    exec_.arena().rewind(embedding_mark_);
+    point_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
+    step_ = launched_ = 0;
+    first_ = parameters_.warmup >= 0 ? -parameters_.warmup : -ttl_;
+    output_ = nullptr;
+  }
+
+  /// Number of slots that hold displacements: those that a living particle can see.
+  int slots() const { return steady_ ? 1 : ttl_ + 1; }
+  int slot(int k) const { return steady_ ? 0 : (k - first_) % (ttl_ + 1); }
+  /// Which of the ttl buffers of sums belongs to step `k`.
+  int ring(int k) const { return (k - first_) % ttl_; }
+
+  /// The slots that the first step sees, then the steps before the data's first.
+  void warm_up() {
+    for (int j = 0; j < slots(); ++j) fill(first_ + j);
+    started_ = true;
+  }
+
+  /// Embeds what comes into sight at step `k`.
+  void look_ahead(int k) {
+    if (!steady_ && k > first_) fill(k + ttl_);
+  }
+
+  /// Time of the data at the beginning of step `k`; it stands still before the first step and after the last.
+  double time_of(int k) const {
+    const double share = std::clamp(double(k) / std::max(1, parameters_.steps), 0.0, 1.0);
+    return vectors_.start + (vectors_.end - vectors_.start) * share;
+  }
+
+  /// Draws what `pixel` casts into: sets its camera, light, colours and background, and runs it on every pixel. `dims` is
+  /// the extent of the domain in cells. RGBA, row 0 at the top.
+  template <class Pixel>
+  std::vector<std::uint8_t> draw(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) {
+    Arena& arena = exec_.arena();
+    Arena::Scope scope(arena);
+    auto& scene = pixel.scene;
+    const auto linear = [](const std::array<float, 3>& c) { return to_linear({c[0], c[1], c[2]}); };
+    if (!options.scalar.empty()) {
+      Array<float> scalar = arena.template temporary<float>(options.scalar.size());
+      scalar.upload(options.scalar);
+      std::vector<Float4> table;
+      for (const auto& c : options.colours) table.push_back({linear(c).x, linear(c).y, linear(c).z, 1});
+      Array<Float4> colours = arena.template temporary<Float4>(table.size());
+      colours.upload(table);
+      scene.scalar = scalar.data();
+      scene.colours = colours.data();
+      scene.low = float(options.low);
+      scene.high = options.high > options.low ? float(options.high) : std::nextafter(float(options.low), 1e30f);
+    }
+    scene.background = linear(options.background);
+    scene.background_alpha = options.transparent ? 0.0f : 1.0f;
+    scene.mesh = mesh_;
+    look(pixel, options, dims);
+    const std::size_t n = std::size_t(options.width) * options.height;
+    Array<std::uint32_t> pixels = arena.template temporary<std::uint32_t>(n);
+    pixel.pixels = pixels.data();
+    exec_.for_each(std::int64_t(n), pixel);
+    std::vector<std::uint8_t> bytes(4 * n);
+    exec_.device().copy_to_host(bytes.data(), pixels.data(), bytes.size());
+    return bytes;
+  }
+
+  /// Fills in what belongs to a point of the surface; for FlowValues, on the host.
+  class Describe {
+   public:
+    explicit Describe(const FlowMethodOn& flow)
+        : flow_(flow),
+          corners_(flow.corners_.download()),
+          normals_(flow.normals_.download()),
+          mesh_{flow.points_.data(), corners_.data(), normals_.data()},
+          vectors_(flow.points_.size()) {
+      flow.vectors_.at(flow.time(), vectors_);
+    }
+
+    /// Entry `s`: a cell's centre and the point of triangle `t` closest to it, both in cells of the domain.
+    void operator()(FlowValues& values, std::size_t s, const Vec3d& centre, const Vec3d& surface,
+                    std::uint32_t t) const {
+      const Vec3f w(barycentric(mesh_.corners(t), surface));
+      const Triangle c = corners_[t];
+      const Vec3f v = vectors_[c.a] * w.x + vectors_[c.b] * w.y + vectors_[c.c] * w.z, normal = mesh_.normal(t, w);
+      values.centre[s] = flow_.domain_.to_world(centre);
+      values.closest_point[s] = flow_.domain_.to_world(surface);
+      values.normal[s] = normal;
+      values.velocity[s] = v - normal * dot(normal, v);
+    }
+
+   private:
+    const FlowMethodOn& flow_;
+    std::vector<Triangle> corners_;
+    std::vector<Vec3f> normals_;
+    MeshView mesh_;
+    std::vector<Vec3f> vectors_;
+  };
+
+  Executor<Backend>& exec_;
+  const FlowParameters& parameters_;
+  FlowDomain domain_;
+  EmbeddingInfo info_;
+  FlowVectors vectors_;
+  bool embedded_ = false, started_ = false, steady_ = true;
+  int ttl_ = 4, step_ = 0, first_ = 0, launched_ = 0;
+  double texel_ = 1;  ///< edge of a texture cell in cells of the domain
+  std::uint32_t triangles_ = 0;
+  std::size_t embedding_mark_ = 0;
+  float* output_ = nullptr;  ///< where the shown values go; null: the method's own array
+
+  std::vector<Vec3d> points_;  ///< in cells of the domain
+  MeshView mesh_{};
+  Array<Vec3d> device_points_;
+  Array<Triangle> corners_;
+  Array<Vec3f> normals_;
+
+ private:
+  template <class Pixel>
+  void look(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) const {
+    const Camera& camera = options.camera;
+    GridCamera& view = pixel.camera;
+    const Vec3d right = camera.right(), up = cross(right, camera.forward());
+    const double half = 0.5 * camera.height / domain_.cell_size;
+    view.eye = domain_.to_grid(camera.eye);
+    view.forward = camera.forward();
+    view.right = right * (half * options.width / options.height);
+    view.up = up * half;
+    view.distance = length(camera.target - camera.eye) / domain_.cell_size;
+    view.orthographic = camera.orthographic;
+    pixel.scene.light = Vec3f(normalized(-view.forward + right * 0.35 + up * 0.55));
+    // A ball around the target that holds the domain, and what the camera sees of it.
+    pixel.reach = length(dims) + length(domain_.to_grid(camera.target) - dims * 0.5) + half * 2;
+    pixel.width = options.width;
+    pixel.height = options.height;
+    pixel.samples = std::max(1, options.samples);
+  }
+
+  void fill(int k) {
+    auto stage = exec_.stage("velocity");
+    host_vectors_.resize(points_.size());
+    vectors_.at(time_of(k), host_vectors_);
+    point_vectors_.upload(host_vectors_);
+    const SpeedScale scale{float(vectors_.reference_speed), float(parameters_.step_cells * texel_),
+                           float(parameters_.speed_power), 2.0f};
+    fill_slot(point_vectors_, scale, slot(k));
+  }
+
+  Array<Vec3f> point_vectors_;
+  std::vector<Vec3f> host_vectors_;
+};
+
+}  // namespace nacre

@@ -1,0 +1,253 @@
+// Nacre: flow on the two-level closest-point grid, particles kept on the surface by projection (ch. 5).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "compute/embedding/build_closest_point_grid.hpp"
+#include "compute/embedding/build_refined_grid.hpp"
+#include "compute/flow/advect.hpp"
+#include "compute/flow/filter.hpp"
+#include "compute/flow/velocity.hpp"
+#include "compute/pipeline/flow_method.hpp"
+#include "compute/raycast/render.hpp"
+
+namespace nacre {
+
+namespace detail {
+/// Shown values at points given in texture cells.
+struct SampleShown {
+  RefinedGridView texture;
+  const float* shown;
+  const Vec3f* points;
+  float* value;
+  NACRE_HD void operator()(std::int64_t i) const { value[i] = sample(texture, shown, points[i], 0.5f); }
+};
+}  // namespace detail
+
+template <class Backend>
+class GridFlow final : public FlowMethodOn<Backend> {
+ public:
+  using FlowMethodOn<Backend>::FlowMethodOn;
+
+  void embed(const FlowMesh& mesh) override {
+    domain_ = make_domain(mesh, parameters_);
+    require_memory(mesh, parameters_, exec_.arena().free_bytes());
+    refine_ = parameters_.refine;
+    {
+      auto stage = exec_.stage("embed");
+      this->begin_embedding(mesh);
+      coarse_ = build_closest_point_grid(exec_, mesh_, triangles_, domain_.bricks, parameters_.subcells,
+                                         float(domain_.radius));
+    }
+    {
+      auto stage = exec_.stage("refine");
+      fine_ = build_refined_grid(exec_, mesh_, triangles_, coarse_, refine_);
+    }
+    describe();
+    this->end_embedding();
+  }
+
+  void start(const FlowVectors& vectors) override {
+    this->begin_flow(vectors, 1.0 / refine_);
+    Arena& arena = exec_.arena();
+    const std::size_t n = fine_.surface_cells;
+    for (int j = 0; j < this->slots(); ++j) slots_[j] = arena.permanent<Float4>(coarse_.cells);
+    for (int j = 0; j < ttl_; ++j) {
+      sums_[j] = arena.permanent<std::uint64_t>(n);
+      sums_[j].fill_bytes(0);
+    }
+    axis_ = arena.permanent<std::uint8_t>(n);
+    carried_ = arena.permanent<float>(n);
+    value_ = arena.permanent<float>(n);
+    ahead_ = arena.permanent<float>(n);
+    detail_ = arena.permanent<float>(n);
+    for (Array<Float4>& moments : moments_) {
+      moments = arena.permanent<Float4>(coarse_.cells);
+      moments.fill_bytes(0);  // blurring never writes the cells without a block
+    }
+    shown_ = arena.permanent<float>(n);
+    for (Array<float>* noise : {&carried_, &value_, &ahead_})
+      exec_.for_each(n, FillNoise{parameters_.seed, noise->data()});
+    this->warm_up();
+    show();
+    for (int k = first_; k < 0; ++k) advance(k);
+  }
+
+  std::vector<float> shown() const override;
+  void show_into(float* memory) override { output_ = memory; }
+  std::vector<std::uint8_t> render(const RenderOptions& options) override;
+  FlowValues values() const override;
+  std::vector<float> sample_shown(std::span<const Vec3d> points) override;
+  FlowLookup lookup() const override;
+
+ private:
+  using Base = FlowMethodOn<Backend>;
+  using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
+  using Base::launched_, Base::output_, Base::steady_, Base::triangles_, Base::ttl_;
+
+  void describe() {
+    info_ = {};
+    info_.closest_point_dimensions = domain_.extent;
+    info_.dimensions = domain_.extent * Int3(refine_);
+    info_.cells = fine_.cells;
+    info_.surface_cells = fine_.surface_cells;
+    info_.closest_point_cells = coarse_.cells;
+    info_.bytes = coarse_.bytes() + fine_.bytes();
+    const double box = double(info_.dimensions.x) * info_.dimensions.y * info_.dimensions.z;
+    info_.dense_bytes = std::uint64_t(box * (double(fine_.bytes()) / std::max<double>(1, double(fine_.cells))) +
+                                      box / std::pow(refine_, 3) * (sizeof(Float4) + 4));
+    info_.cell_size = domain_.cell_size / refine_;
+  }
+
+  void fill_slot(const Array<Vec3f>& vectors, const SpeedScale& scale, int slot) override {
+    exec_.for_each(coarse_.cells,
+                   EmbedVelocity{mesh_, coarse_.view(), vectors.data(), scale, 3.5f, slots_[slot].data()});
+  }
+
+  void advance(int k) override {
+    this->look_ahead(k);
+    ReleaseParticles particles;
+    particles.field.grid = coarse_.view();
+    particles.field.steady = steady_;
+    for (int j = 0; j <= ttl_; ++j) particles.field.slot[j] = slots_[this->slot(k + j)].data();
+    particles.texture = fine_.view(coarse_.view());
+    particles.carried = carried_.data();
+    particles.ttl = ttl_;
+    for (int j = 0; j < ttl_; ++j) particles.sums[j] = sums_[this->ring(k + j)].data();
+    {
+      auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
+      exec_.for_each(fine_.surface_cells, particles);
+    }
+    Array<std::uint64_t>& done = sums_[this->ring(k)];
+    {
+      auto stage = exec_.stage("deposit");
+      exec_.for_each(fine_.surface_cells,
+                     PathAxis{fine_.view(coarse_.view()), slots_[this->slot(k)].data(), axis_.data()});
+      antialias(done, value_, 1, value_);
+      done.fill_bytes(0);
+      // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the mean
+      // of this frame and of what older particles have already left in the next one; else the texture lags the flow.
+      antialias(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
+    }
+    show();
+  }
+
+  /// Contrast for the eye, sharpening and jitter for the next step.
+  void show() {
+    auto stage = exec_.stage("filter");
+    const std::int64_t n = fine_.surface_cells;
+    const RefinedGridView texture = fine_.view(coarse_.view());
+    const auto moments_of = [&](const Array<float>& a) {
+      return exec_.reduce(n, Moments{}, MomentsOf{a.data()}, AddMoments{});
+    };
+    const Moments now = moments_of(value_), next = moments_of(ahead_);
+    const float deviation = std::max(now.deviation(n), 1e-4f);
+    const Float4* moments = gather_moments(texture);
+    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, now.mean(n), deviation, next.mean(n),
+                               std::max(next.deviation(n), 1e-4f) / deviation, float(parameters_.equalise),
+                               float(parameters_.contrast), display(), detail_.data()});
+    exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
+                                       parameters_.seed, std::uint32_t(++launched_), carried_.data()});
+  }
+
+  /// Local moments of `value_` over a window of about a dozen texture cells, in one of two buffers.
+  const Float4* gather_moments(const RefinedGridView& texture) {
+    const Array<Float4>*from = &moments_[0], *to = &moments_[1];
+    exec_.for_each(coarse_.cells, LocalMoments{texture, value_.data(), from->data()});
+    const int passes = refine_ == 1 ? 8 : refine_ == 2 ? 4 : refine_ <= 4 ? 1 : 0;
+    for (int k = 0; k < passes; ++k) {
+      exec_.for_each(fine_.block_cell.size(), BlurMoments{texture, from->data(), to->data()});
+      std::swap(from, to);
+    }
+    return from->data();
+  }
+
+  void antialias(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
+    exec_.for_each(fine_.surface_cells, Antialias{fine_.view(coarse_.view()), sums.data(), axis_.data(),
+                                                  otherwise.data(), share, value.data()});
+  }
+
+  float* display() const { return output_ ? output_ : shown_.data(); }
+
+  int refine_ = 4;
+  ClosestPointGrid coarse_;
+  RefinedGrid fine_;
+  Array<Float4> slots_[max_ttl + 1];
+  Array<std::uint64_t> sums_[max_ttl];
+  Array<std::uint8_t> axis_;
+  Array<float> carried_, value_, ahead_, detail_, shown_;
+  Array<Float4> moments_[2];
+};
+
+template <class Backend>
+std::vector<float> GridFlow<Backend>::shown() const {
+  std::vector<float> host(fine_.surface_cells);
+  exec_.device().copy_to_host(host.data(), display(), host.size() * sizeof(float));
+  return host;
+}
+
+template <class Backend>
+std::vector<std::uint8_t> GridFlow<Backend>::render(const RenderOptions& options) {
+  this->require_embedded();
+  auto stage = exec_.stage("render");
+  RenderPixel<GridTarget> pixel;
+  pixel.scene.target.grid = coarse_.view();
+  pixel.scene.target.texels = fine_.view(coarse_.view());
+  pixel.scene.shown = started_ && options.texture ? display() : nullptr;
+  return this->draw(pixel, options, Vec3d(domain_.bricks * Int3(coarse_.sub)));
+}
+
+template <class Backend>
+FlowValues GridFlow<Backend>::values() const {
+  const std::size_t n = fine_.surface_cells;
+  FlowValues values(n);
+  values.value = value_.download();
+  const std::vector<Float4> seed = fine_.seed.download();
+  const std::vector<std::uint32_t> place = fine_.place.download(), triangle = fine_.seed_triangle.download();
+  const std::vector<std::uint32_t> block_cell = fine_.block_cell.download();
+  const std::vector<std::uint64_t> code = coarse_.brick_code.download();
+  ClosestPointGridView grid = coarse_.view();
+  grid.brick_code = code.data();
+  RefinedGridView texture = fine_.view(grid);
+  texture.block_cell = block_cell.data();
+  const typename Base::Describe describe(*this);
+  for (std::size_t s = 0; s < n; ++s) {
+    const Vec3d centre = Vec3d(texture.texel_cell(place[s])) + Vec3d(0.5);
+    const Vec3d surface = centre + Vec3d(seed[s].x, seed[s].y, seed[s].z);
+    describe(values, s, centre / double(refine_), surface / double(refine_), triangle[s]);
+  }
+  return values;
+}
+
+template <class Backend>
+std::vector<float> GridFlow<Backend>::sample_shown(std::span<const Vec3d> points) {
+  Arena& arena = exec_.arena();
+  Arena::Scope scope(arena);
+  std::vector<Vec3f> host;
+  for (const Vec3d& p : points) host.push_back(Vec3f(domain_.to_grid(p) * double(refine_)));
+  Array<Vec3f> places = arena.temporary<Vec3f>(host.size());
+  places.upload(host);
+  Array<float> value = arena.temporary<float>(host.size());
+  exec_.for_each(std::int64_t(host.size()),
+                 detail::SampleShown{fine_.view(coarse_.view()), display(), places.data(), value.data()});
+  return value.download();
+}
+
+template <class Backend>
+FlowLookup GridFlow<Backend>::lookup() const {
+  this->require_embedded();
+  FlowLookup lookup;
+  lookup.bricks = coarse_.bricks;
+  lookup.subcells = coarse_.sub;
+  lookup.refine = refine_;
+  lookup.origin = domain_.origin;
+  lookup.cell_size = domain_.cell_size;
+  lookup.brick_index = coarse_.brick_index.download();
+  lookup.block = fine_.block.download();
+  lookup.texel = fine_.texel.download();
+  return lookup;
+}
+
+}  // namespace nacre

@@ -1,0 +1,275 @@
+// Nacre: flow by the closest point method on a sparse octree (ch. 6): values and vectors extended into a narrow band,
+// particles advected there in plain 3-D.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "compute/embedding/build_brick_octree.hpp"
+#include "compute/embedding/build_source_octree.hpp"
+#include "compute/flow/band_advect.hpp"
+#include "compute/flow/band_filter.hpp"
+#include "compute/flow/band_velocity.hpp"
+#include "compute/flow/sample_band.hpp"
+#include "compute/pipeline/flow_method.hpp"
+#include "compute/raycast/octree_cast.hpp"
+#include "compute/raycast/render.hpp"
+
+namespace nacre {
+
+/// The two-level octree and how flow runs on it: particles start on the surface, contrast is judged in each brick's
+/// surroundings.
+struct BrickBand {
+  using Octree = BrickOctree;
+  static constexpr const char* name = "brick octree";
+  static constexpr bool from_centres = false, local_contrast = true;
+  static std::uint64_t touched(const Octree& tree) { return tree.surface_cells; }
+
+  template <class Backend>
+  static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
+                      const FlowDomain& domain, const FlowParameters&) {
+    return build_brick_octree(exec, mesh, triangles, levels, domain.radius);
+  }
+};
+
+/// The source's octree of cells and its flow: every cell of the band releases a particle from its centre.
+struct SourceBand {
+  using Octree = SourceOctree;
+  static constexpr const char* name = "source octree";
+  static constexpr bool from_centres = true, local_contrast = false;
+  static std::uint64_t touched(const Octree& tree) { return tree.touched_cells; }
+
+  template <class Backend>
+  static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
+                      const FlowDomain& domain, const FlowParameters& parameters) {
+    return build_source_octree(exec, mesh, triangles, levels, domain.radius, parameters.neighbour_index);
+  }
+};
+
+namespace detail {
+
+/// Values at points of the band, for probes.
+template <class View>
+struct SampleBandAt {
+  View view;
+  const float* values;
+  const BandPoint* points;
+  float* result;
+  NACRE_HD void operator()(std::int64_t i) const { result[i] = sample_band(view, values, points[i], 0.5f); }
+};
+
+/// Whether a triangle touches a cell that has a value of its own: all do among bricks.
+NACRE_HD inline bool is_touched(const BrickOctreeView&, CellIndex) { return true; }
+NACRE_HD inline bool is_touched(const SourceOctreeView& view, CellIndex cell) { return view.touches(cell); }
+
+/// What an output needs of each cell that has a value.
+template <class View>
+struct GatherSurface {
+  View view;
+  std::uint64_t* code;  ///< Morton code of its place; all ones where no triangle touches it
+  CellPoint* point;
+  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor&) const {
+    code[s] = is_touched(view, cell) ? morton(place) : ~std::uint64_t(0);
+    point[s] = view.point[cell];
+  }
+};
+
+}  // namespace detail
+
+template <class Backend, class Band>
+class OctreeFlow final : public FlowMethodOn<Backend> {
+ public:
+  using FlowMethodOn<Backend>::FlowMethodOn;
+  using View = decltype(std::declval<typename Band::Octree>().view());
+
+  void embed(const FlowMesh& mesh) override {
+    levels_ = make_octree_domain(mesh, parameters_, domain_);
+    require_octree_memory(mesh, parameters_, exec_.arena().free_bytes());
+    auto stage = exec_.stage("embed");
+    this->begin_embedding(mesh);
+    octree_ = Band::build(exec_, mesh_, triangles_, levels_, domain_, parameters_);
+    describe();
+    this->end_embedding();
+  }
+
+  void start(const FlowVectors& vectors) override {
+    this->begin_flow(vectors, 1.0);
+    Arena& arena = exec_.arena();
+    const View view = octree_.view();
+    const std::size_t n = view.surface_cells;
+    for (int j = 0; j < this->slots(); ++j) slots_[j] = arena.permanent<std::uint32_t>(view.cells);
+    for (int j = 0; j < ttl_; ++j) {
+      sums_[j] = arena.permanent<std::uint64_t>(n);
+      sums_[j].fill_bytes(0);
+    }
+    value_ = arena.permanent<float>(n);
+    ahead_ = arena.permanent<float>(n);
+    carried_ = arena.permanent<float>(n);
+    shown_ = arena.permanent<float>(n);
+    if constexpr (Band::local_contrast) moments_ = arena.permanent<Float4>(view.items());
+    for_each_surface_cell(exec_, view,
+                          FillBandNoise<View>{view, parameters_.seed, value_.data(), ahead_.data(), carried_.data()});
+    this->warm_up();
+    show();
+    for (int k = first_; k < 0; ++k) advance(k);
+  }
+
+  std::vector<float> shown() const override {
+    std::vector<float> host(octree_.view().surface_cells);
+    exec_.device().copy_to_host(host.data(), display(), host.size() * sizeof(float));
+    return host;
+  }
+  void show_into(float* memory) override { output_ = memory; }
+  FlowValues values() const override;
+  std::vector<std::uint8_t> render(const RenderOptions& options) override;
+  std::vector<float> sample_shown(std::span<const Vec3d> points) override;
+  FlowLookup lookup() const override {
+    throw Error("an octree has no look-up arrays of a grid", "", "use --method grid");
+  }
+
+ private:
+  using Base = FlowMethodOn<Backend>;
+  using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
+  using Base::launched_, Base::output_, Base::steady_, Base::triangles_, Base::ttl_;
+
+  float* display() const { return output_ ? output_ : shown_.data(); }
+
+  void describe() {
+    const View view = octree_.view();
+    const int n = parameters_.resolution;
+    info_ = {};
+    info_.kind = Band::name;
+    info_.dimensions = info_.closest_point_dimensions = Int3(n);
+    info_.cells = info_.closest_point_cells = view.cells;
+    info_.surface_cells = Band::touched(octree_);
+    info_.bytes = octree_.bytes();
+    info_.dense_bytes =
+        std::uint64_t(double(n) * n * n * double(octree_.bytes()) / std::max<double>(1, double(view.cells)));
+    info_.cell_size = domain_.cell_size;
+  }
+
+  void fill_slot(const Array<Vec3f>& vectors, const SpeedScale& scale, int slot) override {
+    const View view = octree_.view();
+    for_each_cell(exec_, view, ExtendVelocity<View>{view, mesh_, vectors.data(), scale, slots_[slot].data()});
+  }
+
+  void advance(int k) override {
+    this->look_ahead(k);
+    const View view = octree_.view();
+    ReleaseBandParticles<View> particles;
+    particles.field.view = view;
+    particles.field.steady = steady_;
+    for (int j = 0; j <= ttl_; ++j) particles.field.slot[j] = slots_[this->slot(k + j)].data();
+    particles.carried = carried_.data();
+    particles.ttl = ttl_;
+    particles.from_centres = Band::from_centres;
+    for (int j = 0; j < ttl_; ++j) particles.sums[j] = sums_[this->ring(k + j)].data();
+    {
+      auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
+      for_each_surface_cell(exec_, view, particles);
+    }
+    {
+      auto stage = exec_.stage("extend");
+      Array<std::uint64_t>& done = sums_[this->ring(k)];
+      extend(done, value_, 1, value_);
+      done.fill_bytes(0);
+      // A frame shows the middle of its step, but the particles of the next step start at its end (see GridFlow).
+      extend(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
+    }
+    show();
+  }
+
+  void extend(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
+    const View view = octree_.view();
+    for_each_surface_cell(exec_, view,
+                          NormaliseAndExtend<View>{view, sums.data(), otherwise.data(), share, value.data()});
+  }
+
+  /// Contrast for the eye, sharpening and jitter for the next step.
+  void show() {
+    auto stage = exec_.stage("filter");
+    if constexpr (Band::local_contrast) {
+      exec_.for_each_team(octree_.view().items(), BrickMoments{octree_.view(), value_.data(), moments_.data()});
+      equalise(LocalBrickMoments{moments_.data()});
+    } else {
+      equalise(NoLocalMoments{});
+    }
+    const View view = octree_.view();
+    for_each_surface_cell(exec_, view,
+                          SharpenBand<View>{view, ahead_.data(), float(parameters_.sharpen), float(parameters_.jitter),
+                                            parameters_.seed, std::uint32_t(++launched_), carried_.data()});
+  }
+
+  template <class Local>
+  void equalise(const Local& local) {
+    const View view = octree_.view();
+    const auto n = std::int64_t(view.surface_cells);
+    const auto moments_of = [&](const Array<float>& a) {
+      return exec_.reduce(n, Moments{}, MomentsOf{a.data()}, AddMoments{});
+    };
+    const Moments now = moments_of(value_), next = moments_of(ahead_);
+    const float deviation = std::max(now.deviation(n), 1e-4f);
+    for_each_surface_cell(
+        exec_, view,
+        EqualiseBand<View, Local>{view, value_.data(), ahead_.data(), local, now.mean(n), deviation, next.mean(n),
+                                  std::max(next.deviation(n), 1e-4f) / deviation, float(parameters_.equalise),
+                                  float(parameters_.contrast), display(), ahead_.data()});
+  }
+
+  typename Band::Octree octree_;
+  int levels_ = 0;
+  Array<std::uint32_t> slots_[max_ttl + 1];
+  Array<std::uint64_t> sums_[max_ttl];
+  Array<float> carried_, value_, ahead_, shown_;
+  Array<Float4> moments_;
+};
+
+template <class Backend, class Band>
+std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions& options) {
+  this->require_embedded();
+  auto stage = exec_.stage("render");
+  RenderPixel<BandTarget<View>> pixel;
+  pixel.scene.target.view = octree_.view();
+  pixel.scene.shown = started_ && options.texture ? display() : nullptr;
+  return this->draw(pixel, options, Vec3d(Int3(parameters_.resolution)));
+}
+
+template <class Backend, class Band>
+FlowValues OctreeFlow<Backend, Band>::values() const {
+  const View view = octree_.view();
+  const std::size_t n = view.surface_cells;
+  Arena& arena = exec_.arena();
+  Arena::Scope scope(arena);
+  Array<std::uint64_t> device_code = arena.template temporary<std::uint64_t>(n);
+  Array<CellPoint> device_point = arena.template temporary<CellPoint>(n);
+  for_each_surface_cell(exec_, view, detail::GatherSurface<View>{view, device_code.data(), device_point.data()});
+  const std::vector<std::uint64_t> code = device_code.download();
+  const std::vector<CellPoint> point = device_point.download();
+  const std::vector<float> value = value_.download();
+  FlowValues values(std::size_t(info_.surface_cells));
+  const typename Base::Describe describe(*this);
+  std::size_t out = 0;
+  for (std::size_t s = 0; s < n; ++s) {
+    if (code[s] == ~std::uint64_t(0)) continue;
+    const Vec3d centre = Vec3d(morton_cell(code[s])) + Vec3d(0.5);
+    values.value[out] = value[s];
+    describe(values, out++, centre, centre + Vec3d(point[s].offset(view.quantum)), point[s].triangle);
+  }
+  return values;
+}
+
+template <class Backend, class Band>
+std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d> points) {
+  Arena& arena = exec_.arena();
+  Arena::Scope scope(arena);
+  std::vector<BandPoint> host;
+  for (const Vec3d& p : points) host.push_back(band_point(domain_.to_grid(p)));
+  Array<BandPoint> places = arena.template temporary<BandPoint>(host.size());
+  places.upload(host);
+  Array<float> value = arena.template temporary<float>(host.size());
+  exec_.for_each(std::int64_t(host.size()),
+                 detail::SampleBandAt<View>{octree_.view(), display(), places.data(), value.data()});
+  return value.download();
+}
+
+}  // namespace nacre

@@ -1,0 +1,101 @@
+// Nacre: where a ray meets the surface in an octree: the tree skips empty space, its leaves know triangles.
+#pragma once
+
+#include "compute/embedding/cells_near.hpp"
+#include "compute/raycast/octree_walk.hpp"
+
+namespace nacre {
+
+namespace detail {
+/// Lists of triangles longer than this are only tested where the ray comes to a cell that the surface passes through.
+inline constexpr std::uint64_t long_list = 24;
+
+/// Whether the ray, in the brick at `low` (in its own coordinates) from `enter` on, comes to a cell of the mask.
+NACRE_HD inline bool meets_cells(const CellMask& mask, const AscendingRay& ray, const Int3& low, double enter) {
+  Int3 cell = low;
+  for (int half = 4; half > 0; half /= 2) ray.enter(cell, half, enter);
+  for (;;) {
+    const Int3 c = ray.unmirrored(cell, 1);
+    if (mask.word[c.z & 7] >> (8 * (c.y & 7) + (c.x & 7)) & 1) return true;
+    int axis;
+    ray.leave(cell, 1, axis);
+    if (++cell[axis] == low[axis] + BrickOctreeView::width) return false;
+  }
+}
+}  // namespace detail
+
+/// First hit of the ray with the surface: exact, against the triangles that touch the bricks on its way.
+NACRE_HD inline bool cast(const BrickOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
+  if (tree.brick_count == 0) return false;
+  const AscendingRay ascending(ray, tree.size());
+  walk_octree(tree, tree.levels, ascending, [&](std::uint32_t brick, const Int3& low, double enter, double leave) {
+    if (hit.t <= enter) return true;
+    const std::uint64_t first = tree.list_start[brick], last = tree.list_start[brick + 1];
+    if (last - first > detail::long_list && !detail::meets_cells(tree.brick[brick].surface, ascending, low, enter))
+      return false;
+    for (std::uint64_t k = first; k < last; ++k) intersect(mesh, tree.list[k], ray, hit);
+    return hit.t <= leave;  // what lies beyond this brick may hide behind something that only the next one knows
+  });
+  return hit.triangle != none;
+}
+
+namespace detail {
+/// Where the ray meets the plane of the closest triangle of a cell; far away where it runs along it.
+NACRE_HD inline Hit meet_plane(const SourceOctreeView& tree, CellIndex cell, const MeshView& mesh, const Ray& ray) {
+  const std::uint32_t triangle = tree.point[cell].triangle;
+  const Corners c = mesh.corners(triangle);
+  const Vec3d n = plane_normal(c);
+  const double along = dot(n, ray.direction);
+  if (along == 0) return {};
+  const double t = dot(n, c.a - ray.origin) / along;
+  return {t, triangle, Vec3f(barycentric(c, ray.at(t)))};
+}
+
+/// The nearest hit between two parameters among the planes of the cells around `place`, where their triangles are not
+/// farther than half a cell.
+NACRE_HD inline Hit meet_planes_beside(const SourceOctreeView& tree, const Int3& place, const MeshView& mesh,
+                                       const Ray& ray, double from, double to) {
+  SourceOctreeView::Cursor cursor(tree);
+  Hit nearest;
+  for (int k = 0; k < 27; ++k) {
+    const CellIndex cell = cursor.find(place + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+    if (k == 13 || cell == no_cell || !tree.touches(cell)) continue;
+    const Hit hit = meet_plane(tree, cell, mesh, ray);
+    if (!(hit.t >= from && hit.t <= to && hit.t < nearest.t)) continue;
+    const Vec3d at = ray.at(hit.t), away = closest_point(mesh.corners(hit.triangle), at) - at;
+    if (dot(away, away) < 0.25) nearest = hit;
+  }
+  return nearest;
+}
+}  // namespace detail
+
+/// First cell on the ray's way that the surface passes through and in which the ray meets the plane of the cell's
+/// closest triangle. Where it meets none for a cell's length, the planes of neighbours count, too: of an edge the cell
+/// may know the side that the ray does not meet. The planes stand for all of the surface in the cell, which is what the
+/// source's octree knows: they shift the surface by up to a cell where it bends, ends or comes back within one, and are
+/// exact away from the edges of triangles larger than cells. Cells overlap by an eighth along the ray, so that planes of
+/// neighbours which do not quite meet leave no crack.
+NACRE_HD inline bool cast(const SourceOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
+  if (tree.cells == 0) return false;
+  const double cell_length = 1 / length(ray.direction), slack = 0.125 * cell_length;
+  const AscendingRay ascending(ray, tree.size());
+  Hit nearest;
+  const auto leaf = [&](std::uint32_t cell, const Int3& low, double enter, double leave) {
+    if (enter > nearest.t + cell_length) return true;
+    if (!tree.touches(cell)) return false;
+    const double from = enter > slack ? enter - slack : 0, to = leave + slack;
+    const Hit here = detail::meet_plane(tree, cell, mesh, ray);
+    if (here.t >= from && here.t <= to) {
+      if (!(here.t > nearest.t + cell_length)) nearest = here;
+      return true;
+    }
+    if (nearest.triangle == none)
+      nearest = detail::meet_planes_beside(tree, ascending.unmirrored(low, 1), mesh, ray, from, to);
+    return false;
+  };
+  walk_octree(tree, tree.depth(), ascending, leaf);
+  hit = nearest;
+  return hit.triangle != none;
+}
+
+}  // namespace nacre
