@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "app/commands.hpp"
-#include "app/common.hpp"
 #include "app/picture_words.hpp"
+#include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/io/reader.hpp"
@@ -28,9 +28,8 @@ namespace {
 
 struct FlowOptions {
   CommonOptions common;
-  std::vector<std::string> files;
-  std::string sample, time, size, image, frames, video, out;
-  int detail = 0;
+  InputWords input;
+  std::string time, image, frames, video, out;
   bool no_legend = false, no_time = false;
 };
 
@@ -41,23 +40,9 @@ struct FlowInput {
 };
 
 Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
-  Session session;
-  if (!options.common.session.empty()) session = read_session(options.common.session);
-  if (!options.files.empty() || !options.sample.empty()) {
-    session.inputs.assign(options.files.begin(), options.files.end());
-    session.sample = options.sample;
-    session.detail = options.detail;
-  }
-  knobs.apply(session.settings, options.common.set);
-  if (!options.size.empty()) {
-    const auto [width, height] = parse_pair(options.size, 'x', "--size");
-    knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
-  }
+  Session session = asked_session(options.common, options.input, knobs, "flow");
   if (options.no_legend) session.settings.legend = false;
   if (options.no_time) session.settings.time_stamp = false;
-  if (session.inputs.empty() == session.sample.empty())
-    throw UsageError(session.inputs.empty() ? "no input: give a FILE or --sample NAME; see nacre flow --help"
-                                            : "a FILE or --sample, not both");
   return session;
 }
 
@@ -183,7 +168,7 @@ nlohmann::json median_min_max(std::vector<double> seconds) {
 }
 
 nlohmann::json embedding_report(const EmbeddingInfo& e) {
-  return {{"kind", "grid"},
+  return {{"kind", e.kind},
           {"dimensions", {e.dimensions.x, e.dimensions.y, e.dimensions.z}},
           {"cells", e.cells},
           {"surface_cells", e.surface_cells},
@@ -201,8 +186,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const Settings& settings = session.settings;
   check_words(settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
-  const std::unique_ptr<Device> device = make_device(options.common.device, options.common.threads);
-  say(options.common, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));
+  const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
   pipeline->watch(&interrupt_flag());
   pipeline->parameters = settings.flow;
@@ -248,7 +232,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
     if (interrupt_flag()) throw Interrupted();
   }
 
-  nlohmann::json outputs = nlohmann::json::array();
+  std::vector<std::string> outputs;
   const auto wrote = [&](const std::string& file) { outputs.push_back(file); };
   if (!options.image.empty()) {
     const Image image = painter.paint(std::max(0, settings.flow.steps - 1));
@@ -276,10 +260,9 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
     report["parameters"] = knob_values(settings);
     report["embedding"] = embedding_report(pipeline->embedding());
     report["flow"] = {{"steps", settings.flow.steps}, {"seconds_per_step", median_min_max(seconds)}};
-    report["outputs"] = outputs;
-    write_text(options.common.report, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write_report(options.common, std::move(report), outputs);
   }
-  for (const auto& file : outputs) fmt::print("{}\n", file.get<std::string>());
+  print_outputs(outputs);
 }
 
 }  // namespace
@@ -287,12 +270,9 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
 void add_flow_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("flow", "unsteady flow on a surface: picture, frames, video, values");
   auto options = std::make_shared<FlowOptions>();
-  command->add_option("FILE", options->files, "surface with vectors; several files are one series");
-  command->add_option("--sample", options->sample, "a built-in data set; `nacre sample` lists them");
-  command->add_option("--detail", options->detail, "triangle edges along the sample's longest side (0: its own)")
-      ->check(CLI::NonNegativeNumber);
+  add_input_options(*command, options->input, "surface with vectors; several files are one series",
+                    "triangle edges along the sample's longest side (0: its own)");
   command->add_option("--time", options->time, "T0:T1 of the data (all of it)");
-  command->add_option("--size", options->size, "WxH of the picture");
   command->add_option("--image", options->image, "write the last frame as PNG");
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");

@@ -14,9 +14,7 @@
 #include "engine/scene/phantoms.hpp"
 
 namespace nacre {
-namespace {
 
-/// The source's own constants (source notes). Its reconstruction depends on the volume: see `choose_kernel`.
 void apply_source_preset(Settings& settings) {
   MeshParameters& m = settings.mesh;
   m.theta = 0.75;
@@ -29,25 +27,15 @@ void apply_source_preset(Settings& settings) {
   m.by_density = false;
 }
 
+namespace {
+
 Session make_session(const MeshOptions& options, const KnobOptions& knobs) {
-  Session session;
-  if (!options.common.session.empty()) session = read_session(options.common.session);
-  if (!options.files.empty() || !options.sample.empty()) {
-    session.inputs.assign(options.files.begin(), options.files.end());
-    session.sample = options.sample;
-    session.detail = options.detail;
-  }
-  if (options.preset == "source") apply_source_preset(session.settings);
-  knobs.apply(session.settings, options.common.set);
-  if (!options.size.empty()) {
-    const auto [width, height] = parse_pair(options.size, 'x', "--size");
-    knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
-  }
+  const auto preset = [&](Settings& settings) {
+    if (options.preset == "source") apply_source_preset(settings);
+  };
+  Session session = asked_session(options.common, options.input, knobs, "mesh", preset);
   if (options.labels) session.settings.materials.labels = true;
   if (options.curvature) session.settings.mesh.curvature = true;
-  if (session.inputs.empty() == session.sample.empty())
-    throw UsageError(session.inputs.empty() ? "no input: give a FILE or --sample NAME; see nacre mesh --help"
-                                            : "a FILE or --sample, not both");
   return session;
 }
 
@@ -178,8 +166,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   const auto started = std::chrono::steady_clock::now();
   Session session = make_session(options, knob_options);
   check_words(options, session);
-  const std::unique_ptr<Device> device = make_device(options.common.device, options.common.threads);
-  say(options.common, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));
+  const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<MeshPipeline> pipeline = make_mesh_pipeline(*device);
   pipeline->watch(&interrupt_flag());
   Progress bar(options.common.quiet);
@@ -201,12 +188,11 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
     nlohmann::json report = report_frame("mesh", *device, pipeline->timers(), pipeline->peak_bytes());
     add_mesh_report(report, input, session.settings, pipeline->info(), result);
     report["seconds"] = seconds;
-    report["outputs"] = outputs;
-    write_text(options.common.report, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write_report(options.common, std::move(report), outputs);
   }
   warn_of_flaws(options, input, result);
   say(options.common, mesh_summary(input, pipeline->info(), result, seconds));
-  for (const std::string& file : outputs) fmt::print("{}\n", file);
+  print_outputs(outputs);
   if (result.interrupted) throw Interrupted();
 }
 
@@ -215,19 +201,18 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
 void add_mesh_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("mesh", "from a volume to a conformal mesh: surfaces, tetrahedra");
   auto options = std::make_shared<MeshOptions>();
-  command->add_option("FILE", options->files, "a label or scalar volume, or one indicator volume per material");
-  command->add_option("--sample", options->sample, "a built-in volume; `nacre sample` lists them");
-  command->add_option("--detail", options->detail, "voxels along the sample's longest side (0: its own)")
-      ->check(CLI::NonNegativeNumber);
+  add_input_options(*command, options->input, "a label or scalar volume, or one indicator volume per material",
+                    "voxels along the sample's longest side (0: its own)");
   command->add_option("--preset", options->preset, "source: the constants of the dissertation")
       ->check(CLI::IsMember({"source"}));
   command->add_flag("--labels", options->labels, "the values are labels, whatever they look like");
   command->add_flag("--curvature", options->curvature, "bound the sizing field by curvature, too");
-  command->add_option("--out", options->out, "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu .msh");
+  command->add_option("--out", options->out,
+                      "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu, .msh (and the surface)");
+  command->add_flag("--surface-only", options->surface_only, "no tetrahedra in a .msh, only the triangles");
   command->add_flag("--per-material", options->per_material, "one closed surface per material: NAME_LABEL.ext");
   command->add_option("--particles-out", options->particles_out, "write the particles as .vtp");
   command->add_option("--image", options->image, "write a picture of the triangles as PNG");
-  command->add_option("--size", options->size, "WxH of the picture");
   command->add_flag("--cut-away", options->cut_away, "picture: leave out the half nearer to the camera");
   command->add_flag("--keep-on-interrupt", options->keep_on_interrupt,
                     "Ctrl-C ends the particles early; the mesh is made of what there is");

@@ -102,7 +102,10 @@ Image draw_mesh(const SurfaceMesh& mesh, const Settings& settings, bool cut_away
 
 }  // namespace
 
-bool wants_cells(const MeshOptions& options) { return has(tetrahedral_mesh_extensions(), extension_of(options.out)); }
+bool wants_cells(const MeshOptions& options) {
+  return has(tetrahedral_mesh_extensions(), extension_of(options.out)) && !options.surface_only &&
+         !options.per_material;
+}
 
 void check_mesh_outputs(const MeshOptions& options) {
   if (!options.out.empty()) {
@@ -111,10 +114,12 @@ void check_mesh_outputs(const MeshOptions& options) {
       if (!has(known, extension)) known.push_back(extension);
     if (!has(known, extension_of(options.out)))
       throw UsageError(fmt::format("cannot write {}; use one of {}", options.out, fmt::join(known, " ")));
-    if (options.per_material && wants_cells(options))
-      throw UsageError("--per-material writes surfaces; use one of .vtp .ply .stl .obj .off");
-  } else if (options.per_material) {
-    throw UsageError("--per-material needs --out FILE");
+    if ((options.per_material || options.surface_only) && !has(surface_mesh_extensions(), extension_of(options.out)))
+      throw UsageError(fmt::format("{} writes surfaces; use one of {}",
+                                   options.per_material ? "--per-material" : "--surface-only",
+                                   fmt::join(surface_mesh_extensions(), " ")));
+  } else if (options.per_material || options.surface_only) {
+    throw UsageError(options.per_material ? "--per-material needs --out FILE" : "--surface-only needs --out FILE");
   }
   if (!options.particles_out.empty() && extension_of(options.particles_out) != ".vtp")
     throw UsageError(fmt::format("--particles-out takes a .vtp file, not '{}'", options.particles_out));
@@ -133,7 +138,7 @@ std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Se
   }
   StageTimers::Scope scope(timers, "write");
   if (result.cells) {
-    write_tetrahedral_mesh(options.out, *result.cells, input.labels);
+    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels);
     files.push_back(options.out);
   } else if (options.per_material) {
     for (const fs::path& file : write_material_surfaces(options.out, result.mesh, input.labels))

@@ -66,7 +66,9 @@ json particles_json(const MeshInfo& info, bool interrupted) {
           {"iterations", info.iterations},
           {"interrupted", interrupted},
           {"energy", info.energy},
-          {"count", info.count}};
+          {"final_energy", info.final_energy},
+          {"count", info.count},
+          {"seconds", info.seconds}};
 }
 
 json angles_json(const TriangleQuality& q) {

@@ -5,20 +5,19 @@
 #include <string>
 #include <vector>
 
-#include "app/common.hpp"
+#include "app/run.hpp"
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
-#include "engine/scene/session.hpp"
 
 namespace nacre {
 
 struct MeshOptions {
   CommonOptions common;
-  std::vector<std::string> files;
-  std::string sample, preset, size, out, particles_out, image;
-  int detail = 0;
-  bool labels = false, curvature = false, per_material = false, keep_on_interrupt = false, cut_away = false;
+  InputWords input;
+  std::string preset, out, particles_out, image;
+  bool labels = false, curvature = false, per_material = false, surface_only = false;
+  bool keep_on_interrupt = false, cut_away = false;
 };
 
 /// What the report says about the volume once the volume itself is gone.
@@ -44,6 +43,10 @@ struct MeshResult {
   bool interrupted = false;  ///< the particles were stopped before they were done
 };
 
+/// The source's own constants (source notes). Its reconstruction depends on the volume: b-spline for scalars, else
+/// catmull-rom.
+void apply_source_preset(Settings& settings);
+
 /// The report's own part: input, parameters, embedding, fields, particles, mesh, tetrahedra.
 void add_mesh_report(nlohmann::json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
                      const MeshResult& result);
@@ -54,7 +57,7 @@ std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const Mes
 /// Throws UsageError where a file's extension says nothing, Error where its folder is not there.
 void check_mesh_outputs(const MeshOptions& options);
 
-/// Is `--out` a file of tetrahedra?
+/// Will `--out` be a file of tetrahedra?
 bool wants_cells(const MeshOptions& options);
 
 /// Writes what was asked for, in stages render and write; returns the files.

@@ -1,21 +1,25 @@
 // Nacre: which particles spoil triangles, and where some are missing.
 #include "compute/meshing/defects.hpp"
 
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
 
 namespace nacre {
 namespace {
 
+constexpr std::size_t small_body = 24, tiny_body = 12;  // points
+constexpr double too_close = 0.25;                      // of a new point to old ones, in sizes
+constexpr double long_edge = 1.3;                       // in sizes
+
 /// A point that a bad triangle wants to be rid of.
 struct Wish {
   double ratio;
-  std::uint32_t point;
+  std::uint32_t point, triangle;
+  std::size_t few;  ///< bodies of no more points keep it
 };
 
 std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
@@ -23,9 +27,10 @@ std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
   return {mesh.points[c.a], mesh.points[c.b], mesh.points[c.c]};
 }
 
-/// The point whose removal mends a bad triangle, or `none`.
+/// The point whose removal mends a bad triangle, or `none`; `few`: bodies of no more points keep it. One that all but
+/// coincides with another is of no use to any body.
 std::uint32_t culprit(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
-                      std::span<const float> size, const std::array<double, 3>& angles) {
+                      std::span<const float> size, const std::array<double, 3>& angles, std::size_t& few) {
   const Triangle& c = mesh.triangles[t];
   const auto p = corners(mesh, t);
   int shortest = 0;
@@ -35,86 +40,114 @@ std::uint32_t culprit(const SurfaceMesh& mesh, std::size_t t, std::span<const st
     if (edge < least) least = edge, shortest = k;
   }
   const std::uint32_t a = c[shortest], b = c[(shortest + 1) % 3];
-  if (least < 0.5 * std::min(size[a], size[b]))
-    return order[a] != order[b] ? (order[a] > order[b] ? a : b) : std::max(a, b);
+  const double share = least / std::min(size[a], size[b]);
+  few = share < 0.2 ? 0 : share < 0.5 ? tiny_body : small_body;
+  if (share < 0.5) return order[a] != order[b] ? (order[a] > order[b] ? a : b) : std::max(a, b);
   const int widest = int(std::max_element(angles.begin(), angles.end()) - angles.begin());
   return angles[widest] > 115 && order[c[widest]] == 2 ? c[widest] : none;
 }
 
-/// Points wished away, the worst triangles first, no two of one triangle.
-std::vector<std::uint32_t> choose(const SurfaceMesh& mesh, std::vector<Wish>& wishes) {
-  std::sort(wishes.begin(), wishes.end(),
-            [](const Wish& a, const Wish& b) { return a.ratio != b.ratio ? a.ratio < b.ratio : a.point < b.point; });
-  std::vector<std::uint8_t> wished(mesh.points.size(), 0), blocked(mesh.points.size(), 0);
-  for (const Wish& w : wishes) wished[w.point] = 1;
-  // Facets of the points that are wished away, by point.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> facets;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k)
-      if (wished[mesh.triangles[t][k]]) facets.emplace_back(mesh.triangles[t][k], std::uint32_t(t));
-  std::sort(facets.begin(), facets.end());
-  std::vector<std::uint32_t> chosen;
-  for (const Wish& w : wishes) {
-    if (blocked[w.point]) continue;
-    chosen.push_back(w.point);
-    for (auto f = std::lower_bound(facets.begin(), facets.end(), std::pair(w.point, std::uint32_t(0)));
-         f != facets.end() && f->first == w.point; ++f)
-      for (int k = 0; k < 3; ++k) blocked[mesh.triangles[f->second][k]] = 1;
-  }
-  std::sort(chosen.begin(), chosen.end());
-  return chosen;
+/// Has the closed surface of one of the point's materials no more than `few` points, so that it needs them all?
+bool on_small_body(const SurfaceMesh& mesh, const VertexTable& facets_at, std::uint32_t point, std::size_t few) {
+  std::vector<std::uint16_t> seen;
+  for (const std::uint32_t corner : facets_at.corners(point))
+    for (const std::uint16_t material : mesh.materials[corner / 3]) {
+      if (std::find(seen.begin(), seen.end(), material) != seen.end()) continue;
+      seen.push_back(material);
+      std::vector<std::uint32_t> reached{point};
+      for (std::size_t next = 0; next < reached.size() && reached.size() <= few; ++next)
+        for (const std::uint32_t at : facets_at.corners(reached[next])) {
+          const auto& pair = mesh.materials[at / 3];
+          if (pair[0] != material && pair[1] != material) continue;
+          for (int k = 0; k < 3; ++k) {
+            const std::uint32_t other = mesh.triangles[at / 3][k];
+            if (std::find(reached.begin(), reached.end(), other) == reached.end()) reached.push_back(other);
+          }
+        }
+      if (reached.size() <= few) return true;
+    }
+  return false;
 }
 
-/// Facets at edges that two materials alone share more than twice.
-void find_touching(const SurfaceMesh& mesh, MeshDefects& defects) {
-  struct Side {
-    std::uint64_t edge;
-    std::uint32_t facet;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint64_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      sides.push_back({std::min(a, b) << 32 | std::max(a, b), std::uint32_t(t)});
-    }
-  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.facet < b.facet;
-  });
-  std::vector<std::uint32_t> facets;
-  for (std::size_t i = 0, j = 0; i < sides.size(); i = j) {
-    while (j < sides.size() && sides[j].edge == sides[i].edge) ++j;
-    if (j - i < 3) continue;
-    const auto same = [&](const Side& s) { return mesh.materials[s.facet] == mesh.materials[sides[i].facet]; };
-    if (!std::all_of(sides.begin() + std::ptrdiff_t(i), sides.begin() + std::ptrdiff_t(j), same)) continue;
-    ++defects.nonmanifold_edges;
-    for (std::size_t k = i; k < j; ++k) facets.push_back(sides[k].facet);
+/// Where points are too few to take one away, another one splits the longest edge of a bad triangle.
+void split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size, std::uint32_t t,
+           MeshDefects& defects) {
+  const Triangle& c = mesh.triangles[t];
+  const auto p = corners(mesh, t);
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if (length(p[(k + 1) % 3] - p[k]) > length(p[(longest + 1) % 3] - p[longest])) longest = k;
+  const std::uint32_t a = c[longest], b = c[(longest + 1) % 3];
+  if (order[a] == 2 && order[b] == 2 &&
+      length(mesh.points[b] - mesh.points[a]) > long_edge * std::min(size[a], size[b]))
+    defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t]});
+}
+
+/// Points wished away, the worst triangles first, no two of one triangle.
+void choose(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const std::uint8_t> order,
+            std::span<const float> size, std::vector<Wish>& wishes, MeshDefects& defects) {
+  std::sort(wishes.begin(), wishes.end(),
+            [](const Wish& a, const Wish& b) { return a.ratio != b.ratio ? a.ratio < b.ratio : a.point < b.point; });
+  std::vector<std::uint8_t> blocked(mesh.points.size(), 0);
+  for (const Wish& w : wishes) {
+    if (blocked[w.point]) continue;
+    if (on_small_body(mesh, facets_at, w.point, w.few))
+      split(mesh, order, size, w.triangle, defects);
+    else
+      defects.remove.push_back(w.point);
+    for (const std::uint32_t corner : facets_at.corners(w.point))
+      for (int k = 0; k < 3; ++k) blocked[mesh.triangles[corner / 3][k]] = 1;
+  }
+  std::sort(defects.remove.begin(), defects.remove.end());
+}
+
+bool has_corner(const Triangle& t, std::uint32_t point) { return t.a == point || t.b == point || t.c == point; }
+
+/// New points in the facets where a surface of two materials touches itself; not next to old ones.
+void fill_in(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const float> size,
+             std::span<const std::array<std::uint32_t, 2>> touching, MeshDefects& defects) {
+  std::vector<std::uint32_t> facets, here;
+  for (const auto& [a, b] : touching) {
+    here.clear();
+    for (const std::uint32_t corner : facets_at.corners(a))
+      if (has_corner(mesh.triangles[corner / 3], b)) here.push_back(corner / 3);
+    const auto alike = [&](std::uint32_t t) { return mesh.materials[t] == mesh.materials[here[0]]; };
+    if (std::all_of(here.begin(), here.end(), alike)) facets.insert(facets.end(), here.begin(), here.end());
   }
   std::sort(facets.begin(), facets.end());
   facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
   for (const std::uint32_t t : facets) {
     const auto p = corners(mesh, t);
-    defects.insert.push_back({(p[0] + p[1] + p[2]) / 3.0, mesh.materials[t]});
+    const Vec3d middle = (p[0] + p[1] + p[2]) / 3.0;
+    const auto crowded = [&](int k) { return length(p[k] - middle) < too_close * size[mesh.triangles[t][k]]; };
+    if (!crowded(0) && !crowded(1) && !crowded(2)) defects.insert.push_back({middle, mesh.materials[t]});
   }
 }
 
 }  // namespace
 
-MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size) {
+MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
+                         std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule) {
   MeshDefects defects;
   std::vector<Wish> wishes;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto p = corners(mesh, t);
     const double ratio = radius_ratio(p[0], p[1], p[2]);
     if (ratio > 0.75) continue;  // then no angle is under 25 degrees
+    const Triangle& c = mesh.triangles[t];
+    const bool near = std::min({order[c.a], order[c.b], order[c.c]}) < 2;
     const std::array<double, 3> angles = triangle_angles(p[0], p[1], p[2]);
-    if (ratio >= 0.4 && *std::min_element(angles.begin(), angles.end()) >= 25) continue;
+    const double least = *std::min_element(angles.begin(), angles.end());
+    if (ratio >= (near ? rule.near : rule.ratio) && least >= rule.angle) continue;
     ++defects.bad_triangles;
-    const std::uint32_t point = culprit(mesh, t, order, size, angles);
-    if (point != none) wishes.push_back({ratio, point});
+    std::size_t few = small_body;
+    const std::uint32_t point = culprit(mesh, t, order, size, angles, few);
+    if (point != none) wishes.push_back({ratio, point, std::uint32_t(t), few});
   }
-  defects.remove = choose(mesh, wishes);
-  find_touching(mesh, defects);
+  if (wishes.empty() && touching.empty()) return defects;
+  const VertexTable facets_at(mesh.triangles, mesh.points.size());
+  choose(mesh, facets_at, order, size, wishes, defects);
+  fill_in(mesh, facets_at, size, touching, defects);
   return defects;
 }
 

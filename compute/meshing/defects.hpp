@@ -1,6 +1,7 @@
 // Nacre: which particles spoil triangles, and where some are missing.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,23 +10,35 @@
 
 namespace nacre {
 
+/// Which triangles are bad.
+struct DefectRule {
+  double angle = 25;   ///< one under this, degrees
+  double ratio = 0.4;  ///< or the radius ratio under this
+  double near = 0.4;   ///< ... where a corner is on a junction
+};
+
+/// The least that is asked of a mesh, with a margin: what further rounds are worth their time for.
+inline constexpr DefectRule worst_defects{0, 0.31, 0.17};
+
 /// What to change about the particles of a mesh before they are triangulated again.
 struct MeshDefects {
   struct NewPoint {
     Vec3d place;
     std::array<std::uint16_t, 2> materials;
   };
-  std::int64_t bad_triangles = 0;      ///< with an angle under 25 degrees or a radius ratio under 0.4
-  std::int64_t nonmanifold_edges = 0;  ///< where two materials meet in more than two facets
-  std::vector<std::uint32_t> remove;   ///< points of the mesh, ascending; no two of them share a triangle
-  std::vector<NewPoint> insert;        ///< near the interface of two materials
+  std::int64_t bad_triangles = 0;
+  std::vector<std::uint32_t> remove;  ///< points of the mesh, ascending; no two of them share a triangle
+  std::vector<NewPoint> insert;       ///< near the interface of two materials
 };
 
 /// Bad triangles come from particles that are far too close together (under half of the smaller `size`): one of the two is
 /// to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all edges are
-/// long, from one that lies flat between its neighbours: it is to go if it is on a surface. Edges where a surface touches
-/// itself show that it is too coarsely sampled: new points in the middle of the facets there. `order` (2 surface, 1 curve,
-/// 0 point) and `size` (world units) are per point of the mesh.
-MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size);
+/// long, from one that lies flat between its neighbours: it is to go if it is on a surface. Small bodies keep theirs (a
+/// closed surface of 24 points; of 12, if they are too close together), but for those nearer than 0.2 sizes; there a new
+/// point splits the longest edge, if it is long. `touching` are edges (two points), or vertices (one point twice), where a
+/// surface touches itself: off the junctions that shows that it is too coarsely sampled, and new points go into the middle
+/// of the facets there. `order` (2 surface, 1 curve, 0 point) and `size` (world units) are per point of the mesh.
+MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
+                         std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
 
 }  // namespace nacre

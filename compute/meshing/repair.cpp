@@ -22,6 +22,9 @@ namespace {
 
 constexpr std::size_t most_cells = 16;  // that one change may touch
 constexpr double flat = 0.02;           // volume by longest edge^3; 0.118 in a regular cell
+constexpr int most_steps = 3;           // of changes that help together only
+constexpr int most_debt = 3;            // how much worse it may be in between
+constexpr int most_tries = 1000;        // at one place
 
 /// An edge (a < b), or the vertex a where a == b, and a cell that has it.
 struct Place {
@@ -36,6 +39,7 @@ struct Change {
   std::vector<std::int32_t> cells;
   std::uint16_t label;
   double volume;
+  bool may_vanish = false;  ///< their material goes on beyond the place, so that no body is lost with them
 };
 
 class Repair {
@@ -48,19 +52,34 @@ class Repair {
   LabelRepair run() {
     fill_pockets();
     for (const Place& place : find_places()) waiting_.push_back(place);
-    std::vector<Place> given_up;
-    while (!waiting_.empty()) {
-      const Place place = waiting_.front();
-      waiting_.pop_front();
-      if (excess(place) > 0 && !improve(place)) given_up.push_back(place);
+    // Most give way to one change. What does not is tried again once all is quiet around it: without its crumbs, then
+    // by several changes.
+    std::vector<Place> stuck = work_off(0);
+    for (const int steps : {0, most_steps}) {
+      crumbs_may_go_ = true;
+      waiting_.assign(stuck.begin(), stuck.end());
+      stuck = work_off(steps);
     }
-    std::sort(given_up.begin(), given_up.end());
-    given_up.erase(std::unique(given_up.begin(), given_up.end()), given_up.end());
-    for (const Place& place : given_up) result_.left += excess(place) > 0;
+    for (const Place& place : stuck) result_.places.push_back({place.a, place.b});
+    result_.left = std::int64_t(stuck.size());
     return result_;
   }
 
  private:
+  /// Improves what waits; returns what still touches itself, ascending.
+  std::vector<Place> work_off(int steps) {
+    std::vector<Place> stuck;
+    while (!waiting_.empty()) {
+      const Place place = waiting_.front();
+      waiting_.pop_front();
+      if (excess(place) > 0 && !improve(place, steps)) stuck.push_back(place);
+    }
+    std::sort(stuck.begin(), stuck.end());
+    stuck.erase(std::unique(stuck.begin(), stuck.end()), stuck.end());
+    std::erase_if(stuck, [&](const Place& place) { return excess(place) == 0; });
+    return stuck;
+  }
+
   std::uint16_t label_at(std::int32_t cell) const { return cell < 0 ? std::uint16_t(0) : label_[cell]; }
 
   double volume(std::int32_t cell) const {
@@ -149,7 +168,7 @@ class Repair {
   bool apply(const Change& change, std::uint16_t old) {
     for (std::size_t i = 0; i < change.cells.size(); ++i) {
       const std::int32_t cell = change.cells[i];
-      if (left_[old] == 1 || (is_alone(cell) && !is_flat(cell))) {
+      if (left_[old] == 1 || (is_alone(cell) && !is_flat(cell) && !change.may_vanish)) {
         take_back(change, i, old);
         return false;
       }
@@ -166,84 +185,139 @@ class Repair {
     left_[change.label] -= std::int64_t(applied);
   }
 
-  /// Makes the change if that lowers the excess around it by `gain` at least.
-  bool try_change(const Change& change, int gain) {
+  /// Makes the change if that lowers the excess around it by `gain` at least, maybe with up to `steps` more where it
+  /// does harm. A change concerns the places of its own cells alone, so that what each one gains adds up.
+  bool try_change(const Change& change, int gain, int steps) {
     const std::uint16_t old = label_[change.cells[0]];
     const std::vector<Place> places = places_of(change.cells);
     const int before = excess(places);
     if (!apply(change, old)) return false;
-    if (before - excess(places) >= gain) {
+    const int missing = gain - (before - excess(places));
+    if (missing <= 0 || (steps > 0 && missing <= most_debt && make_up(places, missing, steps))) {
       result_.changed += std::int64_t(change.cells.size());
-      for (const Place& place : places) waiting_.push_back(place);
+      waiting_.insert(waiting_.end(), places.begin(), places.end());
       return true;
     }
     take_back(change, change.cells.size(), old);
     return false;
   }
 
+  bool make_up(const std::vector<Place>& places, int gain, int steps) {
+    for (const Place& place : places) {
+      if (excess(place) == 0) continue;
+      for (const Change& change : changes_at(place)) {
+        if (--tries_ <= 0) return false;
+        if (try_change(change, gain, steps - 1)) return true;
+      }
+    }
+    return false;
+  }
+
   /// The smallest change at a place that helps.
-  bool improve(const Place& place) {
+  bool improve(const Place& place, int steps) {
+    tries_ = most_tries;
+    const std::vector<Change> changes = changes_at(place);
+    return std::any_of(changes.begin(), changes.end(), [&](const Change& c) { return try_change(c, 1, steps); });
+  }
+
+  /// The smallest first.
+  std::vector<Change> changes_at(const Place& place) {
     std::vector<Change> changes = place.a == place.b ? changes_at_vertex(place) : changes_at_edge(place);
     std::stable_sort(changes.begin(), changes.end(),
                      [](const Change& s, const Change& t) { return s.volume < t.volume; });
-    return std::any_of(changes.begin(), changes.end(), [&](const Change& c) { return try_change(c, 1); });
+    return changes;
   }
 
-  void add_changes(std::vector<Change>& changes, const std::vector<std::int32_t>& cells,
-                   std::vector<std::uint16_t> labels) const {
-    if (cells.empty() || cells.size() > most_cells || cells[0] < 0) return;
+  /// A part of a material at a place, and the labels beside it.
+  struct Part {
+    std::vector<std::int32_t> cells;
+    std::vector<std::uint16_t> beside;
+  };
+
+  /// Each part could get the label of one beside it. So could all of a crumb that touches the rest of its material here
+  /// alone.
+  std::vector<Change> changes_of(const std::vector<Part>& parts) const {
+    std::vector<Change> changes;
+    for (const Part& part : parts) {
+      if (part.cells[0] < 0) continue;  // beyond the hull
+      const auto alike = [&](const Part& p) { return label_at(p.cells[0]) == label_at(part.cells[0]); };
+      const bool several = crumbs_may_go_ && std::count_if(parts.begin(), parts.end(), alike) > 1;
+      add_changes(changes, part, several);
+      if (!several || part.cells.size() > most_cells) continue;
+      const Part crumb = component_of(part.cells);
+      if (crumb.cells.size() > part.cells.size()) add_changes(changes, crumb, true);
+    }
+    return changes;
+  }
+
+  /// What hangs together with the cells, as far as that is no more than one change may touch.
+  Part component_of(const std::vector<std::int32_t>& cells) const {
+    Part whole{cells, {}};
+    for (std::size_t next = 0; next < whole.cells.size() && whole.cells.size() <= most_cells; ++next)
+      for (const std::int32_t beyond : cells_.neighbours[whole.cells[next]]) {
+        if (label_at(beyond) != label_[cells[0]])
+          whole.beside.push_back(label_at(beyond));
+        else if (beyond >= 0 && std::find(whole.cells.begin(), whole.cells.end(), beyond) == whole.cells.end())
+          whole.cells.push_back(beyond);
+      }
+    return whole;
+  }
+
+  void add_changes(std::vector<Change>& changes, const Part& part, bool may_vanish) const {
+    if (part.cells.size() > most_cells) return;
     double sum = 0;
-    for (const std::int32_t cell : cells) {
+    for (const std::int32_t cell : part.cells) {
       if (cell < 0) return;
       sum += volume(cell);
     }
+    std::vector<std::uint16_t> labels = part.beside;
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
     for (const std::uint16_t m : labels)
-      if (m != label_[cells[0]]) changes.push_back({cells, m, sum});
+      if (m != label_[part.cells[0]]) changes.push_back({part.cells, m, sum, may_vanish});
   }
 
-  /// Each wedge around the edge could become part of one of its two neighbours.
+  /// Parts: the wedges around the edge.
   std::vector<Change> changes_at_edge(const Place& edge) {
     std::vector<std::int32_t> ring = rings_.around_edge(edge.a, edge.b, edge.cell);
     std::size_t begin = 0;
     while (begin < ring.size() && label_at(ring[begin]) == label_at(ring.back())) ++begin;
     std::rotate(ring.begin(), ring.begin() + std::ptrdiff_t(begin % ring.size()), ring.end());
-    std::vector<Change> changes;
+    std::vector<Part> wedges;
     for (std::size_t i = 0; i < ring.size();) {
-      const std::uint16_t before = label_at(ring[(i + ring.size() - 1) % ring.size()]);
-      std::vector<std::int32_t> wedge;
+      Part wedge;
       const std::uint16_t here = label_at(ring[i]);
-      while (i < ring.size() && label_at(ring[i]) == here) wedge.push_back(ring[i++]);
-      add_changes(changes, wedge, {before, label_at(ring[i % ring.size()])});
+      wedge.beside = {label_at(ring[(i + ring.size() - 1) % ring.size()])};
+      while (i < ring.size() && label_at(ring[i]) == here) wedge.cells.push_back(ring[i++]);
+      wedge.beside.push_back(label_at(ring[i % ring.size()]));
+      wedges.push_back(std::move(wedge));
     }
-    return changes;
+    return changes_of(wedges);
   }
 
-  /// Cells at the vertex that hang together by facets at it could get the label of any of their neighbours there.
+  /// Parts: cells at the vertex that hang together by facets at it.
   std::vector<Change> changes_at_vertex(const Place& vertex) {
     const std::vector<std::int32_t> star = rings_.around_vertex(vertex.a, vertex.cell);
     std::vector<char> done(star.size());
-    std::vector<Change> changes;
+    std::vector<Part> parts;
     for (std::size_t first = 0; first < star.size(); ++first) {
       if (done[first]) continue;
       done[first] = 1;
-      std::vector<std::int32_t> part = {star[first]};
-      std::vector<std::uint16_t> beside;
-      for (std::size_t next = 0; next < part.size(); ++next)
+      Part part{{star[first]}, {}};
+      for (std::size_t next = 0; next < part.cells.size(); ++next)
         for (int k = 0; k < 4; ++k) {
-          if (cells_.vertices[part[next]][k] == vertex.a) continue;
-          const std::int32_t beyond = cells_.neighbours[part[next]][k];
+          if (cells_.vertices[part.cells[next]][k] == vertex.a) continue;
+          const std::int32_t beyond = cells_.neighbours[part.cells[next]][k];
           if (label_at(beyond) != label_[star[first]]) {
-            beside.push_back(label_at(beyond));
+            part.beside.push_back(label_at(beyond));
           } else if (beyond >= 0) {
             const auto i = std::find(star.begin(), star.end(), beyond) - star.begin();
-            if (!std::exchange(done[std::size_t(i)], 1)) part.push_back(beyond);
+            if (!std::exchange(done[std::size_t(i)], 1)) part.cells.push_back(beyond);
           }
         }
-      add_changes(changes, part, std::move(beside));
+      parts.push_back(std::move(part));
     }
-    return changes;
+    return changes_of(parts);
   }
 
   // ---- where to begin
@@ -261,7 +335,7 @@ class Repair {
     for (const std::int32_t pocket : pockets) {
       const std::uint16_t wanted = largest_neighbour(pocket);
       if (!is_alone(pocket) || wanted == label_[pocket]) continue;
-      result_.pockets += try_change({{pocket}, wanted, 0}, 0);
+      result_.pockets += try_change({{pocket}, wanted, 0}, 0, 0);
     }
     waiting_.clear();  // all of it is looked at afterwards
   }
@@ -315,6 +389,8 @@ class Repair {
   std::vector<UmbrellaCounter::Facet> facets_;
   std::vector<std::int64_t> left_;  // cells per label
   std::deque<Place> waiting_;
+  int tries_ = 0;
+  bool crumbs_may_go_ = false;
   LabelRepair result_;
 };
 

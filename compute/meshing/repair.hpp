@@ -1,6 +1,7 @@
 // Nacre: labels of Delaunay cells changed where the surface between them would touch itself.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,16 +13,17 @@ namespace nacre {
 
 /// What `repair_labels` did.
 struct LabelRepair {
-  std::int64_t changed = 0;  ///< cells that got another label
-  std::int64_t pockets = 0;  ///< of these, flat cells that were all of their component
-  std::int64_t left = 0;     ///< edges and vertices that still touch themselves
+  std::int64_t changed = 0;                          ///< cells that got another label
+  std::int64_t pockets = 0;                          ///< of these, flat cells that were all of their component
+  std::int64_t left = 0;                             ///< edges and vertices that still touch themselves
+  std::vector<std::array<std::uint32_t, 2>> places;  ///< these: ends of an edge, or a vertex twice; ascending
 };
 
 /// Changes labels of cells until every material meets an edge in one wedge, so that no edge off the junctions has more
-/// than two facets, and until the surface of a material passes through each vertex once. Each change lowers the number
-/// of such edges and vertices around it, takes the smallest cells that do, and never removes a connected component of a
-/// material, unless that is one flat cell. Looks at facets between labels only. The result depends on its arguments
-/// alone.
+/// than two facets, and until the surface of a material passes through each vertex once. Each change, alone or with up
+/// to three more, lowers the number of such edges and vertices around it and takes the smallest cells that do. None
+/// removes a connected component of a material, unless that is one flat cell, or a crumb that touches more of its
+/// material at an edge or a vertex. Looks at facets between labels only. The result depends on its arguments alone.
 LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label);
 
 }  // namespace nacre

@@ -82,6 +82,8 @@ struct MeshInfo {
   int iterations = 0;                                                   ///< of the surfaces
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
+  std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
+  double final_energy = 0;          ///< mean on surfaces, measured alike for all solvers: by the tree, with theta 0
 };
 
 /// Where the particles are, world coordinates.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "compute/embedding/build_interface_grid.hpp"
@@ -50,9 +51,10 @@ class MeshPipelineOf : public MeshPipeline {
   void relax_by_tree(int order, double from, double to);
   void relax_by_turns(int order, double from, double to);
   void note_iteration(int order, double energy, std::int64_t movers);
+  void measure_energy();
   void polish();
-  bool mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles,
-            std::span<const std::uint32_t> point_of);
+  bool mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles, std::span<const std::uint32_t> point_of,
+            const LabelRepair& repair);
   void change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
   FieldGround field_ground() const { return {bricks_.view(), junction_.data(), size_.view()}; }
@@ -79,6 +81,7 @@ class MeshPipelineOf : public MeshPipeline {
   SolverState turns_;                   ///< of the serial and the red-black solver
   std::size_t volume_mark_ = 0, field_mark_ = 0;
   bool fields_ = false;
+  std::chrono::steady_clock::time_point seeded_;
   const std::atomic<bool>* stop_ = nullptr;
 };
 
@@ -246,14 +249,15 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
     tell("triangulate", 0.86);
     const MeshParticles particles = this->particles();
     std::vector<std::uint32_t> point_of;
+    LabelRepair repair;
     {
       auto stage = exec_.stage("triangulate");
       const DelaunayCells cells = delaunay(particles.points, exec_.device().threads());
       std::vector<std::uint16_t> label = material_at(cells.circumcentres);
-      repair_labels(particles.points, cells, label);
+      repair = repair_labels(particles.points, cells, label);
       mesh = extract_interfaces(particles.points, cells, label, &point_of);
     }
-    if (parameters.mend == 0 || !mend(round, mesh, particles, point_of)) break;
+    if (parameters.mend == 0 || !mend(round, mesh, particles, point_of, repair)) break;
   }
   const MeshParticles particles = this->particles();
   info_.final = std::int64_t(particles.points.size());

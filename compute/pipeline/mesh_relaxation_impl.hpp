@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "compute/particles/control.hpp"
 #include "compute/particles/field_surface.hpp"
@@ -69,6 +68,7 @@ void MeshPipelineOf<Backend>::relax() {
   make_solver();
   info_.energy.clear();
   info_.count.clear();
+  info_.seconds.clear();
   info_.iterations = 0;
   info_.seeded = 0;
   add_points();
@@ -77,6 +77,7 @@ void MeshPipelineOf<Backend>::relax() {
     relax_order(1, 0.18, 0.22);
     order = 2;
     relax_order(2, 0.22, 0.85);
+    measure_energy();
   } catch (const Interrupted&) {
     // What has been done so far can be triangulated, if every interface has its particles.
     exec_.watch(nullptr);
@@ -87,6 +88,15 @@ void MeshPipelineOf<Backend>::relax() {
   }
   auto stage = exec_.stage("relax");
   polish();
+}
+
+/// Each solver knows the energy while it moves particles; this one can be compared.
+template <class Backend>
+void MeshPipelineOf<Backend>::measure_energy() {
+  auto stage = exec_.stage("relax");
+  solver_->rebuild(exec_);
+  const RelatedView related = this->related();
+  info_.final_energy = solver_->forces(exec_, related, 2, 0, solver_->movers(exec_, related, 2));
 }
 
 /// Brings all particles onto the fields; those that have strayed from their interface are taken out.
@@ -145,6 +155,7 @@ template <class Backend>
 void MeshPipelineOf<Backend>::relax_order(int order, double from, double to) {
   seed_order(order);
   if (solver_->particles().count == solver_->particles().fixed) return;
+  seeded_ = std::chrono::steady_clock::now();
   if (parameters.solver == "tree")
     relax_by_tree(order, from, to);
   else
@@ -156,6 +167,7 @@ void MeshPipelineOf<Backend>::note_iteration(int order, double energy, std::int6
   if (order != 2) return;
   info_.energy.push_back(energy);
   info_.count.push_back(movers);
+  info_.seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - seeded_).count());
   ++info_.iterations;
 }
 
@@ -231,26 +243,27 @@ void MeshPipelineOf<Backend>::relax_by_turns(int order, double from, double to) 
 }
 
 /// Takes away the particles that spoil triangles, adds some where a surface touches itself, and lets the others close up.
-/// False where nothing is left to mend.
+/// Past the rounds that were asked for, a few more mend what falls short of the least that is asked of a mesh. False where
+/// nothing is left to mend.
 template <class Backend>
 bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles,
-                                   std::span<const std::uint32_t> point_of) {
+                                   std::span<const std::uint32_t> point_of, const LabelRepair& repair) {
   auto stage = exec_.stage("mend");
+  constexpr int further_rounds = 4;
+  if (round >= parameters.mend + further_rounds) return false;
   std::vector<std::uint8_t> order(point_of.size());
   std::vector<float> size(point_of.size());
   for (std::size_t v = 0; v < point_of.size(); ++v)
     order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
-  MeshDefects defects = find_defects(mesh, order, size);
-  if (round >= parameters.mend)
-    defects.remove.clear();  // only what makes the surface touch itself is worth more rounds
-  if (round >= parameters.mend + 4 || (defects.remove.empty() && defects.insert.empty())) return false;
-  // An island of a few particles needs them all.
-  constexpr std::int64_t few = 24;
+  std::vector<std::array<std::uint32_t, 2>> touching = repair.places;
+  for (auto& place : touching)  // particles; the mesh has those that facets use, in the same order
+    for (std::uint32_t& p : place)
+      p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
+  const MeshDefects defects =
+      find_defects(mesh, order, size, touching, round < parameters.mend ? DefectRule() : worst_defects);
+  if (defects.remove.empty() && defects.insert.empty()) return false;
   std::vector<std::uint8_t> gone(particles.points.size(), 0);
-  std::map<std::array<std::uint16_t, 4>, std::int64_t> count;
-  for (const auto& materials : particles.materials) ++count[materials];
-  for (const std::uint32_t v : defects.remove)
-    if (count[particles.materials[point_of[v]]] > few || particles.order[point_of[v]] < 2) gone[point_of[v]] = 1;
+  for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
   change_particles(gone, defects.insert);
   polish();                     // also brings new points onto their interfaces
   if (round >= 2) return true;  // moving all would spoil others

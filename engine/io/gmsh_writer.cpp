@@ -27,47 +27,67 @@ void write_points(Chunks& out, std::span<const Vec3d> points) {
   out.print("\n$EndNodes\n");
 }
 
+void write_groups(Chunks& out, const GmshMesh& mesh) {
+  std::size_t groups = 0;
+  for (const GmshMesh::Block& block : mesh.blocks) groups += block.groups.size();
+  out.print("$PhysicalNames\n{}\n", groups);
+  for (const GmshMesh::Block& block : mesh.blocks)
+    for (const auto& [tag, name] : block.groups) out.print("{} {} {}\n", block.corners - 1, tag, quoted(name));
+  out.print("$EndPhysicalNames\n");
+}
+
 void write_cells(Chunks& out, const GmshMesh& mesh) {
   constexpr std::int32_t triangle = 2, tetrahedron = 4, tags = 2;
-  out.print("$Elements\n{}\n", mesh.cells);
-  out.raw(mesh.corners == 3 ? triangle : tetrahedron);
-  out.raw(std::int32_t(mesh.cells));
-  out.raw(tags);
-  for (std::size_t i = 0; i < mesh.cells; ++i) {
-    const std::int32_t group = mesh.group(i);
-    out.raw(std::int32_t(i + 1));
-    out.raw(group);  // physical
-    out.raw(group);  // elementary
-    for (int k = 0; k < mesh.corners; ++k) out.raw(std::int32_t(mesh.corner(i, k) + 1));
+  out.print("$Elements\n{}\n", mesh.cells());
+  std::int32_t number = 0;
+  for (const GmshMesh::Block& block : mesh.blocks) {
+    if (block.cells == 0) continue;
+    out.raw(block.corners == 3 ? triangle : tetrahedron);
+    out.raw(std::int32_t(block.cells));
+    out.raw(tags);
+    for (std::size_t i = 0; i < block.cells; ++i) {
+      const std::int32_t group = block.group(i);
+      out.raw(++number);
+      out.raw(group);  // physical
+      out.raw(group);  // elementary
+      for (int k = 0; k < block.corners; ++k) out.raw(std::int32_t(block.corner(i, k) + 1));
+    }
   }
   out.print("\n$EndElements\n");
 }
 
-void write_numbers(Chunks& out, const GmshMesh::Numbers& numbers, std::size_t cells) {
-  out.print("$ElementData\n1\n{}\n1\n0\n3\n0\n1\n{}\n", quoted(numbers.name), cells);
-  for (std::size_t i = 0; i < cells; ++i) {
-    out.raw(std::int32_t(i + 1));
-    out.raw(numbers.of(i));
-  }
+void write_numbers(Chunks& out, const GmshMesh::Numbers& numbers, const GmshMesh& mesh) {
+  out.print("$ElementData\n1\n{}\n1\n0\n3\n0\n1\n{}\n", quoted(numbers.name), mesh.cells());
+  std::int32_t number = 0;
+  for (std::size_t block = 0; block < mesh.blocks.size(); ++block)
+    for (std::size_t i = 0; i < mesh.blocks[block].cells; ++i) {
+      out.raw(++number);
+      out.raw(numbers.of(block, i));
+    }
   out.print("\n$EndElementData\n");
 }
 
 }  // namespace
 
+std::size_t GmshMesh::cells() const {
+  std::size_t sum = 0;
+  for (const Block& block : blocks) sum += block.cells;
+  return sum;
+}
+
 void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh) {
   constexpr auto most = std::size_t(std::numeric_limits<std::int32_t>::max());
-  if (mesh.points.size() > most || mesh.cells > most)
+  if (mesh.points.size() > most || mesh.cells() > most)
     throw Error("cannot write " + file.string(), "Gmsh's format counts to 2,147,483,647", "use .vtp or .vtu");
   OutputFile target(file);
   Chunks out(target);
   out.print("$MeshFormat\n2.2 1 8\n");
   out.raw(std::int32_t(1));
-  out.print("\n$EndMeshFormat\n$PhysicalNames\n{}\n", mesh.groups.size());
-  for (const auto& [tag, name] : mesh.groups) out.print("{} {} {}\n", mesh.corners - 1, tag, quoted(name));
-  out.print("$EndPhysicalNames\n");
+  out.print("\n$EndMeshFormat\n");
+  write_groups(out, mesh);
   write_points(out, mesh.points);
   write_cells(out, mesh);
-  for (const GmshMesh::Numbers& numbers : mesh.numbers) write_numbers(out, numbers, mesh.cells);
+  for (const GmshMesh::Numbers& numbers : mesh.numbers) write_numbers(out, numbers, mesh);
   out.flush();
   target.commit();
 }

@@ -13,24 +13,30 @@
 
 namespace nacre {
 
-/// What a .msh is made of: cells of one kind, each in one physical group.
+/// What a .msh is made of: blocks of cells of one kind each, every cell in one physical group. Cells are numbered
+/// through all blocks.
 struct GmshMesh {
   struct Group {
-    std::int32_t tag;  ///< > 0
+    std::int32_t tag;  ///< > 0; those of triangles and of tetrahedra do not meet
     std::string name;
+  };
+  struct Block {
+    int corners = 3;  ///< per cell: 3 triangles, 4 tetrahedra
+    std::size_t cells = 0;
+    std::function<std::uint32_t(std::size_t cell, int k)> corner;
+    std::function<std::int32_t(std::size_t cell)> group;  ///< its tag
+    std::vector<Group> groups;
   };
   struct Numbers {
     std::string name;
-    std::function<double(std::size_t cell)> of;
+    std::function<double(std::size_t block, std::size_t cell)> of;
   };
 
   std::span<const Vec3d> points;
-  int corners = 3;  ///< per cell: 3 triangles, 4 tetrahedra
-  std::size_t cells = 0;
-  std::function<std::uint32_t(std::size_t cell, int k)> corner;
-  std::function<std::int32_t(std::size_t cell)> group;  ///< its tag
-  std::vector<Group> groups;
-  std::vector<Numbers> numbers;  ///< written as $ElementData
+  std::vector<Block> blocks;
+  std::vector<Numbers> numbers;  ///< written as $ElementData of all cells: readers such as meshio want no gaps
+
+  std::size_t cells() const;
 };
 
 /// Readable by Gmsh, meshio and others that know version 2.2. Throws Error where there are more than 2^31 - 1 points or

@@ -129,16 +129,23 @@ void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
   target.commit();
 }
 
-void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+/// Triangles, one physical group per pair of materials.
+GmshMesh::Block gmsh_triangles(const SurfaceMesh& mesh, Labels labels) {
+  GmshMesh::Block block;
   const std::map<Pair, std::int32_t> pairs = numbered_pairs(mesh);
+  block.cells = mesh.triangles.size();
+  block.corner = [&mesh](std::size_t i, int k) { return mesh.triangles[i][k]; };
+  block.group = [&mesh, pairs](std::size_t i) { return pairs.at(mesh.materials[i]); };
+  for (const auto& [pair, tag] : pairs) block.groups.push_back({tag, pair_name(pair, labels)});
+  return block;
+}
+
+void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
   GmshMesh out;
   out.points = mesh.points;
-  out.cells = mesh.triangles.size();
-  out.corner = [&](std::size_t i, int k) { return mesh.triangles[i][k]; };
-  out.group = [&](std::size_t i) { return pairs.at(mesh.materials[i]); };
-  for (const auto& [pair, tag] : pairs) out.groups.push_back({tag, pair_name(pair, labels)});
+  out.blocks.push_back(gmsh_triangles(mesh, labels));
   for (CellNumbers& side : side_numbers(mesh, labels))
-    out.numbers.push_back({side.name, [of = side.of](std::size_t i) { return double(of(i)); }});
+    out.numbers.push_back({side.name, [of = side.of](std::size_t, std::size_t i) { return double(of(i)); }});
   write_gmsh(file, out);
 }
 
@@ -166,13 +173,12 @@ Surface surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
 
 void write_one_material(const fs::path& file, const Surface& surface, const std::string& name) {
   if (checked_extension(file, surface_mesh_extensions()) != ".msh") return write_surface(file, surface);
-  GmshMesh out;
-  out.points = surface.points;
-  out.cells = surface.triangles.size();
-  out.corner = [&](std::size_t i, int k) { return surface.triangles[i][k]; };
-  out.group = [](std::size_t) { return 1; };
-  out.groups = {{1, name}};
-  write_gmsh(file, out);
+  GmshMesh::Block triangles;
+  triangles.cells = surface.triangles.size();
+  triangles.corner = [&](std::size_t i, int k) { return surface.triangles[i][k]; };
+  triangles.group = [](std::size_t) { return 1; };
+  triangles.groups = {{1, name}};
+  write_gmsh(file, {surface.points, {std::move(triangles)}, {}});
 }
 
 void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels) {
@@ -203,20 +209,33 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels)
 }
 
 /// Physical groups are the labels themselves where those are positive, else the materials' numbers.
-void write_msh(const fs::path& file, const TetrahedralMesh& mesh, Labels labels) {
+GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels) {
   const std::set<std::uint16_t> present(mesh.material.begin(), mesh.material.end());
   const bool usable = std::all_of(present.begin(), present.end(), [&](std::uint16_t m) {
     return labels[m] > 0 && labels[m] <= std::numeric_limits<std::int32_t>::max();
   });
-  const auto tag = [&, usable](std::uint16_t m) { return usable ? std::int32_t(labels[m]) : std::int32_t(m); };
+  const auto tag = [labels, usable](std::uint16_t m) { return usable ? std::int32_t(labels[m]) : std::int32_t(m); };
+  GmshMesh::Block block;
+  block.corners = 4;
+  block.cells = mesh.cells.size();
+  block.corner = [&mesh](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; };
+  block.group = [&mesh, tag](std::size_t i) { return tag(mesh.material[i]); };
+  for (const std::uint16_t m : present) block.groups.push_back({tag(m), fmt::format("material_{}", labels[m])});
+  return block;
+}
+
+/// The triangles between the materials, then the tetrahedra. A tetrahedron has its own label on both sides; a triangle's
+/// `material` is the one that its normal points out of.
+void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels) {
   GmshMesh out;
   out.points = mesh.points;
-  out.corners = 4;
-  out.cells = mesh.cells.size();
-  out.corner = [&](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; };
-  out.group = [&](std::size_t i) { return tag(mesh.material[i]); };
-  for (const std::uint16_t m : present) out.groups.push_back({tag(m), fmt::format("material_{}", labels[m])});
-  out.numbers = {{"material", [&](std::size_t i) { return double(labels[mesh.material[i]]); }}};
+  out.blocks = {gmsh_triangles(surface, labels), gmsh_tetrahedra(mesh, labels)};
+  const auto label_of = [&](std::size_t side) {
+    return [&mesh, &surface, labels, side](std::size_t block, std::size_t i) {
+      return double(labels[block == 0 ? surface.materials[i][side] : mesh.material[i]]);
+    };
+  };
+  out.numbers = {{"material", label_of(1)}, {"material_0", label_of(0)}, {"material_1", label_of(1)}};
   write_gmsh(file, out);
 }
 
@@ -258,11 +277,14 @@ std::vector<fs::path> write_material_surfaces(const fs::path& file, const Surfac
   return written;
 }
 
-void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, Labels labels) {
+void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
+                            Labels labels) {
   const std::string extension = checked_extension(file, tetrahedral_mesh_extensions());
   check(file, mesh, labels);
+  check(file, surface, labels);
+  if (surface.points.size() > mesh.points.size()) fail(file, "its surface has more points than it");
   if (extension == ".vtu") return write_vtu(file, mesh, labels);
-  write_msh(file, mesh, labels);
+  write_msh(file, mesh, surface, labels);
 }
 
 }  // namespace nacre

@@ -27,9 +27,13 @@ void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& me
 std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem::path& file, const SurfaceMesh& mesh,
                                                            std::span<const std::int64_t> labels);
 
-/// Writes `mesh` as .vtu or .msh (Gmsh 2.2, binary) with the label of each cell as `material`; .msh has one physical
-/// group per material, too. Throws Error for other extensions, for an empty or broken mesh, and where writing fails.
-void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh,
+/// Writes `mesh` as .vtu or .msh (Gmsh 2.2, binary) with the label of each cell as `material`. `surface` is the mesh that
+/// was filled: its points are the first ones of `mesh`, its triangles the facets between materials. .msh has these, too,
+/// before the tetrahedra, with `material_0` and `material_1` as in write_surface_mesh (a tetrahedron has its own label
+/// in both, a triangle's `material` is its `material_1`); one physical group per pair of materials of the triangles and
+/// per material of the tetrahedra. Throws Error for other extensions, for an empty or broken mesh, and where writing
+/// fails.
+void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
                             std::span<const std::int64_t> labels);
 
 /// Extensions, lower case, with dot.

@@ -66,6 +66,36 @@ TEST_F(MeshOutput, TetrahedraFillEveryMaterial) {
   EXPECT_GT(read_json("r.json")["tetrahedra"]["cells"], coarse);
 }
 
+/// The number in the line after `heading`, each time that this stands in a file.
+std::vector<std::size_t> counts_after(const std::string& file, const std::string& heading) {
+  std::vector<std::size_t> counts;
+  for (std::size_t at = file.find(heading); at != std::string::npos; at = file.find(heading, at + 1))
+    counts.push_back(std::stoul(file.substr(at + heading.size())));
+  return counts;
+}
+
+TEST_F(MeshOutput, GmshFilesHoldTheTrianglesWithOrWithoutTetrahedra) {
+  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("a.msh"), "--report", path("r.json")}).status, 0);
+  const json filled = read_json("r.json");
+  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("b.msh"), "--surface-only", "--report", path("r.json")}).status, 0);
+  const json hollow = read_json("r.json");
+  EXPECT_FALSE(hollow.contains("tetrahedra"));
+  EXPECT_EQ(hollow["mesh"]["triangles"], filled["mesh"]["triangles"]);
+  const std::size_t triangles = hollow["mesh"]["triangles"], cells = filled["tetrahedra"]["cells"];
+  using Counts = std::vector<std::size_t>;
+  const std::string a = content("a.msh"), b = content("b.msh");
+  EXPECT_EQ(counts_after(a, "$Elements\n"), Counts{triangles + cells});
+  EXPECT_EQ(counts_after(b, "$Elements\n"), Counts{triangles});
+  EXPECT_EQ(counts_after(a, "$Nodes\n"), Counts{filled["tetrahedra"]["vertices"]});
+  EXPECT_EQ(counts_after(b, "$Nodes\n"), Counts{hollow["mesh"]["vertices"]});
+  const std::string of = "\n1\n0\n3\n0\n1\n";
+  for (const char* name : {"\"material_0\"", "\"material_1\""}) {
+    EXPECT_EQ(counts_after(a, name + of), Counts{triangles + cells}) << name;
+    EXPECT_EQ(counts_after(b, name + of), Counts{triangles}) << name;
+  }
+  EXPECT_EQ(counts_after(a, "\"material\"" + of), Counts{triangles + cells});
+}
+
 TEST_F(MeshOutput, ParticlesComeWithTheirArrays) {
   ASSERT_EQ(nacre(small_mesh + Words{"--particles-out", path("p.vtp"), "--report", path("r.json")}).status, 0);
   const json particles = info("p.vtp");
@@ -135,6 +165,23 @@ TEST_F(MeshCtrlC, KeepsWhatThereIsWhenAskedTo) {
   EXPECT_LT(seconds, 20);
   const json r = read_json("r.json");
   EXPECT_EQ(r["particles"]["interrupted"], true);
+  expect_sound(r);
+}
+
+TEST_F(MeshCtrlC, KeepsWhatThereIsWhileCurvesMove) {
+  // The curve of two balls would move for minutes before the first particle of a surface does.
+  const auto [run, seconds] =
+      interrupt(small_mesh + Words{"--iterations", "1000000", "--stagnation", "0", "--keep-on-interrupt", "--out",
+                                   path("a.vtp"), "--report", path("r.json")},
+                2.0);
+  EXPECT_EQ(run.status, 130) << run.err;
+  EXPECT_EQ(names(), (Words{"a.vtp", "r.json"}));
+  EXPECT_LT(seconds, 10);
+  const json r = read_json("r.json");
+  EXPECT_EQ(r["particles"]["interrupted"], true);
+  EXPECT_EQ(r["particles"]["iterations"], 0);
+  EXPECT_GT(r["particles"]["on_curves"], 10);
+  EXPECT_GT(r["particles"]["on_surfaces"], 300);
   expect_sound(r);
 }
 

@@ -30,6 +30,8 @@ TEST_F(MeshReport, HasEveryKeyOfTheContract) {
   EXPECT_GT(r["particles"]["seeded"], 100);
   EXPECT_GT(r["particles"]["final"], 100);
   EXPECT_EQ(r["particles"]["energy"].size(), r["particles"]["iterations"]);
+  EXPECT_EQ(r["particles"]["seconds"].size(), r["particles"]["iterations"]);
+  EXPECT_GT(r["particles"]["final_energy"], 0);
   EXPECT_EQ(r["particles"]["interrupted"], false);
   const json& m = r["mesh"];
   for (const char* key : {"vertices", "triangles", "components", "nonmanifold_edges", "boundary_edges"})

@@ -8,12 +8,12 @@ TEST(MeshWords, HelpHasEveryOptionOfTheContract) {
   const Outcome help = nacre({"mesh", "--help"});
   EXPECT_EQ(help.status, 0);
   for (const char* option :
-       {"--labels",    "--isovalue",      "--threshold", "--preset",    "--solver",    "--epsilon",
-        "--delta",     "--min-size",      "--max-size",  "--materials", "--merge",     "--min-component",
-        "--theta",     "--iterations",    "--particles", "--tighten",   "--kernel",    "--keep-on-interrupt",
-        "--out",       "--particles-out", "--image",     "--sample",    "--device",    "--threads",
-        "--seed",      "--report",        "--quiet",     "--set",       "--session",   "--save-session",
-        "--curvature", "--per-material",  "--detail",    "--camera",    "--background"})
+       {"--labels",    "--isovalue",      "--threshold",    "--preset",    "--solver",  "--epsilon",
+        "--delta",     "--min-size",      "--max-size",     "--materials", "--merge",   "--min-component",
+        "--theta",     "--iterations",    "--particles",    "--tighten",   "--kernel",  "--keep-on-interrupt",
+        "--out",       "--particles-out", "--image",        "--sample",    "--device",  "--threads",
+        "--seed",      "--report",        "--quiet",        "--set",       "--session", "--save-session",
+        "--curvature", "--per-material",  "--surface-only", "--detail",    "--camera",  "--background"})
     EXPECT_TRUE(contains(help.out, option)) << option;
   for (const char* of_flow : {"--ttl", "--step-cells", "--colormap"})
     EXPECT_FALSE(contains(help.out, of_flow)) << of_flow;
@@ -53,6 +53,8 @@ TEST(MeshWords, WrongOnesEndWithTwo) {
                                                   {{"--out", "a"}, ".vtp"},
                                                   {{"--out", "a.vtu", "--per-material"}, "--per-material"},
                                                   {{"--per-material"}, "--out"},
+                                                  {{"--out", "a.vtu", "--surface-only"}, "--surface-only"},
+                                                  {{"--surface-only"}, "--out"},
                                                   {{"--particles-out", "a.ply"}, ".vtp"},
                                                   {{"--camera", "top"}, "iso"},
                                                   {{"--background", "greenish"}, "#rrggbb"},

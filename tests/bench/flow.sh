@@ -3,26 +3,12 @@
 # Usage: flow.sh BINARY [nacre flow's words, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_RESOLUTIONS, NACRE_BENCH_STEPS (default 10), NACRE_DATA (folder that holds drivaer.pvd).
 set -euo pipefail
-here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
-source "$here/report.sh"
-
-(($#)) || { echo "usage: flow.sh BINARY [words of nacre flow]" >&2; exit 2; }
-nacre=$1
-shift
-[[ -x $nacre ]] || { echo "flow.sh: $nacre is not a program" >&2; exit 2; }
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/begin.sh"
+begin_bench flow "$@"
 read -ra resolutions <<<"${NACRE_BENCH_RESOLUTIONS:-256 512 1024 2048}"
 steps=${NACRE_BENCH_STEPS:-10}
-data=${NACRE_DATA:-$here/../../../shared/data}
-if [[ -n ${OUT:-} ]]; then
-  out=$OUT
-  mkdir -p "$out"
-else
-  out=$(mktemp -d)
-  trap 'rm -rf "$out"' EXIT
-fi
 
 # row NAME RESOLUTION INPUT...: one run and its line of the table; a run that fails is a line that says so.
-failed=0
 row() {
   local name=$1 resolution=$2 report="$out/flow-$1-$2.json"
   shift 2
@@ -42,8 +28,7 @@ row() {
     }'
 }
 
-words=("$@")
-echo "Median of $steps steps, ttl 2; $(nproc) processors, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
+echo "Median of $steps steps, ttl 2; $(machine)"
 echo
 printf '| data | resolution | surface cells | embed, s | refine, s | step, s | picture 1024x768, s | peak memory, GB |'
 printf ' million surface cells per second |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|\n'

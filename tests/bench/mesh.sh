@@ -1,26 +1,12 @@
 #!/usr/bin/env bash
 # Nacre: the meshing tables of docs/performance.md: the phantoms, real volumes where they are, and the three solvers.
 # Usage: mesh.sh BINARY [words of nacre mesh, e.g. --device cuda]. Reports go to $OUT where it is set.
-# Environment: NACRE_BENCH_CASES (names, default all), NACRE_DATA (folder that holds labels/ and scalar/).
+# Environment: NACRE_BENCH_CASES (names, default all; `solvers` is the second table), NACRE_DATA (folder that holds
+# labels/ and scalar/), NACRE_BENCH_PARTICLES and NACRE_BENCH_ITERATIONS (of the second table).
 set -euo pipefail
-here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
-source "$here/report.sh"
+source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/begin.sh"
+begin_bench mesh "$@"
 
-(($#)) || { echo "usage: mesh.sh BINARY [words of nacre mesh]" >&2; exit 2; }
-nacre=$1
-shift
-[[ -x $nacre ]] || { echo "mesh.sh: $nacre is not a program" >&2; exit 2; }
-words=("$@")
-data=${NACRE_DATA:-$here/../../../shared/data}
-if [[ -n ${OUT:-} ]]; then
-  out=$OUT
-  mkdir -p "$out"
-else
-  out=$(mktemp -d)
-  trap 'rm -rf "$out"' EXIT
-fi
-
-failed=0
 # row NAME INPUT...: one run and its line of the table; a run that fails is a line that says so.
 row() {
   local name=$1 report="$out/mesh-$1.json" stage
@@ -54,7 +40,7 @@ row() {
     }'
 }
 
-echo "$(nproc) processors, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"
+machine
 echo
 printf '| data | particles | triangles | iterations | whole command, s | fields, s | particles, s | triangulate, s | mend, s |'
 printf ' million particle-iterations per second of the whole | radius ratio mean | min | min away from junctions |'
@@ -63,20 +49,54 @@ printf '|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|--
 for sample in torso heart lungs ribcage head; do
   row "$sample" --sample "$sample"
 done
-for solver in tree redblack serial; do
-  row "torso-$solver" --sample torso --solver "$solver" --stagnation 0.0015 --mend 0
-done
 row mickey "$data/labels/cleaver/mickey.nrrd"
 row spheres "$data"/labels/cleaver/spheres{1,2,3,4}.nrrd
 row liver "$data/labels/junctions/liver.inr.gz"
 row liver-coarse "$data/labels/junctions/liver.inr.gz" --min-size 4.3 --max-size 4.3
 row frog-coarse "$data/labels/frog/frogtissue.mhd" --min-size 1.9 --max-size 1.9
 row colin27 "$data/labels/atlases/colin27.nrrd"
+row usc195 "$data/labels/atlases/usc195.nrrd"
 row digimouse "$data/labels/atlases/digimouse.nrrd"
+row brainweb "$data/labels/nested-head/brainweb.nrrd"
 row nested-head "$data/labels/nested-head/standard_seg.nrrd"
 row abdomen "$data/labels/abdomen/example_seg_fast_force_split.nii.gz"
 row head-probabilities "$data"/labels/head-probabilities/c{1,2,3,4,5,6}_40-44.nrrd
 row aneurism "$data/scalar/ct/aneurism.vti" --isovalue 100
 row engine "$data/scalar/ct/engine.vti" --isovalue 100
 row skull "$data/scalar/skull_2.9.inr" --isovalue 2.9
+
+# solver_run SOLVER ITERATIONS REPORT: as many particles for all, none added or deleted, nothing mended, no end before the last
+# iteration. Fails where the run does.
+solver_run() {
+  "$nacre" mesh --sample torso "${words[@]}" --quiet --solver "$1" --iterations "$2" --stagnation 0 --mend 0 --control-every 100 \
+    --particles "${NACRE_BENCH_PARTICLES:-300000}" --report "$3" >/dev/null 2>"$out/mesh-solver.err"
+}
+
+# solver_row SOLVER: the first iteration of three in a row that change the energy by less than 0.0015 of it, and what a
+# run of so many iterations gives; then what all iterations give. Energies of the ends are measured alike for all.
+solver_row() {
+  local report="$out/mesh-solver-$1.json" short="$out/mesh-solver-$1-short.json" settled=0 seconds=0
+  read -r settled seconds < <(paste <(report_list "$report" particles.energy) <(report_list "$report" particles.seconds) | awk '
+    { change = (NR > 1) ? (before - $1) / $1 : 1; before = $1
+      run = (change < 0.0015 && change > -0.0015) ? run + 1 : 0
+      if (run == 3) { print NR, $2; found = 1; exit } }
+    END { if (!found) print NR, $2 }')
+  solver_run "$1" "$settled" "$short" || return 1
+  printf '| %s | %d | %d | %.1f | %.4f | %.3f | %.1f | %.4f | %.3f |\n' "$1" "$(report_value "$report" particles.final)" \
+    "$settled" "$seconds" "$(report_value "$short" particles.final_energy)" \
+    "$(report_value "$short" mesh.radius_ratio.mean)" "$(report_list "$report" particles.seconds | tail -n 1)" \
+    "$(report_value "$report" particles.final_energy)" "$(report_value "$report" mesh.radius_ratio.mean)"
+}
+
+if [[ -z ${NACRE_BENCH_CASES:-} || " $NACRE_BENCH_CASES " == *" solvers "* ]]; then
+  iterations=${NACRE_BENCH_ITERATIONS:-60}
+  for solver in serial redblack tree; do
+    solver_run "$solver" "$iterations" "$out/mesh-solver-$solver.json" ||
+      { echo "mesh.sh: the $solver solver failed: $(head -n 1 "$out/mesh-solver.err")" >&2; exit 1; }
+  done
+  printf '\n| solver | particles | settled at iteration | s | energy then | radius ratio mean then |'
+  printf ' s for %d iterations | energy then | radius ratio mean then |\n' "$iterations"
+  printf '|---|---:|---:|---:|---:|---:|---:|---:|---:|\n'
+  for solver in serial redblack tree; do solver_row "$solver" || failed=1; done
+fi
 exit $failed

@@ -32,3 +32,19 @@ stage_calls() {
     /^ *"calls": / { calls = $2; sub(/,$/, "", calls) }
     name == stage && calls != "" { print calls; exit }' "$1"
 }
+
+# report_list FILE KEY.KEY..: the numbers of a list, one per line.
+report_list() {
+  awk -v path="$2" '
+    BEGIN { depth = split(path, key, "."); at = 0 }
+    within { if (/]/) exit; gsub(/[ ,]/, ""); print; next }
+    match($0, /^ *"[^"]*": /) {
+      level = (match($0, /"/) - 1) / 2
+      name = substr($0, RSTART + 1); sub(/".*/, "", name)
+      if (level <= at) at = level - 1
+      if (level == at + 1 && name == key[level]) {
+        at = level
+        if (at == depth) { if (/\[ *$/) within = 1; else exit }
+      }
+    }' "$1"
+}

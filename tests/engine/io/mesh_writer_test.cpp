@@ -125,7 +125,7 @@ struct Msh {
   std::vector<Vec3d> points;
   std::vector<std::vector<std::uint32_t>> cells;  ///< from 0
   std::vector<std::int32_t> group;
-  std::map<std::int32_t, std::string> names;
+  std::map<std::pair<int, std::int32_t>, std::string> names;  ///< by dimension and tag
   std::map<std::string, std::vector<double>> numbers;
 
   explicit Msh(const std::string& file) : file_(file) {
@@ -134,7 +134,7 @@ struct Msh {
     for (int left = std::stoi(line()); left > 0; --left) {
       const std::string text = line();
       const std::size_t tag = text.find(' ') + 1, name = text.find('"');
-      names[std::stoi(text.substr(tag))] = text.substr(name + 1, text.size() - name - 2);
+      names[{std::stoi(text), std::stoi(text.substr(tag))}] = text.substr(name + 1, text.size() - name - 2);
     }
     seek("$Nodes\n");
     points.resize(std::stoul(line()));
@@ -145,14 +145,15 @@ struct Msh {
     EXPECT_EQ(file_.compare(at_, 11, "\n$EndNodes\n"), 0);
     seek("$Elements\n");
     cells.resize(std::stoul(line()));
-    const int type = take<std::int32_t>();
-    EXPECT_EQ(take<std::int32_t>(), std::int32_t(cells.size()));
-    EXPECT_EQ(take<std::int32_t>(), 2);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      EXPECT_EQ(take<std::int32_t>(), std::int32_t(i + 1));
-      group.push_back(take<std::int32_t>());
-      take<std::int32_t>();
-      for (int k = 0; k < (type == 2 ? 3 : 4); ++k) cells[i].push_back(take<std::uint32_t>() - 1);
+    for (std::size_t i = 0; i < cells.size();) {
+      const int type = take<std::int32_t>(), count = take<std::int32_t>();
+      EXPECT_EQ(take<std::int32_t>(), 2);
+      for (const std::size_t end = std::min(i + std::size_t(std::max(count, 1)), cells.size()); i < end; ++i) {
+        EXPECT_EQ(take<std::int32_t>(), std::int32_t(i + 1));
+        group.push_back(take<std::int32_t>());
+        EXPECT_EQ(take<std::int32_t>(), group.back());
+        for (int k = 0; k < (type == 2 ? 3 : 4); ++k) cells[i].push_back(take<std::uint32_t>() - 1);
+      }
     }
     EXPECT_EQ(file_.compare(at_, 14, "\n$EndElements\n"), 0);
     while (file_.find("$ElementData\n", at_) != std::string::npos) {
@@ -164,9 +165,9 @@ struct Msh {
       }
       std::vector<double>& values = numbers[text];
       values.resize(std::stoul(line()));
-      for (double& value : values) {
-        take<std::int32_t>();
-        value = take<double>();
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        EXPECT_EQ(take<std::int32_t>(), std::int32_t(i + 1));
+        values[i] = take<double>();
       }
       EXPECT_EQ(file_.compare(at_, 17, "\n$EndElementData\n"), 0);
     }
@@ -204,8 +205,8 @@ TEST(MeshWriter, GmshSurfaceHasAGroupPerPair) {
     EXPECT_EQ(msh.numbers.at("material_1")[i], double(labels[mesh.materials[i][1]]));
   }
   EXPECT_EQ(msh.names.size(), 3u);
-  EXPECT_EQ(msh.names.at(msh.group[1]), "material_5_300");
-  EXPECT_EQ(msh.names.at(msh.group[4]), "material_0_300");
+  EXPECT_EQ(msh.names.at({2, msh.group[1]}), "material_5_300");
+  EXPECT_EQ(msh.names.at({2, msh.group[4]}), "material_0_300");
   EXPECT_EQ(write_material_surfaces(folder / "b.msh", mesh, labels).size(), 2u);
   EXPECT_EQ(Msh(read_all(folder / "b_300.msh")).cells.size(), 4u);
 }
@@ -213,28 +214,46 @@ TEST(MeshWriter, GmshSurfaceHasAGroupPerPair) {
 TEST(MeshWriter, TetrahedraKeepTheirMaterials) {
   const TemporaryFolder folder;
   const TetrahedralMesh mesh = two_cells();
-  write_tetrahedral_mesh(folder / "a.vtu", mesh, labels);
+  write_tetrahedral_mesh(folder / "a.vtu", mesh, two_bodies(), labels);
   const RawMesh raw = read_raw(folder / "a.vtu").mesh;
   EXPECT_EQ(raw.volume_cells, 2u);
   EXPECT_EQ(raw.polygons(), 6u);  // the outer faces
   const RawArray* material = find(raw.cell_arrays, "material");
   ASSERT_TRUE(material);
   EXPECT_EQ(std::set<float>(material->values.begin(), material->values.end()), (std::set<float>{5, 300}));
+}
 
-  write_tetrahedral_mesh(folder / "a.msh", mesh, labels);
+TEST(MeshWriter, GmshTetrahedraComeWithTheTrianglesBetweenMaterials) {
+  const TemporaryFolder folder;
+  const TetrahedralMesh mesh = two_cells();
+  const SurfaceMesh surface = two_bodies();
+  write_tetrahedral_mesh(folder / "a.msh", mesh, surface, labels);
   const Msh msh(read_all(folder / "a.msh"));
-  ASSERT_EQ(msh.cells.size(), 2u);
-  EXPECT_EQ(msh.cells[1], (std::vector<std::uint32_t>{0, 2, 1, 4}));
-  EXPECT_EQ(msh.group, (std::vector<std::int32_t>{5, 300}));  // the labels themselves
-  EXPECT_EQ(msh.names.at(300), "material_300");
-  EXPECT_EQ(msh.numbers.at("material")[1], 300);
-  for (const auto& c : msh.cells) {
+  ASSERT_EQ(msh.cells.size(), 7u + 2u);
+  for (std::size_t i = 0; i < 7; ++i) {
+    ASSERT_EQ(msh.cells[i].size(), 3u);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(msh.cells[i][std::size_t(k)], surface.triangles[i][k]);
+    EXPECT_EQ(msh.numbers.at("material_0")[i], double(labels[surface.materials[i][0]]));
+    EXPECT_EQ(msh.numbers.at("material_1")[i], double(labels[surface.materials[i][1]]));
+    EXPECT_EQ(msh.numbers.at("material")[i], msh.numbers.at("material_1")[i]);
+  }
+  EXPECT_EQ(msh.names.size(), 3u + 2u);
+  EXPECT_EQ(msh.names.at({2, msh.group[1]}), "material_5_300");
+  EXPECT_EQ(msh.cells[8], (std::vector<std::uint32_t>{0, 2, 1, 4}));
+  for (std::size_t i = 7; i < 9; ++i) {
+    const std::int32_t label = i == 7 ? 5 : 300;
+    EXPECT_EQ(msh.group[i], label) << "the labels themselves";
+    for (const char* name : {"material", "material_0", "material_1"}) EXPECT_EQ(msh.numbers.at(name)[i], label);
+    const auto& c = msh.cells[i];
     const Vec3d a = msh.points[c[0]];
     EXPECT_NEAR(dot(msh.points[c[1]] - a, cross(msh.points[c[2]] - a, msh.points[c[3]] - a)), 1, 1e-15);
   }
+  EXPECT_EQ(msh.names.at({3, 300}), "material_300");
   const std::vector<std::int64_t> negative = {0, -1, 2, 3};
-  write_tetrahedral_mesh(folder / "b.msh", mesh, negative);
-  EXPECT_EQ(Msh(read_all(folder / "b.msh")).group, (std::vector<std::int32_t>{1, 3}));  // numbers instead
+  write_tetrahedral_mesh(folder / "b.msh", mesh, surface, negative);
+  const std::vector<std::int32_t> group = Msh(read_all(folder / "b.msh")).group;
+  EXPECT_EQ(group[7], 1);  // numbers instead
+  EXPECT_EQ(group[8], 3);
 }
 
 TEST(MeshWriter, BadMeshesAndExtensionsAreErrors) {
@@ -252,14 +271,18 @@ TEST(MeshWriter, BadMeshesAndExtensionsAreErrors) {
   for (const std::string& extension : tetrahedral_mesh_extensions()) {
     TetrahedralMesh mesh = two_cells();
     mesh.cells[0][2] = 5;
-    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), mesh, labels), Error);
+    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), mesh, two_bodies(), labels), Error);
     mesh = two_cells();
     mesh.material[0] = 4;
-    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), mesh, labels), Error);
-    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), {}, labels), Error);
+    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), mesh, two_bodies(), labels), Error);
+    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), {}, two_bodies(), labels), Error);
+    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), two_cells(), {}, labels), Error);
+    SurfaceMesh larger = two_bodies();
+    larger.points.resize(6);
+    EXPECT_THROW(write_tetrahedral_mesh(folder / ("a" + extension), two_cells(), larger, labels), Error);
   }
   EXPECT_THROW(write_surface_mesh(folder / "a.vtu", two_bodies(), labels), Error);
-  EXPECT_THROW(write_tetrahedral_mesh(folder / "a.vtp", two_cells(), labels), Error);
+  EXPECT_THROW(write_tetrahedral_mesh(folder / "a.vtp", two_cells(), two_bodies(), labels), Error);
   EXPECT_EQ(folder.entries(), 0u);
 }
 

@@ -1,0 +1,55 @@
+// Nacre: what the commands that compute share.
+#include "app/run.hpp"
+
+#include <fmt/format.h>
+
+#include "app/picture_words.hpp"
+
+namespace nacre {
+
+void add_input_options(CLI::App& command, InputWords& words, const std::string& file_help,
+                       const std::string& detail_help) {
+  command.add_option("FILE", words.files, file_help);
+  command.add_option("--sample", words.sample, "a built-in data set; `nacre sample` lists them");
+  command.add_option("--detail", words.detail, detail_help)->check(CLI::NonNegativeNumber);
+  command.add_option("--size", words.size, "WxH of the picture");
+}
+
+Session asked_session(const CommonOptions& options, const InputWords& words, const KnobOptions& knobs,
+                      std::string_view command, const std::function<void(Settings&)>& preset) {
+  Session session;
+  if (!options.session.empty()) session = read_session(options.session);
+  if (!words.files.empty() || !words.sample.empty()) {
+    session.inputs.assign(words.files.begin(), words.files.end());
+    session.sample = words.sample;
+    session.detail = words.detail;
+  }
+  if (preset) preset(session.settings);
+  knobs.apply(session.settings, options.set);
+  if (!words.size.empty()) {
+    const auto [width, height] = parse_pair(words.size, 'x', "--size");
+    knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
+  }
+  if (session.inputs.empty() && session.sample.empty())
+    throw UsageError(fmt::format("no input: give a FILE or --sample NAME; see nacre {} --help", command));
+  if (!session.inputs.empty() && !session.sample.empty()) throw UsageError("a FILE or --sample, not both");
+  return session;
+}
+
+std::unique_ptr<Device> open_device(const CommonOptions& options) {
+  std::unique_ptr<Device> device = make_device(options.device, options.threads);
+  say(options, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));
+  return device;
+}
+
+void write_report(const CommonOptions& options, nlohmann::json report, const std::vector<std::string>& outputs) {
+  if (options.report.empty()) return;
+  report["outputs"] = outputs;
+  write_text(options.report, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+void print_outputs(const std::vector<std::string>& outputs) {
+  for (const std::string& file : outputs) fmt::print("{}\n", file);
+}
+
+}  // namespace nacre

@@ -1,0 +1,142 @@
+// Nacre: tests of what is to be changed about particles so that triangles get better.
+#include "compute/meshing/defects.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "compute/meshing/interfaces.hpp"
+#include "compute/meshing/quality.hpp"
+#include "tests/compute/meshing/labelled_points.hpp"
+
+namespace nacre {
+namespace {
+
+/// A ball of radius 1 as a mesh, all of order 2 and one size.
+struct Ball {
+  std::vector<Vec3d> points;
+  SurfaceMesh mesh;
+  std::vector<std::uint8_t> order;
+  std::vector<float> size;
+
+  explicit Ball(std::vector<Vec3d> p) : points(std::move(p)) {
+    const DelaunayCells cells = delaunay(points);
+    mesh = extract_interfaces(points, cells, test::labels_of(cells, [](const Vec3d& c) { return length(c) < 0.9; }));
+    EXPECT_EQ(mesh.points.size(), points.size());
+    order.assign(points.size(), 2);
+    size.assign(points.size(), float(std::sqrt(4 * M_PI / 0.866 / double(points.size()))));
+  }
+  MeshDefects defects(const DefectRule& rule = {},
+                      const std::vector<std::array<std::uint32_t, 2>>& touching = {}) const {
+    return find_defects(mesh, order, size, touching, rule);
+  }
+  double worst() const { return surface_quality(mesh).all.radius_ratio_min; }
+};
+
+using Points = std::vector<std::uint32_t>;
+
+/// `count` points, and one more at a hundredth of a size from number 7.
+std::vector<Vec3d> with_a_twin(int count) {
+  std::vector<Vec3d> points = test::points_on_sphere(count, 1);
+  points.push_back(normalized(points[7] + Vec3d(0.02, 0.03, 0.01) / std::sqrt(double(count))));
+  return points;
+}
+
+TEST(Defects, GoodMeshesHaveNone) {
+  const MeshDefects d = Ball(test::points_on_sphere(400, 1)).defects();
+  EXPECT_EQ(d.bad_triangles, 0);
+  EXPECT_TRUE(d.remove.empty() && d.insert.empty());
+}
+
+TEST(Defects, OneOfTwoThatAreTooCloseGoes) {
+  Ball ball(with_a_twin(400));
+  EXPECT_LT(ball.worst(), 0.1);
+  EXPECT_EQ(ball.defects().remove, Points{400}) << "the later one";
+  EXPECT_GE(ball.defects().bad_triangles, 2);
+  ball.order[7] = 1;
+  EXPECT_EQ(ball.defects().remove, Points{400}) << "the one on the surface";
+  ball.order[7] = 2, ball.order[400] = 1;
+  EXPECT_EQ(ball.defects().remove, Points{7});
+  ball.order[7] = 1, ball.order[400] = 0;
+  EXPECT_EQ(ball.defects().remove, Points{7}) << "the one on the curve";
+  ball.points.pop_back();
+  EXPECT_GT(Ball(ball.points).worst(), 0.4);
+}
+
+TEST(Defects, OneThatLiesFlatBetweenItsNeighboursGoes) {
+  Ball ball(test::points_on_sphere(400, 1));
+  // Pushed to the middle of the edge opposite of it: an angle of nearly 180 degrees, but no short edge.
+  const Triangle t = ball.mesh.triangles[100];
+  const Vec3d a = ball.mesh.points[t.a], b = ball.mesh.points[t.b], middle = (a + b) / 2.0;
+  ball.mesh.points[t.c] = middle + 0.05 * (ball.mesh.points[t.c] - middle);
+  for (float& s : ball.size) s = float(0.6 * length(b - a));
+  EXPECT_LT(ball.worst(), 0.1);
+  const Points remove = ball.defects({0, 0.2, 0.2}).remove;
+  EXPECT_EQ(std::count(remove.begin(), remove.end(), t.c), 1);
+  ball.order[t.c] = 1;
+  EXPECT_GT(ball.defects({0, 0.2, 0.2}).bad_triangles, 0);
+  const Points others = ball.defects({0, 0.2, 0.2}).remove;
+  EXPECT_EQ(std::count(others.begin(), others.end(), t.c), 0) << "curves keep theirs";
+}
+
+TEST(Defects, SmallBodiesKeepAllOfTheirs) {
+  for (const int count : {11, 12}) {
+    Ball ball(with_a_twin(count));
+    EXPECT_EQ(ball.defects().remove, Points{std::uint32_t(count)}) << "of two that all but coincide one is enough";
+    const float apart = float(length(ball.points[7] - ball.points.back()));
+    for (float& s : ball.size) s = apart / 0.3f;
+    const Points remove = ball.defects({0, 0.2, 0.2}).remove;
+    EXPECT_EQ(std::count(remove.begin(), remove.end(), std::uint32_t(count)), count == 12 ? 1 : 0) << "one of 13";
+  }
+  for (const int count : {24, 25}) {
+    Ball ball(test::points_on_sphere(count, 1));
+    const Triangle t = ball.mesh.triangles[10];
+    const Vec3d middle = (ball.mesh.points[t.a] + ball.mesh.points[t.b]) / 2.0;
+    ball.mesh.points[t.c] = middle + 0.05 * (ball.mesh.points[t.c] - middle);  // flat between the others
+    for (float& s : ball.size) s *= 0.5f;
+    const MeshDefects d = ball.defects({0, 0.1, 0.1});
+    EXPECT_EQ(d.remove, count == 24 ? Points{} : Points{t.c});
+    ASSERT_EQ(d.insert.size(), count == 24 ? 1u : 0u);
+    for (const auto& p : d.insert) EXPECT_LT(length(p.place - middle), 1e-12) << "a new point instead";
+  }
+}
+
+TEST(Defects, FurtherRoundsCareForTheWorstOnly) {
+  // A thin triangle, but not the worst: two points at 0.35 of a size.
+  std::vector<Vec3d> points = test::points_on_sphere(400, 1);
+  points.push_back(normalized(points[7] + Vec3d(0.03, 0.045, 0.0)));
+  Ball ball(points);
+  ASSERT_GT(ball.worst(), 0.2);
+  ASSERT_LT(ball.worst(), 0.6);
+  EXPECT_EQ(ball.defects({25, ball.worst() + 0.01, 0}).remove, Points{400});
+  EXPECT_TRUE(ball.defects({0, ball.worst() - 0.01, 1}).remove.empty());
+  for (std::uint8_t& o : ball.order) o = 1;  // all at a junction: the other bound
+  ball.order[400] = 2;
+  EXPECT_EQ(ball.defects({0, 0, ball.worst() + 0.01}).remove, Points{400});
+  EXPECT_TRUE(ball.defects({0, 1, ball.worst() - 0.01}).remove.empty());
+  EXPECT_LT(worst_defects.near, worst_defects.ratio);
+}
+
+TEST(Defects, PlacesThatTouchGetNewPointsUnlessTheyAreCrowded) {
+  Ball ball(test::points_on_sphere(400, 1));
+  const Triangle t = ball.mesh.triangles[50];
+  const MeshDefects edge = ball.defects({}, {{std::min(t.a, t.b), std::max(t.a, t.b)}});
+  ASSERT_EQ(edge.insert.size(), 2u) << "one in each facet";
+  for (const auto& p : edge.insert) {
+    EXPECT_EQ(p.materials, (std::array<std::uint16_t, 2>{0, 1}));
+    EXPECT_NEAR(length(p.place), 1, 0.01);
+    EXPECT_LT(length(p.place - ball.points[t.a]), 2 * ball.size[0]);
+  }
+  const std::size_t facets =
+      std::size_t(std::count_if(ball.mesh.triangles.begin(), ball.mesh.triangles.end(),
+                                [&](const Triangle& u) { return u.a == t.a || u.b == t.a || u.c == t.a; }));
+  EXPECT_EQ(ball.defects({}, {{t.a, t.a}}).insert.size(), facets) << "a vertex";
+  for (float& s : ball.size) s *= 4;
+  EXPECT_TRUE(ball.defects({0, 0, 0}, {{t.a, t.a}}).insert.empty());
+  ball.mesh.materials[50] = {0, 2};
+  for (float& s : ball.size) s /= 4;
+  EXPECT_TRUE(ball.defects({}, {{t.a, t.a}}).insert.empty()) << "junctions may be touched";
+}
+
+}  // namespace
+}  // namespace nacre
