@@ -36,6 +36,8 @@ int run(int argc, char** argv) {
   nacre::add_mesh_command(program, command);
   nacre::add_info_command(program, command);
   nacre::add_sample_command(program, command);
+  nacre::add_bench_command(program, command);
+  nacre::add_view_command(program, command);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version

@@ -7,6 +7,7 @@ required_packages=(
   ffmpeg fonts-dejavu-core
 )
 optional_packages=(ccache)
+viewer_packages=(libglfw3-dev libglew-dev libegl-dev libglm-dev libimgui-dev libgl1-mesa-dri xvfb xauth)
 vtk_packages=(libvtk9-dev)
 check_packages=(clang-format clang-tidy)
 
@@ -94,4 +95,10 @@ prefer_vtk() {
     return 0
   fi
   prefer_packages "VTK's formats" "${vtk_packages[@]}"
+}
+
+# The window needs packages that a headless machine does without.
+prefer_viewer() {
+  [[ ${NACRE_VIEWER:-AUTO} != OFF ]] || return 0
+  prefer_packages "the viewer" "${viewer_packages[@]}"
 }

@@ -13,6 +13,9 @@ engine_forbidden=(
   scene:io scene:picture
   picture:io picture:scene
   io:picture
+  gl:scene gl:io gl:interop gl:render
+  interop:scene interop:io interop:render
+  render:scene render:io render:interop
 )
 
 # rank NAME ORDER...: the place of a name in an order, from 0; -1 where it is not in it.

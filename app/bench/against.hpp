@@ -1,0 +1,30 @@
+// Nacre: two runs of `nacre bench` compared: the guard against losses.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace nacre {
+
+/// A ratio is lost where it is worse by more than this share.
+inline constexpr double tolerated_loss = 0.30;
+
+struct Comparison {
+  int compared = 0;
+  std::vector<std::string> losses;   ///< sentences that name table, row and quantity
+  std::vector<std::string> missing;  ///< ratios of the last run that this one lacks, though it ran their table
+};
+
+/// Compares the ratios (quantities that say which way is better) of the rows that both have. A loss: higher is better and
+/// `now` is under 70% of `last`, or lower is better and `last` is under 70% of `now`.
+Comparison compare_runs(const nlohmann::json& now, const nlohmann::json& last);
+
+/// Reads what --json wrote. Throws Error where the file is no such thing.
+nlohmann::json read_bench(const std::filesystem::path& file);
+
+/// Throws Error where `last` was made in a way that makes ratios incomparable: size, backend, number of threads.
+void require_comparable(const nlohmann::json& now, const nlohmann::json& last, const std::string& file);
+
+}  // namespace nacre

@@ -1,0 +1,183 @@
+// Nacre: runs of the flow pipeline for `nacre bench`.
+#include "app/bench/flow_runs.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "app/common.hpp"
+#include "compute/pipeline/flow_domain.hpp"
+#include "engine/picture/colormap.hpp"
+#include "engine/scene/prepare.hpp"
+#include "engine/scene/samples.hpp"
+
+namespace nacre {
+namespace {
+
+/// Steps of a run: as many as fit into this time, seconds, but one at least and five at most.
+constexpr double long_enough = 3;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+FlowParameters parameters_of(const FlowJob& job) {
+  FlowParameters parameters;
+  parameters.method = job.method;
+  parameters.octree = job.octree;
+  parameters.neighbour_index = job.neighbour_index;
+  parameters.resolution = job.resolution;
+  parameters.refine = job.refine;
+  parameters.radius = job.radius;
+  parameters.ttl = 2;
+  parameters.warmup = 1;
+  return parameters;
+}
+
+double median(std::vector<double> seconds) {
+  std::nth_element(seconds.begin(), seconds.begin() + std::ptrdiff_t(seconds.size() / 2), seconds.end());
+  return seconds[seconds.size() / 2];
+}
+
+}  // namespace
+
+VectorsInTime& FlowRuns::sample(const FlowJob& job) {
+  if (sample_ && job.sample == sample_name_ && job.detail == sample_detail_) return *sample_;
+  sample_.reset();
+  SurfaceSeries series = make_sample(job.sample, job.detail);
+  const Surface first = series.load(0);
+  PreparedSurface surface = prepare(first);
+  std::string array = choose_vectors(first, "").name;
+  if (interrupt_flag()) throw Interrupted();
+  sample_ = std::make_unique<VectorsInTime>(std::move(series), std::move(surface), std::move(array), "speed");
+  sample_name_ = job.sample;
+  sample_detail_ = job.detail;
+  return *sample_;
+}
+
+FlowMesh FlowRuns::mesh(const FlowJob& job) {
+  const PreparedSurface& surface = sample(job).surface();
+  return {surface.points, surface.triangles, surface.corner_normals};
+}
+
+std::size_t FlowRuns::triangles(const FlowJob& job) { return sample(job).surface().triangles.size(); }
+
+FlowVectors FlowRuns::vectors(const FlowJob& job) {
+  VectorsInTime& all = sample(job);
+  FlowVectors vectors;
+  vectors.at = [&all](double t, std::span<Vec3f> out) { all.vectors(t, out); };
+  vectors.start = all.start();
+  vectors.end = all.end();
+  vectors.reference_speed = all.statistics().percentile_98;
+  return vectors;
+}
+
+std::unique_ptr<FlowPipeline> FlowRuns::pipeline(const FlowJob& job) const {
+  std::unique_ptr<FlowPipeline> made = make_flow_pipeline(device_);
+  made->watch(&interrupt_flag());
+  made->parameters = parameters_of(job);
+  return made;
+}
+
+double FlowRuns::estimate(const FlowJob& job) {
+  const FlowParameters parameters = parameters_of(job);
+  return job.method == "grid" ? estimate_flow_bytes(mesh(job), parameters)
+                              : estimate_octree_bytes(mesh(job), parameters);
+}
+
+int FlowRuns::largest_resolution(FlowJob job) {
+  const FlowMesh surface = mesh(job);
+  const auto fits = [&](int resolution) {
+    job.resolution = resolution;
+    try {
+      FlowDomain domain;
+      if (job.method == "grid")
+        make_domain(surface, parameters_of(job));
+      else
+        make_octree_domain(surface, parameters_of(job), domain);
+    } catch (const Error&) {  // beyond the keys
+      return false;
+    }
+    return estimate(job) <= available();
+  };
+  int low = 64, high = (1 << 20) + 1;
+  while (high - low > std::max(1, low / 128)) {
+    const int middle = low + (high - low) / 2;
+    (fits(middle) ? low : high) = middle;
+    if (interrupt_flag()) throw Interrupted();
+  }
+  return low;
+}
+
+const FlowRun& FlowRuns::run(const FlowJob& job) {
+  const auto known = runs_.find(job);
+  if (known != runs_.end()) return known->second;
+  const FlowMesh surface = mesh(job);
+  const std::unique_ptr<FlowPipeline> flow = pipeline(job);
+  const StageTimers& timers = flow->timers();
+  FlowRun run;
+  double spent = 0;
+  for (int k = 0; k == 0 || (k < repeats && spent < 1); ++k) {
+    const double embedded = timers.seconds("embed"), refined = timers.seconds("refine");
+    flow->embed(surface);
+    const double embed = timers.seconds("embed") - embedded, refine = timers.seconds("refine") - refined;
+    run.embed = k == 0 ? embed : std::min(run.embed, embed);
+    run.refine = k == 0 ? refine : std::min(run.refine, refine);
+    spent += embed + refine;
+  }
+  flow->start(vectors(job));
+  std::vector<double> steps;
+  for (double from = now(); steps.size() < 5 && (steps.empty() || now() - from < long_enough);) {
+    const double before = now();
+    flow->step();
+    steps.push_back(now() - before);
+  }
+  run.step = median(steps);
+  run.embedding = flow->embedding();
+  run.arena_bytes = flow->peak_bytes();
+  return runs_[job] = run;
+}
+
+double FlowRuns::embed_and_step(const FlowJob& job, bool anew, int times) {
+  const FlowMesh surface = mesh(job);
+  const FlowVectors flow_vectors = vectors(job);
+  std::unique_ptr<FlowPipeline> flow;
+  double best = 1e300;
+  for (int k = anew ? 1 : 0; k <= times; ++k) {
+    const double before = now();
+    if (anew || !flow) flow = pipeline(job);
+    flow->parameters.warmup = 0;
+    flow->embed(surface);
+    flow->start(flow_vectors);
+    flow->step();
+    if (anew) flow.reset();
+    if (k > 0) best = std::min(best, now() - before);
+  }
+  return best;
+}
+
+Image FlowRuns::picture(const FlowJob& job, int steps, int width, int height) {
+  VectorsInTime& all = sample(job);
+  const std::unique_ptr<FlowPipeline> flow = pipeline(job);
+  flow->parameters.ttl = FlowParameters().ttl;
+  flow->parameters.warmup = FlowParameters().warmup;
+  flow->embed(mesh(job));
+  flow->start(vectors(job));
+  for (int k = 0; k < steps; ++k) flow->step();
+  const PreparedSurface& surface = all.surface();
+  std::vector<Vec3d> corners;
+  for (const Triangle& t : surface.triangles)
+    for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
+  const std::vector<float> scalar = all.scalar(flow->time());
+  RenderOptions options;
+  options.camera = fit_camera("iso", corners, width, height);
+  options.width = width;
+  options.height = height;
+  options.scalar = scalar;
+  options.low = all.color_low();
+  options.high = all.color_high();
+  options.colours = colormap("sea").table;
+  Image image(width, height);
+  image.pixels = flow->render(options);
+  return image;
+}
+
+}  // namespace nacre

@@ -1,0 +1,225 @@
+// Nacre: the source's Tables 3.1 to 3.4 and 4.1 to 4.3: particles and the meshes made of them.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "app/bench/bench.hpp"
+#include "app/bench/source_figures.hpp"
+
+namespace nacre {
+namespace {
+
+struct Solver {
+  const char* word;  ///< of --solver
+  const char* name;  ///< in tables
+};
+constexpr std::array<Solver, 3> solvers{{{"serial", "serial"}, {"redblack", "red-black"}, {"tree", "tree"}}};
+
+/// A row's name, the sample, and its detail with --small.
+struct Case {
+  const char* row;
+  const char* sample;
+  int small_detail;
+};
+constexpr std::array<Case, 3> scalar_cases{
+    {{"heart", "heart", 72}, {"lungs", "lungs", 72}, {"ribcage", "ribcage", 64}}};
+constexpr std::array<Case, 2> material_cases{{{"torso (pig)", "torso", 56}, {"head", "head", 64}}};
+
+MeshJob job_of(const Bench& bench, const Case& c) {
+  MeshJob job;
+  job.sample = c.sample;
+  job.detail = bench.small ? c.small_detail : 0;
+  return job;
+}
+
+std::string input_text(const MeshJob& job, const MeshFields& fields) {
+  const std::string materials = fields.materials > 1 ? fmt::format(", {} materials", fields.materials) : "";
+  return fmt::format("phantom {}, {}x{}x{}{}", job.sample, fields.dims.x, fields.dims.y, fields.dims.z, materials);
+}
+
+std::string same_work() {
+  return fmt::format("same work for all solvers: {} iterations each, the source's constants, one field and seed",
+                     bench_iterations);
+}
+
+BenchTable make_table(const Bench& bench, const char* name, const char* title, const char* source,
+                      std::vector<std::string> more = {}) {
+  BenchTable table{name, title, {std::string("source: ") + source}, {}};
+  for (std::string& line : more) table.differs.push_back(std::move(line));
+  if (bench.small) table.differs.push_back("--small: coarser volumes than the source's; compare ratios only");
+  return table;
+}
+
+constexpr const char* hardware_3 = "one thread of a Xeon X5650 (serial), a Tesla C2070 (red-black); scans, 268x129x177";
+constexpr const char* hardware_4 =
+    "one thread of a Xeon X5550 (serial), a Tesla K20 (red-black, tree); pig 136x136x136, head 199x250x249";
+
+std::string particle_cost(const Solver& s) { return fmt::format("{}: us per particle and iteration", s.name); }
+
+/// Seconds, particles and cost of each solver, then the ratios that --against looks at.
+void add_solvers(BenchTable& table, BenchRow& row, const std::array<MeshRun, 3>& runs) {
+  for (std::size_t k = 0; k < solvers.size(); ++k) {
+    table.add(row, fmt::format("{}: s", solvers[k].name), runs[k].seconds);
+    if (table.name[0] == '3') table.add(row, fmt::format("{}: particles", solvers[k].name), double(runs[k].final));
+  }
+  const auto cost = [&](std::size_t k) { return ratio(1e6 * runs[k].seconds, runs[k].moves); };
+  for (std::size_t k = 0; k < solvers.size(); ++k) table.add(row, particle_cost(solvers[k]), cost(k));
+  table.add(row, "serial / red-black", ratio(runs[0].seconds, runs[1].seconds));
+  table.add(row, "serial / tree", ratio(runs[0].seconds, runs[2].seconds));
+  table.add(row, "red-black / tree", ratio(runs[1].seconds, runs[2].seconds));
+  table.add(row, "per particle: serial / red-black", ratio(cost(0), cost(1)), Better::higher);
+  table.add(row, "per particle: serial / tree", ratio(cost(0), cost(2)), Better::higher);
+  table.add(row, "per particle: red-black / tree", ratio(cost(1), cost(2)), Better::higher);
+}
+
+std::array<MeshRun, 3> run_solvers(Bench& bench, const MeshJob& job, int particles, bool quality) {
+  std::array<MeshRun, 3> runs;
+  for (std::size_t k = 0; k < solvers.size(); ++k)
+    runs[k] = bench.meshes.run(job, {solvers[k].word, particles, quality});
+  return runs;
+}
+
+template <std::size_t n>
+BenchTable solver_table(Bench& bench, BenchTable table, const std::array<Case, n>& cases) {
+  for (const Case& c : cases)
+    bench.row(table, c.row, c.sample, [&] {
+      const MeshJob job = job_of(bench, c);
+      const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
+      BenchRow& row = table.add_row(c.row, input_text(job, bench.meshes.fields(job)));
+      add_solvers(table, row, runs);
+    });
+  return table;
+}
+
+/// The source's figures per particle: its seconds over its final counts (Table 4.2 over Table 4.1).
+void add_source_costs(BenchRow& row) {
+  const auto cost = [&](const char* solver) {
+    const SourceFigure* seconds = find_source_figure("4.2", row.name, fmt::format("{}: s", solver));
+    const SourceFigure* particles = find_source_figure("4.1", row.name, fmt::format("{}: particles", solver));
+    return ratio(seconds->value, particles->value);
+  };
+  for (BenchValue& value : row.values) {
+    if (value.quantity == "per particle: serial / red-black") value.source = ratio(cost("serial"), cost("red-black"));
+    if (value.quantity == "per particle: serial / tree") value.source = ratio(cost("serial"), cost("tree"));
+    if (value.quantity == "per particle: red-black / tree") value.source = ratio(cost("red-black"), cost("tree"));
+  }
+}
+
+void add_quality(BenchTable& table, BenchRow& row, const char* name, const MeshRun& run, bool counts) {
+  if (counts) {
+    table.add(row, fmt::format("{}: seeds", name), double(run.seeded));
+    table.add(row, fmt::format("{}: particles", name), double(run.final));
+  }
+  table.add(row, fmt::format("{}: mean ratio", name), run.mean_ratio, Better::higher);
+  table.add(row, fmt::format("{}: smallest ratio", name), run.smallest_ratio);
+}
+
+/// Radius ratios of the three solvers and of the program's own settings.
+template <std::size_t n>
+BenchTable quality_table(Bench& bench, BenchTable table, const std::array<Case, n>& cases, bool counts) {
+  for (const Case& c : cases)
+    bench.row(table, c.row, c.sample, [&] {
+      const MeshJob job = job_of(bench, c);
+      const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
+      const MeshRun own = bench.meshes.run(job, {"own", 0, true});
+      BenchRow& row = table.add_row(c.row, input_text(job, bench.meshes.fields(job)));
+      for (std::size_t k = 0; k < solvers.size(); ++k) add_quality(table, row, solvers[k].name, runs[k], counts);
+      add_quality(table, row, "own settings", own, counts);
+    });
+  return table;
+}
+
+}  // namespace
+
+BenchTable bench_quality(Bench& bench) {
+  return quality_table(
+      bench,
+      make_table(bench, "3.1", "Radius ratio (2 r_in / r_circ) of the triangles", hardware_3,
+                 {same_work(), "own settings: nacre mesh as it comes: the tree to its end, bad triangles mended"}),
+      scalar_cases, false);
+}
+
+BenchTable bench_solvers(Bench& bench) {
+  return solver_table(bench, make_table(bench, "3.2", "Time to place the particles", hardware_3, {same_work()}),
+                      scalar_cases);
+}
+
+BenchTable bench_synthetic(Bench& bench) {
+  BenchTable table =
+      make_table(bench, "3.3", "Time for a given number of seeds (ribcage; none are added)", hardware_3, {same_work()});
+  MeshJob job = job_of(bench, scalar_cases[2]);
+  constexpr int own_detail = 268;
+  const double share = bench.small ? double(job.detail) * job.detail / (own_detail * own_detail) : 1;
+  for (int seeds = 60000; seeds <= 300000; seeds += bench.small ? 120000 : 30000)
+    bench.row(table, std::to_string(seeds), job.sample, [&] {
+      const int asked = int(seeds * share);
+      const std::array<MeshRun, 3> runs = run_solvers(bench, job, asked, false);
+      BenchRow& row = table.add_row(std::to_string(seeds), input_text(job, bench.meshes.fields(job)));
+      table.add(row, "seeds", asked);
+      add_solvers(table, row, runs);
+    });
+  return table;
+}
+
+BenchTable bench_sizing(Bench& bench) {
+  BenchTable table = make_table(
+      bench, "3.4", "Time for sizing fields of epsilon, delta (ribcage)", hardware_3,
+      {same_work(), "sizes from 0.75 to 1 voxel, so that counts grow about as the source's do",
+       "our limiter is exact: it has no number of iterations, and the source's row of 7 has no counterpart"});
+  constexpr std::array<std::array<double, 2>, 6> rows{
+      {{8, 2}, {2, 1}, {0.5, 0.5}, {0.25, 0.25}, {0.125, 0.125}, {0.01, 0.01}}};
+  for (std::size_t k = 0; k < rows.size(); k += bench.small ? 4 : 1) {
+    const std::string name = fmt::format("{:g}, {:g}", rows[k][0], rows[k][1]);
+    bench.row(table, name, scalar_cases[2].sample, [&] {
+      MeshJob job = job_of(bench, scalar_cases[2]);
+      job.epsilon = rows[k][0];
+      job.delta = rows[k][1];
+      job.min_size = 0.75;
+      const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, false);
+      BenchRow& row = table.add_row(name, input_text(job, bench.meshes.fields(job)));
+      add_solvers(table, row, runs);
+    });
+  }
+  return table;
+}
+
+BenchTable bench_material_quality(Bench& bench) {
+  return quality_table(
+      bench,
+      make_table(bench, "4.1", "Particles, and radius ratio (2 r_in / r_circ) of the triangles", hardware_4,
+                 {same_work(), "own settings: nacre mesh as it comes: the tree to its end, bad triangles mended"}),
+      material_cases, true);
+}
+
+BenchTable bench_material_solvers(Bench& bench) {
+  BenchTable table = solver_table(
+      bench, make_table(bench, "4.2", "Time to place the particles of several materials", hardware_4, {same_work()}),
+      material_cases);
+  for (BenchRow& row : table.rows) add_source_costs(row);
+  return table;
+}
+
+BenchTable bench_material_stages(Bench& bench) {
+  BenchTable table = make_table(
+      bench, "4.3", "Time of the stages before and after the particles", hardware_4,
+      {"the source's distance volume and sizing field are BioMesh3D's, on one thread of its CPU",
+       "total: distance volume, sizing field and extract, as the source adds them; extract: of the tree's particles"});
+  for (const Case& c : material_cases)
+    bench.row(table, c.row, c.sample, [&] {
+      const MeshJob job = job_of(bench, c);
+      const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
+      const MeshFields& fields = bench.meshes.fields(job);
+      BenchRow& row = table.add_row(c.row, input_text(job, fields));
+      table.add(row, "distance volume, s", fields.distance);
+      table.add(row, "sizing field, s", fields.sizing);
+      table.add(row, "closest point, s", fields.embed);
+      table.add(row, "extract, s", runs[2].extract);
+      table.add(row, "total, s", fields.distance + fields.sizing + runs[2].extract);
+      for (std::size_t k = 0; k < solvers.size(); ++k)  // for figure 4.5; the source's are those of Table 4.2
+        table.add(row, fmt::format("particles, {}, s", solvers[k].name), runs[k].seconds, Better::neither,
+                  find_source_figure("4.2", c.row, fmt::format("{}: s", solvers[k].name))->value);
+    });
+  return table;
+}
+
+}  // namespace nacre

@@ -1,0 +1,55 @@
+// Nacre: what `nacre bench` finds out: tables of rows of quantities, each beside the source's figure.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace nacre {
+
+/// Which way a quantity is a gain, where it is a ratio between methods that two runs can be compared by.
+enum class Better { neither, higher, lower };
+
+struct BenchValue {
+  std::string quantity;  ///< with its unit
+  std::optional<double> source, ours;
+  Better better = Better::neither;
+  std::string note;
+};
+
+struct BenchRow {
+  std::string name;
+  std::string input;  ///< what was run on
+  std::vector<BenchValue> values;
+  std::string left_out;  ///< why there are no figures of ours; empty: there are
+
+  std::optional<double> ours(const std::string& quantity) const;
+};
+
+struct BenchTable {
+  std::string name;                  ///< "3.1", or a word for a side result
+  std::string title;                 ///< what is measured
+  std::vector<std::string> differs;  ///< what differs from the source beside the hardware
+  std::vector<BenchRow> rows;
+
+  BenchRow& add_row(std::string row, std::string input);
+  /// A row without figures of ours: what the source has for it, and why there are none.
+  void leave_out(std::string row, std::string input, std::string why);
+  /// Adds a quantity to `row`, beside the source's figure of that name, or `source` where that is given.
+  void add(BenchRow& row, std::string quantity, std::optional<double> ours, Better better = Better::neither,
+           std::optional<double> source = {}) const;
+};
+
+/// a / b; nothing where one of them is missing or b is not positive.
+std::optional<double> ratio(std::optional<double> a, std::optional<double> b);
+
+/// The table for people. Its first line begins "Table 3.1" (or "Side result: arena"); then one line per quantity: row,
+/// quantity, the source's figure, ours, what differs.
+std::string table_text(const BenchTable& table);
+
+/// The same for programs: {name, title, differs, rows: [{name, input, left_out?, values: {quantity: {source?, ours?,
+/// better?, note?}}}]}; a figure that is missing is not there.
+nlohmann::json table_json(const BenchTable& table);
+
+}  // namespace nacre

@@ -1,0 +1,98 @@
+// Nacre: a flow as the viewer shows it.
+#include "app/viewer/flow_scene.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "compute/device/error.hpp"
+#include "engine/picture/colormap.hpp"
+
+namespace nacre {
+
+FlowScene::FlowScene(Session session, std::unique_ptr<Device> device, bool loop)
+    : worker_(session, std::move(device), loop) {
+  set_colormap(session.settings.colormap);
+}
+
+FlowScene::~FlowScene() {
+  worker_.finish();  // nobody writes to the memory any more
+  shown_.reset();
+}
+
+void FlowScene::set_colormap(const std::string& name) { colours_.set_map(colormap(name).table); }
+
+void FlowScene::advance(double now) {
+  while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
+  if (playing && now - last_step_ >= 1 / steps_per_second && begin_step(false)) last_step_ = now;
+}
+
+void FlowScene::advance_and_wait(const std::atomic<bool>& stop) {
+  const int before = steps_;
+  while (steps_ == before && !stop) {
+    if (!failure_.empty()) throw Error(failure_);
+    if (worker_.ready()) begin_step(true);
+    std::optional<FlowEvent> event = worker_.wait(stop);
+    if (event) take(*event);
+  }
+}
+
+bool FlowScene::begin_step(bool wait) {
+  if (!shown_ || shown_->writing() || !worker_.ready()) return false;
+  void* memory = shown_->begin_write(wait);
+  if (memory) worker_.step(static_cast<float*>(memory));
+  return memory != nullptr;
+}
+
+void FlowScene::take(FlowEvent& event) {
+  std::visit([this](auto& told) { take(told); }, event);
+}
+
+void FlowScene::take(SurfaceRead& told) {
+  surface_ = SurfaceBuffers(told.geometry);
+  corners_ = std::move(told.corners);
+  name_ = std::move(told.name);
+  array_ = std::move(told.array);
+  warnings_ = std::move(told.warnings);
+  low_ = told.low;
+  high_ = told.high;
+  Vec3d low = corners_.front(), high = low;
+  for (const Vec3d& p : corners_) low = min(low, p), high = max(high, p);
+  radius_ = 0.5 * length(high - low);
+  if (!told.scalar.empty()) colours_.set_scalar(told.scalar, low_, high_);
+}
+
+void FlowScene::take(FlowEmbedded& told) {
+  if (shown_) copied_ += shown_->copied_bytes();
+  shown_.reset();
+  steps_ = 0;
+  surface_pass_.set_texture(SparseTexture(sparse_lookup(told.lookup), told.rimmed));
+  shown_ = std::make_unique<SharedBuffer>(worker_.device(), told.info.surface_cells * sizeof(float), GL_R32F);
+  info_ = told.info;
+  failure_.clear();
+}
+
+void FlowScene::take(FlowStarted&) {
+  if (shown_) shown_->cancel_write();  // of a step that was interrupted for this
+  failure_.clear();
+}
+
+void FlowScene::take(FlowStepped& told) {
+  shown_->end_write();
+  time_ = told.time;
+  ++steps_;
+  if (!told.scalar.empty()) colours_.set_scalar(told.scalar, low_, high_);
+}
+
+void FlowScene::take(FlowFailed& told) {
+  if (shown_) shown_->cancel_write();
+  failure_ = std::move(told.what);
+}
+
+void FlowScene::draw(const View& view) {
+  if (!surface_) return;
+  surface_pass_.draw(view, surface_, colours_, textured() ? &shown_->texture() : nullptr);
+  if (edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
+  if (shown_) shown_->drawn();
+}
+
+}  // namespace nacre

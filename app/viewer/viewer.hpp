@@ -1,0 +1,51 @@
+// Nacre: the desktop viewer: a window, or the same frames without a display.
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compute/device/device.hpp"
+#include "compute/device/stage_timers.hpp"
+#include "engine/picture/image.hpp"
+#include "engine/scene/session.hpp"
+
+namespace nacre {
+
+struct ViewerOptions {
+  Session session;
+  std::function<std::unique_ptr<Device>()> open_device;  ///< one for each input that is opened
+  bool offscreen = false;
+  bool live = false;     ///< offscreen: frames do not wait for compute, as in a window
+  bool panel = true;     ///< over the frames
+  int frames = 0;        ///< ends after as many with the texture; 0: when the window is closed
+  bool picture = false;  ///< return the last frame
+  const std::atomic<bool>* stop = nullptr;
+  std::function<Camera(const Settings& settings, const std::vector<Vec3d>& corners)> first_camera;
+  std::function<void(const std::string& line)> say;  ///< a line for stderr
+};
+
+/// How it went, for the report.
+struct ViewerResult {
+  std::vector<double> frame_seconds;            ///< without waiting for compute (where frames do) or for the display
+  double first_frame = 0;                       ///< seconds from the start to the first frame
+  double first_surface = 0, first_texture = 0;  ///< to the first frame with it; 0: there was none
+  int steps = 0;
+  std::uint64_t copied_bytes = 0;
+  std::string renderer, version;
+  std::vector<std::string> driver_messages;
+  StageTimers timers;
+  std::size_t peak_bytes = 0;
+  std::string device_name, backend;
+  Image image;
+};
+
+/// Runs until it is closed. Throws Error where there is no display, no OpenGL 4.5, or (offscreen) a stage fails;
+/// Interrupted where `stop` is set.
+ViewerResult run_viewer(const ViewerOptions& options);
+
+}  // namespace nacre

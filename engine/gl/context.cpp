@@ -1,0 +1,69 @@
+// Nacre: what contexts of either kind share: functions, version, the driver's complaints.
+#include "engine/gl/context.hpp"
+
+#include <GL/glew.h>
+
+#include "compute/device/error.hpp"
+#include "engine/gl/errors.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr std::size_t most_messages = 1000;  // a driver that complains every frame shall not eat the memory
+
+bool is_complaint(GLenum type, GLenum severity) {
+  return severity != GL_DEBUG_SEVERITY_NOTIFICATION && type != GL_DEBUG_TYPE_PERFORMANCE && type != GL_DEBUG_TYPE_OTHER;
+}
+
+std::string text_of(GLenum name) {
+  const GLubyte* text = glGetString(name);
+  return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+}  // namespace
+
+Error opengl_missing(const std::string& why) {
+  return Error(
+      "no OpenGL 4.5", why,
+      "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw with Mesa; nacre flow and nacre mesh "
+      "need no OpenGL");
+}
+
+std::vector<std::string> Context::messages() const {
+  std::scoped_lock lock(mutex_);
+  return messages_;
+}
+
+void Context::note(std::string message) {
+  std::scoped_lock lock(mutex_);
+  if (messages_.size() < most_messages) messages_.push_back(std::move(message));
+}
+
+void Context::begin() {
+  glewExperimental = GL_TRUE;  // a core context does not list its extensions the way that GLEW first asks
+  const GLenum status = glewInit();
+  constexpr GLenum no_glx_display = 4;  // all functions are loaded, there is just no X server to ask for more
+  if (status != GLEW_OK && status != no_glx_display)
+    throw opengl_missing(reinterpret_cast<const char*>(glewGetErrorString(status)));
+  while (glGetError() != GL_NO_ERROR) {  // GLEW leaves one behind in core contexts
+  }
+  renderer_ = text_of(GL_RENDERER);
+  version_ = text_of(GL_VERSION);
+  GLint major = 0, minor = 0;
+  glGetIntegerv(GL_MAJOR_VERSION, &major);
+  glGetIntegerv(GL_MINOR_VERSION, &minor);
+  if (major * 10 + minor < 45) throw opengl_missing(renderer_ + " has " + version_);
+  const auto listen = [](GLenum, GLenum type, GLuint, GLenum severity, GLsizei length, const GLchar* text,
+                         const void* self) {
+    if (is_complaint(type, severity))
+      static_cast<Context*>(const_cast<void*>(self))->note(std::string(text, length < 0 ? 0 : std::size_t(length)));
+  };
+  glEnable(GL_DEBUG_OUTPUT);
+  glDebugMessageCallback(listen, this);
+  // One convention for all passes: depth from 1 (near) to 0 (far), which keeps floating-point depth exact far away.
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDepthFunc(GL_GREATER);
+  glClearDepth(0);
+}
+
+}  // namespace nacre

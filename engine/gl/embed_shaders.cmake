@@ -1,0 +1,11 @@
+# Writes OUT, a C++ file with every one of FILES as a raw string. A run of CMake by itself: cmake -DOUT= -DFILES= -P.
+set(text "// Nacre: the shaders, put here by embed_shaders.cmake.\n#include \"engine/gl/shader.hpp\"\n\n")
+string(APPEND text "namespace nacre {\n\nstd::span<const ShaderSource> shader_sources() {\n")
+string(APPEND text "  static constexpr ShaderSource sources[] = {\n")
+foreach(file IN LISTS FILES)
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} source)
+  string(APPEND text "{\"${name}\", R\"glsl(${source})glsl\"},\n")
+endforeach()
+string(APPEND text "  };\n  return sources;\n}\n\n}  // namespace nacre\n")
+file(WRITE ${OUT} "${text}")

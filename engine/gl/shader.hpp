@@ -1,0 +1,50 @@
+// Nacre: shader programs, from sources that are in the binary.
+#pragma once
+
+#include <GL/glew.h>
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace nacre {
+
+/// One file of shaders/.
+struct ShaderSource {
+  std::string_view name, text;
+};
+
+/// All of them; the build makes this function.
+std::span<const ShaderSource> shader_sources();
+
+/// A vertex and a fragment shader, linked. Lines `#include "NAME"` are replaced by that file.
+class Program {
+ public:
+  Program() = default;
+  /// `prelude` comes behind #version in both: definitions, or whole functions. Throws Error with the compiler's words.
+  Program(std::string_view vertex, std::string_view fragment, std::string_view prelude = {});
+  ~Program();
+  Program(Program&& other) noexcept { *this = static_cast<Program&&>(other); }
+  Program& operator=(Program&& other) noexcept;
+
+  void use() const { glUseProgram(id_); }
+  GLuint id() const { return id_; }
+
+  // Uniforms by name; one that the compiler has found to be of no use is passed over. Matrices: column by column.
+  void set(const char* name, int value) const;
+  void set(const char* name, float value) const;
+  void set(const char* name, const std::array<int, 3>& value) const;
+  void set(const char* name, const std::array<float, 2>& value) const;
+  void set(const char* name, const std::array<float, 3>& value) const;
+  void set(const char* name, const std::array<float, 4>& value) const;
+  void set(const char* name, const std::array<float, 9>& matrix) const;
+  void set(const char* name, const std::array<float, 16>& matrix) const;
+
+ private:
+  GLint place(const char* name) const { return glGetUniformLocation(id_, name); }
+
+  GLuint id_ = 0;
+};
+
+}  // namespace nacre

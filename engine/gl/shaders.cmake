@@ -1,0 +1,10 @@
+# Puts the files of shaders/ into nacre_gl as strings, so that a program carries its shaders with it.
+file(GLOB shader_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/shaders/*.vert ${CMAKE_SOURCE_DIR}/shaders/*.frag
+  ${CMAKE_SOURCE_DIR}/shaders/*.glsl)
+set(shader_sources ${CMAKE_CURRENT_BINARY_DIR}/shader_sources.cpp)
+add_custom_command(OUTPUT ${shader_sources}
+  COMMAND ${CMAKE_COMMAND} -DOUT=${shader_sources} "-DFILES=${shader_files}"
+    -P ${CMAKE_CURRENT_LIST_DIR}/embed_shaders.cmake
+  DEPENDS ${shader_files} ${CMAKE_CURRENT_LIST_DIR}/embed_shaders.cmake
+  COMMENT "Embedding shaders" VERBATIM)
+target_sources(nacre_gl PRIVATE ${shader_sources})

@@ -1,0 +1,59 @@
+// Nacre: textures, and buffers that a shader reads like one.
+#pragma once
+
+#include <GL/glew.h>
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "engine/gl/buffer.hpp"
+
+namespace nacre {
+
+/// A name of a texture that dies with its owner.
+class TextureName {
+ public:
+  TextureName() = default;
+  explicit TextureName(GLenum target) { glCreateTextures(target, 1, &id_); }
+  ~TextureName() {
+    if (id_) glDeleteTextures(1, &id_);
+  }
+  TextureName(TextureName&& other) noexcept : id_(other.id_) { other.id_ = 0; }
+  TextureName& operator=(TextureName&& other) noexcept;
+
+  GLuint id() const { return id_; }
+
+ private:
+  GLuint id_ = 0;
+};
+
+/// A buffer as elements of `format` (e.g. GL_R32F), for samplerBuffer and texelFetch. It does not own the buffer.
+class BufferTexture {
+ public:
+  BufferTexture() = default;
+  BufferTexture(const Buffer& buffer, GLenum format);
+
+  void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
+
+  /// Most elements that one can have here; a larger array is cut into pages.
+  static std::size_t most_elements();
+
+ private:
+  TextureName name_;
+};
+
+/// Colours along a line, linear between them: colour k of n at (k + 0.5) / n.
+class ColourTexture {
+ public:
+  ColourTexture() = default;
+  /// RGB as the shader shall see it.
+  explicit ColourTexture(std::span<const std::array<float, 3>> colours);
+
+  void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
+
+ private:
+  TextureName name_;
+};
+
+}  // namespace nacre

@@ -1,0 +1,82 @@
+// Nacre: a window by GLFW.
+#include "engine/gl/window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "engine/gl/errors.hpp"
+
+namespace nacre {
+namespace {
+
+/// What GLFW has last complained about.
+std::string glfw_complaint() {
+  const char* text = nullptr;
+  glfwGetError(&text);
+  return text ? text : "";
+}
+
+}  // namespace
+
+Window::Window(const std::string& title, int width, int height) {
+  if (!glfwInit())
+    throw Error("no display to open a window on", glfw_complaint(),
+                "start nacre view on a desktop, or draw without one: nacre view --offscreen --image FILE.png");
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);  // all is drawn into a Framebuffer, the window only gets the picture
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (!window_) {
+    const std::string why = glfw_complaint();
+    glfwTerminate();
+    throw opengl_missing(why);
+  }
+  try {
+    make_current();
+    begin();
+  } catch (...) {
+    glfwTerminate();
+    throw;
+  }
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** names) {
+    const auto* self = static_cast<const Window*>(glfwGetWindowUserPointer(window));
+    if (self->on_drop) self->on_drop({names, names + count});
+  });
+}
+
+Window::~Window() { glfwTerminate(); }
+
+void Window::make_current() { glfwMakeContextCurrent(window_); }
+
+bool Window::should_close() const { return glfwWindowShouldClose(window_); }
+
+void Window::poll() {
+  const auto [width, height] = pixels();
+  if (width > 0 && height > 0 && !glfwGetWindowAttrib(window_, GLFW_ICONIFIED))
+    glfwPollEvents();
+  else
+    glfwWaitEventsTimeout(0.1);
+}
+
+void Window::swap() { glfwSwapBuffers(window_); }
+
+std::array<int, 2> Window::pixels() const {
+  std::array<int, 2> size{};
+  glfwGetFramebufferSize(window_, &size[0], &size[1]);
+  return size;
+}
+
+float Window::scale() const {
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window_, &x, &y);
+  return std::max(x, 0.25f);
+}
+
+}  // namespace nacre

@@ -1,0 +1,42 @@
+// Nacre: a window with a context in it.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/gl/context.hpp"
+
+struct GLFWwindow;
+
+namespace nacre {
+
+/// One window by GLFW. Its context is current on the thread that made it, which must be the main thread.
+class Window : public Context {
+ public:
+  /// Opens a window of width x height screen units. Throws Error where there is no display or no OpenGL 4.5.
+  Window(const std::string& title, int width, int height);
+  ~Window() override;
+
+  void make_current() override;
+  GLFWwindow* handle() const { return window_; }
+
+  bool should_close() const;
+  /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on.
+  void poll();
+  void swap();
+
+  std::array<int, 2> pixels() const;  ///< of its framebuffer; (0, 0) while minimised
+  float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI)
+
+  /// Called in `poll` with the files that were dropped on the window.
+  std::function<void(const std::vector<std::filesystem::path>& files)> on_drop;
+
+ private:
+  GLFWwindow* window_ = nullptr;
+};
+
+}  // namespace nacre

@@ -1,0 +1,97 @@
+// Nacre: an OpenGL buffer as CUDA sees it.
+#include "engine/interop/cuda_link.hpp"
+
+#include "compute/device/error.hpp"
+
+#if NACRE_HAS_CUDA
+
+#include <GL/glew.h>
+#include <cuda_gl_interop.h>
+
+#include <algorithm>
+#include <array>
+
+#include "compute/device/cuda_check.hpp"
+
+namespace nacre {
+namespace {
+
+class RegisteredBuffer final : public CudaLink {
+ public:
+  explicit RegisteredBuffer(GLuint buffer) {
+    cuda_check(cudaGraphicsGLRegisterBuffer(&resource_, buffer, cudaGraphicsRegisterFlagsWriteDiscard),
+               "registering a buffer of OpenGL");
+  }
+  ~RegisteredBuffer() override {
+    if (mapped_) cudaGraphicsUnmapResources(1, &resource_);
+    cudaGraphicsUnregisterResource(resource_);
+  }
+  RegisteredBuffer(const RegisteredBuffer&) = delete;
+  RegisteredBuffer& operator=(const RegisteredBuffer&) = delete;
+
+  void* map() override {
+    cuda_check(cudaGraphicsMapResources(1, &resource_), "mapping a buffer of OpenGL");
+    mapped_ = true;
+    void* pointer = nullptr;
+    std::size_t bytes = 0;
+    cuda_check(cudaGraphicsResourceGetMappedPointer(&pointer, &bytes, resource_), "finding a buffer of OpenGL");
+    return pointer;
+  }
+
+  void unmap() override {
+    mapped_ = false;
+    cuda_check(cudaGraphicsUnmapResources(1, &resource_), "unmapping a buffer of OpenGL");
+  }
+
+ private:
+  cudaGraphicsResource_t resource_ = nullptr;
+  bool mapped_ = false;
+};
+
+class PinnedBlock final : public PinnedMemory {
+ public:
+  explicit PinnedBlock(std::size_t bytes) { cuda_check(cudaMallocHost(&block_, bytes), "pinning host memory"); }
+  ~PinnedBlock() override { cudaFreeHost(block_); }
+  PinnedBlock(const PinnedBlock&) = delete;
+  PinnedBlock& operator=(const PinnedBlock&) = delete;
+  void* data() override { return block_; }
+
+ private:
+  void* block_ = nullptr;
+};
+
+}  // namespace
+
+bool cuda_draws_here() {
+  std::array<int, 16> devices{};
+  unsigned count = 0;
+  int current = -1;
+  if (cudaGetDevice(&current) != cudaSuccess ||
+      cudaGLGetDevices(&count, devices.data(), unsigned(devices.size()), cudaGLDeviceListAll) != cudaSuccess) {
+    cudaGetLastError();  // a context of another maker is "no", not an error
+    return false;
+  }
+  return std::find(devices.begin(), devices.begin() + count, current) != devices.begin() + count;
+}
+
+std::unique_ptr<CudaLink> link_cuda(unsigned gl_buffer) { return std::make_unique<RegisteredBuffer>(gl_buffer); }
+
+std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes) { return std::make_unique<PinnedBlock>(bytes); }
+
+}  // namespace nacre
+
+#else
+
+namespace nacre {
+
+bool cuda_draws_here() { return false; }
+
+std::unique_ptr<CudaLink> link_cuda(unsigned) {
+  throw Error("CUDA cannot write into a buffer of OpenGL", "this build has no CUDA");
+}
+
+std::unique_ptr<PinnedMemory> pin_memory(std::size_t) { throw Error("no pinned memory", "this build has no CUDA"); }
+
+}  // namespace nacre
+
+#endif

@@ -1,0 +1,44 @@
+// Nacre: draws the triangles between materials.
+#include "engine/render/material_pass.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace nacre {
+
+void MaterialPass::set_materials(std::span<const std::array<std::uint16_t, 2>> materials) {
+  std::vector<std::uint32_t> packed;
+  packed.reserve(materials.size());
+  for (const auto& pair : materials) packed.push_back(pair[0] | std::uint32_t(pair[1]) << 16);
+  materials_ = Buffer::of<std::uint32_t>(packed);
+  materials_texture_ = BufferTexture(materials_, GL_R32UI);
+}
+
+void MaterialPass::set_looks(std::span<const MaterialLook> looks) {
+  looks_ = Buffer::of<MaterialLook>(looks);
+  looks_texture_ = BufferTexture(looks_, GL_RGBA32F);
+  ghosts_ = std::any_of(looks.begin(), looks.end(),
+                        [](const MaterialLook& look) { return look.opacity > 0 && look.opacity < 1; });
+}
+
+void MaterialPass::draw(const View& view, const SurfaceBuffers& surface, const Placement& placement) const {
+  set_view(program_, view, placement * surface.placement());
+  materials_texture_.bind(0);
+  program_.set("materials", 0);
+  looks_texture_.bind(1);
+  program_.set("material_look", 1);
+  program_.set("ghosts", 0);
+  glEnable(GL_DEPTH_TEST);
+  program_.use();
+  surface.draw_triangles();
+  if (!ghosts_) return;
+  program_.set("ghosts", 1);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDepthMask(GL_FALSE);
+  surface.draw_triangles();
+  glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
+}
+
+}  // namespace nacre

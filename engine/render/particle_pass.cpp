@@ -1,0 +1,46 @@
+// Nacre: draws particles.
+#include "engine/render/particle_pass.hpp"
+
+#include <vector>
+
+namespace nacre {
+
+ParticlePass::ParticlePass() : program_("particles.vert", "particles.frag") {
+  glCreateVertexArrays(1, &array_);
+  for (GLuint k = 0; k < 2; ++k) {
+    glEnableVertexArrayAttrib(array_, k);
+    glVertexArrayAttribFormat(array_, k, 4, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(array_, k, k);
+    glVertexArrayBindingDivisor(array_, k, 1);
+  }
+}
+
+ParticlePass::~ParticlePass() { glDeleteVertexArrays(1, &array_); }
+
+void ParticlePass::set_map(std::span<const std::array<float, 3>> colours) {
+  std::vector<std::array<float, 3>> linear(colours.begin(), colours.end());
+  for (auto& colour : linear)
+    for (float& c : colour) c *= c;
+  map_ = ColourTexture(linear);
+}
+
+void ParticlePass::draw(const View& view, const Placement& placement, const Buffer& place, const Buffer& direction,
+                        std::size_t first, std::size_t count, const ParticleLook& look) const {
+  if (count == 0 || !place || !direction) return;
+  constexpr std::size_t record = 4 * sizeof(float);
+  set_view(program_, view, placement);
+  program_.set("size", look.size);
+  program_.set("face_camera", look.face_camera ? 1 : 0);
+  program_.set("by_energy", look.by_energy ? 1 : 0);
+  program_.set("range", look.range);
+  map_.bind(0);
+  program_.set("colours", 0);
+  glVertexArrayVertexBuffer(array_, 0, place.id(), GLintptr(first * record), record);
+  glVertexArrayVertexBuffer(array_, 1, direction.id(), GLintptr(first * record), record);
+  glBindVertexArray(array_);
+  glEnable(GL_DEPTH_TEST);
+  program_.use();
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(count));
+}
+
+}  // namespace nacre

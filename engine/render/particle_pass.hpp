@@ -1,0 +1,42 @@
+// Nacre: draws particles as discs that lie on their surface.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "engine/gl/buffer.hpp"
+#include "engine/gl/texture.hpp"
+#include "engine/render/view.hpp"
+
+namespace nacre {
+
+struct ParticleLook {
+  float size = 0.36f;                ///< radius of a disc, in h
+  bool face_camera = false;          ///< particles of curves and points have no normal
+  bool by_energy = true;             ///< colour by energy, else by h
+  std::array<float, 2> range{0, 1};  ///< of the colour map
+};
+
+/// Draws straight from the solver's arrays (ParticleSet): `place` x, y, z, h and `direction` nx, ny, nz, energy.
+class ParticlePass {
+ public:
+  ParticlePass();
+  ~ParticlePass();
+  ParticlePass(const ParticlePass&) = delete;
+  ParticlePass& operator=(const ParticlePass&) = delete;
+
+  /// 256 colours, encoded.
+  void set_map(std::span<const std::array<float, 3>> colours);
+
+  /// Particles first .. first + count - 1, into what is bound.
+  void draw(const View& view, const Placement& placement, const Buffer& place, const Buffer& direction,
+            std::size_t first, std::size_t count, const ParticleLook& look) const;
+
+ private:
+  Program program_;
+  ColourTexture map_;
+  GLuint array_ = 0;
+};
+
+}  // namespace nacre

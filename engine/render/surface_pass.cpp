@@ -1,0 +1,62 @@
+// Nacre: draws a surface.
+#include "engine/render/surface_pass.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace nacre {
+
+void SurfaceColours::set_map(std::span<const std::array<float, 3>> colours) {
+  std::vector<std::array<float, 3>> linear(colours.begin(), colours.end());
+  for (auto& colour : linear)
+    for (float& c : colour) c *= c;  // gamma 2, as in pictures without OpenGL
+  map_ = ColourTexture(linear);
+}
+
+void SurfaceColours::set_scalar(std::span<const float> scalar, double low, double high) {
+  if (scalar_.bytes() != scalar.size_bytes() || !scalar_) {
+    scalar_ = Buffer(scalar.size_bytes());
+    scalar_texture_ = BufferTexture(scalar_, GL_R32F);
+  }
+  scalar_.update(scalar);
+  low_ = float(low);
+  high_ = float(high);
+  coloured_ = !scalar.empty();
+}
+
+int SurfaceColours::bind(const Program& program, int unit) const {
+  map_.bind(unit);
+  program.set("colours", unit);
+  scalar_texture_.bind(unit + 1);
+  program.set("scalar", unit + 1);
+  program.set("coloured", coloured_ ? 1 : 0);
+  program.set("range", std::array<float, 2>{low_, high_});
+  return unit + 2;
+}
+
+void SurfacePass::set_texture(SparseTexture texture) {
+  texture_ = std::move(texture);
+  textured_ = texture_ ? Program("surface.vert", "surface.frag", texture_.prelude()) : Program();
+}
+
+void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
+                       const BufferTexture* shown) const {
+  const bool textured = texture_ && shown;
+  const Program& program = textured ? textured_ : plain_;
+  set_view(program, view, surface.placement());
+  const int unit = colours.bind(program, 0);
+  if (textured) {
+    texture_.bind(program, *shown, unit);
+    const Vec3d offset = (surface.origin() - texture_.origin()) / texture_.texture_cell();
+    program.set("texture_from_model", std::array<float, 4>{float(offset.x), float(offset.y), float(offset.z),
+                                                           float(surface.size() / texture_.texture_cell())});
+  }
+  glEnable(GL_DEPTH_TEST);
+  const bool one_sided = surface.closed() && !view.clip;
+  if (one_sided) glEnable(GL_CULL_FACE);
+  program.use();
+  surface.draw_triangles();
+  if (one_sided) glDisable(GL_CULL_FACE);
+}
+
+}  // namespace nacre

@@ -1,0 +1,51 @@
+// Nacre: draws a surface with the texture of flow and a colour map.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "engine/gl/texture.hpp"
+#include "engine/render/geometry.hpp"
+#include "engine/render/sparse_texture.hpp"
+
+namespace nacre {
+
+/// A value per point of the mesh to colour by, and what colours it gets.
+class SurfaceColours {
+ public:
+  /// 256 colours, encoded.
+  void set_map(std::span<const std::array<float, 3>> colours);
+  /// One number per point. They are input, not results: this is the one array that goes up with time.
+  void set_scalar(std::span<const float> scalar, double low, double high);
+  void clear_scalar() { coloured_ = false; }
+
+  int bind(const Program& program, int unit) const;
+
+ private:
+  ColourTexture map_;
+  Buffer scalar_;
+  BufferTexture scalar_texture_;
+  bool coloured_ = false;
+  float low_ = 0, high_ = 1;
+};
+
+/// Draws into what is bound. Without a texture the surface is plain.
+class SurfacePass {
+ public:
+  SurfacePass() : plain_("surface.vert", "surface.frag") {}
+
+  /// Looks values up in `texture` from now on; an empty one: plain.
+  void set_texture(SparseTexture texture);
+  bool textured() const { return bool(texture_); }
+
+  /// `shown`: one value per surface cell; null: plain.
+  void draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
+            const BufferTexture* shown) const;
+
+ private:
+  Program plain_, textured_;
+  SparseTexture texture_;
+};
+
+}  // namespace nacre

@@ -1,0 +1,22 @@
+// Triangles between materials, flat: the look of compute/raycast/mesh_picture.hpp. A material can be solid, a ghost or
+// hidden; a triangle is what the more visible of its two materials is.
+#include "view.glsl"
+
+in vec3 seen;
+out vec4 pixel;
+
+uniform usamplerBuffer materials;      // per triangle: the two numbers, 16 bits each
+uniform samplerBuffer material_look;   // per material: encoded colour, opacity
+uniform bool ghosts;                   // draw those, or the solid ones
+
+void main() {
+  if (is_cut(seen)) discard;
+  uint pair = texelFetch(materials, gl_PrimitiveID).r;
+  vec4 low = texelFetch(material_look, int(pair & 0xffffu)), high = texelFetch(material_look, int(pair >> 16));
+  bool outside = (pair & 0xffffu) == 0u;
+  float opacity = outside ? high.a : max(low.a, high.a);
+  if (opacity <= 0.0 || (opacity < 1.0) != ghosts) discard;
+  vec3 colour = outside ? high.rgb : mix(0.5 * (low.rgb + high.rgb), vec3(1.0), 0.35);
+  vec3 normal = cross(dFdx(seen), dFdy(seen));
+  pixel = vec4(to_encoded(to_linear(colour) * brightness(normal, seen)), opacity);
+}

@@ -1,0 +1,22 @@
+#include "view.glsl"
+
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+layout(location = 2) in uint point;  // of the mesh: several vertices share one where there is a crease
+
+uniform samplerBuffer scalar;  // per point
+uniform bool coloured;
+uniform vec4 texture_from_model;  // offset, scale
+
+out vec3 seen;
+out vec3 direction;  // of the normal
+out vec3 place;      // in texture cells
+out float shade;     // of the colour map
+
+void main() {
+  gl_Position = clip_from_model * vec4(position, 1.0);
+  seen = (seen_from_model * vec4(position, 1.0)).xyz;
+  direction = normal_from_model * normal;
+  place = position * texture_from_model.w + texture_from_model.xyz;
+  shade = coloured ? texelFetch(scalar, int(point)).r : 0.0;
+}

@@ -1,0 +1,133 @@
+// Nacre: the viewer as a script runs it, without a display.
+#include <cstdlib>
+
+#include "engine/picture/png.hpp"
+#include "tests/app/program.hpp"
+
+namespace nacre::test {
+namespace {
+
+const Words small_view = {"view", "--offscreen", "--sample", "sphere", "--detail", "24",         "--resolution",
+                          "64",   "--steps",     "4",        "--size", "200x150",  "--no-panel", "--quiet"};
+
+/// Why the viewer cannot run here; empty: it can.
+std::string no_viewer() {
+  static const std::string why = [] {
+    const Outcome tried = nacre({"view", "--offscreen", "--sample", "sphere", "--detail", "24", "--resolution", "32",
+                                 "--frames-count", "1", "--quiet"});
+    return tried.status == 1 && (contains(tried.err, "no viewer") || contains(tried.err, "no OpenGL")) ? tried.err : "";
+  }();
+  return why;
+}
+
+class View : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!no_viewer().empty()) GTEST_SKIP() << no_viewer();
+  }
+  TemporaryFolder folder;
+};
+
+nlohmann::json read_json(const fs::path& file) {
+  std::ifstream stream(file);
+  return nlohmann::json::parse(stream);
+}
+
+TEST_F(View, OffscreenWritesThePictureOfTheLastFrame) {
+  const fs::path png = folder / "view.png", json = folder / "view.json";
+  const Outcome outcome = nacre(small_view + Words{"--image", png.string(), "--report", json.string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.out, png.string() + "\n");
+  EXPECT_EQ(outcome.err, "");
+  const Image image = read_png(png);
+  EXPECT_EQ(image.width, 200);
+  EXPECT_EQ(image.height, 150);
+  const nlohmann::json view = read_json(json).at("view");
+  EXPECT_EQ(view.at("frames"), 4);
+  EXPECT_EQ(view.at("steps"), 4);
+  EXPECT_EQ(view.at("copied_bytes"), 0);
+  EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
+}
+
+TEST_F(View, PictureIsThatOfTheHeadlessCommand) {
+  const fs::path view = folder / "view.png", flow = folder / "flow.png";
+  const Words common = {"--sample", "sphere", "--detail", "24",      "--resolution", "96",
+                        "--steps",  "3",      "--size",   "240x180", "--quiet"};
+  ASSERT_EQ(nacre(Words{"view", "--offscreen", "--image", view.string(), "--set", "legend=false"} + common).status, 0);
+  ASSERT_EQ(nacre(Words{"flow", "--no-legend", "--no-time", "--image", flow.string()} + common).status, 0);
+  const Image a = read_png(view), b = read_png(flow);
+  ASSERT_EQ(a.pixels.size(), b.pixels.size());
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += std::abs(int(a.pixels[i]) - int(b.pixels[i]));
+  EXPECT_LT(sum / double(a.pixels.size()), 1.5);  // 4 samples a pixel, in other places
+}
+
+TEST_F(View, TwoReplaysAreTheSame) {
+  const fs::path first = folder / "1.png", second = folder / "2.png";
+  ASSERT_EQ(nacre(small_view + Words{"--image", first.string()}).status, 0);
+  ASSERT_EQ(nacre(small_view + Words{"--image", second.string(), "--threads", "1"}).status, 0);
+  EXPECT_EQ(read_png(first).pixels, read_png(second).pixels);
+}
+
+TEST_F(View, LiveFramesDoNotWaitForCompute) {
+  const fs::path json = folder / "view.json";
+  ASSERT_EQ(nacre(small_view + Words{"--live", "--frames-count", "60", "--panel", "--report", json.string()}).status,
+            0);
+  const nlohmann::json view = read_json(json).at("view");
+  EXPECT_GE(view.at("frames"), 60);
+  EXPECT_LT(view.at("first_frame_seconds"), 2.0);
+  EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
+}
+
+TEST_F(View, WordsThatAreOffAreUsageErrors) {
+  EXPECT_EQ(nacre({"view", "--offscreen"}).status, 2);
+  EXPECT_EQ(nacre({"view", "--live"}).status, 2);
+  EXPECT_EQ(nacre({"view", "--offscreen", "--image", "x.png", "--size", "0x9"}).status, 2);
+  EXPECT_EQ(nacre({"view", "--offscreen", "--image", "x.png", "--colormap", "nosuch"}).status, 2);
+}
+
+TEST_F(View, FailuresAreOneLine) {
+  const Outcome missing = nacre({"view", "--offscreen", "--image", (folder / "x.png").string(), "nosuch.vtp"});
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_TRUE(contains(missing.err, "nosuch.vtp")) << missing.err;
+  EXPECT_FALSE(fs::exists(folder / "x.png"));
+}
+
+TEST_F(View, OldOpenGlIsNamed) {
+  const Outcome outcome =
+      run("/bin/bash", Words{"-c", "MESA_GL_VERSION_OVERRIDE=3.3 exec \"$0\" \"$@\"", NACRE_PROGRAM} + small_view +
+                           Words{"--image", (folder / "x.png").string()});
+  if (outcome.status == 0) GTEST_SKIP() << "this driver is not Mesa's";
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(contains(outcome.err, "no OpenGL 4.5")) << outcome.err;
+}
+
+TEST_F(View, WithoutADisplayAWindowIsAnError) {
+  const Outcome outcome = run("/bin/bash", {"-c", "unset DISPLAY WAYLAND_DISPLAY; exec \"$0\" view", NACRE_PROGRAM});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(contains(outcome.err, "no display")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "--offscreen")) << outcome.err;
+}
+
+TEST_F(View, WindowUnderXvfb) {
+  const fs::path png = folder / "window.png", json = folder / "window.json";
+  const Outcome outcome =
+      run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_window.sh", NACRE_PROGRAM, png.string(), json.string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json view = read_json(json).at("view");
+  EXPECT_GE(view.at("frames"), 40);
+  EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
+  EXPECT_LT(view.at("first_frame_seconds"), 2.0);
+  const Image image = read_png(png);
+  int coloured = 0;  // the sphere in its colours: neither background nor gray panel
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const std::uint8_t* p = image.at(x, y);
+      coloured += std::abs(int(p[0]) - int(p[2])) > 30;
+    }
+  EXPECT_GT(coloured, image.width * image.height / 10);
+}
+
+}  // namespace
+}  // namespace nacre::test

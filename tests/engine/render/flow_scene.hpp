@@ -1,0 +1,53 @@
+// Nacre: a small flow with a texture, for tests of what is drawn.
+#pragma once
+
+#include <memory>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/interop/shared_buffer.hpp"
+#include "engine/render/surface_pass.hpp"
+#include "engine/scene/prepare.hpp"
+#include "engine/scene/samples.hpp"
+
+namespace nacre::test {
+
+/// A built-in sample with some steps of texture, the shown values in OpenGL's memory.
+struct FlowScene {
+  PreparedSurface surface;
+  std::unique_ptr<Device> device = make_cpu_device();
+  std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
+  std::unique_ptr<SharedBuffer> shown;
+
+  explicit FlowScene(const std::string& sample, int detail, int resolution, int refine = 4) {
+    surface = prepare(make_sample(sample, detail).load(0));
+    pipeline->parameters.resolution = resolution;
+    pipeline->parameters.refine = refine;
+    pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
+    FlowVectors vectors;
+    vectors.at = [this](double t, std::span<Vec3f> out) {
+      const std::vector<Vec3f> field = analytic_vectors("@swirl", surface, t);
+      std::copy(field.begin(), field.end(), out.begin());
+    };
+    pipeline->start(vectors);
+    shown = std::make_unique<SharedBuffer>(*device, pipeline->embedding().surface_cells * sizeof(float), GL_R32F);
+    step();
+  }
+
+  void step() {
+    pipeline->show_into(static_cast<float*>(shown->begin_write(true)));
+    pipeline->step();
+    shown->end_write();
+  }
+
+  SparseTexture texture(std::size_t page = 0) const {
+    const FlowLookup l = pipeline->lookup();
+    const SparseLookup lookup{l.bricks, l.subcells, l.refine, l.origin, l.cell_size, l.brick_index, l.block, l.texel};
+    return SparseTexture(lookup, with_rims(lookup), page);
+  }
+
+  SurfaceGeometry geometry() const {
+    return make_surface_geometry(surface.points, surface.triangles, surface.corner_normals);
+  }
+};
+
+}  // namespace nacre::test

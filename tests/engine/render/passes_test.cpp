@@ -1,0 +1,276 @@
+// Nacre: materials, edges, boxes, particles and axes, each in a scene whose picture can be told by hand.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdlib>
+#include <vector>
+
+#include "compute/raycast/mesh_picture.hpp"
+#include "engine/gl/framebuffer.hpp"
+#include "engine/picture/colormap.hpp"
+#include "engine/picture/png.hpp"
+#include "engine/render/axes_pass.hpp"
+#include "engine/render/line_passes.hpp"
+#include "engine/render/material_pass.hpp"
+#include "engine/render/particle_pass.hpp"
+#include "tests/engine/gl/offscreen.hpp"
+
+namespace nacre {
+namespace {
+
+using Pass = test::Offscreen;
+using Pixel = std::array<int, 3>;
+const Placement world(1.0);
+
+/// Looks along y at the square -1..1 of the xz plane, which fills the picture.
+View front(int size = 100) {
+  View view;
+  view.camera.eye = {0, -10, 0};
+  view.camera.target = {0, 0, 0};
+  view.camera.up = {0, 0, 1};
+  view.camera.height = 2;
+  view.width = view.height = size;
+  view.light = mesh_light(view.camera);
+  return view;
+}
+
+Pixel at(const Image& image, int x, int y) {
+  const std::uint8_t* p = image.at(x, y);
+  return {p[0], p[1], p[2]};
+}
+
+/// Share of pixels that are not white.
+double covered(const Image& image) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) count += at(image, x, y) != Pixel{255, 255, 255};
+  return double(count) / image.width / image.height;
+}
+
+template <class Draw>
+Image picture(const View& view, const Draw& draw) {
+  const Framebuffer frame(view.width, view.height);
+  frame.bind();
+  frame.clear({1, 1, 1, 1});
+  draw();
+  return frame.read();
+}
+
+void keep(const Image& image, const std::string& name) {
+  if (const char* folder = std::getenv("NACRE_KEEP_PICTURES"))
+    write_png(std::filesystem::path(folder) / (name + ".png"), image);
+}
+
+/// Squares across the view: two triangles each, in planes y = depth.
+struct Squares {
+  std::vector<Vec3d> points;
+  std::vector<Triangle> triangles;
+
+  void add(double depth, double size) {
+    const std::uint32_t n = std::uint32_t(points.size());
+    for (int k = 0; k < 4; ++k) points.push_back({(k & 1 ? size : -size), depth, (k & 2 ? size : -size)});
+    triangles.push_back({n, n + 1, n + 2});
+    triangles.push_back({n + 2, n + 1, n + 3});
+  }
+};
+
+/// The inner square (material 2) lies behind the outer one (material 1).
+class MaterialScene {
+ public:
+  MaterialScene() {
+    Squares squares;
+    squares.add(0, 0.8);
+    squares.add(0.5, 0.4);
+    buffers_ = SurfaceBuffers(make_surface_geometry(squares.points, squares.triangles, {}));
+    pass_.set_materials(std::vector<std::array<std::uint16_t, 2>>{{0, 1}, {0, 1}, {0, 2}, {0, 2}});
+  }
+
+  Image draw(float first, float second) {
+    pass_.set_looks(std::vector<MaterialLook>{{}, {{1, 0, 0}, first}, {{0, 0, 1}, second}});
+    const View view = front();
+    return picture(view, [&] { pass_.draw(view, buffers_, world); });
+  }
+
+ private:
+  SurfaceBuffers buffers_;
+  MaterialPass pass_;
+};
+
+TEST_F(Pass, SolidMaterialsHideWhatIsBehind) {
+  MaterialScene scene;
+  const Image image = scene.draw(1, 1);
+  const Pixel middle = at(image, 50, 50);
+  EXPECT_GT(middle[0], 200);
+  EXPECT_EQ(middle[2], 0);
+  EXPECT_NEAR(covered(image), 0.64, 0.03);
+}
+
+TEST_F(Pass, HiddenMaterialsAreNotThere) {
+  MaterialScene scene;
+  const Image image = scene.draw(0, 1);
+  EXPECT_EQ(at(image, 50, 50)[0], 0);
+  EXPECT_GT(at(image, 50, 50)[2], 200);
+  EXPECT_NEAR(covered(image), 0.16, 0.03);
+}
+
+TEST_F(Pass, GhostsLetTheRestShineThrough) {
+  MaterialScene scene;
+  const Image image = scene.draw(0.25f, 1);
+  keep(image, "ghost");
+  const Pixel middle = at(image, 50, 50), beside = at(image, 20, 50);
+  EXPECT_GT(middle[2], 120);  // the blue one behind
+  EXPECT_GT(middle[0], 30);   // through a red pane
+  EXPECT_GT(beside[0], 200);
+  EXPECT_NEAR(beside[2], 191, 3);  // white through it: 255 (1 - 0.25)
+}
+
+TEST_F(Pass, MaterialsLookAsInPicturesWithoutOpenGl) {
+  Squares squares;
+  squares.add(0, 0.8);
+  squares.points[3].y = 0.6;  // one triangle is tilted
+  const SurfaceBuffers buffers(make_surface_geometry(squares.points, squares.triangles, {}));
+  MaterialPass pass;
+  pass.set_materials(std::vector<std::array<std::uint16_t, 2>>{{0, 1}, {1, 2}});
+  pass.set_looks(std::vector<MaterialLook>{{}, {{0.9f, 0.5f, 0.2f}, 1}, {{0.1f, 0.5f, 0.8f}, 1}});
+  const View view = front();
+  const Image image = picture(view, [&] { pass.draw(view, buffers, world); });
+  MeshPictureOptions options;
+  options.camera = view.camera;
+  options.width = options.height = 100;
+  options.samples = 1;
+  options.edges = false;
+  const std::vector<std::array<float, 3>> colours{{0.9f, 0.5f, 0.2f}, {0.675f, 0.675f, 0.675f}};
+  const std::vector<std::uint8_t> reference = mesh_picture(squares.points, squares.triangles, colours, options);
+  for (const auto [x, y] : {std::array<int, 2>{20, 70}, {30, 80}, {75, 35}, {80, 20}})
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(image.at(x, y)[c], reference[std::size_t(4 * (100 * y + x) + c)], 3) << x << " " << y;
+}
+
+TEST_F(Pass, EdgesAreDrawnOnceBeforeTheirTriangles) {
+  Squares squares;
+  squares.add(0, 0.8);
+  const SurfaceGeometry geometry = make_surface_geometry(squares.points, squares.triangles, {});
+  EXPECT_EQ(geometry.edges.size(), 5u);
+  EXPECT_FALSE(geometry.closed);
+  const SurfaceBuffers buffers(geometry);
+  MaterialPass fill;
+  fill.set_materials(std::vector<std::array<std::uint16_t, 2>>{{0, 1}, {0, 1}});
+  fill.set_looks(std::vector<MaterialLook>{{}, {{1, 0, 0}, 1}});
+  const EdgePass edges;
+  for (const bool orthographic : {false, true}) {
+    View view = front();
+    view.camera.orthographic = orthographic;
+    const Image image = picture(view, [&] {
+      fill.draw(view, buffers, world);
+      edges.draw(view, buffers, world, {0, 0, 0, 1});
+    });
+    int dark = 0;
+    for (int x = 0; x < 100; ++x) dark += at(image, x, 25)[0] < 60;
+    EXPECT_GE(dark, 3) << orthographic;  // left, diagonal, right
+    EXPECT_LE(dark, 6) << orthographic;
+    EXPECT_GT(at(image, 30, 50)[0], 150);
+  }
+}
+
+TEST_F(Pass, ClosedSurfacesAreFound) {
+  const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const std::vector<Triangle> tetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+  EXPECT_TRUE(make_surface_geometry(points, tetrahedron, {}).closed);
+  std::vector<Triangle> turned = tetrahedron;
+  std::swap(turned[0].a, turned[0].b);
+  EXPECT_FALSE(make_surface_geometry(points, turned, {}).closed);
+  EXPECT_FALSE(make_surface_geometry(points, std::span(tetrahedron).first(3), {}).closed);
+  EXPECT_FALSE(make_surface_geometry(points, {}, {}).closed);
+}
+
+TEST_F(Pass, CornersShareAVertexWhereTheirNormalsAgree) {
+  Squares squares;
+  squares.add(0, 1);
+  const Vec3f n(0, -1, 0), other(0, 0, 1);
+  const std::vector<Vec3f> same(6, n);
+  EXPECT_EQ(make_surface_geometry(squares.points, squares.triangles, same).vertices.size(), 4u);
+  const std::vector<Vec3f> crease{n, n, n, other, other, other};
+  EXPECT_EQ(make_surface_geometry(squares.points, squares.triangles, crease).vertices.size(), 6u);
+}
+
+TEST_F(Pass, BoxesAreDrawnFromTheRecordsOfABuild) {
+  struct Node {  // as a tree might lay it out
+    std::uint32_t first, last;
+    Vec3f low, high;
+    float more;
+  };
+  const std::vector<Node> nodes{{0, 1, Vec3f(-9), Vec3f(9), 0}, {0, 1, {-0.5f, -0.5f, -0.5f}, {0.5f, 0.5f, 0.5f}, 0}};
+  const Buffer buffer = Buffer::of<Node>(nodes);
+  const BoxPass pass;
+  View view = front();
+  view.camera.orthographic = true;
+  const Image image = picture(view, [&] {
+    pass.draw_corners(view, world, buffer, {sizeof(Node), offsetof(Node, low), offsetof(Node, high)}, 1, 1,
+                      {0, 0, 0, 1});
+  });
+  EXPECT_NEAR(covered(image), 4 * 50 / 10000.0, 0.004);  // one square of 50 pixels: front and back coincide
+  EXPECT_LT(at(image, 50, 25)[0] + at(image, 50, 24)[0], 300);
+}
+
+TEST_F(Pass, BoxesOfMortonCodesLieWhereTheCodesSay) {
+  const std::vector<std::uint64_t> codes{7 + (std::uint64_t(1) << 60), 6};  // the first is far away; then (0, 1, 1)
+  const Buffer buffer = Buffer::of<std::uint64_t>(codes);
+  const BoxPass pass;
+  View view = front();
+  view.camera.orthographic = true;
+  const Image image = picture(view, [&] {
+    pass.draw_codes(view, place_grid({0, 0, -1}, 1), buffer, 1, 1, 0.5f, {0, 0, 0, 1});
+  });
+  // Cube x 0..0.5, z -1 + 0.5..-1 + 1: columns 50..75, rows 50..75.
+  EXPECT_NEAR(covered(image), 4 * 25 / 10000.0, 0.003);
+  EXPECT_LT(at(image, 60, 50)[0] + at(image, 60, 49)[0], 300);
+}
+
+TEST_F(Pass, ParticlesAreDiscsOnTheirSurface) {
+  const std::vector<std::array<float, 4>> places{{-0.5f, 0, 0, 1}, {0.5f, 0, 0, 1}};
+  const std::vector<std::array<float, 4>> headings{{0, -1, 0, 0}, {1, 0, 0, 1}};  // facing us, and from the side
+  const Buffer place = Buffer::of<std::array<float, 4>>(places), heading = Buffer::of<std::array<float, 4>>(headings);
+  ParticlePass pass;
+  pass.set_map(colormap("sea").table);
+  View view = front();
+  view.camera.orthographic = true;
+  const auto draw = [&](std::size_t first, std::size_t count, bool face) {
+    ParticleLook look;
+    look.size = 0.2f;
+    look.face_camera = face;
+    return picture(view, [&] { pass.draw(view, world, place, heading, first, count, look); });
+  };
+  const double disc = 3.14159 * 10 * 10 / 10000;  // radius 0.2 is 10 pixels
+  EXPECT_NEAR(covered(draw(0, 1, false)), disc, 0.1 * disc);
+  EXPECT_LT(covered(draw(1, 1, false)), 0.2 * disc);
+  const Image both = draw(0, 2, true);
+  keep(both, "particles");
+  EXPECT_NEAR(covered(both), 2 * disc, 0.2 * disc);
+  EXPECT_NE(at(both, 25, 50), at(both, 75, 50));  // energies 0 and 1
+  EXPECT_EQ(covered(draw(0, 0, true)), 0);
+}
+
+TEST_F(Pass, AxesPointWhereTheyShould) {
+  AxesPass pass;
+  View view = front(400);
+  const Image image = picture(view, [&] { pass.draw(view); });
+  keep(image, "axes");
+  const auto reddish = [](const Pixel& p) { return p[0] > 180 && p[1] < 120; };
+  const auto blueish = [](const Pixel& p) { return p[2] > 180 && p[0] < 120; };
+  int right_most = 0, highest = 400, lowest_blue = 0;
+  for (int y = 0; y < 400; ++y)
+    for (int x = 0; x < 400; ++x) {
+      if (reddish(at(image, x, y))) right_most = std::max(right_most, x);
+      if (blueish(at(image, x, y))) highest = std::min(highest, y), lowest_blue = std::max(lowest_blue, y);
+    }
+  EXPECT_GT(right_most, 370);  // x to the right, in the right lower corner
+  EXPECT_GT(highest, 250);     // z up
+  EXPECT_LT(highest, 300);
+  EXPECT_LT(lowest_blue, 345);
+  view = front(100);
+  EXPECT_EQ(covered(picture(view, [&] { pass.draw(view); })), 0);  // too small for it
+}
+
+}  // namespace
+}  // namespace nacre

@@ -1,0 +1,16 @@
+# Nacre: finds Dear ImGui, the viewer's panels; Debian's static library holds its GLFW and OpenGL 3 backends, too.
+include(FindPackageHandleStandardArgs)
+find_path(IMGUI_INCLUDE imgui.h PATH_SUFFIXES imgui)
+find_path(IMGUI_BACKENDS_INCLUDE imgui_impl_opengl3.h HINTS ${IMGUI_INCLUDE} PATH_SUFFIXES backends imgui/backends)
+find_library(IMGUI_LIBRARY imgui)
+find_library(IMGUI_STB_LIBRARY stb)
+mark_as_advanced(IMGUI_INCLUDE IMGUI_BACKENDS_INCLUDE IMGUI_LIBRARY IMGUI_STB_LIBRARY)
+nacre_header_version(Imgui_VERSION "${IMGUI_INCLUDE}/imgui.h" IMGUI_VERSION)
+find_package_handle_standard_args(Imgui REQUIRED_VARS IMGUI_INCLUDE IMGUI_BACKENDS_INCLUDE IMGUI_LIBRARY
+  IMGUI_STB_LIBRARY VERSION_VAR Imgui_VERSION)
+if(Imgui_FOUND AND NOT TARGET imgui::imgui)
+  add_library(imgui::imgui UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(imgui::imgui PROPERTIES IMPORTED_LOCATION ${IMGUI_LIBRARY})
+  target_include_directories(imgui::imgui SYSTEM INTERFACE ${IMGUI_INCLUDE} ${IMGUI_BACKENDS_INCLUDE})
+  target_link_libraries(imgui::imgui INTERFACE glfw ${IMGUI_STB_LIBRARY} ${CMAKE_DL_LIBS})
+endif()
