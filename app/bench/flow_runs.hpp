@@ -27,6 +27,9 @@ struct FlowJob {
   }
 };
 
+/// `detail` of the samples with --small: building costs time per triangle, too.
+inline constexpr int small_flow_detail = 200;
+
 struct FlowRun {
   EmbeddingInfo embedding;
   double embed = 0, refine = 0;  ///< seconds

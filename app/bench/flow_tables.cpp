@@ -40,13 +40,10 @@ void flow_row(Bench& bench, BenchTable& table, const std::string& name, const st
   });
 }
 
-/// Triangles along the longest side with --small: building costs time per triangle, too.
-constexpr int small_detail = 200;
-
 FlowJob octree_job(const Bench& bench, const std::string& sample, int resolution, bool index) {
   FlowJob job;
   job.sample = sample;
-  job.detail = bench.small ? small_detail : 0;
+  job.detail = bench.small ? small_flow_detail : 0;
   job.method = "octree";
   job.octree = "source";
   job.radius = source_radius;
@@ -113,6 +110,7 @@ BenchTable bench_grid_flow(Bench& bench) {
   for (const Case& c : cases) {
     FlowJob job;
     job.sample = c.sample;
+    job.detail = bench.small ? small_flow_detail : 0;
     job.resolution = bench.small ? c.resolution / 4 : c.resolution;
     job.refine = c.refine;
     flow_row(bench, table, c.row, {job}, [&](BenchRow& row) {

@@ -72,7 +72,7 @@ BenchTable bench_gathering(Bench& bench) {
                    {}};
   MeshJob job;
   job.sample = "ribcage";
-  job.detail = bench.small ? 64 : 0;
+  job.detail = bench.small ? 56 : 0;
   if (bench.device.backend() != "cpu") {
     bench.leave_out(table, "ribcage", "phantom ribcage", "measured on the CPU only; use --device cpu");
     return table;

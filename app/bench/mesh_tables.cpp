@@ -22,8 +22,8 @@ struct Case {
   int small_detail;
 };
 constexpr std::array<Case, 3> scalar_cases{
-    {{"heart", "heart", 72}, {"lungs", "lungs", 72}, {"ribcage", "ribcage", 64}}};
-constexpr std::array<Case, 2> material_cases{{{"torso (pig)", "torso", 56}, {"head", "head", 64}}};
+    {{"heart", "heart", 64}, {"lungs", "lungs", 64}, {"ribcage", "ribcage", 56}}};
+constexpr std::array<Case, 2> material_cases{{{"torso (pig)", "torso", 40}, {"head", "head", 44}}};
 
 MeshJob job_of(const Bench& bench, const Case& c) {
   MeshJob job;

@@ -86,9 +86,10 @@ Image side_by_side(const std::vector<std::pair<std::string, Image>>& pictures) {
   return all;
 }
 
-std::array<FlowJob, 3> three_methods(const std::string& sample, int resolution) {
+std::array<FlowJob, 3> three_methods(const Bench& bench, const std::string& sample, int resolution) {
   FlowJob grid;
   grid.sample = sample;
+  grid.detail = bench.small ? small_flow_detail : 0;
   grid.resolution = resolution;
   FlowJob brick = grid, source = grid;
   brick.method = source.method = "octree";
@@ -107,7 +108,7 @@ BenchTable bench_arena(Bench& bench) {
                    {}};
   arena_turns(bench, table);
   FlowJob job = train(bench.small ? 256 : 1024);
-  if (bench.small) job.detail = 200;
+  if (bench.small) job.detail = small_flow_detail;
   const std::string input = fmt::format("sample train, {} cells: embed, start, one step", job.resolution);
   bench.row(table, "embedding", input, [&] {
     const double kept = bench.flows.embed_and_step(job, false, 3), anew = bench.flows.embed_and_step(job, true, 3);
@@ -130,7 +131,7 @@ BenchTable bench_grid_octree(Bench& bench) {
     if (bench.small && resolution > 512) break;
     const std::string name = fmt::format("train {}", resolution);
     bench.row(table, name, "sample train", [&] {
-      const std::array<FlowJob, 3> jobs = three_methods("train", resolution);
+      const std::array<FlowJob, 3> jobs = three_methods(bench, "train", resolution);
       std::array<double, 3> build{}, step{};
       for (std::size_t k = 0; k < jobs.size(); ++k) {
         const FlowRun& run = bench.flows.run(jobs[k]);
@@ -149,7 +150,7 @@ BenchTable bench_grid_octree(Bench& bench) {
   for (const char* sample : {"train", "delta-wing"}) {
     const std::string name = fmt::format("{}, finest", sample);
     bench.row(table, name, "estimates", [&] {
-      const std::array<FlowJob, 3> jobs = three_methods(sample, 64);
+      const std::array<FlowJob, 3> jobs = three_methods(bench, sample, 64);
       std::array<double, 3> finest{};
       for (std::size_t k = 0; k < jobs.size(); ++k) finest[k] = bench.flows.largest_resolution(jobs[k]);
       BenchRow& row = table.add_row(
@@ -176,7 +177,7 @@ BenchTable bench_methods(Bench& bench) {
     bench.row(table, sample, input, [&] {
       std::vector<std::pair<std::string, Image>> pictures;
       BenchRow row{sample, input, {}, {}};
-      const std::array<FlowJob, 3> jobs = three_methods(sample, resolution);
+      const std::array<FlowJob, 3> jobs = three_methods(bench, sample, resolution);
       for (std::size_t k = 0; k < jobs.size(); ++k) {
         const double before = now();
         pictures.emplace_back(method_names[k], bench.flows.picture(jobs[k], bench.small ? 4 : 10, 1024, 768));

@@ -239,7 +239,8 @@ class Repair {
   std::vector<Change> changes_of(const std::vector<Part>& parts) const {
     std::vector<Change> changes;
     for (const Part& part : parts) {
-      if (part.cells[0] < 0) continue;  // beyond the hull
+      if (std::any_of(part.cells.begin(), part.cells.end(), [](std::int32_t cell) { return cell < 0; }))
+        continue;  // it goes on beyond the hull
       const auto alike = [&](const Part& p) { return label_at(p.cells[0]) == label_at(part.cells[0]); };
       const bool several = crumbs_may_go_ && std::count_if(parts.begin(), parts.end(), alike) > 1;
       add_changes(changes, part, several);
