@@ -173,7 +173,7 @@ TEST_F(MeshCtrlC, KeepsWhatThereIsWhileCurvesMove) {
   const auto [run, seconds] =
       interrupt(small_mesh + Words{"--iterations", "1000000", "--stagnation", "0", "--keep-on-interrupt", "--out",
                                    path("a.vtp"), "--report", path("r.json")},
-                2.0);
+                5.0);
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_EQ(names(), (Words{"a.vtp", "r.json"}));
   EXPECT_LT(seconds, 10);
