@@ -10,6 +10,7 @@
 
 #include "app/common.hpp"
 #include "compute/device/error.hpp"
+#include "engine/scene/camera_json.hpp"
 
 namespace nacre {
 namespace {
@@ -49,23 +50,11 @@ Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {
   std::ifstream stream(settings.camera);
   if (!stream) throw Error("cannot read camera " + settings.camera);
   try {
-    const nlohmann::json json = nlohmann::json::parse(stream);
-    const auto vec = [&](const char* key) {
-      const auto v = json.at(key).get<std::array<double, 3>>();
-      return Vec3d(v[0], v[1], v[2]);
-    };
-    Camera camera = fit_camera("iso", corners, settings.width, settings.height);
-    camera.eye = vec("eye");
-    camera.target = vec("target");
-    camera.up = json.contains("up") ? vec("up") : Vec3d(0, 0, 1);
-    camera.height = json.value("height", camera.height);
-    camera.orthographic = json.value("orthographic", false);
-    if (!(length(camera.target - camera.eye) > 0) || !(length(camera.up) > 0) || !(camera.height > 0))
-      throw Error(settings.camera + " is no camera", "eye and target must differ, up and height be above zero");
-    return camera;
+    return camera_of(nlohmann::json::parse(stream), fit_camera("iso", corners, settings.width, settings.height).height);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(settings.camera + " is no camera", error.what(),
-                R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})");
+    throw Error(settings.camera + " is no camera", error.what());
+  } catch (const Error& error) {
+    throw Error(settings.camera + ": " + error.what());
   }
 }
 

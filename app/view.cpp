@@ -81,7 +81,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.open_device = [&] { return open_device(options.common); };
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
-  viewer.panel = options.offscreen ? options.panel : !options.no_panel;
+  viewer.session.settings.look.panel = options.offscreen ? options.panel : !options.no_panel;
   viewer.frames = options.frames > 0 ? options.frames : options.offscreen ? std::max(1, settings.flow.steps) : 0;
   viewer.picture = !options.image.empty();
   viewer.stop = &interrupt_flag();
@@ -135,7 +135,7 @@ void add_view_command(CLI::App& program, std::function<void()>& run) {
   command->add_flag("--panel", options->panel, "offscreen: draw the panel, too");
   command->add_flag("--no-panel", options->no_panel, "begin without the panel");
   add_common_options(*command, options->common);
-  auto knob_options = std::make_shared<KnobOptions>(*command, "flow");
+  auto knob_options = std::make_shared<KnobOptions>(*command, "view");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_view(*options, *knob_options); }; });
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/viewer/panel.hpp"
+#include "app/viewer/scene.hpp"
 #include "engine/render/camera_motion.hpp"
 
 namespace nacre {
@@ -28,7 +29,7 @@ void use_mouse(Camera& camera, int width, int height) {
                    1 - 2 * io.MousePos.y / down, aspect);
 }
 
-void look_from(Camera& camera, const char* view, const FlowScene& scene, int width, int height) {
+void look_from(Camera& camera, const char* view, const Scene& scene, int width, int height) {
   if (scene.corners().empty()) return;
   const bool orthographic = camera.orthographic;
   camera = fit_camera(view, scene.corners(), width, height);
@@ -36,20 +37,23 @@ void look_from(Camera& camera, const char* view, const FlowScene& scene, int wid
 }
 
 /// All of the scene again, from where it is looked at now.
-void fit(Camera& camera, const FlowScene& scene) {
+void fit(Camera& camera, const Scene& scene) {
   if (scene.corners().empty()) return;
   Vec3d low = scene.corners().front(), high = low;
   for (const Vec3d& p : scene.corners()) low = min(low, p), high = max(high, p);
   const Vec3d middle = (low + high) * 0.5, forward = camera.forward();
-  const double distance = 9 * std::max(scene.radius(), 1e-30);
+  const double radius = std::max(0.5 * length(high - low), 1e-30), distance = 9 * radius;
   camera.eye = middle - forward * distance;
   camera.target = middle;
-  camera.height = 2.1 * std::max(scene.radius(), 1e-30);
+  camera.height = 2.1 * radius;
 }
 
 }  // namespace
 
-KeyWishes control_camera(Camera& camera, FlowScene& scene, PanelState& state, int width, int height) {
+KeyWishes control_camera(Session& session, const Scene& scene, PanelState& state, int width, int height) {
+  if (!session.camera) return {};
+  Camera& camera = *session.camera;
+  Look& look = session.settings.look;
   use_mouse(camera, width, height);
   ImGuiIO& io = ImGui::GetIO();
   KeyWishes wishes;
@@ -65,10 +69,10 @@ KeyWishes control_camera(Camera& camera, FlowScene& scene, PanelState& state, in
       case 'z': look_from(camera, "+z", scene, width, height); break;
       case 'Z': look_from(camera, "-z", scene, width, height); break;
       case 'o': camera.orthographic = !camera.orthographic; break;
-      case 'e': scene.edges = !scene.edges; break;
-      case 'p': state.visible = !state.visible; break;
+      case 'e': look.edges = !look.edges; break;
+      case 'p': look.panel = !look.panel; break;
       case '?': state.help = !state.help; break;
-      case ' ': scene.playing = !scene.playing; break;
+      case ' ': look.play = !look.play; break;
       default: break;
     }
   return wishes;

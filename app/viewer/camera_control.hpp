@@ -6,15 +6,16 @@
 namespace nacre {
 
 struct PanelState;
-class FlowScene;
+class Scene;
+struct Session;
 
 /// What keys ask for apart from the camera.
 struct KeyWishes {
   bool quit = false;
 };
 
-/// Moves `camera` by what the mouse and the keys have done since the last frame, where no panel wants them; keys also
-/// switch parts of the scene. Between Interface::begin and end.
-KeyWishes control_camera(Camera& camera, FlowScene& scene, PanelState& state, int width, int height);
+/// Moves the session's camera by what the mouse and the keys have done since the last frame, where no panel wants them; keys also
+/// switch what is shown. Between Interface::begin and end.
+KeyWishes control_camera(Session& session, const Scene& scene, PanelState& state, int width, int height);
 
 }  // namespace nacre

@@ -1,6 +1,8 @@
 // Nacre: a flow as the viewer shows it.
 #include "app/viewer/flow_scene.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -9,9 +11,9 @@
 
 namespace nacre {
 
-FlowScene::FlowScene(Session session, std::unique_ptr<Device> device, bool loop)
-    : worker_(session, std::move(device), loop) {
-  set_colormap(session.settings.colormap);
+FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop)
+    : worker_(session, std::move(device), loop), settings_(session.settings) {
+  colours_.set_map(colormap(settings_.colormap).table);
 }
 
 FlowScene::~FlowScene() {
@@ -19,11 +21,25 @@ FlowScene::~FlowScene() {
   shown_.reset();
 }
 
-void FlowScene::set_colormap(const std::string& name) { colours_.set_map(colormap(name).table); }
+void FlowScene::set_settings(const Settings& settings) {
+  if (settings.colormap != settings_.colormap) colours_.set_map(colormap(settings.colormap).table);
+  settings_ = settings;
+  worker_.set_parameters(settings.flow);
+}
+
+void FlowScene::cancel() {}
+void FlowScene::resume() {}
+Image FlowScene::overlay(int, int) { return {}; }
+void FlowScene::result_panel(Session&) {}
+std::optional<Probed> FlowScene::probe(const Vec3d&, const Vec3d&) { return {}; }
+void FlowScene::write_result(const std::filesystem::path&) {}
+
+std::string FlowScene::title() const { return name_.empty() ? "" : name_ + ": " + array_; }
+std::string FlowScene::state() const { return fmt::format("time {:.4g}   step {}", time_, steps_); }
 
 void FlowScene::advance(double now) {
   while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
-  if (playing && now - last_step_ >= 1 / steps_per_second && begin_step(false)) last_step_ = now;
+  if (settings_.look.play && now - last_step_ >= 1.0 / settings_.fps && begin_step(false)) last_step_ = now;
 }
 
 void FlowScene::advance_and_wait(const std::atomic<bool>& stop) {
@@ -55,9 +71,6 @@ void FlowScene::take(SurfaceRead& told) {
   warnings_ = std::move(told.warnings);
   low_ = told.low;
   high_ = told.high;
-  Vec3d low = corners_.front(), high = low;
-  for (const Vec3d& p : corners_) low = min(low, p), high = max(high, p);
-  radius_ = 0.5 * length(high - low);
   if (!told.scalar.empty()) colours_.set_scalar(told.scalar, low_, high_);
 }
 
@@ -90,9 +103,13 @@ void FlowScene::take(FlowFailed& told) {
 
 void FlowScene::draw(const View& view) {
   if (!surface_) return;
-  surface_pass_.draw(view, surface_, colours_, textured() ? &shown_->texture() : nullptr);
-  if (edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
+  surface_pass_.draw(view, surface_, colours_, complete() ? &shown_->texture() : nullptr);
+  if (settings_.look.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (shown_) shown_->drawn();
+}
+
+std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options) {
+  return std::make_unique<FlowScene>(session, options.open_device(), options.loop);
 }
 
 }  // namespace nacre

@@ -8,48 +8,48 @@
 #include <vector>
 
 #include "app/viewer/flow_worker.hpp"
+#include "app/viewer/scene.hpp"
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/render/line_passes.hpp"
 #include "engine/render/surface_pass.hpp"
 
 namespace nacre {
 
-/// Belongs to the thread of the context.
-class FlowScene {
+class FlowScene : public Scene {
  public:
-  FlowScene(Session session, std::unique_ptr<Device> device, bool loop);
-  ~FlowScene();
+  FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop);
+  ~FlowScene() override;
   FlowScene(const FlowScene&) = delete;
   FlowScene& operator=(const FlowScene&) = delete;
 
-  /// Takes what the worker has told, and asks for the next step where one is due at time `now` (seconds) and the memory
-  /// for it is free. Never waits.
-  void advance(double now);
-  /// The same for replays: waits until one more step is there. Throws Error where a stage fails.
-  void advance_and_wait(const std::atomic<bool>& stop);
+  void advance(double now) override;
+  void advance_and_wait(const std::atomic<bool>& stop) override;
+  void set_settings(const Settings& settings) override;
+  void cancel() override;
+  void resume() override;
+  void draw(const View& view) override;
+  Image overlay(int width, int height) override;
+  std::uint64_t overlay_version() const override { return 0; }
+  void result_panel(Session& session) override;
+  std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
+  void write_result(const std::filesystem::path& file) override;
+  std::vector<std::string> result_formats() const override { return {}; }
 
-  void draw(const View& view);
-
-  void set_parameters(const FlowParameters& parameters) { worker_.set_parameters(parameters); }
-  void set_colormap(const std::string& name);
-
-  bool playing = true;
-  bool edges = false;
-  double steps_per_second = 25;  ///< at most
-
-  const std::vector<Vec3d>& corners() const { return corners_; }  ///< to fit a camera to; empty: not read yet
-  double radius() const { return radius_; }                       ///< of a ball around their middle
-  bool textured() const { return shown_ && steps_ > 0; }
-  int steps() const { return steps_; }
-  double time() const { return time_; }
-  const std::string& name() const { return name_; }
-  const std::string& array() const { return array_; }
-  const std::string& failure() const { return failure_; }  ///< what went wrong last; empty: nothing
-  const std::vector<std::string>& warnings() const { return warnings_; }
-  const EmbeddingInfo& embedding() const { return info_; }
-  std::uint64_t copied_bytes() const { return copied_ + (shown_ ? shown_->copied_bytes() : 0); }
-  std::string remark() const { return shown_ ? shown_->remark() : std::string(); }
-  FlowWorker& worker() { return worker_; }
+  const std::vector<Vec3d>& corners() const override { return corners_; }
+  bool complete() const override { return shown_ && steps_ > 0; }
+  bool settled() const override { return false; }
+  std::string title() const override;
+  std::string state() const override;
+  SceneProgress progress() const override { return {worker_.stage(), -1}; }
+  const std::string& failure() const override { return failure_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  std::string remark() const override { return shown_ ? shown_->remark() : std::string(); }
+  int steps() const override { return steps_; }
+  std::uint64_t copied_bytes() const override { return copied_ + (shown_ ? shown_->copied_bytes() : 0); }
+  StageTimers timers() const override { return worker_.timers(); }
+  std::size_t peak_bytes() const override { return worker_.peak_bytes(); }
+  const Device& device() const override { return worker_.device(); }
+  void finish() override { worker_.finish(); }
 
  private:
   void take(FlowEvent& event);
@@ -70,7 +70,8 @@ class FlowScene {
   std::vector<std::string> warnings_;
   std::string name_, array_, failure_;
   EmbeddingInfo info_;
-  double radius_ = 0, low_ = 0, high_ = 1, time_ = 0, last_step_ = -1e9;
+  Settings settings_;
+  double low_ = 0, high_ = 1, time_ = 0, last_step_ = -1e9;
   int steps_ = 0;
   std::uint64_t copied_ = 0;
 };

@@ -73,6 +73,7 @@ class FlowWorker {
   FlowWorker& operator=(const FlowWorker&) = delete;
 
   Device& device() { return *device_; }
+  const Device& device() const { return *device_; }
 
   /// The oldest event that was not taken.
   std::optional<FlowEvent> poll();

@@ -60,27 +60,14 @@ bool knob_widget(const Knob& knob) {
   return done;
 }
 
-/// Knobs whose change the worker can take over while it runs: those of FlowParameters.
-bool is_live(const Knob& knob, const Settings& settings) {
-  const auto* first = reinterpret_cast<const std::byte*>(&settings.flow);
-  return std::visit(
-      [&](const auto* place) {
-        const auto* at = reinterpret_cast<const std::byte*>(place);
-        return at >= first && at < first + sizeof(FlowParameters);
-      },
-      knob.value);
-}
-
-bool knob_panels(Settings& settings) {
-  bool changed = false;
+void knob_panels(Settings& settings, const char* job) {
   std::string group;
   bool open = false;
   for (const Knob& knob : knobs(settings)) {
-    if (!is_live(knob, settings)) continue;
+    if (!knob.concerns(job)) continue;
     if (knob.group != group) open = ImGui::CollapsingHeader((group = knob.group).c_str());
-    if (open) changed = knob_widget(knob) || changed;
+    if (open) knob_widget(knob);
   }
-  return changed;
 }
 
 void help_window(bool& open) {
@@ -148,35 +135,34 @@ void Interface::end() {
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
 
-bool draw_panel(PanelState& state, FlowScene& scene, const FrameClock& clock, const std::string& renderer) {
+void draw_panel(PanelState& state, Session& session, Scene& scene, const FrameClock& clock,
+                const std::string& renderer) {
   if (state.help) help_window(state.help);
-  if (!state.visible) return false;
+  Settings& settings = session.settings;
+  if (!settings.look.panel) return;
   ImGui::SetNextWindowPos(ImVec2(10, 10), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSize(ImVec2(330, 430), ImGuiCond_FirstUseEver);
-  bool changed = false;
   if (ImGui::Begin("Nacre")) {
     const double frame = clock.mean_seconds();
-    text(scene.name().empty() ? "opening ..." : scene.name() + ": " + scene.array());
+    text(scene.title().empty() ? "opening ..." : scene.title());
     text(fmt::format("{:.1f} frames/s   {:.1f} ms", frame > 0 ? 1 / frame : 0, 1e3 * frame));
     const std::array<float, 120> history = clock.milliseconds();
     ImGui::PlotLines("##frames", history.data(), int(history.size()), 0, nullptr, 0, 200, ImVec2(-1, 36));
-    const std::string stage = scene.worker().stage();
-    text(stage.empty() ? fmt::format("time {:.4g}   step {}", scene.time(), scene.steps()) : stage + " ...");
+    const std::string stage = scene.progress().stage;
+    text(stage.empty() ? scene.state() : stage + " ...");
     if (!scene.failure().empty()) ImGui::TextWrapped("%s", scene.failure().c_str());
-    stage_table(scene.worker().timers());
-    text(fmt::format("{} ({})", scene.worker().device().name(), scene.worker().device().backend()));
+    stage_table(scene.timers());
+    text(fmt::format("{} ({})", scene.device().name(), scene.device().backend()));
     text(renderer);
-    text(fmt::format("{:.0f} MiB   copied {} bytes", double(scene.worker().peak_bytes()) / (1 << 20),
-                     scene.copied_bytes()));
-    ImGui::Checkbox("play", &scene.playing);
+    text(fmt::format("{:.0f} MiB   copied {} bytes", double(scene.peak_bytes()) / (1 << 20), scene.copied_bytes()));
+    ImGui::Checkbox("play", &settings.look.play);
     ImGui::SameLine();
-    ImGui::Checkbox("edges", &scene.edges);
+    ImGui::Checkbox("edges", &settings.look.edges);
     ImGui::SameLine();
     if (ImGui::Button("?")) state.help = true;
-    changed = knob_panels(state.settings);
+    knob_panels(settings, is_mesh_input(session) ? "mesh" : "flow");
   }
   ImGui::End();
-  return changed;
 }
 
 }  // namespace nacre

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "app/viewer/flow_scene.hpp"
+#include "app/viewer/scene.hpp"
 #include "engine/gl/window.hpp"
 
 namespace nacre {
@@ -22,10 +22,9 @@ class FrameClock {
   std::size_t next_ = 0, count_ = 0;
 };
 
-/// What the panels change and the viewer obeys.
+/// What the panels remember and no session does.
 struct PanelState {
-  Settings settings;
-  bool visible = true, help = false;
+  bool help = false;
 };
 
 /// Dear ImGui, in a window or without one.
@@ -44,7 +43,8 @@ class Interface {
   Window* window_;
 };
 
-/// Timings, the state of the flow and its knobs; `renderer`: who draws. Returns whether a knob was changed.
-bool draw_panel(PanelState& state, FlowScene& scene, const FrameClock& clock, const std::string& renderer);
+/// Timings, the state of the scene and the knobs of the session, which it changes; `renderer`: who draws.
+void draw_panel(PanelState& state, Session& session, Scene& scene, const FrameClock& clock,
+                const std::string& renderer);
 
 }  // namespace nacre

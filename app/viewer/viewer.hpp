@@ -12,18 +12,21 @@
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "engine/picture/image.hpp"
+#include "engine/picture/video.hpp"
 #include "engine/scene/session.hpp"
 
 namespace nacre {
 
 struct ViewerOptions {
-  Session session;
+  Session session;                                       ///< its events are played
   std::function<std::unique_ptr<Device>()> open_device;  ///< one for each input that is opened
   bool offscreen = false;
   bool live = false;     ///< offscreen: frames do not wait for compute, as in a window
-  bool panel = true;     ///< over the frames
-  int frames = 0;        ///< ends after as many with the texture; 0: when the window is closed
+  int frames = 0;        ///< ends after as many complete ones; 0: when the window is closed, or what is played ends
   bool picture = false;  ///< return the last frame
+  FrameSink* video = nullptr;  ///< takes every frame
+  bool recorded = false;       ///< return what the user did
+  std::filesystem::path out;   ///< where to write the result at the end; empty: nowhere
   const std::atomic<bool>* stop = nullptr;
   std::function<Camera(const Settings& settings, const std::vector<Vec3d>& corners)> first_camera;
   std::function<void(const std::string& line)> say;  ///< a line for stderr
@@ -34,7 +37,7 @@ struct ViewerResult {
   std::vector<double> frame_seconds;            ///< without waiting for compute (where frames do) or for the display
   double first_frame = 0;                       ///< seconds from the start to the first frame
   double first_surface = 0, first_texture = 0;  ///< to the first frame with it; 0: there was none
-  int steps = 0;
+  int steps = 0;                                ///< of the flow, or iterations of the particles
   std::uint64_t copied_bytes = 0;
   std::string renderer, version;
   std::vector<std::string> driver_messages;
@@ -42,6 +45,8 @@ struct ViewerResult {
   std::size_t peak_bytes = 0;
   std::string device_name, backend;
   Image image;
+  Session recording;                            ///< where asked for
+  std::vector<std::filesystem::path> pictures;  ///< written for events
 };
 
 /// Runs until it is closed. Throws Error where there is no display, no OpenGL 4.5, or (offscreen) a stage fails;

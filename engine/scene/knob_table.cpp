@@ -182,11 +182,52 @@ std::vector<Knob> mesh_knobs(Settings& s) {
   };
 }
 
+std::vector<Knob> look_knobs(Settings& s) {
+  Look& l = s.look;
+  return {
+      {"play", "view", "", "flow: time goes on", &l.play, 0, 1, {}},
+      {"edges", "view", "", "draw the edges of triangles", &l.edges, 0, 1, {}},
+      {"arrows", "view", "", "flow: draw vectors as arrows", &l.arrows, 0, 1, {}},
+      {"arrow_count", "view", "", "flow: arrows over the whole surface", &l.arrow_count, 1, 100000, {}},
+      {"arrow_length", "view", "", "flow: 1 fits the reference speed between arrows", &l.arrow_length, 0.05, 20, {}},
+      {"triangles", "view", "", "mesh: draw triangles", &l.triangles, 0, 1, {}},
+      {"show_particles", "view", "", "mesh: draw particles", &l.particles, 0, 1, {}},
+      {"curves", "view", "", "mesh: draw junction curves", &l.curves, 0, 1, {}},
+      {"boxes", "view", "", "mesh: draw the boxes of the tree", &l.boxes, 0, 1, {}},
+      {"particle_color", "view", "", "mesh: what colours particles", &l.particle_color, 0, 0, {"energy", "size"}},
+      {"hidden", "view", "", "L[,L...]: mesh: labels that are not drawn", &l.hidden, 0, 0, {}},
+      {"ghosts", "view", "", "L[,L...]: mesh: labels that are drawn see-through", &l.ghosts, 0, 0, {}},
+      {"worst", "view", "", "mesh: so many of the worst triangles stand out", &l.worst, 0, 1000, {}},
+      {"clip", "view", "", "cut the scene across an axis", &l.clip, 0, 0, {"none", "x", "y", "z"}},
+      {"clip_at", "view", "", "where, as a share of the bounding box", &l.clip_at, 0, 1, {}},
+      {"clip_back", "view", "", "cut away what is behind", &l.clip_back, 0, 1, {}},
+      {"slice", "view", "", "mesh: a plane of the volume", &l.slice, 0, 0, {"none", "x", "y", "z"}},
+      {"slice_at", "view", "", "where, as a share of the volume", &l.slice_at, 0, 1, {}},
+      {"slice_field",
+       "view",
+       "",
+       "what the slice shows",
+       &l.slice_field,
+       0,
+       0,
+       {"volume", "material", "distance", "size"}},
+      {"light_azimuth", "view", "degrees", "turns the light about the camera's up", &l.light_azimuth, -180, 180, {}},
+      {"light_height", "view", "degrees", "raises the light", &l.light_height, -90, 90, {}},
+      {"ambient", "view", "", "share of the light that comes from everywhere", &l.ambient, 0, 1, {}},
+      {"turning", "view", "", "how the mouse turns", &l.turning, 0, 0, {"turntable", "trackball"}},
+      {"panel", "view", "", "show the panel", &l.panel, 0, 1, {}},
+      {"tab", "view", "", "what the panel shows", &l.tab, 0, 0, {"data", "knobs", "look", "timings", "result"}},
+      {"theme", "view", "", "of the panels", &l.theme, 0, 0, {"dark", "light"}},
+      {"text_size", "view", "", "of the panels", &l.text_size, 0.5, 4, {}},
+  };
+}
+
 }  // namespace
 
 std::vector<Knob> knobs(Settings& settings) {
   std::vector<Knob> table = flow_knobs(settings);
   for (Knob& knob : mesh_knobs(settings)) table.push_back(std::move(knob));
+  for (Knob& knob : look_knobs(settings)) table.push_back(std::move(knob));
   return table;
 }
 

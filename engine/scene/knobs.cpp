@@ -88,7 +88,8 @@ bool Knob::concerns(const std::string& command) const {
   const auto in = [&](std::initializer_list<const char*> groups) {
     return std::find(groups.begin(), groups.end(), group) != groups.end();
   };
-  if (in({"general", "picture"})) return true;
+  if (in({"general", "picture"}) || command == "view") return true;
+  if (in({"view"})) return false;
   return (command == "mesh") == in({"materials", "fields", "sizing", "particles", "cells"});
 }
 

@@ -23,7 +23,7 @@ struct Knob {
 
   std::string option() const;                       ///< "--step-cells"
   std::string text() const;                         ///< the value as on the command line
-  bool concerns(const std::string& command) const;  ///< "flow" or "mesh"
+  bool concerns(const std::string& command) const;  ///< "flow", "mesh" or "view"
 };
 
 /// The table, bound to `settings`, which must outlive it.

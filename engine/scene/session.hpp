@@ -1,21 +1,58 @@
-// Nacre: the session file: inputs and knobs, so that a run can be repeated.
+// Nacre: the session file: inputs, knobs, camera, and what was changed when. One file drives viewer and commands.
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "compute/raycast/camera.hpp"
 #include "engine/scene/settings.hpp"
 
 namespace nacre {
 
-/// What a session file holds: {"nacre": version, "inputs": [files], "sample": name, "detail": number, "knobs": {...}}. Relative inputs
-/// are relative to the session file.
-struct Session {
+/// What is looked at: files, or a built-in sample.
+struct SessionInput {
   std::vector<std::filesystem::path> inputs;
   std::string sample;
   int detail = 0;  ///< of the sample; 0: its own
+
+  bool operator==(const SessionInput&) const = default;
+};
+
+/// A picture of the frame at an event.
+struct Screenshot {
+  std::filesystem::path file;  ///< PNG
+  int scale = 1;               ///< pixels of it to one of the frame and axis, 1 to 4
+  bool panel = false;          ///< with the panels (at scale 1)
+  bool transparent = false;    ///< without background
+
+  bool operator==(const Screenshot&) const = default;
+};
+
+/// What is different from a time on.
+struct SessionEvent {
+  double time = 0;  ///< seconds since the beginning: the first frame at or after it shows the change
+  std::optional<SessionInput> input;
+  std::map<std::string, std::string> knobs;  ///< by name, as on the command line
+  std::optional<Camera> camera;
+  double over = 0;  ///< seconds that the camera takes to get there
+  std::optional<Screenshot> screenshot;
+};
+
+/// What a session file holds:
+///   {"nacre": "session 1", "inputs": [files], "sample": name, "detail": number, "knobs": {...}, "camera": {...},
+///    "events": [{"time": 0.4, "knobs": {...}, "camera": {...}, "over": 1, "inputs": .., "sample": .., "detail": ..,
+///                "screenshot": {"file": "a.png", "scale": 2, "panel": false, "transparent": false}}],
+///    "duration": 5}
+/// All but the first may be left out. Relative files are relative to the session file. A session with events is a
+/// recording; without, it is the state of a view.
+struct Session : SessionInput {
   Settings settings;
+  std::optional<Camera> camera;      ///< none: as the knob says
+  std::vector<SessionEvent> events;  ///< by time
+  double duration = 0;               ///< of the recording, seconds; at least the last event's time
 };
 
 /// Throws Error where the file cannot be read, is no session, or holds a knob that is not known or out of range.
@@ -23,5 +60,11 @@ Session read_session(const std::filesystem::path& file);
 
 /// The text of a session file.
 std::string session_text(const Session& session);
+
+/// What has to happen (at time 0) to `before` so that it becomes `after`: inputs, knobs, camera. None where they agree.
+std::optional<SessionEvent> session_change(const Session& before, const Session& after);
+
+/// Makes the change, all of it at once. Throws Error where a knob is not known or out of range.
+void apply_event(const SessionEvent& event, Session& session);
 
 }  // namespace nacre

@@ -18,11 +18,40 @@ struct MaterialWords {
   int min_component = 0;  ///< drop pieces of fewer voxels
 };
 
+/// What the viewer shows, and how. Nothing here changes a result.
+struct Look {
+  bool play = true;                         ///< flow: time goes on
+  bool edges = false;                       ///< of triangles
+  bool arrows = false;                      ///< flow: vectors as arrows
+  int arrow_count = 1500;                   ///< over the whole surface
+  double arrow_length = 1;                  ///< of the reference speed, in mean distances between arrows
+  bool triangles = true, particles = true;  ///< mesh
+  bool curves = true;                       ///< mesh: junctions
+  bool boxes = false;                       ///< mesh: those of the tree
+  std::string particle_color = "energy";    ///< energy, size
+  std::string hidden, ghosts;               ///< L[,L...]: labels of materials
+  int worst = 0;                            ///< mesh: so many of the worst triangles stand out
+  std::string clip = "none";                ///< x, y, z: nothing is drawn before the plane across that axis
+  double clip_at = 0.5;                     ///< its place in the bounding box
+  bool clip_back = false;                   ///< nothing is drawn behind it instead
+  std::string slice = "none";               ///< x, y, z: a plane of the volume
+  double slice_at = 0.5;
+  std::string slice_field = "volume";          ///< volume, material, distance, size
+  double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
+  double ambient = 0.3;                        ///< share of the light that comes from everywhere
+  std::string turning = "turntable";           ///< turntable, trackball
+  bool panel = true;                           ///< over the picture
+  std::string tab = "data";                    ///< of the panel
+  std::string theme = "dark";                  ///< of the panels: dark, light
+  double text_size = 1;                        ///< of the panels
+};
+
 /// Values of all knobs; the defaults are the members' initial values. The table is in knobs.hpp.
 struct Settings {
   FlowParameters flow;
   MeshParameters mesh;
   MaterialWords materials;
+  Look look;
   double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
   std::string vectors;  ///< array name or @field; empty: chosen

@@ -1,0 +1,97 @@
+// Nacre: what the loop of the viewer shows: a flow or a mesh. It belongs to the thread of the context and never waits for
+// compute, which is a worker's on a thread of its own.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compute/device/device.hpp"
+#include "compute/device/stage_timers.hpp"
+#include "engine/picture/image.hpp"
+#include "engine/render/view.hpp"
+#include "engine/scene/session.hpp"
+
+namespace nacre {
+
+/// What is under the cursor: lines of "name: value" for people.
+struct Probed {
+  Vec3d place;  ///< world
+  std::vector<std::string> lines;
+};
+
+/// Where the work stands.
+struct SceneProgress {
+  std::string stage;     ///< "embedding"; empty: nothing long is going on
+  double fraction = -1;  ///< 0..1; below 0: not known
+};
+
+class Scene {
+ public:
+  virtual ~Scene() = default;
+
+  /// Takes what the worker has told, and asks for what is due at time `now` (seconds). Never waits.
+  virtual void advance(double now) = 0;
+  /// The same for replays: waits until there is one more thing to show: a step of the flow, an iteration of the particles.
+  /// Returns at once where the work is done and nothing more will come. Throws Error where a stage fails.
+  virtual void advance_and_wait(const std::atomic<bool>& stop) = 0;
+
+  /// Takes knobs over. What they do not concern goes on; what they do begins again from there.
+  virtual void set_settings(const Settings& settings) = 0;
+  /// Ends what goes on; what there is stays. Other knobs, or `resume`, begin again.
+  virtual void cancel() = 0;
+  virtual void resume() = 0;
+
+  virtual void draw(const View& view) = 0;
+  /// What lies over the picture and belongs to it: legend and time; transparent elsewhere. Changes with `overlay_version`.
+  virtual Image overlay(int width, int height) = 0;
+  virtual std::uint64_t overlay_version() const = 0;
+
+  /// The job's own part of the tab "result", made with Dear ImGui: measures, histogram, worst triangles. May change the
+  /// session: knobs of the look, the camera.
+  virtual void result_panel(Session& session) = 0;
+  /// What a ray meets first; none: nothing. `along` is unit.
+  virtual std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) = 0;
+
+  /// Writes the result as the headless command would, in the format of the extension. Waits for the worker. Throws Error.
+  virtual void write_result(const std::filesystem::path& file) = 0;
+  /// Extensions that `write_result` takes, e.g. ".vtp".
+  virtual std::vector<std::string> result_formats() const = 0;
+
+  virtual const std::vector<Vec3d>& corners() const = 0;  ///< to fit a camera to; empty: nothing read yet
+  virtual bool complete() const = 0;                      ///< shows what it is for: the texture; particles or triangles
+  virtual bool settled() const = 0;  ///< nothing more will come unless something is changed (a mesh that is done)
+  virtual std::string title() const = 0;
+  virtual std::string state() const = 0;  ///< a line: "time 0.2, step 12"; "12,345 particles, energy 0.71"
+  virtual SceneProgress progress() const = 0;
+  virtual const std::string& failure() const = 0;  ///< what went wrong last; empty: nothing
+  virtual const std::vector<std::string>& warnings() const = 0;
+  virtual std::string remark() const = 0;  ///< once for the user, such as that memory is copied; empty: none
+
+  virtual int steps() const = 0;                   ///< of the flow, or iterations, since the start
+  virtual std::uint64_t copied_bytes() const = 0;  ///< of results between compute and render
+  virtual StageTimers timers() const = 0;
+  virtual std::size_t peak_bytes() const = 0;
+  virtual const Device& device() const = 0;
+  /// Ends the worker; nothing may be asked for after this but what is const.
+  virtual void finish() = 0;
+};
+
+/// `loop`: a flow begins again after its last time; else it stands still there, as headless runs do. `lockstep`: a
+/// replay's worker shows every iteration and waits for each to be taken, so that frames do not depend on speed.
+struct SceneOptions {
+  std::function<std::unique_ptr<Device>()> open_device;
+  bool loop = true, lockstep = false;
+};
+
+std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options);
+std::unique_ptr<Scene> make_mesh_scene(const Session& session, const SceneOptions& options);
+
+/// Is the input a volume, to be meshed? Else it is a surface with a flow.
+bool is_mesh_input(const SessionInput& input);
+
+}  // namespace nacre

@@ -1,0 +1,17 @@
+// Nacre: a camera as JSON: in camera files and in sessions.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "compute/raycast/camera.hpp"
+
+namespace nacre {
+
+/// {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h,"orthographic":false}
+nlohmann::json camera_json(const Camera& camera);
+
+/// What is left out of `up`, `height` and `orthographic` is (0, 0, 1), `height` and false. Throws Error where that is no
+/// camera: eye and target must differ, up and height be above zero.
+Camera camera_of(const nlohmann::json& json, double height = 2);
+
+}  // namespace nacre
