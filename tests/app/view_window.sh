@@ -7,4 +7,4 @@ command -v xvfb-run >/dev/null || {
   exit 77
 }
 xvfb-run -a -s "-screen 0 1280x1024x24" "$program" view --sample sphere --detail 24 --resolution 64 \
-  --size 400x300 --frames-count 40 --image "$picture" --report "$report" --quiet
+  --size 400x300 --no-panel --frames-count 40 --image "$picture" --report "$report" --quiet
