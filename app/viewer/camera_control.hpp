@@ -1,21 +1,21 @@
-// Nacre: the camera of the viewer: mouse and keys.
+// Nacre: the camera of the viewer: what mouse and menus do to it.
 #pragma once
+
+#include <span>
+#include <string>
 
 #include "compute/raycast/camera.hpp"
 
 namespace nacre {
 
-struct PanelState;
-class Scene;
-struct Session;
+/// Moves the camera by what the mouse has done since the last frame, where no panel wants it. `turning`: turntable or
+/// trackball. Between Interface::begin and end.
+void move_camera(Camera& camera, const std::string& turning);
 
-/// What keys ask for apart from the camera.
-struct KeyWishes {
-  bool quit = false;
-};
+/// All of `points` from a named view; perspective or orthographic as before.
+void look_from(Camera& camera, const std::string& view, std::span<const Vec3d> points, int width, int height);
 
-/// Moves the session's camera by what the mouse and the keys have done since the last frame, where no panel wants them; keys also
-/// switch what is shown. Between Interface::begin and end.
-KeyWishes control_camera(Session& session, const Scene& scene, PanelState& state, int width, int height);
+/// All of `points` from where the camera looks now.
+void fit(Camera& camera, std::span<const Vec3d> points);
 
 }  // namespace nacre
