@@ -10,21 +10,24 @@
 
 namespace nacre {
 
-void move_camera(Camera& camera, const std::string& turning) {
+std::array<double, 2> place_in(const FreeArea& area, double x, double y) {
+  return {2 * (x - area.x) / std::max(1, area.width) - 1, 1 - 2 * (y - area.y) / std::max(1, area.height)};
+}
+
+void move_camera(Camera& camera, const std::string& turning, const FreeArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse) return;
-  const double across = std::max(1.0f, io.DisplaySize.x), down = std::max(1.0f, io.DisplaySize.y);
-  const double aspect = across / down;
-  const double dx = 2 * io.MouseDelta.x / across, dy = -2 * io.MouseDelta.y / down;
-  const bool moves = io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift);
+  const double dx = 2 * io.MouseDelta.x / std::max(1, area.width);
+  const double dy = -2 * io.MouseDelta.y / std::max(1, area.height);
   if (dx == 0 && dy == 0 && io.MouseWheel == 0) return;
-  if (moves)
-    camera = pan(camera, dx, dy, aspect);
+  if (io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
+    camera = pan(camera, dx, dy, area.aspect());
   else if (io.MouseDown[0])
     camera = turning == "trackball" ? turn_ball(camera, dx, dy) : turn_table(camera, dx, dy);
-  if (io.MouseWheel != 0)
-    camera = dolly(camera, std::pow(0.88, double(io.MouseWheel)), 2 * io.MousePos.x / across - 1,
-                   1 - 2 * io.MousePos.y / down, aspect);
+  if (io.MouseWheel != 0) {
+    const auto [x, y] = place_in(area, io.MousePos.x, io.MousePos.y);
+    camera = dolly(camera, std::pow(0.88, double(io.MouseWheel)), x, y, area.aspect());
+  }
 }
 
 void look_from(Camera& camera, const std::string& view, std::span<const Vec3d> points, int width, int height) {

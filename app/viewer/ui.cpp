@@ -6,8 +6,10 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "app/viewer/camera_control.hpp"
 #include "app/viewer/knob_widgets.hpp"
 #include "engine/render/camera_motion.hpp"
 #include "engine/scene/phantoms.hpp"
@@ -17,6 +19,16 @@ namespace nacre {
 namespace {
 
 void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
+
+/// Pixels that the parts take.
+struct Layout {
+  float menu, status, panel;
+};
+
+Layout layout(int width) {
+  const float row = ImGui::GetFontSize() + 2 * ImGui::GetStyle().FramePadding.y;
+  return {row, 1.6f * row, std::floor(std::min(27 * ImGui::GetFontSize(), 0.6f * float(width)))};
+}
 
 const char* job_of(const Session& session) { return is_mesh_input(session) ? "mesh" : "flow"; }
 
@@ -103,6 +115,13 @@ void look_tab(Session& session) {
 
 }  // namespace
 
+FreeArea Ui::free_area(const Look& look, int width, int height) const {
+  if (!look.panel) return {0, 0, width, height};
+  const Layout l = layout(width);
+  const int left = int(l.panel), above = int(l.menu), below = int(l.status);
+  return {left, above, std::max(16, width - left), std::max(16, height - above - below)};
+}
+
 void Ui::tell(const std::string& line) {
   told_ = line;
   told_until_ = ImGui::GetTime() + 8;
@@ -138,10 +157,9 @@ void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
 }
 
 void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
-  const float size = ImGui::GetFontSize(), above = ImGui::GetFrameHeight(), below = 1.6f * ImGui::GetFrameHeight();
-  const float wide = std::min(27 * size, 0.6f * float(facts.width));
-  ImGui::SetNextWindowPos(ImVec2(0, above));
-  ImGui::SetNextWindowSize(ImVec2(wide, std::max(50.0f, float(facts.height) - above - below)), ImGuiCond_Always);
+  const Layout l = layout(facts.width);
+  ImGui::SetNextWindowPos(ImVec2(0, l.menu));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, std::max(50.0f, float(facts.height) - l.menu - l.status)));
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("panel", nullptr, fixed)) {
@@ -159,7 +177,7 @@ void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
 
 /// What goes on, how far it is, and a way to end it; what is under the cursor.
 void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
-  const float high = 1.6f * ImGui::GetFrameHeight();
+  const float high = layout(facts.width).status;
   ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - high));
   ImGui::SetNextWindowSize(ImVec2(float(facts.width), high));
   const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
@@ -191,17 +209,15 @@ void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
   ImGui::End();
 }
 
-void Ui::probe_window(Session& session, Scene& scene) {
+void Ui::probe_window(Session& session, Scene& scene, const FreeArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse || !session.camera || !ImGui::IsMousePosValid()) return;
   if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return;
-  const double aspect = double(io.DisplaySize.x) / std::max(1.0f, io.DisplaySize.y);
-  const auto [from, along] = ray_under(*session.camera, 2 * io.MousePos.x / io.DisplaySize.x - 1,
-                                       1 - 2 * io.MousePos.y / io.DisplaySize.y, aspect);
+  const auto [x, y] = place_in(area, io.MousePos.x, io.MousePos.y);
+  const auto [from, along] = ray_under(*session.camera, x, y, area.aspect());
   const std::optional<Probed> probed = scene.probe(from, along);
   if (!probed) return;
-  const float high = 1.6f * ImGui::GetFrameHeight();
-  ImGui::SetNextWindowPos(ImVec2(io.DisplaySize.x - 8, io.DisplaySize.y - high - 8), ImGuiCond_Always, ImVec2(1, 1));
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y + area.height) - 8), ImGuiCond_Always, ImVec2(0, 1));
   ImGui::SetNextWindowBgAlpha(0.7f);
   const auto quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
@@ -217,7 +233,7 @@ Wishes Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     menus(session, scene, facts, wishes);
     panel(session, scene, facts);
     status(scene, facts, wishes);
-    probe_window(session, scene);
+    probe_window(session, scene, free_area(session.settings.look, facts.width, facts.height));
   }
   help_windows(facts);
   screenshot_window(facts);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/camera_control.hpp"
 #include "app/viewer/file_dialog.hpp"
 #include "app/viewer/frame_clock.hpp"
 #include "app/viewer/scene.hpp"
@@ -40,6 +41,9 @@ class Ui {
   /// Makes all of it, between Interface::begin and end.
   Wishes draw(Session& session, Scene& scene, const UiFacts& facts);
 
+  /// Where the picture is to be, in a window of this size. As wide as the panel allows; never empty.
+  FreeArea free_area(const Look& look, int width, int height) const;
+
   /// A line at the bottom for some seconds: something was saved, or did not work.
   void tell(const std::string& line);
 
@@ -56,7 +60,7 @@ class Ui {
   void knob_tab(Session& session);
   void status(Scene& scene, const UiFacts& facts, Wishes& wishes);
   void screenshot_window(const UiFacts& facts);
-  void probe_window(Session& session, Scene& scene);
+  void probe_window(Session& session, Scene& scene, const FreeArea& area);
   void help_windows(const UiFacts& facts);
   void ask_open();
   void ask_save(const std::string& title, std::vector<std::string> extensions, const std::string& name,

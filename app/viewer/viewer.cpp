@@ -123,7 +123,6 @@ class Viewer {
       scene_->advance(now());
     if (options_.offscreen && !scene_->failure().empty()) throw Error(scene_->failure());
     const double begin = now();
-    fit_once(width, height);
     if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
     draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
     glFinish();
@@ -152,19 +151,24 @@ class Viewer {
     return view;
   }
 
-  void draw_scene(Framebuffer& frame, const std::array<float, 4>& background, double scale) {
+  void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background, double scale) {
     frame.bind();
     frame.clear(background);
     if (!fitted_) return;
-    const View view = view_of(frame.width(), frame.height());
+    frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
+    const View view = view_of(area.width, area.height);
     scene_->draw(view);
     if (session_.settings.legend) axes_->draw(view, float(scale));
+    frame.bind();
   }
 
   void draw(int width, int height, double seconds) {
-    draw_scene(*frame_, background_of(session_.settings), window_ ? window_->scale() : 1);
     interface_->begin(width, height, seconds, session_.settings.look);
-    if (session_.camera) move_camera(*session_.camera, session_.settings.look.turning);
+    const FreeArea area = ui_.free_area(session_.settings.look, width, height);
+    area_ = area;
+    fit_once(area.width, area.height);
+    draw_scene(*frame_, area, background_of(session_.settings), window_ ? window_->scale() : 1);
+    if (session_.camera) move_camera(*session_.camera, session_.settings.look.turning, area);
     const UiFacts facts{clock_,
                         result_.renderer,
                         recent_.files(),
@@ -189,7 +193,8 @@ class Viewer {
       image = frame_->read();
     } else {
       Framebuffer large(frame_->width() * picture.scale, frame_->height() * picture.scale, 4);
-      draw_scene(large, picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings),
+      draw_scene(large, {0, 0, large.width(), large.height()},
+                 picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings),
                  picture.scale);
       image = large.read();
     }
@@ -224,7 +229,7 @@ class Viewer {
     if (wishes.resume) scene_->resume();
     if (session_.camera && wishes.fit) fit(*session_.camera, scene_->corners());
     if (session_.camera && !wishes.look_from.empty())
-      look_from(*session_.camera, wishes.look_from, scene_->corners(), frame_->width(), frame_->height());
+      look_from(*session_.camera, wishes.look_from, scene_->corners(), area_.width, area_.height);
     if (wishes.load_session) attempt([&] { load_session(*wishes.load_session); });
     if (wishes.save_session) attempt([&] { save(*wishes.save_session, session_text(session_)); });
     if (wishes.save_result)
@@ -381,6 +386,7 @@ class Viewer {
   Undo undo_;
   RecentFiles recent_;
   Wishes wishes_;
+  FreeArea area_;
   FrameClock clock_;
   bool fitted_ = false, quit_ = false, said_remark_ = false;
   int counted_ = 0;
