@@ -19,6 +19,7 @@ class FileDialog {
   std::optional<std::vector<std::filesystem::path>> draw();
 
   bool is_open() const { return open_; }
+  void close() { open_ = false; }
   void set_folder(const std::filesystem::path& folder) { folder_ = folder; }
 
  private:

@@ -95,6 +95,20 @@ void Ui::ask_save(const std::string& title, std::vector<std::string> extensions,
   then_ = [wish](const std::vector<fs::path>& files, Session&, Wishes& wishes) { wishes.*wish = files.front(); };
 }
 
+void Ui::ask_result(Scene& scene) {
+  const std::vector<std::string> formats = scene.result_formats();
+  if (scene.complete() && !formats.empty())
+    ask_save("save result", formats, "result" + formats.front(), &Wishes::save_result);
+}
+
+/// The first time it begins, the second it ends and asks for a name.
+void Ui::switch_recording(const UiFacts& facts, Wishes& wishes) {
+  if (facts.recording)
+    ask_save("save recording", {".json"}, "recording.json", &Wishes::save_recording);
+  else
+    wishes.record = true;
+}
+
 void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes) {
   if (!ImGui::BeginMenu("File")) return;
   if (ImGui::MenuItem("Open ...", "ctrl o")) ask_open();
@@ -108,8 +122,7 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes&
   ImGui::Separator();
   if (ImGui::MenuItem("Save session ...", "ctrl s"))
     ask_save("save session", {".json"}, "session.json", &Wishes::save_session);
-  if (ImGui::MenuItem("Save result ...", "ctrl e", false, scene.complete() && !scene.result_formats().empty()))
-    ask_save("save result", scene.result_formats(), "result" + scene.result_formats().front(), &Wishes::save_result);
+  if (ImGui::MenuItem("Save result ...", "ctrl e", false, scene.complete())) ask_result(scene);
   ImGui::Separator();
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
@@ -158,37 +171,32 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, Wishes& wis
     ImGui::EndMenu();
   }
   ImGui::EndMainMenuBar();
-  if (std::exchange(asks_record_, false)) {
-    if (facts.recording)
-      ask_save("save recording", {".json"}, "recording.json", &Wishes::save_recording);
-    else
-      wishes.record = true;
-  }
 }
 
-void Ui::use_shortcuts(const UiFacts& facts, Wishes& wishes) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto pressed = [&](char key) { return ImGui::IsKeyPressed(key, false); };  // GLFW names letters by capitals
-  if (!io.KeyCtrl) return;
-  if (pressed('O')) ask_open();
-  if (pressed('S')) ask_save("save session", {".json"}, "session.json", &Wishes::save_session);
-  if (pressed('P')) asks_shot_ = true;
-  if (pressed('R') && facts.recording)
-    ask_save("save recording", {".json"}, "recording.json", &Wishes::save_recording);
-  else if (pressed('R'))
-    wishes.record = true;
-  if (pressed('Z')) (io.KeyShift ? wishes.redo : wishes.undo) = true;
-  if (pressed('Y')) wishes.redo = true;
-  if (pressed('Q')) wishes.quit = true;
+void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, Wishes& wishes) {
+  for (const KeyPress& pressed : facts.keys) switch (pressed.key) {
+      case 27:
+        if (dialog_.is_open())
+          dialog_.close();
+        else
+          wishes.cancel = true;
+        break;
+      case 'O': ask_open(); break;
+      case 'S': ask_save("save session", {".json"}, "session.json", &Wishes::save_session); break;
+      case 'E': ask_result(scene); break;
+      case 'P': asks_shot_ = true; break;
+      case 'R': asks_record_ = true; break;
+      case 'Z': (pressed.shift ? wishes.redo : wishes.undo) = true; break;
+      case 'Y': wishes.redo = true; break;
+      case 'Q': wishes.quit = true; break;
+      default: break;
+    }
 }
 
 void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes) {
   const ImGuiIO& io = ImGui::GetIO();
+  use_shortcuts(scene, facts, wishes);
   if (io.WantTextInput || dialog_.is_open()) return;
-  use_shortcuts(facts, wishes);
-  if (io.KeyCtrl && ImGui::IsKeyPressed('E', false) && scene.complete() && !scene.result_formats().empty())
-    ask_save("save result", scene.result_formats(), "result" + scene.result_formats().front(), &Wishes::save_result);
-  if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false)) wishes.cancel = true;
   Look& look = session.settings.look;
   for (const ImWchar key : io.InputQueueCharacters) {
     for (const NamedView& v : views)

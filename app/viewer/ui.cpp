@@ -235,6 +235,7 @@ Wishes Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     status(scene, facts, wishes);
     probe_window(session, scene, free_area(session.settings.look, facts.width, facts.height));
   }
+  if (std::exchange(asks_record_, false)) switch_recording(facts, wishes);
   help_windows(facts);
   screenshot_window(facts);
   if (const auto files = dialog_.draw()) then_(*files, session, wishes);

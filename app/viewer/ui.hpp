@@ -11,6 +11,7 @@
 #include "app/viewer/file_dialog.hpp"
 #include "app/viewer/frame_clock.hpp"
 #include "app/viewer/scene.hpp"
+#include "engine/gl/window.hpp"
 
 namespace nacre {
 
@@ -23,6 +24,7 @@ struct UiFacts {
   bool recording = false;  ///< of what the user does
   bool filming = false;    ///< every frame goes to a video
   int width = 0, height = 0;
+  std::vector<KeyPress> keys;  ///< since the last frame
 };
 
 /// What the user wants of the program.
@@ -51,7 +53,7 @@ class Ui {
   using Then = std::function<void(const std::vector<std::filesystem::path>& files, Session& session, Wishes& wishes)>;
 
   void use_keys(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes);
-  void use_shortcuts(const UiFacts& facts, Wishes& wishes);
+  void use_shortcuts(Scene& scene, const UiFacts& facts, Wishes& wishes);
   void menus(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes);
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes);
   void view_menu(Session& session, Wishes& wishes);
@@ -63,6 +65,8 @@ class Ui {
   void probe_window(Session& session, Scene& scene, const FreeArea& area);
   void help_windows(const UiFacts& facts);
   void ask_open();
+  void ask_result(Scene& scene);
+  void switch_recording(const UiFacts& facts, Wishes& wishes);
   void ask_save(const std::string& title, std::vector<std::string> extensions, const std::string& name,
                 std::optional<std::filesystem::path> Wishes::*wish);
 

@@ -177,7 +177,8 @@ class Viewer {
                         recorder_.has_value(),
                         video_ != nullptr,
                         width,
-                        height};
+                        height,
+                        window_ ? window_->take_keys() : std::vector<KeyPress>()};
     wishes_ = ui_.draw(session_, *scene_, facts);
     undo_.note(session_, Interface::busy());
     interface_->end();

@@ -45,6 +45,12 @@ Window::Window(const std::string& title, int width, int height) {
   }
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int held) {
+    const bool ctrl = held & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER), escape = key == GLFW_KEY_ESCAPE;
+    if (action != GLFW_PRESS || !(ctrl || escape)) return;
+    auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    self->keys_.push_back({escape ? 27 : key, ctrl, (held & GLFW_MOD_SHIFT) != 0});
+  });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** names) {
     const auto* self = static_cast<const Window*>(glfwGetWindowUserPointer(window));
     if (self->on_drop) self->on_drop({names, names + count});
