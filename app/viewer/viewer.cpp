@@ -59,6 +59,7 @@ class Viewer {
       if (*options_.stop) throw Interrupted();
       if (window_) window_->poll();
       frame();
+      if (context_->lost()) begin_again();
     }
     finish();
     return std::move(result_);
@@ -88,6 +89,14 @@ class Viewer {
     interface_.reset();
     window_ = nullptr;
     context_.reset();
+  }
+
+  /// The graphics device was reset, and all that lay on it is gone. The session is not.
+  void begin_again() {
+    options_.say("the graphics device was reset: drawing begins again");
+    drop_graphics();
+    make_graphics();
+    open();
   }
 
   void open() {
@@ -120,7 +129,7 @@ class Viewer {
     if (waits())
       scene_->advance_and_wait(*options_.stop);
     else
-      scene_->advance(now());
+      attempt([&] { scene_->advance(now()); });
     if (options_.offscreen && !scene_->failure().empty()) throw Error(scene_->failure());
     const double begin = now();
     if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());

@@ -30,7 +30,10 @@ Window::Window(const std::string& title, int width, int height) {
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);  // all is drawn into a Framebuffer, the window only gets the picture
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  for (const int told : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // of resets, where the driver can do that
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, told);
+    if (!window_) window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  }
   if (!window_) {
     const std::string why = glfw_complaint();
     glfwTerminate();
