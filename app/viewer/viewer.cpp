@@ -2,7 +2,10 @@
 // the last frame's is told to the scene, to the recorder, and can be taken back.
 #include "app/viewer/viewer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -44,23 +47,34 @@ double radius_of(const std::vector<Vec3d>& points) {
 class Viewer {
  public:
   explicit Viewer(const ViewerOptions& options)
-      : options_(options), session_(options.session), player_(options.session), started_(now()) {
+      : options_(options),
+        session_(options.session),
+        player_(options.session),
+        fps_(session_.settings.fps),
+        started_(now()) {
     session_.events.clear();
     session_.duration = 0;
-    if (options.recorded) recorder_.emplace(session_, session_.settings.fps);
+    if (options.recorded) recorder_.emplace(session_, fps_);
     make_graphics();
     open();
+    check_result_format();
   }
 
   ~Viewer() { drop_graphics(); }
 
   ViewerResult run() {
-    while (!done()) {
-      if (*options_.stop) throw Interrupted();
-      if (window_) window_->poll();
-      frame();
-      if (context_->lost()) begin_again();
+    try {
+      while (!done()) {
+        if (*options_.stop) throw Interrupted();
+        if (window_) window_->poll();
+        frame();
+        if (context_->lost()) begin_again();
+      }
+    } catch (...) {
+      tell_recording();
+      throw;
     }
+    tell_recording();
     finish();
     return std::move(result_);
   }
@@ -103,7 +117,8 @@ class Viewer {
     scene_.reset();
     said_ = 0;
     fitted_ = false;
-    const SceneOptions options{options_.open_device, window_ || options_.live, waits()};
+    // A number of frames is for headless runs to compare with: these do not begin again after the last time.
+    const SceneOptions options{options_.open_device, options_.frames == 0, waits()};
     for (const auto& file : session_.inputs)
       if (window_) recent_.add(file);
     scene_ = is_mesh_input(session_) ? make_mesh_scene(session_, options) : make_flow_scene(session_, options);
@@ -111,17 +126,16 @@ class Viewer {
   }
 
   bool done() const {
-    const bool played = player_->duration() > 0 && !window_ && clock() > player_->duration();
-    return quit_ || played || (options_.frames > 0 && counted_ >= options_.frames) ||
-           (window_ && window_->should_close());
+    return quit_ || (!window_ && player_->ended(clock() - played_since_)) ||
+           (options_.frames > 0 && counted_ >= options_.frames) || (window_ && window_->should_close());
   }
 
   /// Seconds of the session: a frame's share for each that waited for compute, else those that have passed.
-  double clock() const { return double(waited_) / session_.settings.fps + passed_; }
+  double clock() const { return double(waited_) / fps_ + passed_; }
 
   void frame() {
     const auto [width, height] = size();
-    if (width <= 0 || height <= 0) return;  // minimised
+    if (width <= 0 || height <= 0) return rest(now());  // minimised
     const double time = clock();
     std::vector<Screenshot> pictures = player_->advance(time - played_since_, session_);
     if (!dropped_.empty()) open_dropped();
@@ -175,7 +189,7 @@ class Viewer {
     interface_->begin(width, height, seconds, session_.settings.look);
     const FreeArea area = ui_.free_area(session_.settings.look, width, height);
     area_ = area;
-    fit_once(area.width, area.height);
+    fit_new(area.width, area.height);
     draw_scene(*frame_, area, background_of(session_.settings), window_ ? window_->scale() : 1);
     if (session_.camera) move_camera(*session_.camera, session_.settings.look.turning, area);
     const UiFacts facts{clock_,
@@ -257,16 +271,24 @@ class Viewer {
     }
     if (wishes.save_recording && recorder_)
       attempt([&] {
-        save(*wishes.save_recording, session_text(recorder_->recording(clock() - recording_since_)));
+        save(*wishes.save_recording, session_text(recorder_->recording()));
         if (!options_.recorded) recorder_.reset();
       });
-    if (wishes.film) attempt([&] { video_ = make_video(*wishes.film, session_.settings.fps), film_ = *wishes.film; });
+    if (wishes.film) attempt([&] { begin_film(*wishes.film); });
     if (wishes.end_film && video_)
       attempt([&] {
         const std::unique_ptr<FrameSink> video = std::move(video_);
         video->finish();
         ui_.tell("saved " + film_.string());
       });
+  }
+
+  void begin_film(const std::filesystem::path& file) {
+    passed_ = clock();
+    waited_ = 0;
+    fps_ = session_.settings.fps;
+    video_ = make_video(file, fps_);
+    film_ = file;
   }
 
   void save(const std::filesystem::path& file, const std::string& text) {
@@ -319,14 +341,13 @@ class Viewer {
     told_ = session_;
   }
 
-  void fit_once(int width, int height) {
-    if (fitted_ || scene_->corners().empty()) return;
+  void fit_new(int width, int height) {
+    if (scene_->corners().empty()) return;
     if (!session_.camera) {
       Settings settings = session_.settings;
       settings.width = width;
       settings.height = height;
       session_.camera = options_.first_camera(settings, scene_->corners());
-      if (recorder_) recorder_->accept_camera(*session_.camera);
     }
     fitted_ = true;
   }
@@ -361,10 +382,21 @@ class Viewer {
     if (!remark.empty() && !std::exchange(said_remark_, true)) options_.say(remark);
   }
 
+  void check_result_format() const {
+    if (options_.out.empty()) return;
+    const std::vector<std::string> formats = scene_->result_formats();
+    if (std::find(formats.begin(), formats.end(), options_.out.extension()) == formats.end())
+      throw Error(fmt::format("cannot write {}", options_.out.string()), "its extension says no format of this result",
+                  fmt::format("use one of {}", fmt::join(formats, " ")));
+  }
+
+  void tell_recording() {
+    if (recorder_ && options_.recorded) options_.recorded(recorder_->recording());
+  }
+
   void finish() {
     if (video_) video_->finish();
     if (options_.picture && frame_) result_.image = frame_->read();
-    if (recorder_) result_.recording = recorder_->recording(clock());
     if (!options_.out.empty()) scene_->write_result(options_.out);
     scene_->finish();
     result_.steps = scene_->steps();
@@ -382,6 +414,7 @@ class Viewer {
   std::optional<SessionRecorder> recorder_;
   std::unique_ptr<FrameSink> video_;  ///< begun in the menu
   std::filesystem::path film_;
+  int fps_;                                        ///< of frames that wait, whatever becomes of the knob meanwhile
   double started_, last_ = 0;                      ///< on the machine's clock
   double passed_ = 0;                              ///< seconds of frames that did not wait
   long waited_ = 0;                                ///< frames that did

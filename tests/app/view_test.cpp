@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "engine/picture/png.hpp"
-#include "tests/app/program.hpp"
+#include "tests/app/view_program.hpp"
 
 namespace nacre::test {
 namespace {
@@ -10,28 +10,7 @@ namespace {
 const Words small_view = {"view", "--offscreen", "--sample", "sphere", "--detail", "24",         "--resolution",
                           "64",   "--steps",     "4",        "--size", "200x150",  "--no-panel", "--quiet"};
 
-/// Why the viewer cannot run here; empty: it can.
-std::string no_viewer() {
-  static const std::string why = [] {
-    const Outcome tried = nacre({"view", "--offscreen", "--sample", "sphere", "--detail", "24", "--resolution", "32",
-                                 "--frames-count", "1", "--quiet"});
-    return tried.status == 1 && (contains(tried.err, "no viewer") || contains(tried.err, "no OpenGL")) ? tried.err : "";
-  }();
-  return why;
-}
-
-class View : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!no_viewer().empty()) GTEST_SKIP() << no_viewer();
-  }
-  TemporaryFolder folder;
-};
-
-nlohmann::json read_json(const fs::path& file) {
-  std::ifstream stream(file);
-  return nlohmann::json::parse(stream);
-}
+using View = ViewTest;
 
 TEST_F(View, OffscreenWritesThePictureOfTheLastFrame) {
   const fs::path png = folder / "view.png", json = folder / "view.json";
