@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/picture_words.hpp"
+#include "engine/scene/ranges.hpp"
 
 namespace nacre {
 
@@ -27,7 +27,7 @@ Session asked_session(const CommonOptions& options, const InputWords& words, con
   if (preset) preset(session.settings);
   knobs.apply(session.settings, options.set);
   if (!words.size.empty()) {
-    const auto [width, height] = parse_pair(words.size, 'x', "--size");
+    const auto [width, height] = checked_words([&] { return parse_pair(words.size, 'x', "--size"); });
     knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
   }
   if (session.inputs.empty() && session.sample.empty())
