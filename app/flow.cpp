@@ -2,26 +2,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <optional>
 
 #include "app/commands.hpp"
 #include "app/picture_words.hpp"
 #include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/io/vtp_writer.hpp"
+#include "engine/picture/caption.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/scene/flow_input.hpp"
 #include "engine/scene/knobs.hpp"
-#include "engine/scene/prepare.hpp"
+#include "engine/scene/ranges.hpp"
 #include "engine/scene/samples.hpp"
 #include "engine/scene/session.hpp"
-#include "engine/scene/vectors_in_time.hpp"
 
 namespace nacre {
 namespace {
@@ -29,14 +27,8 @@ namespace {
 struct FlowOptions {
   CommonOptions common;
   InputWords input;
-  std::string time, image, frames, video, out;
+  std::string image, frames, video, out;
   bool no_legend = false, no_time = false;
-};
-
-struct FlowInput {
-  std::string name;
-  std::string array;  ///< the vectors' name
-  VectorsInTime vectors;
 };
 
 Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
@@ -51,33 +43,23 @@ void check_words(const Settings& settings) {
   checked_words([&] {
     colormap(settings.colormap);
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
+    if (!settings.time.empty()) time_words(settings);
+    if (!settings.color_range.empty()) color_words(settings);
   });
   check_picture_words(settings);
 }
 
-FlowInput read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
+VectorsInTime read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
   StageTimers::Scope scope(timers, "read");
   SurfaceSeries series = session.sample.empty()
                              ? open_surface(session.inputs)
                              : checked_words([&] { return make_sample(session.sample, session.detail); });
-  for (const std::string& warning : series.warnings) warn(options.common, warning);
-  const Surface first = series.load(0);
-  std::vector<std::string> warnings;
-  PreparedSurface surface = prepare(first, session.settings.crease, &warnings);
-  for (const std::string& warning : warnings) warn(options.common, warning);
-  const VectorChoice choice = choose_vectors(first, session.settings.vectors);
-  say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
-  std::string name = series.name;
-  VectorsInTime vectors(std::move(series), std::move(surface), choice.name, session.settings.color);
-  const VectorStatistics& s = vectors.statistics();
-  if (s.percentile_98 <= 0)
-    warn(options.common, "the vectors are zero everywhere: the texture will stay noise");
-  else if (s.normal_share > 0.5)
-    warn(options.common, fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown",
-                                     choice.name, 100 * s.normal_share));
-  if (s.zero_share > 0.5)
-    warn(options.common, fmt::format("{} is zero at {:.0f}% of the points", choice.name, 100 * s.zero_share));
-  return {name, choice.name, std::move(vectors)};
+  FlowNews news;
+  news.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
+  news.chosen = [&](const VectorChoice& choice) {
+    say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
+  };
+  return make_flow_input(std::move(series), session.settings, news, &interrupt_flag());
 }
 
 Camera camera_for(const Session& session, const PreparedSurface& surface) {
@@ -90,13 +72,13 @@ Camera camera_for(const Session& session, const PreparedSurface& surface) {
 /// Draws frames of one run.
 class Painter {
  public:
-  Painter(FlowPipeline& pipeline, FlowInput& input, const Session& session, double frame_time)
+  Painter(FlowPipeline& pipeline, VectorsInTime& input, const Session& session, double frame_time)
       : pipeline_(pipeline),
         input_(input),
         settings_(session.settings),
         frame_time_(frame_time),
         map_(colormap(settings_.colormap)),
-        camera_(camera_for(session, input.vectors.surface())) {
+        camera_(camera_for(session, input.surface())) {
     if (settings_.background == "transparent")
       transparent_ = true;
     else
@@ -114,20 +96,25 @@ class Painter {
     options.background = background_;
     options.transparent = transparent_;
     std::vector<float> scalar;
-    if (input_.vectors.colored()) {
-      scalar = input_.vectors.scalar(pipeline_.time());
+    const Range range = color_range(settings_, {input_.color_low(), input_.color_high()});
+    if (input_.colored()) {
+      scalar = input_.scalar(pipeline_.time());
       options.scalar = scalar;
-      options.low = input_.vectors.color_low();
-      options.high = input_.vectors.color_high();
+      options.low = range.low;
+      options.high = range.high;
     }
     Image image;
     image.width = settings_.width;
     image.height = settings_.height;
     image.pixels = pipeline_.render(options);
-    if (settings_.legend && input_.vectors.colored())
-      draw_legend(image, map_, options.low, options.high, settings_.color == "speed" ? input_.array : settings_.color);
-    if (settings_.time_stamp && input_.vectors.end() > input_.vectors.start())
-      draw_time(image, pipeline_.time(), "", frame_time_);
+    FlowCaption caption;
+    caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;
+    caption.low = range.low;
+    caption.high = range.high;
+    caption.title = settings_.color == "speed" ? input_.array() : settings_.color;
+    if (settings_.time_stamp && input_.end() > input_.start()) caption.time = pipeline_.time();
+    caption.frame_time = frame_time_;
+    draw_caption(image, caption);
     if (settings_.legend)
       draw_orientation(image, Vec3f(camera.right()), Vec3f(cross(camera.right(), camera.forward())),
                        Vec3f(camera.forward()));
@@ -136,7 +123,7 @@ class Painter {
 
  private:
   FlowPipeline& pipeline_;
-  FlowInput& input_;
+  VectorsInTime& input_;
   const Settings& settings_;
   double frame_time_;
   const Colormap& map_;
@@ -144,22 +131,6 @@ class Painter {
   std::array<float, 3> background_{1, 1, 1};
   bool transparent_ = false;
 };
-
-void write_values(const FlowPipeline& pipeline, const std::filesystem::path& file, double time) {
-  const FlowValues v = pipeline.values();
-  const std::size_t n = v.value.size();
-  const auto vectors = [&](std::string name, const auto& from) {
-    PointArray array{std::move(name), 3, std::vector<float>(3 * n)};
-    for (std::size_t i = 0; i < n; ++i)
-      for (int k = 0; k < 3; ++k) array.values[3 * i + k] = float(from[i][k]);
-    return array;
-  };
-  const std::vector<PointArray> arrays{{"value", 1, v.value},
-                                       vectors("velocity", v.velocity),
-                                       vectors("normal", v.normal),
-                                       vectors("closest_point", v.closest_point)};
-  write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time);
-}
 
 nlohmann::json median_min_max(std::vector<double> seconds) {
   if (seconds.empty()) return {{"median", 0}, {"min", 0}, {"max", 0}};
@@ -190,19 +161,10 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
   pipeline->watch(&interrupt_flag());
   pipeline->parameters = settings.flow;
-  FlowInput input = read_input(options, session, pipeline->timers());
-  const PreparedSurface& surface = input.vectors.surface();
-
-  double start = input.vectors.start(), end = input.vectors.end();
-  if (!options.time.empty()) {
-    std::tie(start, end) = parse_pair(options.time, ':', "--time");
-    if (end < start) throw UsageError("--time ends before it starts");
-    if (start > input.vectors.end() || end < input.vectors.start())
-      throw Error(fmt::format("--time {} is outside of the data", options.time), "",
-                  fmt::format("use {:g}:{:g}", input.vectors.start(), input.vectors.end()));
-  }
-  const double frame_time = (end - start) / std::max(1, settings.flow.steps);
-  Painter painter(*pipeline, input, session, frame_time);  // complains about the camera and colours before the work
+  VectorsInTime input = read_input(options, session, pipeline->timers());
+  const PreparedSurface& surface = input.surface();
+  const FlowSpan span = flow_span(settings, {input.start(), input.end()});
+  Painter painter(*pipeline, input, session, span.frame_time);  // complains about camera and colours before the work
   std::unique_ptr<FrameSink> frames, video;
   if (!options.frames.empty()) frames = make_frame_folder(options.frames);
   if (!options.video.empty()) video = make_video(options.video, settings.fps);
@@ -211,14 +173,15 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   progress.update("embed", 0);
   pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
   FlowVectors vectors;
-  vectors.at = [&](double t, std::span<Vec3f> out) { input.vectors.vectors(t, out); };
-  vectors.start = start;
-  vectors.end = end;
-  vectors.reference_speed = input.vectors.statistics().percentile_98 > 0 ? input.vectors.statistics().percentile_98 : 1;
+  vectors.at = [&](double t, std::span<Vec3f> out) { input.vectors(t, out); };
+  vectors.start = span.start;
+  vectors.end = span.end;
+  vectors.reference_speed = input.statistics().percentile_98 > 0 ? input.statistics().percentile_98 : 1;
+  pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
   pipeline->start(vectors);
   std::vector<double> seconds;
-  for (int k = 0; k < settings.flow.steps; ++k) {
+  for (int k = 0; k < span.steps; ++k) {
     const auto before = std::chrono::steady_clock::now();
     pipeline->step();
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
@@ -228,14 +191,14 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
       if (frames) frames->add(image);
       if (video) video->add(image);
     }
-    progress.update("step", double(k + 1) / settings.flow.steps);
+    progress.update("step", double(k + 1) / span.steps);
     if (interrupt_flag()) throw Interrupted();
   }
 
   std::vector<std::string> outputs;
   const auto wrote = [&](const std::string& file) { outputs.push_back(file); };
   if (!options.image.empty()) {
-    const Image image = painter.paint(std::max(0, settings.flow.steps - 1));
+    const Image image = painter.paint(std::max(0, span.steps - 1));
     StageTimers::Scope scope(pipeline->timers(), "write");
     write_png(options.image, image);
     wrote(options.image);
@@ -244,22 +207,22 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
     StageTimers::Scope scope(pipeline->timers(), "write");
     if (frames) frames->finish(), wrote(options.frames);
     if (video) video->finish(), wrote(options.video);
-    if (!options.out.empty()) write_values(*pipeline, options.out, pipeline->time()), wrote(options.out);
+    if (!options.out.empty()) write_flow_values(*pipeline, options.out, pipeline->time()), wrote(options.out);
   }
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    report["input"] = {{"name", input.name},
-                       {"vectors", input.array},
+    report["input"] = {{"name", input.series().name},
+                       {"vectors", input.array()},
                        {"points", surface.points.size()},
                        {"triangles", surface.triangles.size()},
-                       {"time", {start, end}},
+                       {"time", {span.start, span.end}},
                        {"reference_speed", vectors.reference_speed},
-                       {"normal_share", input.vectors.statistics().normal_share},
-                       {"zero_share", input.vectors.statistics().zero_share}};
+                       {"normal_share", input.statistics().normal_share},
+                       {"zero_share", input.statistics().zero_share}};
     report["parameters"] = knob_values(settings);
     report["embedding"] = embedding_report(pipeline->embedding());
-    report["flow"] = {{"steps", settings.flow.steps}, {"seconds_per_step", median_min_max(seconds)}};
+    report["flow"] = {{"steps", span.steps}, {"seconds_per_step", median_min_max(seconds)}};
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);
@@ -272,7 +235,6 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   auto options = std::make_shared<FlowOptions>();
   add_input_options(*command, options->input, "surface with vectors; several files are one series",
                     "triangle edges along the sample's longest side (0: its own)");
-  command->add_option("--time", options->time, "T0:T1 of the data (all of it)");
   command->add_option("--image", options->image, "write the last frame as PNG");
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -18,18 +17,6 @@ namespace {
 bool is_camera_file(const Settings& settings) { return std::filesystem::path(settings.camera).extension() == ".json"; }
 
 }  // namespace
-
-std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option) {
-  const auto at = text.find(separator);
-  try {
-    std::size_t used_first = 0, used_second = 0;
-    const double first = std::stod(text, &used_first), second = std::stod(text.substr(at + 1), &used_second);
-    const bool whole = at != std::string::npos && used_first == at && used_second == text.size() - at - 1;
-    if (whole && std::isfinite(first) && std::isfinite(second)) return {first, second};
-  } catch (const std::logic_error&) {
-  }
-  throw UsageError(fmt::format("{} takes A{}B, not '{}'", option, separator, text));
-}
 
 std::array<float, 3> parse_color(const std::string& text) {
   if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)

@@ -4,15 +4,11 @@
 #include <array>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "compute/raycast/camera.hpp"
 #include "engine/scene/session.hpp"
 
 namespace nacre {
-
-/// "A<separator>B", two finite numbers; throws UsageError that names `option`.
-std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option);
 
 /// "#rrggbb" as 0..1. Throws UsageError.
 std::array<float, 3> parse_color(const std::string& text);

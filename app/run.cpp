@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/picture_words.hpp"
+#include "engine/scene/ranges.hpp"
 
 namespace nacre {
 
@@ -30,7 +30,7 @@ Session asked_session(const CommonOptions& options, const InputWords& words, con
   knobs.apply(session.settings, options.set);
   if (knobs.given("camera", options.set)) session.camera.reset();
   if (!words.size.empty()) {
-    const auto [width, height] = parse_pair(words.size, 'x', "--size");
+    const auto [width, height] = checked_words([&] { return parse_pair(words.size, 'x', "--size"); });
     knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
   }
   if (session.inputs.empty() && session.sample.empty())

@@ -11,7 +11,9 @@ uniform bool coloured;
 uniform vec2 range;  // of the colour map
 uniform sampler1D colours;
 
-#ifdef TEXTURED
+#if defined(OCTREE)
+#include "octree_texture.glsl"
+#elif defined(TEXTURED)
 #include "sparse_texture.glsl"
 #endif
 

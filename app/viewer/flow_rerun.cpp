@@ -10,19 +10,33 @@ auto of_embedding(const FlowParameters& p) {
   return std::tie(p.method, p.octree, p.neighbour_index, p.resolution, p.refine, p.subcells, p.radius);
 }
 
-auto of_start(const FlowParameters& p) { return std::tie(p.ttl, p.steps, p.warmup, p.seed); }
-
-// The vectors in the slots are scaled already; a start fills them anew.
-auto of_speed(const FlowParameters& p) { return std::tie(p.step_cells, p.speed_power); }
+// With the speed: the vectors in the slots are scaled already; a start fills them anew.
+auto of_start(const Settings& s) {
+  const FlowParameters& p = s.flow;
+  return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power);
+}
 
 auto of_steps(const FlowParameters& p) { return std::tie(p.sharpen, p.jitter, p.equalise, p.contrast); }
 
+auto of_arrows(const Look& l) { return std::tie(l.arrows, l.arrow_count); }
+
 }  // namespace
 
-FlowRerun flow_rerun(const FlowParameters& before, const FlowParameters& after) {
-  if (of_embedding(before) != of_embedding(after)) return FlowRerun::embed;
-  if (of_start(before) != of_start(after) || of_speed(before) != of_speed(after)) return FlowRerun::start;
-  return of_steps(before) != of_steps(after) ? FlowRerun::steps : FlowRerun::nothing;
+void FlowRerun::add(const FlowRerun& other) {
+  for (std::size_t k = 0; k < has_.size(); ++k) has_[k] = has_[k] || other.has_[k];
+}
+
+FlowRerun flow_rerun(const Settings& before, const Settings& after) {
+  using enum FlowStage;
+  FlowRerun rerun;
+  if (before.crease != after.crease) rerun.add({surface, embed, start});
+  if (before.vectors != after.vectors) rerun.add({vectors, start});
+  if (before.color != after.color) rerun.add(colours);
+  if (of_arrows(before.look) != of_arrows(after.look)) rerun.add(arrows);
+  if (of_embedding(before.flow) != of_embedding(after.flow)) rerun.add({embed, start});
+  if (of_start(before) != of_start(after)) rerun.add(start);
+  if (of_steps(before.flow) != of_steps(after.flow)) rerun.add(step);
+  return rerun;
 }
 
 }  // namespace nacre

@@ -1,18 +1,45 @@
 // Nacre: what has to run again when knobs of the flow have changed.
 #pragma once
 
-#include "compute/pipeline/flow_pipeline.hpp"
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+
+#include "engine/scene/settings.hpp"
 
 namespace nacre {
 
-/// Each one includes those before it.
-enum class FlowRerun {
-  nothing,
-  steps,  ///< the next step takes the new values
-  start,  ///< from the noise
-  embed   ///< from the triangles
+/// What the worker does, in this order.
+enum class FlowStage {
+  surface,  ///< cleaning, normals; at first also reading and choosing
+  vectors,  ///< the choice of the vectors
+  colours,  ///< the array to colour by
+  arrows,   ///< their places
+  embed,    ///< from the triangles
+  start,    ///< from the noise
+  step      ///< one more, which takes new values
+};
+inline constexpr int flow_stages = 7;
+
+/// A set of stages.
+class FlowRerun {
+ public:
+  FlowRerun() = default;
+  FlowRerun(std::initializer_list<FlowStage> stages) {
+    for (const FlowStage stage : stages) add(stage);
+  }
+
+  bool has(FlowStage stage) const { return has_[std::size_t(stage)]; }
+  void add(FlowStage stage) { has_[std::size_t(stage)] = true; }
+  void add(const FlowRerun& other);
+  void remove(FlowStage stage) { has_[std::size_t(stage)] = false; }
+  bool operator==(const FlowRerun&) const = default;
+
+ private:
+  std::array<bool, flow_stages> has_{};
 };
 
-FlowRerun flow_rerun(const FlowParameters& before, const FlowParameters& after);
+/// The stages that the changed knobs concern, and those that build on them.
+FlowRerun flow_rerun(const Settings& before, const Settings& after);
 
 }  // namespace nacre

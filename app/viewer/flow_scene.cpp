@@ -4,58 +4,128 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "app/viewer/captions.hpp"
 #include "compute/device/error.hpp"
 #include "engine/picture/colormap.hpp"
 
 namespace nacre {
+namespace {
+
+SurfaceTexture surface_texture(const FlowEmbedded& told) {
+  const FlowLookup& l = told.lookup;
+  if (l.kind == FlowLookup::Kind::grid) return SparseTexture(sparse_lookup(l), told.rimmed);
+  if (l.kind == FlowLookup::Kind::octree)
+    return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer});
+  return SparseTexture();
+}
+
+constexpr const char* not_drawn =
+    "the source's octree is a yardstick: its texture is computed but not drawn; use --octree brick to see it";
+
+}  // namespace
+
+FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
+    : lookup(surface_texture(told)), info(told.info), values(device, told.lookup.values * sizeof(float), GL_R32F) {}
 
 FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop)
     : worker_(session, std::move(device), loop), settings_(session.settings) {
   colours_.set_map(colormap(settings_.colormap).table);
+  arrow_pass_.set_map(colormap(settings_.colormap).table);
 }
 
 FlowScene::~FlowScene() {
   worker_.finish();  // nobody writes to the memory any more
   shown_.reset();
+  next_.reset();
 }
 
 void FlowScene::set_settings(const Settings& settings) {
-  if (settings.colormap != settings_.colormap) colours_.set_map(colormap(settings.colormap).table);
-  settings_ = settings;
-  worker_.set_parameters(settings.flow);
+  const Settings before = std::exchange(settings_, settings);
+  if (settings.colormap != before.colormap) {
+    try {
+      const Colormap& map = colormap(settings.colormap);
+      colours_.set_map(map.table);
+      arrow_pass_.set_map(map.table);
+    } catch (const Error& error) {
+      warnings_.push_back(error.what());
+      settings_.colormap = before.colormap;
+    }
+  }
+  if (settings.color_range != before.color_range) find_range();
+  const FlowRerun rerun = flow_rerun(before, settings);
+  if (!(rerun == FlowRerun())) failure_.clear();
+  stale_ = stale_ || rerun.has(FlowStage::step);
+  ++look_version_;
+  worker_.set_settings(settings);
 }
 
-void FlowScene::cancel() {}
-void FlowScene::resume() {}
-Image FlowScene::overlay(int, int) { return {}; }
-void FlowScene::result_panel(Session&) {}
-std::optional<Probed> FlowScene::probe(const Vec3d&, const Vec3d&) { return {}; }
-void FlowScene::write_result(const std::filesystem::path&) {}
+void FlowScene::write_result(const std::filesystem::path& file) { worker_.write(file); }
 
-std::string FlowScene::title() const { return name_.empty() ? "" : name_ + ": " + array_; }
-std::string FlowScene::state() const { return fmt::format("time {:.4g}   step {}", time_, steps_); }
+bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy(); }
+std::string FlowScene::title() const { return name_.empty() ? "" : name_ + ": " + data_.array; }
+
+std::string FlowScene::state() const {
+  return fmt::format("time {:.4g}   step {}{}", time_, steps_, worker_.cancelled() ? "   cancelled" : "");
+}
+
+FlowCaption FlowScene::caption() const {
+  FlowCaption caption;
+  const bool coloured = !data_.array.empty() && data_.color != "none";
+  if (settings_.legend && coloured) caption.map = &colormap(settings_.colormap);
+  caption.low = range_.low;
+  caption.high = range_.high;
+  caption.title = data_.color == "speed" ? data_.array : data_.color;
+  if (settings_.time_stamp && complete() && data_.time.high > data_.time.low) caption.time = time_;
+  caption.frame_time = span_.frame_time;
+  return caption;
+}
+
+/// The legend is kept, so that a step draws no more than the time.
+Image FlowScene::overlay(int width, int height) {
+  FlowCaption wanted = caption();
+  if (!wanted.map && !wanted.time) return {};
+  const std::optional<double> time = std::exchange(wanted.time, {});
+  if (legend_.width != width || legend_.height != height || legend_version_ != look_version_) {
+    legend_ = clear_sheet(width, height, paper_of(settings_.background));
+    draw_caption(legend_, wanted);
+    legend_version_ = look_version_;
+  }
+  Image sheet = legend_;
+  wanted.map = nullptr;
+  wanted.time = time;
+  draw_caption(sheet, wanted);
+  return sheet;
+}
 
 void FlowScene::advance(double now) {
   while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
-  if (settings_.look.play && now - last_step_ >= 1.0 / settings_.fps && begin_step(false)) last_step_ = now;
+  if (wants_step() && now - last_step_ >= 1.0 / settings_.fps && begin_step(false)) last_step_ = now;
 }
 
 void FlowScene::advance_and_wait(const std::atomic<bool>& stop) {
-  for (int before = steps_; steps_ <= before && !stop; before = std::min(before, steps_)) {  // 0 after an embedding
+  const std::uint64_t before = taken_;
+  while (taken_ == before && !stop) {
     if (!failure_.empty()) throw Error(failure_);
-    if (worker_.ready()) begin_step(true);
+    if (worker_.ready() && !(wants_step() && begin_step(true))) return;
     std::optional<FlowEvent> event = worker_.wait(stop);
-    if (event) take(*event);
+    if (event)
+      take(*event);
+    else if (!worker_.busy() && !worker_.ready())
+      return;  // cancelled
   }
 }
 
 bool FlowScene::begin_step(bool wait) {
-  if (!shown_ || shown_->writing() || !worker_.ready()) return false;
-  void* memory = shown_->begin_write(wait);
-  if (memory) worker_.step(static_cast<float*>(memory));
-  return memory != nullptr;
+  Texture* const texture = written();
+  if (!texture || texture->values.writing() || !worker_.ready()) return false;
+  void* memory = texture->values.begin_write(wait);
+  if (!memory) return false;
+  worker_.step(static_cast<float*>(memory));
+  stale_ = false;
+  return true;
 }
 
 void FlowScene::take(FlowEvent& event) {
@@ -66,45 +136,127 @@ void FlowScene::take(SurfaceRead& told) {
   surface_ = SurfaceBuffers(told.geometry);
   corners_ = std::move(told.corners);
   name_ = std::move(told.name);
-  array_ = std::move(told.array);
-  warnings_ = std::move(told.warnings);
-  low_ = told.low;
-  high_ = told.high;
-  if (!told.scalar.empty()) colours_.set_scalar(told.scalar, low_, high_);
-}
-
-void FlowScene::take(FlowEmbedded& told) {
-  if (shown_) copied_ += shown_->copied_bytes();
-  shown_.reset();
-  steps_ = 0;
-  surface_pass_.set_texture(SparseTexture(sparse_lookup(told.lookup), told.rimmed));
-  shown_ = std::make_unique<SharedBuffer>(worker_.device(), told.info.surface_cells * sizeof(float), GL_R32F);
-  info_ = told.info;
+  tree_ = std::move(told.tree);
+  area_ = told.area;
   failure_.clear();
 }
 
-void FlowScene::take(FlowStarted&) {
-  if (shown_) shown_->cancel_write();  // of a step that was interrupted for this
+void FlowScene::take(FlowData& told) {
+  if (told.reason.empty()) told.reason = data_.reason;
+  data_ = std::move(told);
+  for (std::string& warning : data_.warnings) warnings_.push_back(std::move(warning));
+  data_.warnings.clear();
+  find_range();
+  show_colours(data_.scalar);
+  vectors_ = data_.vectors;
+  move_arrows();
+  failure_.clear();
+  ++look_version_;
+}
+
+/// The knob's where that means something, else the data's.
+void FlowScene::find_range() {
+  try {
+    range_ = color_range(settings_, data_.colours);
+  } catch (const Error& error) {
+    range_ = data_.colours;
+    warnings_.push_back(error.what());
+  }
+  colours_.set_range(range_.low, range_.high);
+}
+
+void FlowScene::show_colours(const std::vector<float>& scalar) {
+  if (scalar.empty())
+    colours_.clear_scalar();
+  else
+    colours_.set_scalar(scalar, range_.low, range_.high);
+  scalar_ = scalar;
+}
+
+void FlowScene::take(FlowArrows& told) {
+  arrows_ = std::move(told);
+  move_arrows();
+}
+
+void FlowScene::take(FlowEmbedded& told) {
+  if (told.lookup.kind == FlowLookup::Kind::none) warnings_.push_back(not_drawn);
+  next_ = std::make_unique<Texture>(told, worker_.device());
+  failure_.clear();
+}
+
+void FlowScene::take(FlowStarted& told) {
+  span_ = told.span;
+  steps_ = 0;
+  stale_ = true;
   failure_.clear();
 }
 
 void FlowScene::take(FlowStepped& told) {
-  shown_->end_write();
+  written()->values.end_write();
+  if (next_) {
+    if (shown_) copied_ += shown_->values.copied_bytes();
+    shown_ = std::move(next_);
+    surface_pass_.set_texture(std::move(shown_->lookup));
+  }
   time_ = told.time;
-  ++steps_;
-  if (!told.scalar.empty()) colours_.set_scalar(told.scalar, low_, high_);
+  steps_ = told.number;
+  ++taken_;
+  step_seconds_.push_back(float(told.seconds));
+  if (step_seconds_.size() > 240) step_seconds_.erase(step_seconds_.begin());
+  show_colours(told.scalar);
+  vectors_ = std::move(told.vectors);
+  move_arrows();
+  sampled_.reset();
+  if (settings_.time_stamp) ++time_version_;
 }
 
-void FlowScene::take(FlowFailed& told) {
-  if (shown_) shown_->cancel_write();
-  failure_ = std::move(told.what);
+void FlowScene::take(FlowInterrupted&) {
+  if (shown_) shown_->values.cancel_write();
+  if (next_) next_->values.cancel_write();
+  stale_ = true;
 }
 
 void FlowScene::draw(const View& view) {
+  view_ = view;
   if (!surface_) return;
-  surface_pass_.draw(view, surface_, colours_, complete() ? &shown_->texture() : nullptr);
+  surface_pass_.draw(view, surface_, colours_, shown_ ? &shown_->values.texture() : nullptr);
   if (settings_.look.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
-  if (shown_) shown_->drawn();
+  if (settings_.look.arrows) draw_arrows(view);
+  if (shown_) shown_->values.drawn();
+}
+
+/// As far as the reference speed goes at length 1.
+double FlowScene::arrow_spacing() const {
+  return arrows_.places.empty() ? 0 : std::sqrt(area_ / double(arrows_.places.size()));
+}
+
+/// The vectors of the time that is shown, where arrows stand.
+void FlowScene::move_arrows() {
+  std::vector<Arrow> arrows;
+  const double speed = std::max(data_.statistics.percentile_98, 1e-300), spacing = arrow_spacing();
+  for (std::size_t k = 0; k < arrows_.places.size() && vectors_ && tree_; ++k) {
+    const SurfacePlace& place = arrows_.places[k];
+    const Triangle& t = tree_->triangles()[place.triangle];
+    Vec3d point{};
+    Vec3f vector{};
+    for (int c = 0; c < 3; ++c) {
+      point += tree_->points()[t[c]] * double(place.weights[c]);
+      vector += (*vectors_)[t[c]] * place.weights[c];
+    }
+    const Vec3f normal = arrows_.normals[k], along = vector - normal * dot(vector, normal);
+    const float share = float(length(along) / speed);
+    arrows.push_back(
+        {Vec3f((point - surface_.origin()) / surface_.size()), along * float(spacing / speed), normal, share});
+  }
+  arrow_pass_.set_arrows(arrows);
+}
+
+void FlowScene::draw_arrows(const View& view) {
+  ArrowLook look;
+  look.scale = float(settings_.look.arrow_length);
+  look.width = float(0.3 * arrow_spacing());
+  look.mapped = data_.color == "none";  // dark where they would vanish in the surface's colours
+  arrow_pass_.draw(view, surface_.placement(), look);
 }
 
 std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options) {

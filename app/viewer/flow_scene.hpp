@@ -1,6 +1,7 @@
 // Nacre: a flow as the viewer shows it: what the worker has told, on the graphics device.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -10,10 +11,18 @@
 #include "app/viewer/flow_worker.hpp"
 #include "app/viewer/scene.hpp"
 #include "engine/interop/shared_buffer.hpp"
+#include "engine/picture/caption.hpp"
+#include "engine/render/arrow_pass.hpp"
 #include "engine/render/line_passes.hpp"
 #include "engine/render/surface_pass.hpp"
 
 namespace nacre {
+
+/// Two numbers in the panel, while they are typed.
+struct RangeEdit {
+  std::array<double, 2> ends{};
+  bool active = false;
+};
 
 class FlowScene : public Scene {
  public:
@@ -25,55 +34,98 @@ class FlowScene : public Scene {
   void advance(double now) override;
   void advance_and_wait(const std::atomic<bool>& stop) override;
   void set_settings(const Settings& settings) override;
-  void cancel() override;
-  void resume() override;
+  void cancel() override { worker_.cancel(); }
+  void resume() override { worker_.resume(); }
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
-  std::uint64_t overlay_version() const override { return 0; }
+  std::uint64_t overlay_version() const override { return look_version_ + time_version_; }
   void result_panel(Session& session) override;
   std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
-  std::vector<std::string> result_formats() const override { return {}; }
+  std::vector<std::string> result_formats() const override { return {".vtp"}; }
 
   const std::vector<Vec3d>& corners() const override { return corners_; }
-  bool complete() const override { return shown_ && steps_ > 0; }
-  bool settled() const override { return false; }
+  bool complete() const override { return shown_ != nullptr; }
+  bool settled() const override;
   std::string title() const override;
   std::string state() const override;
   SceneProgress progress() const override { return {worker_.stage(), -1}; }
   const std::string& failure() const override { return failure_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
-  std::string remark() const override { return shown_ ? shown_->remark() : std::string(); }
+  std::string remark() const override { return shown_ ? shown_->values.remark() : std::string(); }
   int steps() const override { return steps_; }
-  std::uint64_t copied_bytes() const override { return copied_ + (shown_ ? shown_->copied_bytes() : 0); }
+  std::uint64_t copied_bytes() const override { return copied_ + (shown_ ? shown_->values.copied_bytes() : 0); }
   StageTimers timers() const override { return worker_.timers(); }
   std::size_t peak_bytes() const override { return worker_.peak_bytes(); }
   const Device& device() const override { return worker_.device(); }
   void finish() override { worker_.finish(); }
 
  private:
+  /// A texture on the surface: how values are found, and the values.
+  struct Texture {
+    SurfaceTexture lookup;
+    EmbeddingInfo info;
+    SharedBuffer values;
+
+    Texture(const FlowEmbedded& told, Device& device);
+  };
+
   void take(FlowEvent& event);
   void take(SurfaceRead& told);
+  void take(FlowData& told);
+  void take(FlowArrows& told);
   void take(FlowEmbedded& told);
   void take(FlowStarted& told);
   void take(FlowStepped& told);
-  void take(FlowFailed& told);
+  void take(FlowSampled& told) { sampled_ = told; }
+  void take(FlowInterrupted& told);
+  void take(FlowFailed& told) { failure_ = std::move(told.what); }
+  bool wants_step() const { return settings_.look.play || stale_; }
   bool begin_step(bool wait);
+  Texture* written() const { return next_ ? next_.get() : shown_.get(); }
+  void show_colours(const std::vector<float>& scalar);
+  void find_range();
+  FlowCaption caption() const;
+  void draw_arrows(const View& view);
+  void move_arrows();
+  double arrow_spacing() const;
+  std::vector<std::string> describe(const TriangleHit& hit);
+  void show_embedding() const;
+  void show_vectors() const;
+  void show_time(Session& session);
+  void show_range(Session& session);
 
   FlowWorker worker_;  // before what it writes to, whose device it owns
   SurfaceBuffers surface_;
   SurfaceColours colours_;
   SurfacePass surface_pass_;
   EdgePass edge_pass_;
-  std::unique_ptr<SharedBuffer> shown_;
+  ArrowPass arrow_pass_;
+  std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
   std::vector<Vec3d> corners_;
+  std::shared_ptr<const TriangleTree> tree_;
+  FlowArrows arrows_;
+  FlowData data_;
+  FlowSpan span_;
+  std::shared_ptr<const std::vector<Vec3f>> vectors_;  ///< at the time that is shown
+  std::vector<float> scalar_;
+  Range range_{0, 1};  ///< of the colour map
   std::vector<std::string> warnings_;
-  std::string name_, array_, failure_;
-  EmbeddingInfo info_;
+  std::string name_, failure_;
+  std::optional<FlowSampled> sampled_;
+  std::optional<Vec3d> asked_;
   Settings settings_;
-  double low_ = 0, high_ = 1, time_ = 0, last_step_ = -1e9;
+  View view_;  ///< of the last frame
+  std::vector<float> step_seconds_;
+  double time_ = 0, last_step_ = -1e9, area_ = 0;
+  float slider_ = 0;  ///< of the time; it follows it unless the user holds it
+  bool sliding_ = false;
+  RangeEdit time_edit_, colours_edit_;
+  bool stale_ = true;  ///< knobs have changed what the next step shows
   int steps_ = 0;
-  std::uint64_t copied_ = 0;
+  std::uint64_t copied_ = 0, taken_ = 0;
+  std::uint64_t look_version_ = 1, time_version_ = 0, legend_version_ = 0;  ///< of the overlay
+  Image legend_;
 };
 
 }  // namespace nacre

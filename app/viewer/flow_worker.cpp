@@ -1,38 +1,25 @@
-// Nacre: the flow pipeline on a thread of its own.
+// Nacre: the flow pipeline on a thread of its own: what is asked of it, and what it does when.
 #include "app/viewer/flow_worker.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <future>
 #include <new>
 #include <utility>
 
-#include "app/viewer/flow_rerun.hpp"
 #include "compute/device/error.hpp"
-#include "engine/io/reader.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/io/flow_values.hpp"
 #include "engine/system/faults.hpp"
 
 namespace nacre {
-namespace {
-
-/// A flow that loops is one that is this many times as long: a power of two, so that the times of its steps are the very
-/// numbers of a flow that ends.
-int rounds(const FlowParameters& parameters, bool loop) {
-  int n = 1;
-  while (loop && n < 1 << 16 && parameters.steps > 0 && parameters.steps < (1 << 29) / n) n *= 2;
-  return n;
-}
-
-}  // namespace
 
 FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loop)
     : session_(std::move(session)),
       device_(std::move(device)),
       pipeline_(make_flow_pipeline(*device_)),
       loop_(loop),
-      wanted_(session_.settings.flow) {
+      due_{FlowStage::surface, FlowStage::embed, FlowStage::start},
+      wanted_(session_.settings) {
+  if (wanted_.look.arrows) due_.add(FlowStage::arrows);
   pipeline_->watch(&interrupt_);
   thread_ = std::thread([this] { run(); });
 }
@@ -60,48 +47,92 @@ std::optional<FlowEvent> FlowWorker::poll() {
 
 std::optional<FlowEvent> FlowWorker::wait(const std::atomic<bool>& stop) {
   std::unique_lock lock(mutex_);
-  while (events_.empty() && (task_ != Task::none || doing_ != Task::none) && !stop)
-    told_.wait_for(lock, std::chrono::milliseconds(100));
+  while (events_.empty() && (working_ || has_work()) && !stop) told_.wait_for(lock, std::chrono::milliseconds(100));
   lock.unlock();
   return poll();
 }
 
 bool FlowWorker::ready() const {
   std::scoped_lock lock(mutex_);
-  return started_ && task_ == Task::none && doing_ == Task::none && events_.empty();
+  return started_ && !cancelled_ && !next() && !step_ && doing_ != FlowStage::step && events_.empty();
 }
 
 void FlowWorker::step(float* memory) {
   {
     std::scoped_lock lock(mutex_);
-    memory_ = memory;
-    task_ = Task::step;
+    step_ = memory;
   }
   wake_.notify_all();
 }
 
 bool FlowWorker::busy() const {
   std::scoped_lock lock(mutex_);
-  return task_ != Task::none || doing_ != Task::none;
+  return working_ || has_work();
 }
 
-void FlowWorker::set_parameters(const FlowParameters& parameters) {
+void FlowWorker::set_settings(const Settings& settings) {
   {
     std::scoped_lock lock(mutex_);
-    const FlowRerun rerun = flow_rerun(wanted_, parameters);
-    wanted_ = parameters;
-    if (rerun < FlowRerun::start || !read_) return;  // what is still to be run takes them anyway
-    Task from = rerun == FlowRerun::embed || !embedded_ ? Task::embed : Task::start;
-    if (restart_ == Task::embed) from = Task::embed;
-    started_ = false;
-    if (doing_ == Task::none) {
-      task_ = from;
-    } else {
-      restart_ = from;
-      interrupt_ = true;
+    FlowRerun rerun = flow_rerun(wanted_, settings);
+    wanted_ = settings;
+    if (rerun == FlowRerun()) return;
+    cancelled_ = failed_ = false;
+    rerun.remove(FlowStage::step);  // the next one takes the new values by itself
+    due_.add(rerun);
+    if (rerun.has(FlowStage::start)) {
+      started_ = false;
+      if (step_) drop_step();
+      for (const FlowStage stage : {FlowStage::surface, FlowStage::vectors, FlowStage::embed, FlowStage::start})
+        if (rerun.has(stage) && doing_ && stage <= *doing_) interrupt_ = true;
     }
   }
   wake_.notify_all();
+}
+
+void FlowWorker::cancel() {
+  std::scoped_lock lock(mutex_);
+  cancelled_ = true;
+  if (doing_ && *doing_ != FlowStage::step) interrupt_ = true;
+}
+
+void FlowWorker::resume() {
+  {
+    std::scoped_lock lock(mutex_);
+    cancelled_ = failed_ = false;
+  }
+  wake_.notify_all();
+}
+
+bool FlowWorker::cancelled() const {
+  std::scoped_lock lock(mutex_);
+  return cancelled_;
+}
+
+void FlowWorker::sample(const Vec3d& place) {
+  {
+    std::scoped_lock lock(mutex_);
+    sample_ = place;
+  }
+  wake_.notify_all();
+}
+
+void FlowWorker::write(const std::filesystem::path& file) {
+  std::promise<void> done;
+  {
+    std::scoped_lock lock(mutex_);
+    errand_ = [&] {
+      try {
+        if (!has_values_) throw Error("there is no flow to write yet", "", "wait for the texture");
+        StageTimers::Scope scope(pipeline_->timers(), "write");
+        write_flow_values(*pipeline_, file, wrapped(pipeline_->time()));
+        done.set_value();
+      } catch (...) {
+        done.set_exception(std::current_exception());
+      }
+    };
+  }
+  wake_.notify_all();
+  done.get_future().get();
 }
 
 StageTimers FlowWorker::timers() const {
@@ -116,153 +147,110 @@ std::size_t FlowWorker::peak_bytes() const {
 
 std::string FlowWorker::stage() const {
   std::scoped_lock lock(mutex_);
-  switch (doing_) {
-    case Task::read: return "reading";
-    case Task::embed: return "embedding";
-    case Task::start: return "starting the texture";
-    case Task::step:
-    case Task::none: break;
+  if (!doing_) return "";
+  switch (*doing_) {
+    case FlowStage::surface:
+    case FlowStage::vectors: return "reading";
+    case FlowStage::colours: return "colours";
+    case FlowStage::arrows: return "arrows";
+    case FlowStage::embed: return "embedding";
+    case FlowStage::start: return "starting the texture";
+    case FlowStage::step: break;
   }
-  return failed_ ? "stopped" : "";
+  return "";
 }
+
+std::optional<FlowStage> FlowWorker::next() const {
+  if (cancelled_ || failed_) return {};
+  for (int k = 0; k < int(FlowStage::step); ++k)
+    if (due_.has(FlowStage(k))) return FlowStage(k);
+  return {};
+}
+
+bool FlowWorker::has_work() const { return next() || errand_ || sample_ || step_; }
 
 void FlowWorker::run() {
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_.wait(lock, [&] { return ends_ || task_ != Task::none; });
+    wake_.wait(lock, [&] { return ends_ || has_work(); });
     if (ends_) return;
-    doing_ = std::exchange(task_, Task::none);
-    pipeline_->parameters = wanted_;
-    failed_ = false;
-    const Task task = doing_;
-    lock.unlock();
-    perform(task);
-    lock.lock();
-    doing_ = Task::none;
-    if (restart_ != Task::none) {
-      task_ = std::exchange(restart_, Task::none);
-      started_ = false;
-      interrupt_ = false;
+    working_ = true;
+    if (const std::optional<FlowStage> stage = next()) {
+      perform(*stage, lock);
+    } else if (errand_ || sample_) {
+      const auto errand = std::exchange(errand_, nullptr);
+      const auto place = std::exchange(sample_, {});
+      lock.unlock();
+      if (errand) errand();
+      if (place) answer_sample(*place);
+      take_timers();
+      lock.lock();
+    } else {
+      perform(FlowStage::step, lock);
     }
-    lock.unlock();
+    working_ = false;
     told_.notify_all();
-    lock.lock();
   }
 }
 
-void FlowWorker::perform(Task task) {
-  const auto fail = [&](const std::string& what) {
-    {
-      std::scoped_lock lock(mutex_);
-      failed_ = true;
-      started_ = false;
-    }
-    tell(FlowFailed{what});
-  };
+void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
+  due_.remove(stage);
+  if (stage == FlowStage::surface && !vectors_) {  // which chooses vectors and colours, too
+    due_.remove(FlowStage::vectors);
+    due_.remove(FlowStage::colours);
+  }
+  if (stage == FlowStage::step) memory_ = *std::exchange(step_, {});
+  doing_ = stage;
+  settings_ = wanted_;
+  interrupt_ = false;
+  lock.unlock();
+  bool interrupted = false;
+  std::string failure;
   try {
     if (fault_due("out-of-memory")) throw std::bad_alloc();
-    switch (task) {
-      case Task::read: read(); [[fallthrough]];
-      case Task::embed: embed(); [[fallthrough]];
-      case Task::start: start(); break;
-      case Task::step: make_step(); break;
-      case Task::none: break;
-    }
+    make(stage);
   } catch (const Interrupted&) {  // for other knobs, or the end
+    interrupted = true;
   } catch (const std::bad_alloc&) {
-    fail("out of memory; lower resolution");
+    failure = "out of memory; lower resolution";
   } catch (const std::exception& error) {
-    fail(error.what());
+    failure = error.what();
   }
   take_timers();
+  lock.lock();
+  doing_.reset();
+  if (interrupted || !failure.empty()) undo(stage, failure);
 }
 
-void FlowWorker::read() {
-  SurfaceRead told;
-  {
-    StageTimers::Scope scope(pipeline_->timers(), "read");
-    SurfaceSeries series =
-        session_.sample.empty() ? open_surface(session_.inputs) : make_sample(session_.sample, session_.detail);
-    told.name = series.name;
-    told.warnings = series.warnings;
-    const Surface first = series.load(0);
-    PreparedSurface surface = prepare(first, session_.settings.crease, &told.warnings);
-    told.array = choose_vectors(first, session_.settings.vectors).name;
-    vectors_ =
-        std::make_unique<VectorsInTime>(std::move(series), std::move(surface), told.array, session_.settings.color);
+/// Afterwards the thread knows what is still to be done. An empty `failure`: it was interrupted.
+void FlowWorker::undo(FlowStage stage, const std::string& failure) {
+  if (!failure.empty()) events_.emplace_back(FlowFailed{failure});
+  const bool choice = stage == FlowStage::vectors || stage == FlowStage::colours || stage == FlowStage::arrows;
+  if (choice && !failure.empty()) return;  // all goes on with what was chosen before
+  if (stage == FlowStage::step) {
+    drop_step();
+    stage = FlowStage::start;
   }
-  const PreparedSurface& surface = vectors_->surface();
-  told.geometry = make_surface_geometry(surface.points, surface.triangles, surface.corner_normals);
-  for (const SurfaceVertex& v : told.geometry.vertices) told.corners.push_back(surface.points[v.point]);
-  told.low = vectors_->color_low();
-  told.high = vectors_->color_high();
-  told.scalar = scalar(vectors_->start());
-  {
-    std::scoped_lock lock(mutex_);
-    read_ = true;
-  }
-  tell(std::move(told));
+  due_.add(stage);
+  if (!choice) started_ = false;
+  failed_ = !failure.empty();
 }
 
-void FlowWorker::embed() {
-  {
-    std::scoped_lock lock(mutex_);
-    doing_ = Task::embed;
-    embedded_ = false;
-    pipeline_->parameters = wanted_;
-  }
-  const PreparedSurface& surface = vectors_->surface();
-  pipeline_->embed({surface.points, surface.triangles, surface.corner_normals});
-  take_timers();
-  FlowEmbedded told{pipeline_->lookup(), {}, pipeline_->embedding()};
-  told.rimmed = with_rims(sparse_lookup(told.lookup));
-  {
-    std::scoped_lock lock(mutex_);
-    embedded_ = true;
-  }
-  tell(std::move(told));
+void FlowWorker::drop_step() {
+  step_.reset();
+  events_.emplace_back(std::in_place_type<FlowInterrupted>);
 }
 
-void FlowWorker::start() {
-  {
-    std::scoped_lock lock(mutex_);
-    doing_ = Task::start;
+void FlowWorker::make(FlowStage stage) {
+  switch (stage) {
+    case FlowStage::surface: return read();
+    case FlowStage::vectors:
+    case FlowStage::colours: return choose();
+    case FlowStage::arrows: return place_arrows();
+    case FlowStage::embed: return embed();
+    case FlowStage::start: return start();
+    case FlowStage::step: return make_step();
   }
-  const int n = rounds(pipeline_->parameters, loop_);
-  FlowVectors vectors;
-  vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->vectors(wrapped(t), out); };
-  vectors.start = vectors_->start();
-  vectors.end = vectors.start + (vectors_->end() - vectors.start) * n;
-  const double speed = vectors_->statistics().percentile_98;
-  vectors.reference_speed = speed > 0 ? speed : 1;
-  const int steps = pipeline_->parameters.steps;
-  pipeline_->parameters.steps = steps * n;
-  pipeline_->start(vectors);
-  steps_made_ = 0;
-  {
-    std::scoped_lock lock(mutex_);
-    started_ = restart_ == Task::none;
-  }
-  tell(FlowStarted{});
-}
-
-void FlowWorker::make_step() {
-  pipeline_->parameters.steps *= rounds(pipeline_->parameters, loop_);
-  pipeline_->show_into(memory_);
-  pipeline_->step();
-  ++steps_made_;
-  const double time = wrapped(pipeline_->time());
-  take_timers();
-  tell(FlowStepped{time, steps_made_, scalar(time)});
-}
-
-double FlowWorker::wrapped(double time) const {
-  const double start = vectors_->start(), period = vectors_->end() - start;
-  return loop_ && period > 0 ? start + std::fmod(time - start, period) : time;
-}
-
-std::vector<float> FlowWorker::scalar(double time) {
-  return vectors_->colored() ? vectors_->scalar(time) : std::vector<float>();
 }
 
 void FlowWorker::take_timers() {

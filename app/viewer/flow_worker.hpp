@@ -4,6 +4,8 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,58 +14,91 @@
 #include <variant>
 #include <vector>
 
+#include "app/viewer/flow_rerun.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/raycast/triangle_tree.hpp"
 #include "engine/render/geometry.hpp"
 #include "engine/render/sparse_texture.hpp"
+#include "engine/scene/ranges.hpp"
 #include "engine/scene/session.hpp"
+#include "engine/scene/spread_places.hpp"
 #include "engine/scene/vectors_in_time.hpp"
 
 namespace nacre {
 
-// What the worker tells, in this order; after a change of knobs again from where it has to begin.
+// What the worker tells, in this order; after a change of knobs again what has been done again.
 
 /// The surface is read.
 struct SurfaceRead {
-  std::string name, array;  ///< what is shown on it
+  std::string name;
   SurfaceGeometry geometry;
   std::vector<Vec3d> corners;  ///< points that triangles use
-  std::vector<float> scalar;   ///< at the first time; empty: not coloured
-  double low = 0, high = 1;    ///< its range over all times
+  std::shared_ptr<const TriangleTree> tree;
+  double area = 0;
+};
+
+/// Vectors and colours are chosen.
+struct FlowData {
+  std::string array, color;  ///< what is shown, and what colours it
+  std::string reason;        ///< why this array
+  VectorStatistics statistics;
+  Range time, colours;        ///< of the data
+  std::vector<float> scalar;  ///< at the time that is shown; empty: not coloured
+  std::shared_ptr<const std::vector<Vec3f>> vectors;
   std::vector<std::string> warnings;
+};
+
+/// Where arrows stand; none: they are off.
+struct FlowArrows {
+  std::vector<SurfacePlace> places;
+  std::vector<Vec3f> normals;
 };
 
 /// The embedding is there: these arrays find a surface cell.
 struct FlowEmbedded {
   FlowLookup lookup;
-  std::vector<std::uint32_t> rimmed;  ///< its texels with_rims
+  std::vector<std::uint32_t> rimmed;  ///< of a grid: its texels with_rims
   EmbeddingInfo info;
 };
 
 /// The first values can be asked for.
-struct FlowStarted {};
+struct FlowStarted {
+  FlowSpan span;
+};
 
 /// The values are in the memory that `step` was given.
 struct FlowStepped {
-  double time = 0;
-  int number = 0;  ///< steps since the start
+  double time = 0, seconds = 0;  ///< of the data; that it took
+  int number = 0;                ///< steps since the start
   std::vector<float> scalar;
+  std::shared_ptr<const std::vector<Vec3f>> vectors;  ///< one per point, at that time
 };
 
-/// A stage did not work; the worker waits for other knobs.
+/// Shown values at the places that were asked for.
+struct FlowSampled {
+  Vec3d place;
+  float value = 0;
+};
+
+/// What was under way was dropped, for other knobs or for good: memory that was lent is not written any more.
+struct FlowInterrupted {};
+
+/// A stage did not work; the worker waits for other knobs, or goes on as before where it can.
 struct FlowFailed {
   std::string what;
 };
 
-using FlowEvent = std::variant<SurfaceRead, FlowEmbedded, FlowStarted, FlowStepped, FlowFailed>;
+using FlowEvent = std::variant<SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowStarted, FlowStepped, FlowSampled,
+                               FlowInterrupted, FlowFailed>;
 
-/// The lookup as the renderer takes it.
+/// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
   return {l.bricks, l.subcells, l.refine, l.origin, l.cell_size, l.brick_index, l.block, l.texel};
 }
 
 /// Reads, embeds and starts by itself; then one step for each call of `step`. All calls come from one other thread, and
-/// none waits for compute but `wait` and the destructor.
+/// none waits for compute but `wait`, `write` and the destructor.
 class FlowWorker {
  public:
   /// `loop`: after the last time comes the first again, without end; else it stands still there, as headless runs do.
@@ -82,12 +117,22 @@ class FlowWorker {
 
   /// May `step` be called? Not before FlowStarted, not before the last step's event, and not while knobs are taken over.
   bool ready() const;
-  /// Makes the next step and writes what is to be shown to `memory` of the device.
+  /// Makes the next step and writes what is to be shown to `memory` of the device (null: the pipeline's own).
   void step(float* memory);
 
-  /// Takes other knobs over: at once where a step takes them, else it interrupts what it does and begins from there.
-  void set_parameters(const FlowParameters& parameters);
-  bool busy() const;  ///< with a step or a longer stage
+  /// Takes other knobs over: at once where a step takes them, else it does again what depends on them, and interrupts
+  /// what does.
+  void set_settings(const Settings& settings);
+  /// Interrupts a stage that goes on, and does nothing more until `resume` or other knobs. A step is finished.
+  void cancel();
+  void resume();
+  bool cancelled() const;
+  bool busy() const;  ///< with something, or about to be
+
+  /// Asks for the shown value at a place of the surface; FlowSampled answers. Only the last one that was asked counts.
+  void sample(const Vec3d& place);
+  /// Writes the values as `nacre flow --out` does, after what goes on. Waits. Throws Error.
+  void write(const std::filesystem::path& file);
 
   /// Interrupts what it does and ends the thread; the memory of a step is not written any more. Nothing may be asked for
   /// after this.
@@ -98,34 +143,53 @@ class FlowWorker {
   std::size_t peak_bytes() const;
 
  private:
-  enum class Task { none, read, embed, start, step };
+  // With the mutex held.
+  std::optional<FlowStage> next() const;
+  bool has_work() const;
 
   void run();
-  void perform(Task task);
+  void perform(FlowStage stage, std::unique_lock<std::mutex>& lock);
+  void undo(FlowStage stage, const std::string& failure);
+  void drop_step();
+  void make(FlowStage stage);
   void read();
+  void choose();
+  void tell_data(std::string reason, std::vector<std::string> warnings);
+  void place_arrows();
   void embed();
   void start();
   void make_step();
+  void answer_sample(const Vec3d& place);
   void tell(FlowEvent event);
   void take_timers();
-  std::vector<float> scalar(double time);
   double wrapped(double time) const;
+  std::vector<float> scalar(double time);
+  std::shared_ptr<const std::vector<Vec3f>> vectors(double time);
 
   Session session_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<FlowPipeline> pipeline_;
-  std::unique_ptr<VectorsInTime> vectors_;
   bool loop_;
-  int steps_made_ = 0;
+
+  // The thread's own.
+  Settings settings_;  ///< of what it does
+  std::unique_ptr<VectorsInTime> vectors_;
+  FlowSpan span_;
+  int steps_made_ = 0, steps_in_all_ = 0;
+  double shown_time_ = 0;
+  bool has_values_ = false;
+  float* memory_ = nullptr;  ///< of the step that it makes
 
   mutable std::mutex mutex_;
   std::condition_variable wake_, told_;
   std::deque<FlowEvent> events_;
-  Task task_ = Task::read, doing_ = Task::none;
-  Task restart_ = Task::none;  ///< where to begin when what is under way has been interrupted
-  bool read_ = false, embedded_ = false, started_ = false, ends_ = false, failed_ = false;
-  float* memory_ = nullptr;
-  FlowParameters wanted_;
+  FlowRerun due_;
+  std::optional<FlowStage> doing_;
+  std::optional<float*> step_;  ///< is to be made, into this memory
+  std::optional<Vec3d> sample_;
+  std::function<void()> errand_;
+  bool started_ = false, ends_ = false, failed_ = false, cancelled_ = false, working_ = false;
+  Settings wanted_;
   StageTimers timers_;
   std::size_t peak_bytes_ = 0;
   std::atomic<bool> interrupt_{false};

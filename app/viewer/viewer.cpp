@@ -12,6 +12,8 @@
 #include <utility>
 
 #include "app/viewer/camera_control.hpp"
+#include "app/viewer/captions.hpp"
+#include "app/viewer/clip.hpp"
 #include "app/viewer/interface.hpp"
 #include "app/viewer/recent_files.hpp"
 #include "app/viewer/scene.hpp"
@@ -21,7 +23,6 @@
 #include "engine/gl/framebuffer.hpp"
 #include "engine/gl/window.hpp"
 #include "engine/picture/png.hpp"
-#include "engine/render/axes_pass.hpp"
 #include "engine/scene/recording.hpp"
 #include "engine/system/output_file.hpp"
 
@@ -32,8 +33,8 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 std::array<float, 4> background_of(const Settings& settings) {
   if (settings.background == "transparent") return {0, 0, 0, 0};
-  const int rgb = std::stoi(settings.background.substr(1), nullptr, 16);
-  return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255, 1};
+  const Rgba paper = paper_of(settings.background);
+  return {float(paper.r) / 255, float(paper.g) / 255, float(paper.b) / 255, 1};
 }
 
 /// Of the middle of their bounding box to its corners.
@@ -93,13 +94,13 @@ class Viewer {
     result_.renderer = context_->renderer();
     result_.version = context_->version();
     interface_.emplace(window_);
-    axes_.emplace();
+    captions_.emplace();
   }
 
   void drop_graphics() {
     scene_.reset();  // before the context that all of it lives in
     frame_.reset();
-    axes_.reset();
+    captions_.reset();
     interface_.reset();
     window_ = nullptr;
     context_.reset();
@@ -115,6 +116,7 @@ class Viewer {
 
   void open() {
     scene_.reset();
+    captions_->forget();
     said_ = 0;
     fitted_ = false;
     // A number of frames is for headless runs to compare with: these do not begin again after the last time.
@@ -168,20 +170,22 @@ class Viewer {
     view.camera = orbit(session_.camera.value_or(Camera()), settings.orbit * double(result_.frame_seconds.size()));
     view.width = width;
     view.height = height;
-    view.light = flow_light(view.camera);
+    view.light =
+        turned_light(flow_light(view.camera), view.camera, settings.look.light_azimuth, settings.look.light_height);
+    view.clip = clip_plane(settings.look, scene_->corners());
     view.ambient = float(settings.look.ambient);
     view.extent = 2 * radius_of(scene_->corners()) + length(view.camera.eye - view.camera.target);
     return view;
   }
 
-  void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background, double scale) {
+  void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background) {
     frame.bind();
     frame.clear(background);
     if (!fitted_) return;
     frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
     const View view = view_of(area.width, area.height);
     scene_->draw(view);
-    if (session_.settings.legend) axes_->draw(view, float(scale));
+    captions_->draw(*scene_, view, session_.settings);
     frame.bind();
   }
 
@@ -190,7 +194,7 @@ class Viewer {
     const FreeArea area = ui_.free_area(session_.settings.look, width, height);
     area_ = area;
     fit_new(area.width, area.height);
-    draw_scene(*frame_, area, background_of(session_.settings), window_ ? window_->scale() : 1);
+    draw_scene(*frame_, area, background_of(session_.settings));
     if (session_.camera) move_camera(*session_.camera, session_.settings.look.turning, area);
     const UiFacts facts{clock_,
                         result_.renderer,
@@ -218,8 +222,7 @@ class Viewer {
     } else {
       Framebuffer large(frame_->width() * picture.scale, frame_->height() * picture.scale, 4);
       draw_scene(large, {0, 0, large.width(), large.height()},
-                 picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings),
-                 picture.scale);
+                 picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings));
       image = large.read();
     }
     write_png(picture.file, image);
@@ -422,7 +425,7 @@ class Viewer {
   std::unique_ptr<Context> context_;
   Window* window_ = nullptr;  ///< the context, where it is one
   std::optional<Interface> interface_;
-  std::optional<AxesPass> axes_;
+  std::optional<Captions> captions_;
   std::optional<Framebuffer> frame_;
   std::unique_ptr<Scene> scene_;
   Ui ui_;

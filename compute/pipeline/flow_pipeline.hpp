@@ -77,14 +77,29 @@ struct FlowValues {
   explicit FlowValues(std::size_t n) : centre(n), value(n), velocity(n), normal(n), closest_point(n) {}
 };
 
-/// The look-up arrays of the closest-point grid on the host, for a renderer that looks the shown values up by itself
-/// (RefinedGridView says how).
+/// The arrays of the embedding that lead from a place of the surface to its shown value, on the host, for a renderer that
+/// looks values up by itself.
 struct FlowLookup {
+  enum class Kind {
+    none,  ///< the source's octree: a yardstick, which nobody draws from
+    grid,  ///< RefinedGridView says how
+    octree
+  };
+  Kind kind = Kind::none;
+  std::uint64_t values = 0;  ///< how many are shown
+  Vec3d origin{};            ///< world
+  double cell_size = 1;      ///< of the grid: of a closest-point cell; of the octree: of a texture cell; world units
+
+  // The grid.
   Int3 bricks{};
   int subcells = 0, refine = 0;
-  Vec3d origin{};
-  double cell_size = 1;  ///< of a closest-point cell, world units
   std::vector<std::uint32_t> brick_index, block, texel;
+
+  // The octree over bricks of 8^3 texture cells.
+  int levels = 0;                          ///< of inner nodes; 8 << levels cells per axis
+  std::vector<std::uint32_t> node;         ///< per inner node: first child, and 8 bits for the children there are
+  std::vector<std::uint32_t> level_start;  ///< first node of each level
+  std::vector<std::uint32_t> layer;        ///< per brick and z: 64 bits for surface cells (8 y + x), the first's number
 };
 
 struct RenderOptions {
@@ -117,7 +132,6 @@ class FlowPipeline {
   /// From the next step on, shown values go to `memory` of the device: one float per value of `shown`; null: to the
   /// pipeline's own array, as after `start`.
   virtual void show_into(float* memory) = 0;
-  /// Throws Error where the embedding is no grid.
   virtual FlowLookup lookup() const = 0;
   virtual FlowValues values() const = 0;
   /// RGBA bytes, row 0 at the top (stage render).

@@ -239,6 +239,8 @@ template <class Backend>
 FlowLookup GridFlow<Backend>::lookup() const {
   this->require_embedded();
   FlowLookup lookup;
+  lookup.kind = FlowLookup::Kind::grid;
+  lookup.values = fine_.surface_cells;
   lookup.bricks = coarse_.bricks;
   lookup.subcells = coarse_.sub;
   lookup.refine = refine_;

@@ -22,7 +22,7 @@ namespace nacre {
 struct BrickBand {
   using Octree = BrickOctree;
   static constexpr const char* name = "brick octree";
-  static constexpr bool from_centres = false, local_contrast = true;
+  static constexpr bool from_centres = false, local_contrast = true, drawn = true;
   static std::uint64_t touched(const Octree& tree) { return tree.surface_cells; }
 
   template <class Backend>
@@ -36,7 +36,7 @@ struct BrickBand {
 struct SourceBand {
   using Octree = SourceOctree;
   static constexpr const char* name = "source octree";
-  static constexpr bool from_centres = true, local_contrast = false;
+  static constexpr bool from_centres = true, local_contrast = false, drawn = false;
   static std::uint64_t touched(const Octree& tree) { return tree.touched_cells; }
 
   template <class Backend>
@@ -61,6 +61,26 @@ struct SampleBandAt {
 /// Whether a triangle touches a cell that has a value of its own: all do among bricks.
 NACRE_HD inline bool is_touched(const BrickOctreeView&, CellIndex) { return true; }
 NACRE_HD inline bool is_touched(const SourceOctreeView& view, CellIndex cell) { return view.touches(cell); }
+
+/// What a renderer needs of the tree.
+inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
+  lookup.kind = FlowLookup::Kind::octree;
+  lookup.levels = tree.levels;
+  for (const OctreeNode& node : tree.nodes.node.download()) {
+    lookup.node.push_back(node.first);
+    lookup.node.push_back(node.children);
+  }
+  lookup.level_start = tree.nodes.level_start.download();
+  if (tree.surface_cells > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower --resolution");
+  lookup.layer.reserve(24 * std::size_t(tree.brick_count));
+  for (const OctreeBrick& brick : tree.brick.download())
+    for (int z = 0; z < BrickOctreeView::width; ++z) {
+      const CellMask& mask = brick.surface;
+      lookup.layer.push_back(std::uint32_t(mask.word[z]));
+      lookup.layer.push_back(std::uint32_t(mask.word[z] >> 32));
+      lookup.layer.push_back(std::uint32_t(mask.first + mask.before[z]));
+    }
+}
 
 /// What an output needs of each cell that has a value.
 template <class View>
@@ -123,9 +143,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   FlowValues values() const override;
   std::vector<std::uint8_t> render(const RenderOptions& options) override;
   std::vector<float> sample_shown(std::span<const Vec3d> points) override;
-  FlowLookup lookup() const override {
-    throw Error("an octree has no look-up arrays of a grid", "", "use --method grid");
-  }
+  FlowLookup lookup() const override;
 
  private:
   using Base = FlowMethodOn<Backend>;
@@ -232,6 +250,17 @@ std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions&
   pixel.scene.target.view = octree_.view();
   pixel.scene.shown = started_ && options.texture ? display() : nullptr;
   return this->draw(pixel, options, Vec3d(Int3(parameters_.resolution)));
+}
+
+template <class Backend, class Band>
+FlowLookup OctreeFlow<Backend, Band>::lookup() const {
+  this->require_embedded();
+  FlowLookup lookup;
+  lookup.values = octree_.view().surface_cells;
+  lookup.origin = domain_.origin;
+  lookup.cell_size = domain_.cell_size;
+  if constexpr (Band::drawn) detail::fill_lookup(octree_, lookup);
+  return lookup;
 }
 
 template <class Backend, class Band>

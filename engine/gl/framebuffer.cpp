@@ -17,6 +17,16 @@ GLuint make_renderbuffer(GLenum format, int width, int height, int samples) {
   return id;
 }
 
+/// What is drawn over a transparent background is multiplied by its opacity; images are not.
+void divide_by_opacity(Image& image) {
+  for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+    const int opacity = image.pixels[i + 3];
+    if (opacity == 0 || opacity == 255) continue;
+    for (std::size_t c = i; c < i + 3; ++c)
+      image.pixels[c] = std::uint8_t(std::min(255, (image.pixels[c] * 255 + opacity / 2) / opacity));
+  }
+}
+
 int allowed_samples(int asked) {
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
@@ -90,6 +100,7 @@ Image Framebuffer::read() const {
   const std::size_t row = std::size_t(width_) * 4;
   for (int y = 0; y < height_; ++y) std::memcpy(image.at(0, y), &upside_down[std::size_t(height_ - 1 - y) * row], row);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, names_.frame);
+  divide_by_opacity(image);
   return image;
 }
 

@@ -1,6 +1,7 @@
 // Nacre: textures.
 #include "engine/gl/texture.hpp"
 
+#include <cassert>
 #include <utility>
 
 #include "engine/gl/errors.hpp"
@@ -29,6 +30,17 @@ ColourTexture::ColourTexture(std::span<const std::array<float, 3>> colours) : na
   glTextureParameteri(name_.id(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glTextureParameteri(name_.id(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   require_gl_memory(colours.size_bytes());
+}
+
+ImageTexture::ImageTexture(const Image& image) : name_(GL_TEXTURE_2D), width_(image.width), height_(image.height) {
+  glTextureStorage2D(name_.id(), 1, GL_RGBA8, width_, height_);
+  require_gl_memory(image.pixels.size());
+  update(image);
+}
+
+void ImageTexture::update(const Image& image) {
+  assert(image.width == width_ && image.height == height_);
+  glTextureSubImage2D(name_.id(), 0, 0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, image.pixels.data());
 }
 
 }  // namespace nacre

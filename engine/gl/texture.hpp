@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/gl/buffer.hpp"
+#include "engine/picture/image.hpp"
 
 namespace nacre {
 
@@ -54,6 +55,23 @@ class ColourTexture {
 
  private:
   TextureName name_;
+};
+
+/// An image as a texture for texelFetch; row 0 is the image's first.
+class ImageTexture {
+ public:
+  ImageTexture() = default;
+  explicit ImageTexture(const Image& image);
+
+  void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// Other pixels, of an image of the same size.
+  void update(const Image& image);
+
+ private:
+  TextureName name_;
+  int width_ = 0, height_ = 0;
 };
 
 }  // namespace nacre

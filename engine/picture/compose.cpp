@@ -56,6 +56,15 @@ void average_block(const Image& image, int x0, int y0, int width, int height, st
 
 }  // namespace
 
+Image clear_sheet(int width, int height, const Rgba& paper) {
+  Image sheet;
+  sheet.width = width;
+  sheet.height = height;
+  sheet.pixels.assign(std::size_t(width) * std::size_t(height) * 4, 0);
+  sheet.paper = {paper.r, paper.g, paper.b};
+  return sheet;
+}
+
 void blend_pixel(std::uint8_t* pixel, Rgba color, float coverage) {
   const float top = std::clamp(coverage, 0.f, 1.f) * float(color.a) / 255;
   if (top <= 0) return;

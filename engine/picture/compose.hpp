@@ -12,6 +12,9 @@ struct Rgba {
   std::uint8_t r = 0, g = 0, b = 0, a = 255;
 };
 
+/// An image to draw on that is put over another one later: all transparent, with `paper` behind it.
+Image clear_sheet(int width, int height, const Rgba& paper);
+
 /// Puts `color` over one pixel (four channels), in encoded sRGB as compositors do. `coverage` (0..1) scales its alpha.
 void blend_pixel(std::uint8_t* pixel, Rgba color, float coverage = 1);
 

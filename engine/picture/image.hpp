@@ -1,6 +1,7 @@
 // Nacre: an 8-bit image in host memory.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,6 +13,7 @@ struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> pixels;
+  std::array<std::uint8_t, 3> paper{255, 255, 255};  ///< what shines through transparent pixels, to choose inks by
 
   Image() = default;
   Image(int w, int h) : width(w), height(h), pixels(std::size_t(w) * h * 4, 255) {}

@@ -5,6 +5,7 @@
 
 #include "compute/grid/vec.hpp"
 #include "engine/picture/colormap.hpp"
+#include "engine/picture/compose.hpp"
 #include "engine/picture/image.hpp"
 
 namespace nacre {
@@ -26,5 +27,10 @@ void draw_time(Image& image, double t, const std::string& unit, double step = 0)
 /// A small triad of the axes (x red, y green, z blue) at the bottom right, as the camera sees them. The vectors are the
 /// camera's, in world coordinates, of length 1.
 void draw_orientation(Image& image, const Vec3f& right, const Vec3f& up, const Vec3f& forward);
+
+/// The same on a clear sheet of its own, which belongs into the right lower corner of an image of this size with
+/// `paper` behind it. Nothing where that is too small.
+Image orientation_sheet(int width, int height, const Rgba& paper, const Vec3f& right, const Vec3f& up,
+                        const Vec3f& forward);
 
 }  // namespace nacre

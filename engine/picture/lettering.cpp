@@ -15,18 +15,19 @@ constexpr float smallest_font = 10;
 constexpr Ink dark_ink{{24, 26, 30, 255}, {255, 255, 255, 110}};
 constexpr Ink light_ink{{242, 243, 245, 255}, {0, 0, 0, 110}};
 
-/// OKLab's lightness of a pixel; what shines through a transparent one is taken to be white paper.
-float lightness(const std::uint8_t* pixel) {
+/// OKLab's lightness of a pixel of the image, with the paper behind it.
+float lightness(const Image& image, const std::uint8_t* pixel) {
   const float alpha = float(pixel[3]) / 255;
   Color color;
-  for (int k = 0; k < 3; ++k) color[k] = linear_from_srgb(alpha * float(pixel[k]) / 255 + 1 - alpha);
+  for (int k = 0; k < 3; ++k)
+    color[k] = linear_from_srgb((alpha * float(pixel[k]) + (1 - alpha) * float(image.paper[k])) / 255);
   return oklab_from_linear(color)[0];
 }
 
 }  // namespace
 
-float lettering_size(const Image& image) {
-  const float shorter = std::min(0.75f * float(image.width), float(image.height));
+float lettering_size(int width, int height) {
+  const float shorter = std::min(0.75f * float(width), float(height));
   return shorter < 12 * smallest_font ? 0 : std::max(smallest_font, std::round(shorter / 44));
 }
 
@@ -36,7 +37,7 @@ Ink ink_for(const Image& image, int x, int y, int width, int height) {
   float sum = 0;
   int count = 0;
   for (int v = std::max(0, y); v < y1; v += stride)
-    for (int u = std::max(0, x); u < x1; u += stride, ++count) sum += lightness(image.at(u, v));
+    for (int u = std::max(0, x); u < x1; u += stride, ++count) sum += lightness(image, image.at(u, v));
   return count == 0 || sum > 0.6f * float(count) ? dark_ink : light_ink;
 }
 

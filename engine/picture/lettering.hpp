@@ -13,8 +13,9 @@ struct Ink {
   Rgba letter, halo;
 };
 
-/// The font size, in pixels, that suits the image, or 0 where it is too small for lettering.
-float lettering_size(const Image& image);
+/// The font size, in pixels, that suits an image of this size, or 0 where it is too small for lettering.
+float lettering_size(int width, int height);
+inline float lettering_size(const Image& image) { return lettering_size(image.width, image.height); }
 
 /// Dark ink where the part of the image is light, light ink where it is dark.
 Ink ink_for(const Image& image, int x, int y, int width, int height);

@@ -47,12 +47,10 @@ void draw_name(Image& image, const Axis& axis, float x, float y, float size, flo
                  int(std::lround(center_y - 0.62f * float(cap))), axis.name, font, ink);
 }
 
-}  // namespace
+constexpr float axis_length = 2.6f, reach_of_triad = axis_length + 2.1f;  // in font sizes; its middle to the border
 
-void draw_orientation(Image& image, const Vec3f& right, const Vec3f& up, const Vec3f& forward) {
-  const float font = lettering_size(image);
-  if (font <= 0 || !is_finite(right) || !is_finite(up) || !is_finite(forward)) return;
-  const float size = 2.6f * font, reach = size + 2.1f * font;
+void draw_triad(Image& image, float font, const Vec3f& right, const Vec3f& up, const Vec3f& forward) {
+  const float size = axis_length * font, reach = reach_of_triad * font;
   const float x = float(image.width) - reach, y = float(image.height) - reach;
   const int side = int(2 * size);
   const Ink ink = ink_for(image, int(x - size), int(y - size), side, side);
@@ -65,6 +63,27 @@ void draw_orientation(Image& image, const Vec3f& right, const Vec3f& up, const V
     draw_arrow(image, axis, x, y, size, font, 0, axis.color);
     draw_name(image, axis, x, y, size, font, ink);
   }
+}
+
+bool are_finite(const Vec3f& right, const Vec3f& up, const Vec3f& forward) {
+  return is_finite(right) && is_finite(up) && is_finite(forward);
+}
+
+}  // namespace
+
+void draw_orientation(Image& image, const Vec3f& right, const Vec3f& up, const Vec3f& forward) {
+  const float font = lettering_size(image);
+  if (font > 0 && are_finite(right, up, forward)) draw_triad(image, font, right, up, forward);
+}
+
+Image orientation_sheet(int width, int height, const Rgba& paper, const Vec3f& right, const Vec3f& up,
+                        const Vec3f& forward) {
+  const float font = lettering_size(width, height);
+  if (font <= 0 || !are_finite(right, up, forward)) return {};
+  const int side = int(std::ceil(2 * reach_of_triad * font));
+  Image sheet = clear_sheet(side, side, paper);
+  draw_triad(sheet, font, right, up, forward);
+  return sheet;
 }
 
 }  // namespace nacre

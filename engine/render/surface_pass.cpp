@@ -1,6 +1,7 @@
 // Nacre: draws a surface.
 #include "engine/render/surface_pass.hpp"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -13,14 +14,18 @@ void SurfaceColours::set_map(std::span<const std::array<float, 3>> colours) {
   map_ = ColourTexture(linear);
 }
 
+void SurfaceColours::set_range(double low, double high) {
+  low_ = float(low);
+  high_ = high > low ? float(high) : std::nextafter(low_, 1e30f);
+}
+
 void SurfaceColours::set_scalar(std::span<const float> scalar, double low, double high) {
   if (scalar_.bytes() != scalar.size_bytes() || !scalar_) {
     scalar_ = Buffer(scalar.size_bytes());
     scalar_texture_ = BufferTexture(scalar_, GL_R32F);
   }
   scalar_.update(scalar);
-  low_ = float(low);
-  high_ = float(high);
+  set_range(low, high);
   coloured_ = !scalar.empty();
 }
 
@@ -34,22 +39,27 @@ int SurfaceColours::bind(const Program& program, int unit) const {
   return unit + 2;
 }
 
-void SurfacePass::set_texture(SparseTexture texture) {
+void SurfacePass::set_texture(SurfaceTexture texture) {
   texture_ = std::move(texture);
-  textured_ = texture_ ? Program("surface.vert", "surface.frag", texture_.prelude()) : Program();
+  textured_ = textured() ? Program("surface.vert", "surface.frag",
+                                   std::visit([](const auto& t) { return t.prelude(); }, texture_))
+                         : Program();
 }
 
 void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
                        const BufferTexture* shown) const {
-  const bool textured = texture_ && shown;
-  const Program& program = textured ? textured_ : plain_;
+  const bool looks_up = shown && textured();
+  const Program& program = looks_up ? textured_ : plain_;
   set_view(program, view, surface.placement());
   const int unit = colours.bind(program, 0);
-  if (textured) {
-    texture_.bind(program, *shown, unit);
-    const Vec3d offset = (surface.origin() - texture_.origin()) / texture_.texture_cell();
-    program.set("texture_from_model", std::array<float, 4>{float(offset.x), float(offset.y), float(offset.z),
-                                                           float(surface.size() / texture_.texture_cell())});
+  if (looks_up) {
+    const auto bind = [&](const auto& texture) {
+      texture.bind(program, *shown, unit);
+      const Vec3d offset = (surface.origin() - texture.origin()) / texture.texture_cell();
+      program.set("texture_from_model", std::array<float, 4>{float(offset.x), float(offset.y), float(offset.z),
+                                                             float(surface.size() / texture.texture_cell())});
+    };
+    std::visit(bind, texture_);
   }
   glEnable(GL_DEPTH_TEST);
   const bool one_sided = surface.closed() && !view.clip;

@@ -4,9 +4,11 @@
 #include <array>
 #include <span>
 #include <string>
+#include <variant>
 
 #include "engine/gl/texture.hpp"
 #include "engine/render/geometry.hpp"
+#include "engine/render/octree_texture.hpp"
 #include "engine/render/sparse_texture.hpp"
 
 namespace nacre {
@@ -18,6 +20,7 @@ class SurfaceColours {
   void set_map(std::span<const std::array<float, 3>> colours);
   /// One number per point. They are input, not results: this is the one array that goes up with time.
   void set_scalar(std::span<const float> scalar, double low, double high);
+  void set_range(double low, double high);  ///< of the map
   void clear_scalar() { coloured_ = false; }
 
   int bind(const Program& program, int unit) const;
@@ -30,14 +33,19 @@ class SurfaceColours {
   float low_ = 0, high_ = 1;
 };
 
+/// How shown values are looked up.
+using SurfaceTexture = std::variant<SparseTexture, OctreeTexture>;
+
 /// Draws into what is bound. Without a texture the surface is plain.
 class SurfacePass {
  public:
   SurfacePass() : plain_("surface.vert", "surface.frag") {}
 
   /// Looks values up in `texture` from now on; an empty one: plain.
-  void set_texture(SparseTexture texture);
-  bool textured() const { return bool(texture_); }
+  void set_texture(SurfaceTexture texture);
+  bool textured() const {
+    return std::visit([](const auto& texture) { return bool(texture); }, texture_);
+  }
 
   /// `shown`: one value per surface cell; null: plain.
   void draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
@@ -45,7 +53,7 @@ class SurfacePass {
 
  private:
   Program plain_, textured_;
-  SparseTexture texture_;
+  SurfaceTexture texture_;
 };
 
 }  // namespace nacre

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat3x3.hpp>
+#include <numbers>
 
 namespace nacre {
 namespace {
@@ -38,6 +40,16 @@ Vec3d flow_light(const Camera& camera) {
 Vec3d mesh_light(const Camera& camera) {
   const Vec3d right = camera.right(), up = cross(right, camera.forward());
   return normalized(up * 0.55 - right * 0.45 - camera.forward());
+}
+
+Vec3d turned_light(const Vec3d& light, const Camera& camera, double azimuth, double height) {
+  if (azimuth == 0 && height == 0) return light;
+  constexpr double degree = std::numbers::pi / 180, straight = std::numbers::pi / 2;
+  const Vec3d forward = camera.forward(), right = camera.right(), up = cross(right, forward);
+  const double around = std::atan2(dot(light, right), -dot(light, forward)) + azimuth * degree;
+  const double raised =
+      std::clamp(std::asin(std::clamp(dot(light, up), -1.0, 1.0)) + height * degree, -straight, straight);
+  return (right * std::sin(around) - forward * std::cos(around)) * std::cos(raised) + up * std::sin(raised);
 }
 
 glm::dmat4 View::clip_from_seen() const {

@@ -56,8 +56,11 @@ struct Settings {
 
   std::string vectors;  ///< array name or @field; empty: chosen
   double crease = 40;   ///< degrees
+  std::string time;     ///< LO:HI of the data; empty: all of it
+  double begin_at = 0;  ///< share of that time at which the first frame is
   std::string color = "speed";
   std::string colormap = "sea";
+  std::string color_range;         ///< LO:HI; empty: of the data
   std::string camera = "iso";      ///< a view or a JSON file
   double orbit = 0;                ///< degrees per frame
   int width = 1024, height = 768;  ///< of the picture

@@ -33,17 +33,59 @@ const PointArray& array_of(const Surface& surface, const std::string& name, std:
 
 }  // namespace
 
-VectorsInTime::VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color)
+VectorsInTime::VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color,
+                             const std::atomic<bool>* stop)
     : series_(std::move(series)),
       surface_(std::move(surface)),
       point_normals_(point_normals(surface_)),
-      vectors_(std::move(vectors)),
-      color_(std::move(color)),
-      analytic_(!vectors_.empty() && vectors_[0] == '@'),
       start_(series_.times.front()),
-      end_(series_.times.back()) {
-  if (analytic_ && series_.steps() == 1) end_ = vectors_ == "@swirl" ? start_ + 1 : start_;
+      stop_(stop) {
+  choose(vectors, color);
   survey();
+}
+
+void VectorsInTime::choose(const std::string& vectors, const std::string& color) {
+  vectors_ = vectors;
+  color_ = color;
+  analytic_ = !vectors_.empty() && vectors_[0] == '@';
+  end_ = series_.times.back();
+  if (analytic_ && series_.steps() == 1) end_ = vectors_ == "@swirl" ? start_ + 1 : start_;
+  for (Step& step : steps_) step = {};
+}
+
+void VectorsInTime::set_surface(PreparedSurface surface) {
+  std::swap(surface_, surface);
+  std::vector<Vec3f> normals = point_normals(surface_);
+  std::swap(point_normals_, normals);
+  try {
+    survey();
+  } catch (...) {
+    surface_ = std::move(surface);
+    point_normals_ = std::move(normals);
+    throw;
+  }
+}
+
+void VectorsInTime::set_vectors(const std::string& vectors) {
+  const std::string before = vectors_;
+  choose(vectors, color_);
+  try {
+    survey();
+  } catch (...) {
+    choose(before, color_);
+    throw;
+  }
+}
+
+void VectorsInTime::set_color(const std::string& color) {
+  const std::string before = color_;
+  choose(vectors_, color);
+  try {
+    survey(false);
+  } catch (...) {
+    choose(vectors_, before);
+    throw;
+  }
 }
 
 VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
@@ -115,31 +157,37 @@ std::vector<float> VectorsInTime::scalar(double t) {
   return result;
 }
 
-void VectorsInTime::survey() {
+void VectorsInTime::survey(bool vectors_too) {
   double low = 1e300, high = -1e300;
+  const bool scalars = color_ != "none" && color_ != "speed";
+  VectorStatistics all = statistics_;
   std::vector<Vec3f> v(surface_.points.size());
   const std::size_t moments = analytic_ && series_.steps() == 1 && end_ > start_ ? 8 : series_.steps();
-  for (std::size_t k = 0; k < moments; ++k) {
+  for (std::size_t k = 0; k < moments && (vectors_too || scalars); ++k) {
+    if (stop_ && *stop_) throw Interrupted();
     const double t = moments == series_.steps() ? series_.times[k] : start_ + (end_ - start_) * double(k) / 8;
-    vectors(t, v);
-    const VectorStatistics s = vector_statistics(surface_, v);
-    if (k == 0)
-      statistics_ = s;
-    else
-      statistics_.percentile_98 += s.percentile_98;
-    statistics_.max_speed = std::max(statistics_.max_speed, s.max_speed);
-    statistics_.zero_share = std::min(statistics_.zero_share, s.zero_share);
-    if (color_ == "none" || color_ == "speed") continue;
+    if (vectors_too) {
+      vectors(t, v);
+      const VectorStatistics s = vector_statistics(surface_, v);
+      if (k == 0)
+        all = s;
+      else
+        all.percentile_98 += s.percentile_98;
+      all.max_speed = std::max(all.max_speed, s.max_speed);
+      all.zero_share = std::min(all.zero_share, s.zero_share);
+    }
+    if (!scalars) continue;
     for (float x : scalar(t)) {
       low = std::min(low, double(x));
       high = std::max(high, double(x));
     }
   }
-  statistics_.percentile_98 /= double(moments);
+  if (vectors_too) all.percentile_98 /= double(moments);
+  statistics_ = all;
   if (color_ == "speed") {
     low_ = 0;
     high_ = statistics_.percentile_98 > 0 ? statistics_.percentile_98 : 1;
-  } else if (color_ != "none") {
+  } else if (scalars) {
     low_ = low;
     high_ = high > low ? high : low + 1;
   }

@@ -1,6 +1,7 @@
 // Nacre: the vectors of a series at any time, for the flow pipeline.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,9 +17,21 @@ class VectorsInTime {
  public:
   /// `vectors`: an array of the series or an analytic field; `color`: an array, "speed" or "none". Looks at every step
   /// once for the reference speed and the range of the colours. Throws Error where an array is missing in a step.
-  VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color);
+  /// Interrupted where `stop` is set.
+  VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color,
+                const std::atomic<bool>* stop = nullptr);
 
+  // Other choices, without reading again what they do not concern. Where one throws, all is as it was.
+
+  /// The same points with other triangles or normals.
+  void set_surface(PreparedSurface surface);
+  void set_vectors(const std::string& vectors);
+  void set_color(const std::string& color);
+
+  const SurfaceSeries& series() const { return series_; }
   const PreparedSurface& surface() const { return surface_; }
+  const std::string& array() const { return vectors_; }  ///< the vectors' name
+  const std::string& color() const { return color_; }
   double start() const { return start_; }
   double end() const { return end_; }
 
@@ -44,7 +57,8 @@ class VectorsInTime {
 
   Step load(std::size_t number) const;
   const Step& step(std::size_t number);
-  void survey();
+  void survey(bool vectors_too = true);
+  void choose(const std::string& vectors, const std::string& color);
   /// The steps around `t` and the share of the later one.
   struct Between {
     std::size_t before, after;
@@ -62,6 +76,7 @@ class VectorsInTime {
   VectorStatistics statistics_;
   Step steps_[2];
   std::size_t oldest_ = 0;
+  const std::atomic<bool>* stop_;
 };
 
 }  // namespace nacre

@@ -3,41 +3,101 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
 #include "app/viewer/flow_rerun.hpp"
+#include "engine/scene/knobs.hpp"
 
 namespace nacre {
 namespace {
 
-template <class Change>
-FlowRerun after(const Change& change) {
-  FlowParameters parameters;
-  change(parameters);
-  return flow_rerun(FlowParameters(), parameters);
+using enum FlowStage;
+
+/// Every knob that a flow can have, and what it makes run again.
+const std::map<std::string, FlowRerun>& expected() {
+  static const std::map<std::string, FlowRerun> table{
+      {"method", {embed, start}},
+      {"octree", {embed, start}},
+      {"neighbour_index", {embed, start}},
+      {"resolution", {embed, start}},
+      {"refine", {embed, start}},
+      {"subcells", {embed, start}},
+      {"radius", {embed, start}},
+      {"crease", {surface, embed, start}},
+      {"vectors", {vectors, start}},
+      {"time", {start}},
+      {"begin_at", {start}},
+      {"ttl", {start}},
+      {"steps", {start}},
+      {"step_cells", {start}},
+      {"speed_power", {start}},
+      {"warmup", {start}},
+      {"seed", {start}},
+      {"sharpen", {step}},
+      {"jitter", {step}},
+      {"equalise", {step}},
+      {"contrast", {step}},
+      {"color", {colours}},
+      {"arrows", {arrows}},
+      {"arrow_count", {arrows}},
+      // These are of the picture: they are drawn otherwise, and nothing runs again.
+      {"colormap", {}},
+      {"color_range", {}},
+      {"legend", {}},
+      {"time_stamp", {}},
+      {"orbit", {}},
+      {"fps", {}},
+  };
+  return table;
+}
+
+/// The same with one knob at another value.
+Settings with_changed(const std::string& name) {
+  Settings settings;
+  for (const Knob& knob : knobs(settings)) {
+    if (knob.name != name) continue;
+    if (auto* const* flag = std::get_if<bool*>(&knob.value)) **flag = !**flag;
+    if (auto* const* real = std::get_if<double*>(&knob.value))
+      **real = 0.5 * (**real + (**real < knob.max ? knob.max : knob.min));
+    if (auto* const* whole = std::get_if<int*>(&knob.value)) ++**whole;
+    if (auto* const* number = std::get_if<std::uint32_t*>(&knob.value)) ++**number;
+    if (auto* const* word = std::get_if<std::string*>(&knob.value))
+      **word = knob.choices.empty() ? "other" : **word == knob.choices[0] ? knob.choices[1] : knob.choices[0];
+  }
+  return settings;
 }
 
 TEST(FlowRerun, EachKnobBeginsWhereItIsUsed) {
-  using P = FlowParameters;
-  EXPECT_EQ(after([](P&) {}), FlowRerun::nothing);
-  EXPECT_EQ(after([](P& p) { p.contrast = 0.1; }), FlowRerun::steps);
-  EXPECT_EQ(after([](P& p) { p.sharpen = 0.1; }), FlowRerun::steps);
-  EXPECT_EQ(after([](P& p) { p.jitter = 0.1; }), FlowRerun::steps);
-  EXPECT_EQ(after([](P& p) { p.equalise = 0.1; }), FlowRerun::steps);
-  EXPECT_EQ(after([](P& p) { p.ttl = 7; }), FlowRerun::start);
-  EXPECT_EQ(after([](P& p) { p.steps = 7; }), FlowRerun::start);
-  EXPECT_EQ(after([](P& p) { p.warmup = 7; }), FlowRerun::start);
-  EXPECT_EQ(after([](P& p) { p.seed = 7; }), FlowRerun::start);
-  EXPECT_EQ(after([](P& p) { p.step_cells = 7; }), FlowRerun::start);
-  EXPECT_EQ(after([](P& p) { p.speed_power = 0.7; }), FlowRerun::start);
-  EXPECT_EQ(after([](P& p) { p.resolution = 64; }), FlowRerun::embed);
-  EXPECT_EQ(after([](P& p) { p.refine = 2; }), FlowRerun::embed);
-  EXPECT_EQ(after([](P& p) { p.subcells = 5; }), FlowRerun::embed);
-  EXPECT_EQ(after([](P& p) { p.radius = 6; }), FlowRerun::embed);
-  EXPECT_EQ(after([](P& p) { p.method = "octree"; }), FlowRerun::embed);
+  for (const auto& [name, stages] : expected()) {
+    const Settings changed = with_changed(name);
+    EXPECT_NE(knob_values(changed), knob_values(Settings())) << name;
+    EXPECT_TRUE(flow_rerun(Settings(), changed) == stages) << name;
+    EXPECT_TRUE(flow_rerun(changed, Settings()) == stages) << name;
+  }
 }
 
-TEST(FlowRerun, TheEarliestStageCounts) {
-  EXPECT_EQ(after([](FlowParameters& p) { p.contrast = 0.1, p.resolution = 64, p.ttl = 2; }), FlowRerun::embed);
-  EXPECT_EQ(after([](FlowParameters& p) { p.contrast = 0.1, p.ttl = 2; }), FlowRerun::start);
+TEST(FlowRerun, NoKnobIsForgotten) {
+  const std::set<std::string> of_flow{"embedding", "flow", "general", "colours", "frames"};
+  Settings settings;
+  for (const Knob& knob : knobs(settings)) {
+    if (of_flow.count(knob.group) > 0) {
+      EXPECT_EQ(expected().count(knob.name), 1u) << knob.name << " is not classified";
+    } else if (expected().count(knob.name) == 0) {
+      EXPECT_TRUE(flow_rerun(Settings(), with_changed(knob.name)) == FlowRerun()) << knob.name;
+    }
+  }
+}
+
+TEST(FlowRerun, ChangesAddUp) {
+  Settings after;
+  after.flow.contrast = 0.1;
+  after.flow.ttl = 2;
+  after.color = "none";
+  EXPECT_TRUE(flow_rerun(Settings(), after) == FlowRerun({colours, start, step}));
+  EXPECT_TRUE(flow_rerun(after, after) == FlowRerun());
 }
 
 }  // namespace

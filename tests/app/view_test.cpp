@@ -29,17 +29,45 @@ TEST_F(View, OffscreenWritesThePictureOfTheLastFrame) {
   EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
 }
 
+/// Mean difference of all channels, 0..255; where a box is given, within it.
+double mean_difference(const Image& a, const Image& b, int left = 0, int top = 0) {
+  double sum = 0;
+  for (int y = top; y < a.height; ++y)
+    for (int x = left; x < a.width; ++x)
+      for (int c = 0; c < 4; ++c) sum += std::abs(int(a.at(x, y)[c]) - int(b.at(x, y)[c]));
+  return sum / (4.0 * (a.width - left) * (a.height - top));
+}
+
 TEST_F(View, PictureIsThatOfTheHeadlessCommand) {
   const fs::path view = folder / "view.png", flow = folder / "flow.png";
   const Words common = {"--sample", "sphere", "--detail", "24",      "--resolution", "96",
-                        "--steps",  "3",      "--size",   "240x180", "--quiet"};
-  ASSERT_EQ(nacre(Words{"view", "--offscreen", "--image", view.string(), "--set", "legend=false"} + common).status, 0);
-  ASSERT_EQ(nacre(Words{"flow", "--no-legend", "--no-time", "--image", flow.string()} + common).status, 0);
-  const Image a = read_png(view), b = read_png(flow);
-  ASSERT_EQ(a.pixels.size(), b.pixels.size());
-  double sum = 0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += std::abs(int(a.pixels[i]) - int(b.pixels[i]));
-  EXPECT_LT(sum / double(a.pixels.size()), 1.5);  // 4 samples a pixel, in other places
+                        "--steps",  "3",      "--size",   "320x240", "--quiet"};
+  for (const Words& more : {Words{}, Words{"--set", "legend=false", "--set", "time_stamp=false"},
+                            Words{"--background", "#102030"}, Words{"--color-range", "-1:4", "--colormap", "gray"},
+                            Words{"--color", "none", "--background", "transparent"}, Words{"--method", "octree"}}) {
+    ASSERT_EQ(nacre(Words{"view", "--offscreen", "--image", view.string()} + common + more).status, 0);
+    ASSERT_EQ(nacre(Words{"flow", "--image", flow.string()} + common + more).status, 0);
+    const Image a = read_png(view), b = read_png(flow);
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    EXPECT_LT(mean_difference(a, b), 1.5) << more.back();          // 4 samples a pixel, in other places
+    EXPECT_LT(mean_difference(a, b, 270, 0), 0.1) << more.back();  // legend and axes, pixel by pixel
+    EXPECT_LT(mean_difference(a, b, 0, 220), 0.1) << more.back();  // the stamp
+  }
+}
+
+TEST_F(View, LookKnobsAreSeen) {
+  const fs::path png = folder / "a.png";
+  const auto picture = [&](const Words& more) {
+    const Outcome outcome = nacre(small_view + Words{"--image", png.string(), "--frames-count", "1"} + more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return read_png(png);
+  };
+  const Image plain = picture({});
+  for (const char* knob : {"arrows=true", "clip=x", "light_azimuth=60", "light_height=-50", "ambient=0.9", "edges=true",
+                           "color_range=0:9", "legend=false"})
+    EXPECT_GT(mean_difference(plain, picture({"--set", knob})), 0.3) << knob;
+  const Outcome nonsense = nacre(small_view + Words{"--image", png.string(), "--color-range", "9:1"});
+  EXPECT_EQ(nonsense.status, 0) << nonsense.err;  // it says so, and goes on with the data's
 }
 
 TEST_F(View, TwoReplaysAreTheSame) {

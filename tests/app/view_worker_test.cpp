@@ -3,7 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <functional>
+#include <thread>
+
 #include "app/viewer/flow_worker.hpp"
+#include "compute/device/error.hpp"
+#include "engine/io/reader.hpp"
+#include "engine/scene/samples.hpp"
+#include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
 namespace {
@@ -14,30 +22,53 @@ struct WorkerRun {
   Session session;
   std::unique_ptr<FlowWorker> worker;
   std::vector<float> memory;
-  int surfaces = 0, embeddings = 0, starts = 0, steps = 0;
+  int surfaces = 0, data = 0, arrows = 0, embeddings = 0, starts = 0, steps = 0, interruptions = 0;
   std::string failure;
+  FlowData told;
+  FlowStepped last;
+  std::size_t places = 0;
 
-  explicit WorkerRun(bool loop = false) {
+  explicit WorkerRun(
+      bool loop = false, const std::function<void(Settings&)>& preset = [](Settings&) {}) {
     session.sample = "sphere";
     session.detail = 24;
     session.settings.flow.resolution = 48;
     session.settings.flow.steps = 4;
+    preset(session.settings);
     worker = std::make_unique<FlowWorker>(session, make_cpu_device(2), loop);
     settle();
   }
 
   /// Takes all events until the worker has nothing to do.
   void settle() {
-    while (std::optional<FlowEvent> event = worker->wait(stop)) {
-      surfaces += std::holds_alternative<SurfaceRead>(*event);
-      starts += std::holds_alternative<FlowStarted>(*event);
-      steps += std::holds_alternative<FlowStepped>(*event);
-      if (const auto* embedded = std::get_if<FlowEmbedded>(&*event)) {
-        ++embeddings;
-        memory.assign(embedded->info.surface_cells, -1);
-      }
-      if (const auto* failed = std::get_if<FlowFailed>(&*event)) failure = failed->what;
+    while (std::optional<FlowEvent> event = worker->wait(stop)) take(*event);
+  }
+
+  void take(FlowEvent& event) {
+    surfaces += std::holds_alternative<SurfaceRead>(event);
+    starts += std::holds_alternative<FlowStarted>(event);
+    interruptions += std::holds_alternative<FlowInterrupted>(event);
+    if (auto* read = std::get_if<FlowData>(&event)) ++data, told = *read;
+    if (auto* placed = std::get_if<FlowArrows>(&event)) ++arrows, places = placed->places.size();
+    if (auto* stepped = std::get_if<FlowStepped>(&event)) ++steps, last = *stepped;
+    if (const auto* embedded = std::get_if<FlowEmbedded>(&event)) {
+      ++embeddings;
+      memory.assign(embedded->lookup.values, -1);
     }
+    if (const auto* failed = std::get_if<FlowFailed>(&event)) failure = failed->what;
+  }
+
+  void change(const std::function<void(Settings&)>& how) {
+    how(session.settings);
+    failure.clear();
+    worker->set_settings(session.settings);
+    settle();
+  }
+
+  void step() {
+    ASSERT_TRUE(worker->ready());
+    worker->step(memory.data());
+    settle();
   }
 
   long calls(const std::string& name) const {
@@ -45,14 +76,6 @@ struct WorkerRun {
     for (const StageTimers::Stage& stage : timers.stages())
       if (stage.name == name) return stage.calls;
     return 0;
-  }
-
-  FlowParameters changed(int resolution, int ttl, double contrast) const {
-    FlowParameters p = session.settings.flow;
-    p.resolution = resolution;
-    p.ttl = ttl;
-    p.contrast = contrast;
-    return p;
   }
 };
 
@@ -70,45 +93,185 @@ TEST(FlowWorker, StepsWriteWhatIsToBeShown) {
 TEST(FlowWorker, OnlyWhatDependsOnAKnobRunsAgain) {
   WorkerRun run;
   EXPECT_EQ(run.calls("embed"), 1);
-  run.worker->set_parameters(run.changed(48, 4, 0.1));
-  run.settle();
+  run.change([](Settings& s) { s.flow.contrast = 0.1; });
   EXPECT_EQ(run.starts, 1);
-  run.worker->set_parameters(run.changed(48, 2, 0.1));
-  run.settle();
+  run.change([](Settings& s) { s.flow.ttl = 2; });
   EXPECT_EQ(run.starts, 2);
   EXPECT_EQ(run.calls("embed"), 1);
-  run.worker->set_parameters(run.changed(32, 2, 0.1));
-  run.settle();
+  run.change([](Settings& s) { s.flow.resolution = 32; });
   EXPECT_EQ(run.calls("read"), 1);
   EXPECT_EQ(run.calls("embed"), 2);
   EXPECT_EQ(run.embeddings, 2);
   EXPECT_EQ(run.starts, 3);
-  ASSERT_TRUE(run.worker->ready());
-  run.worker->step(run.memory.data());
-  run.settle();
+  run.step();
   EXPECT_EQ(run.steps, 1);
+}
+
+TEST(FlowWorker, ColoursChangeWhileTheTextureGoesOn) {
+  WorkerRun run;
+  run.step();
+  run.change([](Settings& s) { s.color = "velocity"; });
+  EXPECT_EQ(run.starts, 1);
+  EXPECT_EQ(run.data, 2);
+  EXPECT_EQ(run.told.color, "velocity");
+  EXPECT_FALSE(run.told.scalar.empty());
+  EXPECT_GT(run.told.colours.high, run.told.colours.low);
+  run.change([](Settings& s) { s.color = "none"; });
+  EXPECT_TRUE(run.told.scalar.empty());
+  run.step();
+  EXPECT_EQ(run.last.number, 2);
+  EXPECT_EQ(run.calls("embed"), 1);
+}
+
+TEST(FlowWorker, VectorsAreChosenAgainOnTheSameEmbedding) {
+  WorkerRun run;
+  run.change([](Settings& s) { s.vectors = "@rotation"; });
+  EXPECT_EQ(run.told.array, "@rotation");
+  EXPECT_EQ(run.surfaces, 1);
+  EXPECT_EQ(run.calls("embed"), 1);
+  EXPECT_EQ(run.starts, 2);
+  const WorkerRun fresh(false, [](Settings& s) { s.vectors = "@rotation"; });
+  EXPECT_EQ(run.told.statistics.percentile_98, fresh.told.statistics.percentile_98);
+  EXPECT_EQ(run.told.scalar, fresh.told.scalar);
+}
+
+TEST(FlowWorker, CreasesMakeTheSurfaceAnew) {
+  WorkerRun run;
+  run.change([](Settings& s) { s.crease = 1; });
+  EXPECT_EQ(run.surfaces, 2);
+  EXPECT_EQ(run.calls("embed"), 2);
+  EXPECT_EQ(run.starts, 2);
+  run.step();
+  WorkerRun fresh(false, [](Settings& s) { s.crease = 1; });
+  fresh.step();
+  EXPECT_EQ(run.memory, fresh.memory);
+}
+
+TEST(FlowWorker, AChoiceThatFailsLeavesWhatThereWas) {
+  WorkerRun run;
+  run.step();
+  const std::vector<float> scalar = run.told.scalar;
+  run.change([](Settings& s) { s.color = "nosuch"; });
+  EXPECT_NE(run.failure.find("nosuch"), std::string::npos) << run.failure;
+  run.step();
+  EXPECT_EQ(run.last.number, 2);
+  EXPECT_FALSE(run.last.scalar.empty());
+  run.change([](Settings& s) { s.vectors = "nosuch"; });
+  EXPECT_NE(run.failure.find("nosuch"), std::string::npos) << run.failure;
+  run.step();
+  EXPECT_EQ(run.last.number, 1);  // from the noise, with the vectors there were
+  run.change([](Settings& s) { s.vectors = "", s.color = "speed"; });
+  EXPECT_EQ(run.failure, "");
+  EXPECT_EQ(run.told.scalar, scalar);
+}
+
+TEST(FlowWorker, ArrowsArePlacedWhereTheyAreOn) {
+  WorkerRun run;
+  EXPECT_EQ(run.arrows, 0);
+  run.change([](Settings& s) { s.look.arrows = true, s.look.arrow_count = 50; });
+  EXPECT_EQ(run.places, 50u);
+  run.change([](Settings& s) { s.look.arrows = false; });
+  EXPECT_EQ(run.places, 0u);
+  EXPECT_EQ(run.starts, 1);
 }
 
 TEST(FlowWorker, AChangeInterruptsWhatIsUnderWay) {
   WorkerRun run;
   for (int k = 0; k < 6; ++k) {
     run.worker->step(run.memory.data());
-    run.worker->set_parameters(run.changed(k % 2 ? 48 : 64, 4, 0.2));  // while it steps, or just before
-    run.settle();
+    // While it steps, or just before: the step is dropped, and that is told, or it is done.
+    const int before = run.steps + run.interruptions;
+    run.change([&](Settings& s) { s.flow.resolution = k % 2 ? 48 : 64; });
     EXPECT_EQ(run.failure, "");
+    EXPECT_EQ(run.steps + run.interruptions, before + 1);
     ASSERT_TRUE(run.worker->ready()) << k;
   }
 }
 
 TEST(FlowWorker, AFailureIsToldAndOtherKnobsMendIt) {
   WorkerRun run;
-  run.worker->set_parameters(run.changed(1 << 20, 4, 0.2));
-  run.settle();
+  run.change([](Settings& s) { s.flow.resolution = 1 << 20; });
   EXPECT_NE(run.failure, "");
   EXPECT_FALSE(run.worker->ready());
-  run.worker->set_parameters(run.changed(48, 4, 0.2));
-  run.settle();
+  EXPECT_FALSE(run.worker->busy());
+  run.change([](Settings& s) { s.flow.resolution = 48; });
   EXPECT_TRUE(run.worker->ready());
+}
+
+TEST(FlowWorker, CancelEndsALongStageAndResumeBeginsItAgain) {
+  WorkerRun run;
+  run.step();
+  const std::vector<float> shown = run.memory;
+  run.session.settings.flow.resolution = 2048;
+  run.worker->set_settings(run.session.settings);
+  while (run.worker->stage() != "embedding") std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  run.worker->cancel();
+  const auto begin = std::chrono::steady_clock::now();
+  run.settle();
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), 2);
+  EXPECT_TRUE(run.worker->cancelled());
+  EXPECT_FALSE(run.worker->ready());
+  EXPECT_EQ(run.failure, "");
+  EXPECT_EQ(run.embeddings, 1);
+  EXPECT_EQ(run.memory, shown);
+  run.change([](Settings& s) { s.look.edges = true; });  // concerns nothing that was cancelled
+  EXPECT_TRUE(run.worker->cancelled());
+  run.change([](Settings& s) { s.flow.resolution = 64; });
+  EXPECT_FALSE(run.worker->cancelled());
+  run.step();
+  EXPECT_EQ(run.embeddings, 2);
+}
+
+TEST(FlowWorker, ResumeGoesOnWithoutOtherKnobs) {
+  WorkerRun run;
+  run.worker->cancel();  // nothing goes on: nothing is lost
+  run.settle();
+  EXPECT_FALSE(run.worker->ready());
+  run.worker->resume();
+  run.step();
+  EXPECT_EQ(run.last.number, 1);
+  EXPECT_EQ(run.starts, 1);
+}
+
+TEST(FlowWorker, AJumpIsAFlowThatBeginsThere) {
+  WorkerRun whole(false, [](Settings& s) { s.vectors = "@swirl"; });
+  for (int k = 0; k < 4; ++k) whole.step();
+  EXPECT_DOUBLE_EQ(whole.last.time, 1);
+  WorkerRun run(true, [](Settings& s) { s.vectors = "@swirl"; });
+  run.change([](Settings& s) { s.begin_at = 0.5; });
+  EXPECT_EQ(run.calls("embed"), 1);
+  for (const double time : {0.75, 0.0, 0.25}) {
+    run.step();
+    EXPECT_NEAR(run.last.time, time, 1e-12);
+  }
+  run.change([](Settings& s) { s.begin_at = 0, s.time = "0.2:0.6"; });
+  for (const double time : {0.3, 0.4, 0.5, 0.2}) {
+    run.step();
+    EXPECT_NEAR(run.last.time, time, 1e-12);
+  }
+}
+
+TEST(FlowWorker, WritesWhatIsShown) {
+  const test::TemporaryFolder folder;
+  WorkerRun run;
+  run.step();
+  run.worker->write(folder / "values.vtp");
+  const Surface written = open_surface({folder / "values.vtp"}).load(0);
+  ASSERT_NE(written.find("value"), nullptr);
+  EXPECT_EQ(written.find("value")->size(), run.memory.size());
+  EXPECT_THROW(run.worker->write(folder / "no" / "such" / "folder.vtp"), Error);
+}
+
+TEST(FlowWorker, SamplesTheTextureWhereItIsAsked) {
+  WorkerRun run;
+  run.step();
+  const Surface sphere = make_sample("sphere", 24).load(0);
+  run.worker->sample(sphere.points[5]);
+  std::optional<float> value;
+  while (std::optional<FlowEvent> event = run.worker->wait(run.stop))
+    if (const auto* sampled = std::get_if<FlowSampled>(&*event)) value = sampled->value;
+  ASSERT_TRUE(value.has_value());
+  EXPECT_TRUE(*value >= 0 && *value <= 1) << *value;
 }
 
 TEST(FlowWorker, LoopsNeverStandStill) {

@@ -18,8 +18,10 @@ struct FlowScene {
   std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
   std::unique_ptr<SharedBuffer> shown;
 
-  explicit FlowScene(const std::string& sample, int detail, int resolution, int refine = 4) {
+  explicit FlowScene(const std::string& sample, int detail, int resolution, int refine = 4,
+                     const std::string& method = "grid") {
     surface = prepare(make_sample(sample, detail).load(0));
+    pipeline->parameters.method = method;
     pipeline->parameters.resolution = resolution;
     pipeline->parameters.refine = refine;
     pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
@@ -39,8 +41,10 @@ struct FlowScene {
     shown->end_write();
   }
 
-  SparseTexture texture(std::size_t page = 0) const {
+  SurfaceTexture texture(std::size_t page = 0) const {
     const FlowLookup l = pipeline->lookup();
+    if (l.kind == FlowLookup::Kind::octree)
+      return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer}, page);
     const SparseLookup lookup{l.bricks, l.subcells, l.refine, l.origin, l.cell_size, l.brick_index, l.block, l.texel};
     return SparseTexture(lookup, with_rims(lookup), page);
   }

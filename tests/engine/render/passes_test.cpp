@@ -1,4 +1,4 @@
-// Nacre: materials, edges, boxes, particles and axes, each in a scene whose picture can be told by hand.
+// Nacre: materials, edges, boxes, particles and arrows, each in a scene whose picture can be told by hand.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 #include "engine/gl/framebuffer.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
-#include "engine/render/axes_pass.hpp"
+#include "engine/render/arrow_pass.hpp"
 #include "engine/render/line_passes.hpp"
 #include "engine/render/material_pass.hpp"
 #include "engine/render/particle_pass.hpp"
@@ -251,25 +251,46 @@ TEST_F(Pass, ParticlesAreDiscsOnTheirSurface) {
   EXPECT_EQ(covered(draw(0, 0, true)), 0);
 }
 
-TEST_F(Pass, AxesPointWhereTheyShould) {
-  AxesPass pass;
-  View view = front(400);
-  const Image image = picture(view, [&] { pass.draw(view); });
-  keep(image, "axes");
-  const auto reddish = [](const Pixel& p) { return p[0] > 180 && p[1] < 120; };
-  const auto blueish = [](const Pixel& p) { return p[2] > 180 && p[0] < 120; };
-  int right_most = 0, highest = 400, lowest_blue = 0;
-  for (int y = 0; y < 400; ++y)
-    for (int x = 0; x < 400; ++x) {
-      if (reddish(at(image, x, y))) right_most = std::max(right_most, x);
-      if (blueish(at(image, x, y))) highest = std::min(highest, y), lowest_blue = std::max(lowest_blue, y);
-    }
-  EXPECT_GT(right_most, 370);  // x to the right, in the right lower corner
-  EXPECT_GT(highest, 250);     // z up
-  EXPECT_LT(highest, 300);
-  EXPECT_LT(lowest_blue, 345);
-  view = front(100);
-  EXPECT_EQ(covered(picture(view, [&] { pass.draw(view); })), 0);  // too small for it
+/// An arrow from the middle of the picture to the right, on a surface that faces us.
+Image arrow_picture(float scale, const Vec3f& vector, bool mapped = false) {
+  ArrowPass pass;
+  pass.set_map(colormap("sea").table);
+  pass.set_arrows(std::vector<Arrow>{{{0, 0, 0}, vector, {0, -1, 0}, 1}});
+  const View view = front();
+  ArrowLook look;
+  look.scale = scale;
+  look.width = 0.3f;
+  look.ink = {0, 0, 0.8f};
+  look.mapped = mapped;
+  return picture(view, [&] { pass.draw(view, world, look); });
+}
+
+TEST_F(Pass, ArrowsPointAlongTheirVectors) {
+  const Image image = arrow_picture(0.5f, {1.2f, 0, 0});  // 0.6 to the right: 30 pixels from the middle
+  keep(image, "arrow");
+  const auto ink = [&](int x, int y) { return at(image, x, y) != Pixel{255, 255, 255}; };
+  int left = 100, right = 0, low = 0, high = 100;
+  for (int y = 0; y < 100; ++y)
+    for (int x = 0; x < 100; ++x)
+      if (ink(x, y))
+        left = std::min(left, x), right = std::max(right, x), high = std::min(high, y), low = std::max(low, y);
+  EXPECT_NEAR(left, 50, 2);
+  EXPECT_NEAR(right, 80, 2);
+  EXPECT_NEAR(low + high, 99, 2);  // on both sides of its axis
+  EXPECT_NEAR(low - high, 10, 4);  // short ones have small heads: 0.17 of the length each way
+  EXPECT_TRUE(ink(55, 50));        // the shaft
+  EXPECT_FALSE(ink(55, 54));       // is thinner than the head
+  EXPECT_LT(covered(arrow_picture(0, {1, 0, 0})), 1e-9);
+  EXPECT_LT(covered(arrow_picture(1, {0, 0, 0})), 1e-9);
+  EXPECT_GT(covered(arrow_picture(1, {1.2f, 0, 0})), 2 * covered(image));
+}
+
+TEST_F(Pass, ArrowsTakeTheMapsColours) {
+  const auto& last = colormap("sea").table.back();
+  const Image plain = arrow_picture(0.5f, {1.2f, 0, 0}), mapped = arrow_picture(0.5f, {1.2f, 0, 0}, true);
+  EXPECT_EQ(at(plain, 55, 50)[0], 0);
+  EXPECT_GT(at(plain, 55, 50)[2], 80);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(at(mapped, 55, 49)[k], 255 * last[std::size_t(k)], 90) << k;
 }
 
 }  // namespace

@@ -161,6 +161,27 @@ TEST_F(Render, ArraysOnSeveralPagesLookTheSame) {
   EXPECT_THROW(scene.texture(page / 8), Error);  // more pages than there are texture units for
 }
 
+TEST_F(Render, OctreesLookAsRaysSeeThem) {
+  for (const int resolution : {64, 100}) {
+    test::FlowScene scene("sphere", 24, resolution, 4, "octree");
+    const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
+    const TwoPictures two(scene, camera, heights(scene));
+    two.keep("octree");
+    const Difference d = compare(two.opengl, two.rays);
+    EXPECT_GT(d.covered, 0.3);
+    EXPECT_LT(d.mean, 0.5);
+    EXPECT_LT(d.far_off, 0.005);
+  }
+}
+
+TEST_F(Render, OctreesLieOnPagesToo) {
+  test::FlowScene scene("torus", 32, 128, 4, "octree");
+  const Camera camera = fit_camera("+x", scene.surface.points, TwoPictures::width, TwoPictures::height);
+  const std::size_t page = std::bit_ceil(scene.pipeline->lookup().layer.size()) / 4;
+  const TwoPictures one(scene, camera, {}), paged(scene, camera, {}, page);
+  EXPECT_EQ(one.opengl.pixels, paged.opengl.pixels);
+}
+
 TEST_F(Render, EachStepIsSeenWithoutACopy) {
   test::FlowScene scene("sphere", 24, 64);
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);

@@ -1,0 +1,15 @@
+// Nacre: the plane that cuts a scene, from the knobs of the look.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "engine/render/view.hpp"
+#include "engine/scene/settings.hpp"
+
+namespace nacre {
+
+/// Across the axis `look.clip`, at share `look.clip_at` of the box around `corners` (world); none where that says so.
+std::optional<ClipPlane> clip_plane(const Look& look, std::span<const Vec3d> corners);
+
+}  // namespace nacre

@@ -1,0 +1,121 @@
+// Nacre: triangles for single rays on the host.
+#include "compute/raycast/triangle_tree.hpp"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "compute/grid/morton.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr std::size_t leaf_size = 4;  // triangles
+
+/// Where the ray is inside the box; low > high: nowhere.
+std::pair<double, double> inside(const Vec3d& low, const Vec3d& high, const Vec3d& from, const Vec3d& along) {
+  std::pair<double, double> part{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (along[axis] == 0) {
+      if (from[axis] < low[axis] || from[axis] > high[axis]) return {1, 0};
+      continue;
+    }
+    const double a = (low[axis] - from[axis]) / along[axis], b = (high[axis] - from[axis]) / along[axis];
+    part = {std::max(part.first, std::min(a, b)), std::min(part.second, std::max(a, b))};
+  }
+  return part;
+}
+
+}  // namespace
+
+TriangleTree::TriangleTree(std::span<const Vec3d> points, std::span<const Triangle> triangles)
+    : points_(points.begin(), points.end()), triangles_(triangles.begin(), triangles.end()) {
+  if (triangles_.empty()) return;
+  sort();
+  make_boxes();
+}
+
+void TriangleTree::sort() {
+  Box all;
+  for (const Triangle& t : triangles_)
+    for (int k = 0; k < 3; ++k) all.low = min(all.low, points_[t[k]]), all.high = max(all.high, points_[t[k]]);
+  const Vec3d extent = all.high - all.low;
+  const double scale = ((1 << 20) - 1) / std::max({extent.x, extent.y, extent.z, 1e-300});
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(triangles_.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Triangle& t = triangles_[i];
+    const Vec3d middle = ((points_[t.a] + points_[t.b] + points_[t.c]) / 3.0 - all.low) * scale;
+    keys[i] = {morton(Int3(int(middle.x), int(middle.y), int(middle.z))), std::uint32_t(i)};
+  }
+  tbb::parallel_sort(keys);
+  for (const auto& key : keys) order_.push_back(key.second);
+}
+
+void TriangleTree::make_boxes() {
+  leaves_ = std::bit_ceil((triangles_.size() + leaf_size - 1) / leaf_size);
+  boxes_.resize(2 * leaves_);
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    Box& box = boxes_[leaves_ + i / leaf_size];
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d& p = points_[triangles_[order_[i]][k]];
+      box.low = min(box.low, p), box.high = max(box.high, p);
+    }
+  }
+  for (std::size_t node = leaves_ - 1; node >= 1; --node) {
+    const Box &a = boxes_[2 * node], &b = boxes_[2 * node + 1];
+    boxes_[node] = {min(a.low, b.low), max(a.high, b.high)};
+  }
+}
+
+void TriangleTree::hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& along, double near, double& far,
+                            std::optional<TriangleHit>& hit) const {
+  const std::size_t end = std::min(order_.size(), (leaf + 1) * leaf_size);
+  for (std::size_t i = leaf * leaf_size; i < end; ++i) {
+    const Triangle& t = triangles_[order_[i]];
+    const Vec3d a = points_[t.a], u = points_[t.b] - a, v = points_[t.c] - a, p = cross(along, v);
+    const double determinant = dot(u, p);
+    if (determinant == 0) continue;
+    const Vec3d s = from - a, q = cross(s, u);
+    const double b = dot(s, p) / determinant, c = dot(along, q) / determinant, t_hit = dot(v, q) / determinant;
+    if (!(b >= 0 && c >= 0 && b + c <= 1 && t_hit >= near && t_hit < far)) continue;
+    far = t_hit;
+    hit = TriangleHit{order_[i], t_hit, from + along * t_hit, Vec3d(1 - b - c, b, c)};
+  }
+}
+
+std::optional<TriangleHit> TriangleTree::first(const Vec3d& from, const Vec3d& along, double near, double far) const {
+  std::optional<TriangleHit> hit;
+  if (triangles_.empty()) return hit;
+  struct Entry {
+    std::size_t node;
+    double at;
+  };
+  std::vector<Entry> open{{1, near}};
+  while (!open.empty()) {
+    const Entry entry = open.back();
+    open.pop_back();
+    if (entry.at >= far) continue;
+    if (entry.node >= leaves_) {
+      hit_leaf(entry.node - leaves_, from, along, near, far, hit);
+      continue;
+    }
+    std::array<Entry, 2> children;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Box& box = boxes_[2 * entry.node + k];
+      const auto [enters, leaves] = inside(box.low, box.high, from, along);
+      const bool empty = box.low.x > box.high.x;  // beyond the last triangle
+      const bool met = !empty && enters <= leaves && leaves >= near;
+      children[k] = {2 * entry.node + k, met ? std::max(enters, near) : std::numeric_limits<double>::infinity()};
+    }
+    if (children[0].at < children[1].at) std::swap(children[0], children[1]);  // the nearer one is looked at first
+    for (const Entry& child : children)
+      if (child.at < far) open.push_back(child);
+  }
+  return hit;
+}
+
+}  // namespace nacre

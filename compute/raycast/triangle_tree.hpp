@@ -1,0 +1,53 @@
+// Nacre: triangles for single rays on the host: what is under a cursor.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compute/grid/vec.hpp"
+
+namespace nacre {
+
+struct TriangleHit {
+  std::uint32_t triangle = 0;
+  double distance = 0;  ///< from the ray's origin
+  Vec3d place;          ///< world
+  Vec3d weights;        ///< of the three corners
+};
+
+/// Boxes over runs of triangles in Morton order, one over two, as an implicit binary tree. It keeps copies of what it is
+/// made of. A ray through a million triangles takes some microseconds.
+class TriangleTree {
+ public:
+  TriangleTree() = default;
+  /// Triangles with indices in range.
+  TriangleTree(std::span<const Vec3d> points, std::span<const Triangle> triangles);
+
+  /// The nearest triangle, from either side, on the ray `from` + t `along` (unit) with t in `near`..`far`.
+  std::optional<TriangleHit> first(const Vec3d& from, const Vec3d& along, double near = 0,
+                                   double far = std::numeric_limits<double>::infinity()) const;
+
+  std::span<const Vec3d> points() const { return points_; }
+  std::span<const Triangle> triangles() const { return triangles_; }
+
+ private:
+  struct Box {
+    Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  };
+
+  void sort();
+  void make_boxes();
+  void hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& along, double near, double& far,
+                std::optional<TriangleHit>& hit) const;
+
+  std::vector<Vec3d> points_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> order_;  ///< triangles along the Morton curve
+  std::size_t leaves_ = 0;            ///< a power of two
+  std::vector<Box> boxes_;            ///< node k over 2 k and 2 k + 1, from 1; the leaves last
+};
+
+}  // namespace nacre

@@ -1,0 +1,13 @@
+// Nacre: what stands over a picture of flow.
+#include "engine/picture/caption.hpp"
+
+#include "engine/picture/legend.hpp"
+
+namespace nacre {
+
+void draw_caption(Image& image, const FlowCaption& caption) {
+  if (caption.map) draw_legend(image, *caption.map, caption.low, caption.high, caption.title);
+  if (caption.time) draw_time(image, *caption.time, "", caption.frame_time);
+}
+
+}  // namespace nacre

@@ -1,0 +1,23 @@
+// Nacre: what stands over a picture of flow: the same for pictures without OpenGL and for the viewer.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/picture/colormap.hpp"
+#include "engine/picture/image.hpp"
+
+namespace nacre {
+
+struct FlowCaption {
+  const Colormap* map = nullptr;  ///< of the legend; null: none
+  double low = 0, high = 1;       ///< at its ends
+  std::string title;              ///< above it
+  std::optional<double> time;     ///< the stamp; none: no stamp
+  double frame_time = 0;          ///< of the data, from frame to frame
+};
+
+/// Draws legend and stamp.
+void draw_caption(Image& image, const FlowCaption& caption);
+
+}  // namespace nacre

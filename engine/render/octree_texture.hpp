@@ -1,0 +1,44 @@
+// Nacre: the brick octree of a flow on the graphics device: from a place of the surface to its shown value.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/render/sparse_texture.hpp"
+
+namespace nacre {
+
+/// The arrays of FlowLookup that describe an octree.
+struct OctreeLookup {
+  int levels = 0;
+  Vec3d origin{};        ///< world
+  double cell_size = 1;  ///< of a texture cell, world units
+  std::span<const std::uint32_t> node, level_start, layer;
+};
+
+/// Immutable: made once per embedding. The calls are those of SparseTexture.
+class OctreeTexture {
+ public:
+  OctreeTexture() = default;
+  /// Throws Error where the memory is not there. `page`: as for PagedArray.
+  explicit OctreeTexture(const OctreeLookup& lookup, std::size_t page = 0);
+
+  explicit operator bool() const { return layer_.pages() > 0; }
+  /// GLSL that shaders/octree_texture.glsl builds on.
+  std::string prelude() const;
+  int bind(const Program& program, const BufferTexture& shown, int unit) const;
+
+  const Vec3d& origin() const { return origin_; }
+  double texture_cell() const { return cell_size_; }
+
+ private:
+  PagedArray node_, layer_;
+  std::vector<std::uint32_t> level_start_;
+  int levels_ = 0;
+  Vec3d origin_{};
+  double cell_size_ = 1;
+};
+
+}  // namespace nacre

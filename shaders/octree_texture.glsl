@@ -1,0 +1,53 @@
+// The shown value at a place of the surface, from the brick octree: node, brick, layer, value (BrickOctreeView,
+// compute/embedding/brick_octree.hpp). LEVELS, level_start, fetch_node and fetch_layer are in the prelude.
+uniform samplerBuffer shown;
+
+const uint nothing = 0xffffffffu;
+
+// A walk down from the root.
+uint brick_at(ivec3 b) {
+  if (any(lessThan(b, ivec3(0))) || any(greaterThanEqual(b, ivec3(1 << LEVELS)))) return nothing;
+  uint at = 0u;
+  for (int level = 0; level < LEVELS; ++level) {
+    uint node = 2u * (level_start[level] + at);
+    ivec3 bit = b >> (LEVELS - 1 - level) & 1;
+    uint child = uint(bit.x | bit.y << 1 | bit.z << 2), children = fetch_node(node + 1u);
+    if ((children >> child & 1u) == 0u) return nothing;
+    at = fetch_node(node) + uint(bitCount(children & ((1u << child) - 1u)));
+  }
+  return at;
+}
+
+// The number of the surface cell at `in_brick`, or nothing.
+uint cell_of(uint brick, ivec3 in_brick) {
+  uint layer = 24u * brick + 3u * uint(in_brick.z);
+  uint low = fetch_layer(layer), at = uint(8 * (in_brick.y & 3) + in_brick.x), below = (1u << at) - 1u;
+  if (in_brick.y < 4) {
+    if ((low >> at & 1u) == 0u) return nothing;
+    return fetch_layer(layer + 2u) + uint(bitCount(low & below));
+  }
+  uint high = fetch_layer(layer + 1u);
+  if ((high >> at & 1u) == 0u) return nothing;
+  return fetch_layer(layer + 2u) + uint(bitCount(low) + bitCount(high & below));
+}
+
+// Linear among the surface cells around `place` (in texture cells); 1/2 where there is none.
+float shown_at(vec3 place) {
+  vec3 corner = floor(place - 0.5);
+  vec3 f = place - 0.5 - corner;
+  ivec3 first = ivec3(corner), last = ivec3(-1);
+  uint brick = nothing;
+  float sum = 0.0, weight = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    ivec3 bit = ivec3(k & 1, k >> 1 & 1, k >> 2), cell = first + bit, in_bricks = cell >> 3;
+    if (in_bricks != last) brick = brick_at(in_bricks);
+    last = in_bricks;
+    uint number = brick == nothing ? nothing : cell_of(brick, cell & 7);
+    if (number == nothing) continue;
+    vec3 share = mix(1.0 - f, f, bvec3(bit));
+    float w = share.x * share.y * share.z;
+    sum += w * texelFetch(shown, int(number)).r;
+    weight += w;
+  }
+  return weight > 0.0 ? sum / weight : 0.5;
+}

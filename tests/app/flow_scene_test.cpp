@@ -1,0 +1,211 @@
+// Nacre: a flow in the viewer's loop, on an OpenGL context without a display.
+#if NACRE_HAS_VIEWER
+
+#include "app/viewer/flow_scene.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "engine/gl/framebuffer.hpp"
+#include "tests/engine/gl/offscreen.hpp"
+#include "tests/engine/io/temporary_folder.hpp"
+
+namespace nacre {
+namespace {
+
+Session small_session() {
+  Session session;
+  session.sample = "sphere";
+  session.detail = 24;
+  session.settings.flow.resolution = 48;
+  session.settings.flow.steps = 4;
+  return session;
+}
+
+class FlowInView : public test::Offscreen {
+ protected:
+  void open(const Session& session) {
+    session_ = session;
+    scene_ = std::make_unique<FlowScene>(session, make_cpu_device(2), false);
+  }
+
+  void TearDown() override {
+    scene_.reset();  // before the context
+    test::Offscreen::TearDown();
+  }
+
+  void change(const std::function<void(Settings&)>& how) {
+    how(session_.settings);
+    scene_->set_settings(session_.settings);
+  }
+
+  void advance() { scene_->advance_and_wait(stop_); }
+
+  Image picture() {
+    View view;
+    view.width = view.height = 120;
+    view.camera = fit_camera("iso", scene_->corners(), 120, 120);
+    view.light = flow_light(view.camera);
+    const Framebuffer frame(120, 120);
+    frame.bind();
+    frame.clear({1, 1, 1, 1});
+    scene_->draw(view);
+    return frame.read();
+  }
+
+  std::atomic<bool> stop_{false};
+  Session session_;
+  std::unique_ptr<FlowScene> scene_;
+};
+
+TEST_F(FlowInView, EachCallIsOneStep) {
+  open(small_session());
+  EXPECT_FALSE(scene_->complete());
+  for (int k = 1; k <= 3; ++k) {
+    advance();
+    EXPECT_EQ(scene_->steps(), k);
+  }
+  EXPECT_TRUE(scene_->complete());
+  EXPECT_FALSE(scene_->settled());
+  EXPECT_EQ(scene_->copied_bytes(), 0u);
+}
+
+TEST_F(FlowInView, StandsStillWhereItDoesNotPlay) {
+  Session session = small_session();
+  session.settings.look.play = false;
+  open(session);
+  advance();  // one step, for without it there is no texture
+  EXPECT_EQ(scene_->steps(), 1);
+  EXPECT_TRUE(scene_->settled());
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);
+  change([](Settings& s) { s.flow.contrast = 0.4; });  // can only be seen in another step
+  EXPECT_FALSE(scene_->settled());
+  advance();
+  EXPECT_EQ(scene_->steps(), 2);
+  change([](Settings& s) { s.flow.ttl = 2; });
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);  // from the noise
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);
+}
+
+TEST_F(FlowInView, WhatWasShownStaysWhileAnotherIsMade) {
+  open(small_session());
+  advance();
+  const Image before = picture();
+  change([](Settings& s) { s.flow.resolution = 2048; });
+  while (scene_->progress().stage != "embedding") scene_->advance(0);
+  scene_->cancel();
+  advance();  // returns, for nothing more will come
+  EXPECT_TRUE(scene_->complete());
+  EXPECT_EQ(picture().pixels, before.pixels);
+  EXPECT_NE(scene_->state().find("cancelled"), std::string::npos);
+  change([](Settings& s) { s.flow.resolution = 96; });
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);
+  EXPECT_NE(picture().pixels, before.pixels);
+}
+
+TEST_F(FlowInView, ColoursChangeWithoutAStep) {
+  Session session = small_session();
+  session.settings.look.play = false;
+  open(session);
+  advance();
+  const Image plain = picture();
+  const std::uint64_t version = scene_->overlay_version();
+  change([](Settings& s) { s.color_range = "0:9"; });
+  EXPECT_NE(scene_->overlay_version(), version);
+  const Image locked = picture();
+  EXPECT_NE(locked.pixels, plain.pixels);
+  change([](Settings& s) { s.color_range = "9:0"; });
+  EXPECT_EQ(picture().pixels, plain.pixels);  // nonsense: that of the data
+  ASSERT_EQ(scene_->warnings().size(), 1u);
+  EXPECT_NE(scene_->warnings()[0].find("9:0"), std::string::npos);
+  change([](Settings& s) { s.color_range = "", s.color = "none"; });
+  while (!scene_->settled()) scene_->advance(0);
+  scene_->advance(0);
+  EXPECT_NE(picture().pixels, plain.pixels);
+  EXPECT_EQ(scene_->steps(), 1);
+}
+
+TEST_F(FlowInView, ProbesWhatARayMeets) {
+  open(small_session());
+  const Vec3d from(0, -50, 0), along(0, 1, 0);
+  EXPECT_FALSE(scene_->probe(from, along));  // nothing read yet
+  advance();
+  Vec3d low = scene_->corners().front(), high = low;
+  for (const Vec3d& p : scene_->corners()) low = min(low, p), high = max(high, p);
+  const Vec3d middle = (low + high) * 0.5;
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<Probed> probed = scene_->probe(middle - Vec3d(0, 50, 0), along);
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 0.005);
+  ASSERT_TRUE(probed);
+  EXPECT_NEAR(probed->place.y, low.y, 0.01 * (high.y - low.y));
+  std::string all;
+  for (const std::string& line : probed->lines) all += line + "\n";
+  for (const char* name : {"place: ", "triangle: ", "velocity: ", "magnitude: ", "speed: ", "time: "})
+    EXPECT_NE(all.find(name), std::string::npos) << name << all;
+  EXPECT_FALSE(scene_->probe(middle - Vec3d(0, 50, 0), {0, -1, 0}));
+  change([](Settings& s) { s.look.play = false; });
+  for (int k = 0; k < 1000 && probed->lines.back().rfind("texture: ", 0) != 0; ++k) {
+    scene_->advance(0);
+    probed = scene_->probe(middle - Vec3d(0, 50, 0), along);
+  }
+  EXPECT_EQ(probed->lines.back().rfind("texture: 0.", 0), 0u) << probed->lines.back();
+}
+
+TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
+  open(small_session());
+  advance();
+  const Camera camera = fit_camera("iso", scene_->corners(), 120, 120);
+  View view;
+  view.width = view.height = 120;
+  view.camera = camera;
+  view.clip = ClipPlane{{0, 1, 0}, camera.target.y};  // the half towards us is gone
+  scene_->draw(view);
+  const auto probed = scene_->probe(camera.target - Vec3d(0, 50, 0), {0, 1, 0});
+  ASSERT_TRUE(probed);
+  EXPECT_GT(probed->place.y, camera.target.y);
+}
+
+TEST_F(FlowInView, SourceTreesAreComputedButNotDrawn) {
+  Session session = small_session();
+  session.settings.flow.method = "octree";
+  session.settings.flow.octree = "source";
+  open(session);
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);
+  ASSERT_FALSE(scene_->warnings().empty());
+  EXPECT_NE(scene_->warnings().back().find("not drawn"), std::string::npos);
+  picture();
+  change([](Settings& s) { s.flow.octree = "brick"; });
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);
+}
+
+TEST_F(FlowInView, FailuresAreThrownAndOtherKnobsMendThem) {
+  open(small_session());
+  advance();
+  change([](Settings& s) { s.flow.resolution = 1 << 20; });
+  EXPECT_THROW(advance(), Error);
+  EXPECT_NE(scene_->failure(), "");
+  change([](Settings& s) { s.flow.resolution = 64; });
+  EXPECT_EQ(scene_->failure(), "");
+  advance();
+  EXPECT_EQ(scene_->steps(), 1);
+}
+
+TEST_F(FlowInView, WritesItsValues) {
+  const test::TemporaryFolder folder;
+  open(small_session());
+  advance();
+  ASSERT_EQ(scene_->result_formats(), std::vector<std::string>{".vtp"});
+  scene_->write_result(folder / "a.vtp");
+  EXPECT_GT(std::filesystem::file_size(folder / "a.vtp"), 1000u);
+}
+
+}  // namespace
+}  // namespace nacre
+
+#endif

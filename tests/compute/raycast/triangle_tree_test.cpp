@@ -1,0 +1,91 @@
+// Nacre: the tree of triangles against all triangles one by one.
+#include "compute/raycast/triangle_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compute/device/random.hpp"
+
+namespace nacre {
+namespace {
+
+struct Soup {
+  std::vector<Vec3d> points;
+  std::vector<Triangle> triangles;
+};
+
+double random(std::uint32_t index, std::uint32_t which) { return uniform_random(7, index, which); }
+
+Vec3d random_place(std::uint32_t index, std::uint32_t which) {
+  return {random(index, which), random(index, which + 1), random(index, which + 2)};
+}
+
+/// Small triangles anywhere in the unit cube, some flat, some without area.
+Soup soup(std::uint32_t count) {
+  Soup s;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const Vec3d middle = random_place(k, 0);
+    for (std::uint32_t c = 0; c < 3; ++c) s.points.push_back(middle + (random_place(k, 3 + 3 * c) - Vec3d(0.5)) * 0.2);
+    if (k % 50 == 0) s.points.back() = s.points[s.points.size() - 2];
+    s.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
+  }
+  return s;
+}
+
+/// The distance to a triangle by its plane and three edges; infinite: it is missed.
+double distance_to(const Soup& s, const Triangle& t, const Vec3d& from, const Vec3d& along) {
+  const Vec3d a = s.points[t.a], b = s.points[t.b], c = s.points[t.c], n = cross(b - a, c - a);
+  const double rate = dot(n, along);
+  if (rate == 0) return INFINITY;
+  const double distance = dot(n, a - from) / rate;
+  const Vec3d p = from + along * distance;
+  const bool inside =
+      dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  return inside && distance >= 0 ? distance : INFINITY;
+}
+
+TEST(TriangleTree, FindsWhatAllTrianglesFind) {
+  for (const std::uint32_t count : {1u, 3u, 17u, 1000u}) {
+    const Soup s = soup(count);
+    const TriangleTree tree(s.points, s.triangles);
+    int hits = 0;
+    for (std::uint32_t k = 0; k < 400; ++k) {
+      const Vec3d from = random_place(k, 20) * 3.0 - Vec3d(1);
+      const Vec3d at =
+          k % 2 ? random_place(k, 30) : s.points[3 * (k % count)] * 0.98 + s.points[3 * (k % count) + 1] * 0.02;
+      const Vec3d along = normalized(at - from);
+      double nearest = INFINITY;
+      for (const Triangle& t : s.triangles) nearest = std::min(nearest, distance_to(s, t, from, along));
+      const auto hit = tree.first(from, along);
+      ASSERT_EQ(hit.has_value(), std::isfinite(nearest)) << count << " " << k;
+      if (!hit) continue;
+      ++hits;
+      EXPECT_NEAR(hit->distance, nearest, 1e-9);
+      const Triangle& t = s.triangles[hit->triangle];
+      const Vec3d by_weights =
+          s.points[t.a] * hit->weights.x + s.points[t.b] * hit->weights.y + s.points[t.c] * hit->weights.z;
+      EXPECT_LT(length(by_weights - hit->place), 1e-9);
+    }
+    EXPECT_GT(hits, count < 10 ? 5 : 100) << count;
+  }
+}
+
+TEST(TriangleTree, RaysAlongAxesAndBetweenBounds) {
+  const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 2}, {1, 0, 2}, {0, 1, 2}};
+  const TriangleTree tree(points, std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}});
+  const Vec3d from(0.2, 0.2, 5), down(0, 0, -1);
+  EXPECT_EQ(tree.first(from, down)->triangle, 1u);
+  EXPECT_EQ(tree.first(from, down, 3.5)->triangle, 0u);  // behind a plane that cuts the first one off
+  EXPECT_FALSE(tree.first(from, down, 3.5, 4.5));
+  EXPECT_FALSE(tree.first(from, down * -1.0));
+  EXPECT_FALSE(tree.first({0.8, 0.8, 5}, down));
+}
+
+TEST(TriangleTree, OfNothingFindsNothing) {
+  EXPECT_FALSE(TriangleTree().first({0, 0, 0}, {1, 0, 0}));
+  EXPECT_FALSE(TriangleTree({}, {}).first({0, 0, 0}, {1, 0, 0}));
+}
+
+}  // namespace
+}  // namespace nacre
