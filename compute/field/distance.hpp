@@ -41,6 +41,7 @@ struct Lattice {
     }
     return c;
   }
+  bool operator==(const Lattice&) const = default;
 };
 
 /// For each cell of a lattice within `reach` voxels of an interface: which interface point is the closest to its centre.
@@ -232,18 +233,25 @@ struct DistanceField {
   std::int64_t bytes() const { return std::int64_t(nearest.bytes() + point.bytes()); }
 };
 
-/// Points of all interfaces, at least one per boundary cell of a lattice of about `spacing` voxels (never finer than the
-/// voxels), flooded out to `reach` voxels. The points are exact; the distances are those to the nearest of them.
+/// The lattice of about `spacing` voxels over a volume, never finer than its voxels.
+inline Lattice lattice_over(const MaterialBricks& b, float spacing) {
+  Lattice lattice;
+  for (int axis = 0; axis < 3; ++axis) {
+    lattice.spacing[axis] = std::max(spacing, 1 / b.cells_per_unit[axis]);
+    const double extent = double(b.blocks[axis] * block_size) / b.cells_per_unit[axis];
+    lattice.cells[axis] = std::max(1, int(std::ceil(extent / lattice.spacing[axis] - 1e-3)));
+  }
+  return lattice;
+}
+
+/// Points of all interfaces, at least one per boundary cell of `lattice_over`, flooded out to `reach` voxels. The points
+/// are exact; the distances are those to the nearest of them.
 template <class Backend>
 DistanceField distance_field(Executor<Backend>& exec, const MaterialBricks& b, float spacing, float reach) {
   Arena& arena = exec.arena();
   DistanceField d;
+  d.lattice = lattice_over(b, spacing);
   d.reach = reach;
-  for (int axis = 0; axis < 3; ++axis) {
-    d.lattice.spacing[axis] = std::max(spacing, 1 / b.cells_per_unit[axis]);
-    const double extent = double(b.blocks[axis] * block_size) / b.cells_per_unit[axis];
-    d.lattice.cells[axis] = std::max(1, int(std::ceil(extent / d.lattice.spacing[axis] - 1e-3)));
-  }
   const std::int64_t n = d.lattice.count();
   d.nearest = arena.permanent<std::uint32_t>(n);
   Arena::Scope scope(arena);

@@ -26,6 +26,7 @@ struct SizingRule {
   }
   /// Radius from which on a medial ball makes no difference.
   float reach() const { return max_size / (min_size < max_size ? std::fmin(epsilon, resolve) : resolve); }
+  bool operator==(const SizingRule&) const = default;
 };
 
 /// h at a point, trilinear between the centres of a lattice.

@@ -256,6 +256,7 @@ class Tree {
   template <class Backend>
   void build(Executor<Backend>& exec, const Array<std::uint64_t>& key, std::int64_t particles) {
     Arena::Scope scope(exec.arena());
+    bounded_ = 0;
     level_.assign(1, 0);
     exec.for_each(interfaces_, detail::MakeRoots{key.data(), std::uint32_t(particles), node_.data()});
     std::uint32_t begin = 0, end = std::uint32_t(interfaces_);
@@ -283,6 +284,7 @@ class Tree {
     for (std::size_t l = level_.size() - 1; l-- > 0;)
       exec.for_each(level_[l + 1] - level_[l], detail::SummariseNodes{node_.data(), particles.place.data(),
                                                                       particles.direction.data(), level_[l]});
+    bounded_ = nodes();
   }
 
   TreeView view(const ParticleSet& particles, float theta) const {
@@ -291,6 +293,8 @@ class Tree {
   const std::uint32_t* leaves() const { return leaf_.data(); }
   std::int64_t leaf_count() const { return leaf_count_; }
   std::int64_t nodes() const { return level_.back(); }
+  /// The nodes of a tree that was built and summarised to its end; 0 where there is none.
+  std::int64_t bounded_nodes() const { return bounded_; }
 
  private:
   template <class Backend>
@@ -304,7 +308,7 @@ class Tree {
   std::int64_t interfaces_;
   Array<TreeNode> node_;
   Array<std::uint32_t> leaf_;
-  std::int64_t leaf_count_ = 0;
+  std::int64_t leaf_count_ = 0, bounded_ = 0;
   std::vector<std::uint32_t> level_;  ///< where each level's nodes begin, and where the last one's end
 };
 

@@ -12,6 +12,7 @@
 
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
+#include "compute/grid/lanes.hpp"
 #include "compute/grid/vec.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
@@ -111,10 +112,46 @@ struct MeshProgress {
 };
 using MeshProgressCallback = std::function<void(const MeshProgress&)>;
 
+/// Where a renderer wants particles: memory of the pipeline's device, room for `capacity` of them in both arrays.
+struct ShownParticles {
+  Float4* place = nullptr;      ///< x, y, z in voxels; h, voxels
+  Float4* direction = nullptr;  ///< unit: normal of a surface, tangent of a curve, zero at a point; energy
+  std::int64_t capacity = 0;
+};
+
+/// How many there are. They lie behind each other in this order.
+struct ShownCounts {
+  std::int64_t points = 0, curves = 0, surfaces = 0;
+  std::int64_t total() const { return points + curves + surfaces; }
+};
+
+/// A box of what particles are sorted into: two corners, voxels.
+struct ShownBox {
+  Vec3f low, high;
+};
+
+/// From voxels, the coordinates of what is shown, to the world: origin + x axes[0] + y axes[1] + z axes[2]. The axes are
+/// at right angles and of one length, that of a voxel, so that directions turn with them; they may be left-handed.
+struct VoxelFrame {
+  Vec3d origin;
+  std::array<Vec3d, 3> axes;
+  Vec3d to_world(const Vec3d& p) const { return origin + axes[0] * p.x + axes[1] * p.y + axes[2] * p.z; }
+};
+
+/// What can be asked for at points of the world.
+enum class MeshField {
+  material,  ///< its number; 0, the outside, beyond the volume
+  distance,  ///< from the nearest interface, world units, unsigned; infinity where it is farther off than was looked
+  size,      ///< the sizing field, world units
+};
+
 /// load, build_fields, relax, triangulate, in this order; `parameters` may be changed between calls and are read by the
-/// step that they belong to. A step may be repeated without those before it. Throws Error for bad input and too little
-/// memory, Interrupted when the watched flag is set; after an Interrupted from `relax`, `watch(nullptr)` and
+/// step that they belong to. A step may be repeated without those before it, and gives what a fresh pipeline would. Throws
+/// Error for bad input and too little memory, Interrupted when the watched flag is set. After an Interrupted any step up to
+/// the interrupted one may be called again (after that from `load`: `load`); after one from `relax`, `watch(nullptr)` and
 /// `triangulate` give the mesh of the particles so far.
+///
+/// All calls belong to one thread, also those that look; those marked so may be made within `progress`.
 class MeshPipeline {
  public:
   virtual ~MeshPipeline() = default;
@@ -122,17 +159,31 @@ class MeshPipeline {
   MeshParameters parameters;
   MeshProgressCallback progress;
 
-  virtual void load(const MeshVolume& volume) = 0;  ///< stage materials
-  virtual void build_fields() = 0;                  ///< stages tighten, distance, sizing, embed
-  virtual void relax() = 0;                         ///< stages seed, relax, population
-  virtual SurfaceMesh triangulate() = 0;            ///< stage triangulate; world coordinates
+  /// Stage materials. The volume is not needed after it.
+  virtual void load(const MeshVolume& volume) = 0;
+  /// Stages tighten, distance, sizing, embed: those that `parameters` concern since they ran last, and those behind them.
+  /// False where none had to run; else the particles are dropped.
+  virtual bool build_fields() = 0;
+  virtual void relax() = 0;               ///< stages seed, relax, population
+  virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, mend; world coordinates
 
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
-  /// Material at points of the world (the outside beyond the volume).
+  /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of `relax`.
   virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;
-  /// Sizing field at points of the world, world units.
-  virtual std::vector<float> size_at(std::span<const Vec3d> points) = 0;
+  /// A field at points of the world, as MeshField says; distance and size are NaN beyond the volume and the 8 voxels of
+  /// outside around it. Needs the fields; also within `progress` of `relax`.
+  virtual std::vector<float> field_at(MeshField field, std::span<const Vec3d> points) = 0;
+
+  /// Stage show. A kernel writes the particles as they are now into `memory`; nothing where they do not fit, which the
+  /// counts tell. None before `relax`; also within `progress` of `relax` and `triangulate`, where points and curves are
+  /// alone at first.
+  virtual ShownCounts show_particles(const ShownParticles& memory) = 0;
+  /// The same for the boxes around particles: the nodes of the tree that was built last, level by level from the roots; while
+  /// the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns how many
+  /// there are.
+  virtual std::int64_t show_boxes(ShownBox* memory, std::int64_t capacity) = 0;
+  virtual VoxelFrame voxel_frame() const = 0;  ///< of the volume that was loaded
 
   virtual const MeshInfo& info() const = 0;
   virtual StageTimers& timers() = 0;

@@ -7,10 +7,24 @@
 #include "compute/particles/control.hpp"
 #include "compute/particles/field_surface.hpp"
 #include "compute/particles/redblack.hpp"
+#include "compute/particles/seed.hpp"
 #include "compute/particles/serial.hpp"
 #include "compute/pipeline/mesh_pipeline_impl.hpp"
 
 namespace nacre {
+
+/// While it lives, nobody can stop the launches.
+class Unwatched {
+ public:
+  Unwatched(ExecutorBase& exec, const std::atomic<bool>* stop) : exec_(exec), stop_(stop) { exec.watch(nullptr); }
+  ~Unwatched() { exec_.watch(stop_); }
+  Unwatched(const Unwatched&) = delete;
+  Unwatched& operator=(const Unwatched&) = delete;
+
+ private:
+  ExecutorBase& exec_;
+  const std::atomic<bool>* stop_;
+};
 
 template <class Backend>
 PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
@@ -29,7 +43,8 @@ PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
 template <class Backend>
 void MeshPipelineOf<Backend>::make_solver() {
   Arena& arena = exec_.arena();
-  arena.rewind(field_mark_);
+  drop_particles();
+  arena.rewind(mark_[field_stages]);
   const double wanted = parameters.particles > 0 ? parameters.particles : info_.expected_particles;
   // Crowded places relax to fewer, holes fill: half as many again has always been enough.
   const double capacity = 1.6 * wanted + 20000;
@@ -64,7 +79,7 @@ void MeshPipelineOf<Backend>::add_points() {
 
 template <class Backend>
 void MeshPipelineOf<Backend>::relax() {
-  if (!fields_) throw Error("no fields built");
+  require_fields();
   make_solver();
   info_.energy.clear();
   info_.count.clear();
@@ -80,10 +95,9 @@ void MeshPipelineOf<Backend>::relax() {
     measure_energy();
   } catch (const Interrupted&) {
     // What has been done so far can be triangulated, if every interface has its particles.
-    exec_.watch(nullptr);
+    const Unwatched finish(exec_, stop_);
     if (order == 1) seed_order(2);
     polish();
-    exec_.watch(stop_);
     throw;
   }
   auto stage = exec_.stage("relax");
@@ -111,31 +125,44 @@ void MeshPipelineOf<Backend>::polish() {
   if (std::find(gone.begin(), gone.end(), 1) != gone.end()) change_particles(gone, {});
 }
 
+template <class Backend>
+HostParticles MeshPipelineOf<Backend>::download_particles() const {
+  const ParticleSet& set = solver_->particles();
+  const std::size_t n = std::size_t(set.count);
+  return {set.place.download(0, n), set.direction.download(0, n), set.interface.download(0, n)};
+}
+
+/// Instead of those that there are; all rest.
+template <class Backend>
+void MeshPipelineOf<Backend>::upload_particles(const HostParticles& particles) {
+  ParticleSet& set = solver_->particles();
+  const std::size_t n = particles.place.size();
+  set.count = std::int64_t(n);
+  set.place.upload(particles.place);
+  set.direction.upload(particles.direction);
+  set.interface.upload(particles.interface);
+  solver_->velocity().upload(std::vector<Float4>(n, Float4{0, 0, 0, 0}));
+}
+
 /// Takes particles out and puts new ones in; all then rest.
 template <class Backend>
 void MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gone,
                                                std::span<const MeshDefects::NewPoint> born) {
-  ParticleSet& set = solver_->particles();
-  const std::size_t n = std::size_t(set.count);
-  std::vector<Float4> place = set.place.download(0, n), direction = set.direction.download(0, n);
-  std::vector<std::uint32_t> interface = set.interface.download(0, n);
+  HostParticles all = download_particles();
+  auto& [place, direction, interface] = all;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < n; ++i)
+  for (std::size_t i = 0; i < place.size(); ++i)
     if (!gone[i]) place[kept] = place[i], direction[kept] = direction[i], interface[kept++] = interface[i];
   place.resize(kept), direction.resize(kept), interface.resize(kept);
   for (const MeshDefects::NewPoint& p : born) {
     const auto k = std::find(junctions_.begin(), junctions_.end(), Junction(p.materials[0], p.materials[1]));
-    if (k == junctions_.end() || place.size() == std::size_t(set.capacity())) continue;
+    if (k == junctions_.end() || place.size() == std::size_t(solver_->particles().capacity())) continue;
     const Vec3d at = frame_.to_voxels(p.place);
     place.push_back({float(at.x), float(at.y), float(at.z), float(parameters.min_size)});
     direction.push_back({0, 0, 0, 0});
     interface.push_back(std::uint32_t(k - junctions_.begin()));
   }
-  set.count = std::int64_t(place.size());
-  set.place.upload(place);
-  set.direction.upload(direction);
-  set.interface.upload(interface);
-  solver_->velocity().upload(std::vector<Float4>(place.size(), Float4{0, 0, 0, 0}));
+  upload_particles(all);
 }
 
 /// Puts the seeds of an order behind the particles of lower ones, which stay where they are from now on.
@@ -199,8 +226,10 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
       sorted = false;
       continue;
     }
-    auto stage = exec_.stage("relax");
-    solver_->move(exec_, embedded_ground(), related, order, rule);
+    {
+      auto stage = exec_.stage("relax");
+      solver_->move(exec_, embedded_ground(), related, order, rule);
+    }
     tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, energy);
     note_iteration(order, energy, movers);
     const bool settled = !controls || k > last_control;
@@ -248,35 +277,48 @@ void MeshPipelineOf<Backend>::relax_by_turns(int order, double from, double to) 
 template <class Backend>
 bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles,
                                    std::span<const std::uint32_t> point_of, const LabelRepair& repair) {
-  auto stage = exec_.stage("mend");
-  constexpr int further_rounds = 4;
-  if (round >= parameters.mend + further_rounds) return false;
-  std::vector<std::uint8_t> order(point_of.size());
-  std::vector<float> size(point_of.size());
-  for (std::size_t v = 0; v < point_of.size(); ++v)
-    order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
-  std::vector<std::array<std::uint32_t, 2>> touching = repair.places;
-  for (auto& place : touching)  // particles; the mesh has those that facets use, in the same order
-    for (std::uint32_t& p : place)
-      p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
-  const MeshDefects defects =
-      find_defects(mesh, order, size, touching, round < parameters.mend ? DefectRule() : worst_defects);
-  if (defects.remove.empty() && defects.insert.empty()) return false;
-  std::vector<std::uint8_t> gone(particles.points.size(), 0);
-  for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
-  change_particles(gone, defects.insert);
-  polish();                     // also brings new points onto their interfaces
-  if (round >= 2) return true;  // moving all would spoil others
+  {
+    auto stage = exec_.stage("mend");
+    if (round >= parameters.mend + further_rounds) return false;
+    std::vector<std::uint8_t> order(point_of.size());
+    std::vector<float> size(point_of.size());
+    for (std::size_t v = 0; v < point_of.size(); ++v)
+      order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
+    std::vector<std::array<std::uint32_t, 2>> touching = repair.places;
+    for (auto& place : touching)  // particles; the mesh has those that facets use, in the same order
+      for (std::uint32_t& p : place)
+        p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
+    const MeshDefects defects =
+        find_defects(mesh, order, size, touching, round < parameters.mend ? DefectRule() : worst_defects);
+    if (defects.remove.empty() && defects.insert.empty()) return false;
+    std::vector<std::uint8_t> gone(particles.points.size(), 0);
+    for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
+    change_particles(gone, defects.insert);
+    polish();  // also brings new points onto their interfaces
+  }
+  if (round < 2) close_up(round);  // later, moving all would spoil others
+  return true;
+}
+
+/// A few steps of all particles on surfaces, so that gaps close and new ones find room.
+template <class Backend>
+void MeshPipelineOf<Backend>::close_up(int round) {
   const RelatedView related = this->related();
   TreeRule rule = tree_rule();
   rule.momentum = 0.6f;
+  const std::int64_t movers = solver_->movers(exec_, related, 2);
   for (int k = 0; k < 8; ++k) {
-    if (k % 4 == 0) solver_->rebuild(exec_);
-    solver_->forces(exec_, related, 2, rule.theta, solver_->particles().count);
-    solver_->move(exec_, field_ground(), related, 2, rule);
+    double energy = 0;
+    {
+      auto stage = exec_.stage("mend");
+      if (k % 4 == 0) solver_->rebuild(exec_);
+      energy = solver_->forces(exec_, related, 2, rule.theta, movers);
+      solver_->move(exec_, field_ground(), related, 2, rule);
+    }
+    tell("mend", mend_fraction(round), k + 1, energy);
   }
+  auto stage = exec_.stage("mend");
   polish();
-  return true;
 }
 
 }  // namespace nacre

@@ -9,6 +9,7 @@
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
+#include "tests/compute/pipeline/shown_memory.hpp"
 #include "tests/gpu/each_backend.hpp"
 
 namespace nacre::gpu_tests {
@@ -37,7 +38,7 @@ MeshOnDevice run(Device& device, const MeshVolume& volume, const MeshParameters&
     for (double y = 0; y < volume.dims.y - 1; y += 1.1)
       for (double x = 0; x < volume.dims.x - 1; x += 0.9) places.push_back({x, y, z});
   result.material = pipeline->material_at(places);
-  result.size = pipeline->size_at(places);
+  result.size = pipeline->field_at(MeshField::size, places);
   pipeline->relax();
   result.mesh = pipeline->triangulate();
   result.distance = pipeline->surface_distance(result.mesh);
@@ -142,6 +143,29 @@ TEST(MeshAgreement, CudaRepeatsItselfToTheBit) {
     ASSERT_EQ(a.mesh.points.size(), b.mesh.points.size());
     EXPECT_TRUE(std::equal(a.mesh.points.begin(), a.mesh.points.end(), b.mesh.points.begin()));
     EXPECT_TRUE(a.mesh.triangles == b.mesh.triangles);
+  }
+}
+
+TEST(MeshOnCuda, ShowsItsParticlesWhileTheyMove) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  const auto gpu = make_cuda_device(arena_limit);
+  for (const char* solver : {"tree", "redblack"}) {
+    const auto pipeline = make_mesh_pipeline(*gpu);
+    const test::Lent<Float4> place(*gpu, 100000), direction(*gpu, 100000);
+    const test::Lent<ShownBox> boxes(*gpu, 100000);
+    pipeline->parameters.solver = solver;
+    pipeline->parameters.iterations = 10;
+    pipeline->load(cases()[1].volume);
+    pipeline->build_fields();
+    int looks = 0;
+    pipeline->progress = [&](const MeshProgress& p) {
+      if (p.iteration % 4 != 1) return;
+      ++looks;
+      test::expect_shown(*pipeline, place, direction);
+      EXPECT_GT(pipeline->show_boxes(boxes.data(), boxes.size()), 10);
+    };
+    pipeline->relax();
+    EXPECT_GE(looks, 4) << solver;
   }
 }
 

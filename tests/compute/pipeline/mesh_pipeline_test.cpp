@@ -14,15 +14,6 @@
 namespace nacre::test {
 namespace {
 
-/// A ball and half a shell around it, and a voxel alone: surfaces, a curve, an island.
-MeshVolume three_materials() {
-  const Vec3d c(12.2, 11.7, 12.4);
-  return label_volume({26, 25, 26}, 4, [=](const Vec3d& p) {
-    const double r = length(p - c);
-    return p == Vec3d(23, 3, 2) ? 3 : r < 6.3 ? 1 : r < 9.8 && p.x > 11 ? 2 : 0;
-  });
-}
-
 MeshRun on_threads(int threads, bool remote, std::uint32_t seed, const std::string& solver = "tree") {
   const auto device = make_cpu_device(threads, remote);
   MeshParameters parameters;
@@ -30,13 +21,6 @@ MeshRun on_threads(int threads, bool remote, std::uint32_t seed, const std::stri
   parameters.solver = solver;
   parameters.iterations = 40;
   return run_mesh(*device, three_materials(), parameters);
-}
-
-void expect_same(const SurfaceMesh& a, const SurfaceMesh& b) {
-  ASSERT_EQ(a.points.size(), b.points.size());
-  EXPECT_TRUE(std::equal(a.points.begin(), a.points.end(), b.points.begin()));
-  EXPECT_TRUE(a.triangles == b.triangles);
-  EXPECT_EQ(a.materials, b.materials);
 }
 
 TEST(MeshPipeline, OneSeedGivesOneMeshOnAnyNumberOfThreads) {
@@ -178,28 +162,6 @@ TEST(MeshPipeline, TellsHowFarItIs) {
   const MeshParticles set = pipeline->particles();
   EXPECT_EQ(std::int64_t(set.points.size()), info.final);
   EXPECT_GT(pipeline->peak_bytes(), std::size_t(info.field_bytes));
-}
-
-TEST(MeshPipeline, PointsOfTheWorldHaveMaterialsAndSizes) {
-  const auto device = make_cpu_device();
-  const auto pipeline = make_mesh_pipeline(*device);
-  MeshVolume volume = three_materials();
-  volume.spacing = {0.5, 1, 0.8};
-  volume.origin = {100, -20, 3};
-  volume.axes = {Vec3d(0, 1, 0), Vec3d(-1, 0, 0), Vec3d(0, 0, 1)};
-  pipeline->load(volume);
-  pipeline->build_fields();
-  const auto world = [&](const Vec3d& index) {
-    return volume.origin + volume.axes[0] * (index.x * 0.5) + volume.axes[1] * index.y +
-           volume.axes[2] * (index.z * 0.8);
-  };
-  const std::vector<Vec3d> points{world({12, 12, 12}), world({20, 12, 12}), world({2, 2, 20}),
-                                  world({23, 3, 2}),   {0, 0, 0},           {NAN, 0, 0}};
-  EXPECT_EQ(pipeline->material_at(points), (std::vector<std::uint16_t>{1, 2, 0, 3, 0, 0}));
-  for (const float h : pipeline->size_at(std::span(points).first(4))) {
-    EXPECT_GT(h, 0.1f);
-    EXPECT_LE(h, 0.5f * 1.001f);  // the largest size is one edge of the smallest spacing
-  }
 }
 
 void expect_error(const std::function<void()>& call, const std::string& part) {

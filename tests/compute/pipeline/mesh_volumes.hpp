@@ -1,7 +1,10 @@
 // Nacre: volumes whose materials have formulas, for tests of fields and meshes.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -67,6 +70,34 @@ inline MeshVolume indicator_volume(const Int3& dims, const std::vector<PlaceFunc
   return volume;
 }
 
+/// A ball and half a shell around it, and a voxel alone: surfaces, a curve, an island.
+inline MeshVolume three_materials() {
+  const Vec3d c(12.2, 11.7, 12.4);
+  return label_volume({26, 25, 26}, 4, [=](const Vec3d& p) {
+    const double r = length(p - c);
+    return p == Vec3d(23, 3, 2) ? 3 : r < 6.3 ? 1 : r < 9.8 && p.x > 11 ? 2 : 0;
+  });
+}
+
+/// Three overlapping balls, each with its own material: curves that meet in two points.
+inline MeshVolume three_balls() {
+  const Vec3d c(12.2, 11.7, 12.4);
+  std::vector<PlaceFunction> functions{[](const Vec3d&) { return 0.0; }};
+  for (const double a : {0.3, 0.3 + 2 * M_PI / 3, 0.3 + 4 * M_PI / 3}) {
+    const Vec3d centre = c + Vec3d(std::cos(a), std::sin(a), 0.2) * 4.0;
+    functions.push_back([=](const Vec3d& p) { return 6 - length(p - centre); });
+  }
+  return indicator_volume({26, 25, 26}, functions);
+}
+
+/// The same as labels.
+inline MeshVolume label_balls() {
+  MeshVolume volume = three_balls();
+  volume.kind = MeshVolume::Kind::labels;
+  volume.values.clear();
+  return volume;
+}
+
 /// Signed distance to a sphere, positive inside.
 inline PlaceFunction ball(const Vec3d& centre, double radius) {
   return [=](const Vec3d& p) { return radius - length(p - centre); };
@@ -91,6 +122,13 @@ struct MeshRun {
   MeshInfo info;
   SurfaceDistance distance;
 };
+
+inline void expect_same(const SurfaceMesh& a, const SurfaceMesh& b) {
+  ASSERT_EQ(a.points.size(), b.points.size());
+  EXPECT_TRUE(std::equal(a.points.begin(), a.points.end(), b.points.begin()));
+  EXPECT_TRUE(a.triangles == b.triangles);
+  EXPECT_EQ(a.materials, b.materials);
+}
 
 inline MeshRun run_mesh(Device& device, const MeshVolume& volume, const MeshParameters& parameters = {}) {
   const auto pipeline = make_mesh_pipeline(device);

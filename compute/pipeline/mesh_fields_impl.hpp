@@ -1,0 +1,139 @@
+// Nacre: the part of the mesh pipeline that makes fields of a volume, and makes only those again that have to change.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "compute/field/tighten.hpp"
+#include "compute/particles/seed.hpp"
+#include "compute/pipeline/mesh_pipeline_impl.hpp"
+
+namespace nacre {
+
+inline CubicKernel cubic_kernel(const MeshParameters& parameters) {
+  return parameters.kernel == "b-spline" ? CubicKernel::b_spline : CubicKernel::catmull_rom;
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::load(const MeshVolume& volume) {
+  auto stage = exec_.stage("materials");
+  Arena& arena = exec_.arena();
+  drop_particles();
+  kind_.reset();
+  built_ = 0;
+  info_ = {};
+  arena.rewind(0);
+  frame_ = VolumeFrame(volume);
+  tell("materials", 0);
+  bricks_ = lay_out_bricks(exec_, volume.dims, frame_.relative_spacing(), cubic_kernel(parameters), volume.material);
+  if (bricks_.bricks == 2)
+    throw Error("one material only", "every voxel of the volume is of the same material",
+                "choose others with --materials or --isovalue");
+  if (volume.kind == MeshVolume::Kind::indicators) {
+    fill_indicators(exec_, bricks_, volume.material, volume.values,
+                    indicator_range(volume.dims, volume.material, volume.values));
+  } else if (volume.kind == MeshVolume::Kind::scalar) {
+    float scale = 0;
+    for (const float v : volume.values.at(0)) scale = std::max(scale, std::fabs(v));
+    fill_scalar(exec_, bricks_, volume.values[0], volume.levels, scale > 0 ? scale : 1);
+  }
+  info_.blocks = bricks_.blocks;
+  mark_[0] = arena.mark();
+  kind_ = volume.kind;
+}
+
+/// What the fields shall be built from. The cells of the embedding are as the present sizing field has them: where that is
+/// to be built anew, so is the embedding.
+template <class Backend>
+FieldRecipe MeshPipelineOf<Backend>::field_recipe() const {
+  FieldRecipe recipe;
+  if (kind_ == MeshVolume::Kind::labels) recipe.width = parameters.tighten;
+  recipe.kernel = cubic_kernel(parameters);
+  recipe.rule = {float(parameters.epsilon), float(parameters.delta), float(parameters.min_size),
+                 float(std::max(parameters.min_size, parameters.max_size)), parameters.curvature};
+  recipe.spacing = 0.5f * recipe.rule.min_size;
+  recipe.lattice = lattice_over(bricks_, recipe.spacing);
+  recipe.reach = std::min(recipe.rule.reach() + 2, 64.0f);
+  // Cells of half the smallest distance of particles suffice for the stencils.
+  recipe.cells_per_voxel = std::min(double(parameters.subcells), 2.0 / size_.small);
+  return recipe;
+}
+
+template <class Backend>
+bool MeshPipelineOf<Backend>::build_fields() {
+  if (!kind_) throw Error("no volume loaded");
+  const FieldRecipe wanted = field_recipe();
+  built_ = std::min(built_, recipe_.alike(wanted));
+  if (built_ == field_stages) return false;
+  drop_particles();
+  recipe_ = wanted;
+  bricks_.kernel = recipe_.kernel;
+  Arena& arena = exec_.arena();
+  while (built_ < field_stages) {  // a stage that is interrupted is not counted, and begins anew
+    arena.rewind(mark_[built_]);
+    build_stage(FieldStage(built_));
+    mark_[++built_] = arena.mark();
+  }
+  return true;
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::build_stage(FieldStage which) {
+  static constexpr std::string_view name[] = {"tighten", "distance", "sizing", "embed"};
+  static constexpr double fraction[] = {0.02, 0.05, 0.08, 0.12};
+  if (which == tighten_stage && kind_ != MeshVolume::Kind::labels) return;
+  auto stage = exec_.stage(name[which]);
+  tell(name[which], fraction[which]);
+  switch (which) {
+    case tighten_stage: info_.constrained_voxels = tighten(exec_, bricks_, recipe_.width).held; break;
+    case distance_stage: distance_ = distance_field(exec_, bricks_, recipe_.spacing, recipe_.reach); break;
+    case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule); break;
+    default:
+      recipe_.cells_per_voxel = field_recipe().cells_per_voxel;
+      grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel);
+      relate_interfaces();
+      describe_fields();
+  }
+}
+
+template <class Backend>
+void MeshPipelineOf<Backend>::describe_fields() {
+  info_.smallest_size = size_.smallest;
+  info_.largest_size = size_.largest;
+  info_.field_bytes = bricks_.bytes() + distance_.bytes() + std::int64_t(size_.h.bytes());
+  info_.embedding_bytes = grid_.bytes();
+  info_.embedding_cells = grid_.cells();
+  info_.surfaces = info_.curves = 0;
+  for (const Junction& j : grid_.junctions) ++(j.order() == 2 ? info_.surfaces : info_.curves);
+  info_.points = int(grid_.points.size());
+  info_.crowded_points = grid_.crowded_points;
+  info_.expected_particles = info_.points;
+  for (const int order : {1, 2}) info_.expected_particles += expected_particles(exec_, grid_, order_.data(), order);
+}
+
+/// Which interfaces bound which, and the kinds of junction points as interfaces of their own.
+template <class Backend>
+void MeshPipelineOf<Backend>::relate_interfaces() {
+  junctions_ = grid_.junctions;
+  std::vector<Junction> points = grid_.point_junction;
+  std::sort(points.begin(), points.end(), [](const Junction& a, const Junction& b) { return a.packed < b.packed; });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  junctions_.insert(junctions_.end(), points.begin(), points.end());
+  std::vector<std::uint32_t> start{0}, related;
+  std::vector<std::uint8_t> order;
+  for (std::size_t k = 0; k < junctions_.size(); ++k) {
+    related.push_back(std::uint32_t(k));
+    for (std::size_t l = 0; l < junctions_.size(); ++l)
+      if (l != k && junctions_[l].order() < junctions_[k].order() && junctions_[l].bounds(junctions_[k]))
+        related.push_back(std::uint32_t(l));
+    start.push_back(std::uint32_t(related.size()));
+    order.push_back(std::uint8_t(junctions_[k].order()));
+  }
+  Arena& arena = exec_.arena();
+  junction_ = arena.permanent_copy<Junction>(junctions_);
+  related_start_ = arena.permanent_copy<std::uint32_t>(start);
+  related_ = arena.permanent_copy<std::uint32_t>(related);
+  order_ = arena.permanent_copy<std::uint8_t>(order);
+}
+
+}  // namespace nacre
