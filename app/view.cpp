@@ -12,6 +12,7 @@
 #include "engine/scene/knobs.hpp"
 #include "engine/scene/prepare.hpp"
 #if NACRE_HAS_VIEWER
+#include "app/viewer/scene.hpp"
 #include "app/viewer/viewer.hpp"
 #endif
 
@@ -82,7 +83,10 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
   viewer.session.settings.look.panel = options.offscreen ? options.panel : !options.no_panel;
-  viewer.frames = options.frames > 0 ? options.frames : options.offscreen ? std::max(1, settings.flow.steps) : 0;
+  const bool flow = !is_mesh_input(viewer.session);  // a mesh is done when it is done
+  viewer.frames = options.frames > 0          ? options.frames
+                  : options.offscreen && flow ? std::max(1, settings.flow.steps)
+                                              : 0;
   viewer.picture = !options.image.empty();
   viewer.stop = &interrupt_flag();
   viewer.first_camera = [](const Settings& s, const std::vector<Vec3d>& corners) { return read_camera(s, corners); };

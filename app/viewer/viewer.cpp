@@ -90,14 +90,15 @@ class Viewer {
     scene_.reset();
     said_ = 0;
     fitted_ = false;
-    const SceneOptions options{options_.open_device, window_ || options_.live, waits()};
+    const SceneOptions options{options_.open_device, window_ || options_.live, waits(), options_.stop};
     scene_ = is_mesh_input(session_) ? make_mesh_scene(session_, options) : make_flow_scene(session_, options);
     told_ = session_;
   }
 
   bool done() const {
     const bool played = player_.duration() > 0 && !window_ && clock() > player_.duration();
-    return quit_ || played || (options_.frames > 0 && counted_ >= options_.frames) ||
+    const bool settled = options_.frames == 0 && player_.duration() <= 0 && !window_ && scene_->settled();
+    return quit_ || played || settled || (options_.frames > 0 && counted_ >= options_.frames) ||
            (window_ && window_->should_close());
   }
 
