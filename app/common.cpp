@@ -30,7 +30,7 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command.add_option("--threads", options.threads, "worker threads (0: all)")->check(CLI::Range(0, 4096));
   command.add_option("--report", options.report, "write a JSON report to this file");
-  command.add_option("--session", options.session, "take inputs and knobs from a session file");
+  command.add_option("--session", options.session, "take inputs, knobs and camera from a session file");
   command.add_option("--save-session", options.save_session, "write inputs and knobs to a session file");
   command.add_option("--set", options.set, "KNOB=VALUE, any knob by name")->take_all();
   command.add_flag("--quiet", options.quiet, "say nothing but errors");

@@ -80,27 +80,27 @@ FlowInput read_input(const FlowOptions& options, const Session& session, StageTi
   return {name, choice.name, std::move(vectors)};
 }
 
-Camera camera_for(const Settings& settings, const PreparedSurface& surface) {
+Camera camera_for(const Session& session, const PreparedSurface& surface) {
   std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
   for (const Triangle& t : surface.triangles)
     for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  return read_camera(settings, corners);
+  return read_camera(session, corners);
 }
 
 /// Draws frames of one run.
 class Painter {
  public:
-  Painter(FlowPipeline& pipeline, FlowInput& input, const Settings& settings, double frame_time)
+  Painter(FlowPipeline& pipeline, FlowInput& input, const Session& session, double frame_time)
       : pipeline_(pipeline),
         input_(input),
-        settings_(settings),
+        settings_(session.settings),
         frame_time_(frame_time),
-        map_(colormap(settings.colormap)),
-        camera_(camera_for(settings, input.vectors.surface())) {
-    if (settings.background == "transparent")
+        map_(colormap(settings_.colormap)),
+        camera_(camera_for(session, input.vectors.surface())) {
+    if (settings_.background == "transparent")
       transparent_ = true;
     else
-      background_ = parse_color(settings.background);
+      background_ = parse_color(settings_.background);
   }
 
   Image paint(int frame) {
@@ -202,7 +202,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
                   fmt::format("use {:g}:{:g}", input.vectors.start(), input.vectors.end()));
   }
   const double frame_time = (end - start) / std::max(1, settings.flow.steps);
-  Painter painter(*pipeline, input, settings, frame_time);  // complains about the camera and colours before the work
+  Painter painter(*pipeline, input, session, frame_time);  // complains about the camera and colours before the work
   std::unique_ptr<FrameSink> frames, video;
   if (!options.frames.empty()) frames = make_frame_folder(options.frames);
   if (!options.video.empty()) video = make_video(options.video, settings.fps);

@@ -135,7 +135,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   const MeshResult result = compute(options, session.settings, input, volume, *pipeline, bar);
   bar.update("write", 0.99);
   const std::vector<std::string> outputs =
-      write_mesh_outputs(options, session.settings, input, result, *pipeline, pipeline->timers());
+      write_mesh_outputs(options, session, input, result, *pipeline, pipeline->timers());
   bar.clear();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   if (!options.common.report.empty()) {

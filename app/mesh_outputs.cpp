@@ -51,9 +51,10 @@ void write_particles(const std::string& file, const MeshParticles& particles) {
   write_vtp(file, std::span<const Vec3d>(particles.points), {}, arrays);
 }
 
-Image draw_mesh(const SurfaceMesh& mesh, const Settings& settings, bool cut_away) {
+Image draw_mesh(const SurfaceMesh& mesh, const Session& session, bool cut_away) {
+  const Settings& settings = session.settings;
   MeshPictureOptions options;
-  options.camera = read_camera(settings, mesh.points);
+  options.camera = read_camera(session, mesh.points);
   options.width = settings.width;
   options.height = settings.height;
   options.samples = settings.samples;
@@ -108,14 +109,14 @@ void check_mesh_outputs(const MeshOptions& options) {
     check_folder(file);
 }
 
-std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Settings& settings,
-                                            const MeshInput& input, const MeshResult& result,
-                                            const MeshPipeline& pipeline, StageTimers& timers) {
+std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Session& session, const MeshInput& input,
+                                            const MeshResult& result, const MeshPipeline& pipeline,
+                                            StageTimers& timers) {
   std::vector<std::string> files;
   Image image;
   if (!options.image.empty()) {
     StageTimers::Scope scope(timers, "render");
-    image = draw_mesh(result.mesh, settings, options.cut_away);
+    image = draw_mesh(result.mesh, session, options.cut_away);
   }
   StageTimers::Scope scope(timers, "write");
   if (result.cells) {

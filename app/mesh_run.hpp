@@ -49,8 +49,8 @@ void check_mesh_outputs(const MeshOptions& options);
 bool wants_cells(const MeshOptions& options);
 
 /// Writes what was asked for, in stages render and write; returns the files.
-std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Settings& settings,
-                                            const MeshInput& input, const MeshResult& result,
-                                            const MeshPipeline& pipeline, StageTimers& timers);
+std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Session& session, const MeshInput& input,
+                                            const MeshResult& result, const MeshPipeline& pipeline,
+                                            StageTimers& timers);
 
 }  // namespace nacre

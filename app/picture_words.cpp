@@ -58,4 +58,8 @@ Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {
   }
 }
 
+Camera read_camera(const Session& session, std::span<const Vec3d> corners) {
+  return session.camera ? *session.camera : read_camera(session.settings, corners);
+}
+
 }  // namespace nacre

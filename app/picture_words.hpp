@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "compute/raycast/camera.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/session.hpp"
 
 namespace nacre {
 
@@ -22,5 +22,8 @@ void check_picture_words(const Settings& settings);
 
 /// The camera of the settings: a view that sees all `corners`, or what its JSON file says. Throws Error.
 Camera read_camera(const Settings& settings, std::span<const Vec3d> corners);
+
+/// The session's own camera, else that of its settings. Throws Error.
+Camera read_camera(const Session& session, std::span<const Vec3d> corners);
 
 }  // namespace nacre

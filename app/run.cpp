@@ -19,6 +19,8 @@ Session asked_session(const CommonOptions& options, const InputWords& words, con
                       std::string_view command, const std::function<void(Settings&)>& preset) {
   Session session;
   if (!options.session.empty()) session = read_session(options.session);
+  session.events.clear();  // what is asked for is the state at the start
+  session.duration = 0;
   if (!words.files.empty() || !words.sample.empty()) {
     session.inputs.assign(words.files.begin(), words.files.end());
     session.sample = words.sample;
@@ -26,6 +28,7 @@ Session asked_session(const CommonOptions& options, const InputWords& words, con
   }
   if (preset) preset(session.settings);
   knobs.apply(session.settings, options.set);
+  if (knobs.given("camera", options.set)) session.camera.reset();
   if (!words.size.empty()) {
     const auto [width, height] = parse_pair(words.size, 'x', "--size");
     knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});

@@ -23,8 +23,8 @@ struct InputWords {
 void add_input_options(CLI::App& command, InputWords& words, const std::string& file_help,
                        const std::string& detail_help);
 
-/// The session that the words of `command` ask for. Later ones win: `--session`, the input named on the command line,
-/// `preset`, knobs, `--size`. Throws UsageError where a word is off, or there is not exactly one kind of input.
+/// The session that the words of `command` ask for: a state, without events. Later ones win: `--session`, the input named
+/// on the command line, `preset`, knobs (`--camera` over the session's camera), `--size`. Throws UsageError where a word is off, or there is not exactly one kind of input.
 Session asked_session(const CommonOptions& options, const InputWords& words, const KnobOptions& knobs,
                       std::string_view command, const std::function<void(Settings&)>& preset = {});
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "app/commands.hpp"
@@ -9,8 +10,11 @@
 #include "app/run.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/picture/video.hpp"
 #include "engine/scene/knobs.hpp"
+#include "engine/scene/phantoms.hpp"
 #include "engine/scene/prepare.hpp"
+#include "engine/scene/samples.hpp"
 #if NACRE_HAS_VIEWER
 #include "app/viewer/scene.hpp"
 #include "app/viewer/viewer.hpp"
@@ -22,7 +26,7 @@ namespace {
 struct ViewOptions {
   CommonOptions common;
   InputWords input;
-  std::string image;
+  std::string script, image, record, save_recording, out;
   int frames = 0;
   bool offscreen = false, live = false, panel = false, no_panel = false;
 };
@@ -33,27 +37,79 @@ constexpr const char* welcome_sample = "torus";
 constexpr int welcome_detail = 128;      // reads in a moment
 constexpr int welcome_resolution = 512;  // and moves soon after
 
+/// A session is the state that it begins with; a script is played.
 Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
+  CommonOptions common = options.common;
+  if (!options.script.empty()) common.session = options.script;
   InputWords words = options.input;
-  if (words.files.empty() && words.sample.empty() && options.common.session.empty()) {
+  if (words.files.empty() && words.sample.empty() && common.session.empty()) {
     words.sample = welcome_sample;
     if (words.detail == 0) words.detail = welcome_detail;
   }
-  const bool own_resolution = !options.common.session.empty() || knobs.given("resolution", options.common.set);
-  return asked_session(options.common, words, knobs, "view", [&](Settings& settings) {
+  const bool own_resolution = !common.session.empty() || knobs.given("resolution", common.set);
+  Session session = asked_session(common, words, knobs, "view", [&](Settings& settings) {
     if (!own_resolution) settings.flow.resolution = welcome_resolution;
   });
+  if (options.script.empty()) return session;
+  const Session script = read_session(options.script);
+  if (script.events.empty() && script.duration == 0)
+    throw Error(options.script + " has nothing to play", "it has neither events nor a duration",
+                "give it to --session, or write events into it");
+  session.events = script.events;
+  session.duration = script.duration;
+  return session;
 }
 
-void check_view_words(const ViewOptions& options, const Settings& settings) {
-  checked_words([&] {
-    colormap(settings.colormap);
-    if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
-  });
-  check_picture_words(settings);
-  if (options.offscreen && options.frames == 0 && options.image.empty())
-    throw UsageError("--offscreen has nothing to do: give --image FILE.png or --frames-count N");
+void check_view_words(const ViewOptions& options) {
+  const bool does = options.frames > 0 || !options.image.empty() || !options.script.empty() ||
+                    !options.record.empty() || !options.save_recording.empty() || !options.out.empty();
+  if (options.offscreen && !does)
+    throw UsageError(
+        "--offscreen has nothing to do: give --script, --record, --image FILE.png, --out FILE or --frames-count N");
   if (options.live && !options.offscreen) throw UsageError("--live goes with --offscreen: a window never waits");
+  if (options.live && !options.record.empty())
+    throw UsageError("--live or --record: frames of a video wait for compute");
+  if (!options.script.empty() && !options.common.session.empty())
+    throw UsageError("--session or --script, not both: a script has inputs, knobs and camera, too");
+  if (options.panel && options.no_panel) throw UsageError("--panel or --no-panel, not both");
+}
+
+void check_names(const Session& session) {
+  const auto names = [](const auto& known, const std::string& name) {
+    return std::any_of(known.begin(), known.end(), [&](const auto& each) { return each.name == name; });
+  };
+  checked_words([&] {
+    colormap(session.settings.colormap);
+    if (session.settings.vectors.starts_with('@')) choose_vectors({}, session.settings.vectors);
+    if (!session.sample.empty() && !names(samples(), session.sample) && !names(phantoms(), session.sample))
+      throw Error(fmt::format("no sample '{}'", session.sample), "", "`nacre sample` lists them");
+  });
+  check_picture_words(session.settings);
+}
+
+/// What names mean is found before the work begins, also for the events of a script.
+void check_all_names(Session session) {
+  check_names(session);
+  for (const SessionEvent& event : session.events) try {
+      apply_event(event, session);
+      check_names(session);
+    } catch (const UsageError& error) {
+      throw UsageError(fmt::format("the event at {:g} s: {}", event.time, error.what()));
+    }
+}
+
+/// A panel offscreen is for those who ask for it; a script says itself.
+bool begins_with_panel(const ViewOptions& options, const Look& look) {
+  if (options.panel || options.no_panel) return options.panel;
+  return !options.script.empty() ? look.panel : !options.offscreen;
+}
+
+/// A file by its extension, else a folder of pictures.
+std::unique_ptr<FrameSink> make_record(const std::string& name, int fps) {
+  if (name.empty()) return nullptr;
+  const std::filesystem::path path = name;
+  if (path.extension().empty() || std::filesystem::is_directory(path)) return make_frame_folder(path);
+  return make_video(path, fps);
 }
 
 nlohmann::json frame_report(const ViewerResult& result) {
@@ -73,32 +129,7 @@ nlohmann::json frame_report(const ViewerResult& result) {
           {"driver_messages", result.driver_messages}};
 }
 
-void run_view(const ViewOptions& options, const KnobOptions& knobs) {
-  ViewerOptions viewer;
-  viewer.session = view_session(options, knobs);
-  const Settings& settings = viewer.session.settings;
-  check_view_words(options, settings);
-  if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
-  viewer.open_device = [&] { return open_device(options.common); };
-  viewer.offscreen = options.offscreen;
-  viewer.live = options.live;
-  viewer.session.settings.look.panel = options.offscreen ? options.panel : !options.no_panel;
-  const bool flow = !is_mesh_input(viewer.session);  // a mesh is done when it is done
-  viewer.frames = options.frames > 0          ? options.frames
-                  : options.offscreen && flow ? std::max(1, settings.flow.steps)
-                                              : 0;
-  viewer.picture = !options.image.empty();
-  viewer.stop = &interrupt_flag();
-  viewer.first_camera = [](const Settings& s, const std::vector<Vec3d>& corners) { return read_camera(s, corners); };
-  viewer.say = [&](const std::string& line) { say(options.common, line); };
-  const ViewerResult result = run_viewer(viewer);
-
-  std::vector<std::string> outputs;
-  if (!options.image.empty()) {
-    if (result.image.pixels.empty()) throw Error("no frame was drawn", "", "keep the window open for longer");
-    write_png(options.image, result.image);
-    outputs.push_back(options.image);
-  }
+nlohmann::json view_report(const ViewerResult& result, const Settings& settings) {
   nlohmann::json report;
   report["nacre"] = version;
   report["command"] = "view";
@@ -106,10 +137,54 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   report["stages"] = nlohmann::json::array();
   for (const StageTimers::Stage& stage : result.timers.stages())
     report["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}});
-  report["memory"] = {{"device_peak_bytes", result.peak_bytes}};
+  report["memory"] = {{"peak_bytes", make_cpu_device()->peak_bytes()}, {"device_peak_bytes", result.peak_bytes}};
   report["parameters"] = knob_values(settings);
   report["view"] = frame_report(result);
-  write_report(options.common, std::move(report), outputs);
+  return report;
+}
+
+/// The last picture, the frames, the result, and what the session itself has written.
+std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerResult& result, FrameSink* record) {
+  std::vector<std::string> outputs;
+  for (const std::filesystem::path& file : result.pictures) outputs.push_back(file.string());
+  if (record) record->finish(), outputs.push_back(options.record);
+  if (!options.image.empty()) {
+    if (result.image.pixels.empty()) throw Error("no frame was drawn", "", "keep the window open for longer");
+    write_png(options.image, result.image);
+    outputs.push_back(options.image);
+  }
+  for (const std::string& file : {options.out, options.save_recording})
+    if (!file.empty()) outputs.push_back(file);
+  return outputs;
+}
+
+void run_view(const ViewOptions& options, const KnobOptions& knobs) {
+  check_view_words(options);
+  ViewerOptions viewer;
+  viewer.session = view_session(options, knobs);
+  const Settings& settings = viewer.session.settings;
+  check_all_names(viewer.session);
+  if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
+  viewer.open_device = [&] { return open_device(options.common); };
+  viewer.offscreen = options.offscreen;
+  viewer.live = options.live;
+  viewer.session.settings.look.panel = begins_with_panel(options, settings.look);
+  const bool flow = !is_mesh_input(viewer.session);  // a mesh is done when it is done
+  const bool by_steps = options.offscreen && options.script.empty() && options.frames == 0 && flow;
+  viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
+  viewer.picture = !options.image.empty();
+  const std::unique_ptr<FrameSink> record = make_record(options.record, settings.fps);
+  viewer.video = record.get();
+  viewer.out = options.out;
+  if (!options.save_recording.empty())
+    viewer.recorded = [&](const Session& done) { write_text(options.save_recording, session_text(done)); };
+  viewer.stop = &interrupt_flag();
+  viewer.first_camera = [](const Settings& s, const std::vector<Vec3d>& corners) { return read_camera(s, corners); };
+  viewer.say = [&](const std::string& line) { say(options.common, line); };
+  const ViewerResult result = run_viewer(viewer);
+
+  const std::vector<std::string> outputs = write_outputs(options, result, record.get());
+  write_report(options.common, view_report(result, settings), outputs);
   print_outputs(outputs);
 }
 
@@ -130,10 +205,17 @@ void add_view_command(CLI::App& program, std::function<void()>& run) {
   add_input_options(*command, options->input, "surface with vectors; several files are one series",
                     "triangle edges along the sample's longest side (0: its own)");
   command->add_flag("--offscreen", options->offscreen, "draw without a display (EGL)");
+  command->add_option("--script", options->script,
+                      "play a session file: its input, knobs and camera, each at its time");
+  command->add_option("--record", options->record,
+                      "write every frame: a video (.mp4, .mkv, .mov, .webm, .gif) or a folder");
+  command->add_option("--save-recording", options->save_recording,
+                      "write what was done, and when, to a session file for --script");
   command->add_option("--image", options->image, "write the last frame as PNG");
+  command->add_option("--out", options->out, "write the result at the end, as nacre flow and nacre mesh do");
   command
       ->add_option("--frames-count", options->frames,
-                   "end after N frames with the texture (offscreen: one for each step)")
+                   "end after N frames with the texture (offscreen, without a script: one for each step)")
       ->check(CLI::NonNegativeNumber);
   command->add_flag("--live", options->live, "offscreen: frames do not wait for compute, as in a window");
   command->add_flag("--panel", options->panel, "offscreen: draw the panel, too");

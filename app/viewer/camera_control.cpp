@@ -6,76 +6,46 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/viewer/panel.hpp"
-#include "app/viewer/scene.hpp"
 #include "engine/render/camera_motion.hpp"
 
 namespace nacre {
-namespace {
 
-void use_mouse(Camera& camera, int width, int height) {
-  const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantCaptureMouse) return;
-  const double across = std::max(1.0f, io.DisplaySize.x), down = std::max(1.0f, io.DisplaySize.y);
-  const double aspect = double(width) / std::max(1, height);
-  const double dx = 2 * io.MouseDelta.x / across, dy = -2 * io.MouseDelta.y / down;
-  const bool moves = io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift);
-  if (moves)
-    camera = pan(camera, dx, dy, aspect);
-  else if (io.MouseDown[0])
-    camera = turn_table(camera, dx, dy);
-  if (io.MouseWheel != 0)
-    camera = dolly(camera, std::pow(0.88, double(io.MouseWheel)), 2 * io.MousePos.x / across - 1,
-                   1 - 2 * io.MousePos.y / down, aspect);
+std::array<double, 2> place_in(const FreeArea& area, double x, double y) {
+  return {2 * (x - area.x) / std::max(1, area.width) - 1, 1 - 2 * (y - area.y) / std::max(1, area.height)};
 }
 
-void look_from(Camera& camera, const char* view, const Scene& scene, int width, int height) {
-  if (scene.corners().empty()) return;
+void move_camera(Camera& camera, const std::string& turning, const FreeArea& area) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse) return;
+  const double dx = 2 * io.MouseDelta.x / std::max(1, area.width);
+  const double dy = -2 * io.MouseDelta.y / std::max(1, area.height);
+  if (dx == 0 && dy == 0 && io.MouseWheel == 0) return;
+  if (io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
+    camera = pan(camera, dx, dy, area.aspect());
+  else if (io.MouseDown[0])
+    camera = turning == "trackball" ? turn_ball(camera, dx, dy) : turn_table(camera, dx, dy);
+  if (io.MouseWheel != 0) {
+    const auto [x, y] = place_in(area, io.MousePos.x, io.MousePos.y);
+    camera = dolly(camera, std::pow(0.88, double(io.MouseWheel)), x, y, area.aspect());
+  }
+}
+
+void look_from(Camera& camera, const std::string& view, std::span<const Vec3d> points, int width, int height) {
+  if (points.empty()) return;
   const bool orthographic = camera.orthographic;
-  camera = fit_camera(view, scene.corners(), width, height);
+  camera = fit_camera(view, points, width, height);
   camera.orthographic = orthographic;
 }
 
-/// All of the scene again, from where it is looked at now.
-void fit(Camera& camera, const Scene& scene) {
-  if (scene.corners().empty()) return;
-  Vec3d low = scene.corners().front(), high = low;
-  for (const Vec3d& p : scene.corners()) low = min(low, p), high = max(high, p);
+void fit(Camera& camera, std::span<const Vec3d> points) {
+  if (points.empty()) return;
+  Vec3d low = points.front(), high = low;
+  for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
   const Vec3d middle = (low + high) * 0.5, forward = camera.forward();
   const double radius = std::max(0.5 * length(high - low), 1e-30), distance = 9 * radius;
   camera.eye = middle - forward * distance;
   camera.target = middle;
   camera.height = 2.1 * radius;
-}
-
-}  // namespace
-
-KeyWishes control_camera(Session& session, const Scene& scene, PanelState& state, int width, int height) {
-  if (!session.camera) return {};
-  Camera& camera = *session.camera;
-  Look& look = session.settings.look;
-  use_mouse(camera, width, height);
-  ImGuiIO& io = ImGui::GetIO();
-  KeyWishes wishes;
-  if (io.WantTextInput) return wishes;
-  for (const ImWchar key : io.InputQueueCharacters) switch (key) {
-      case 'q': wishes.quit = true; break;
-      case 'f': fit(camera, scene); break;
-      case 'i': look_from(camera, "iso", scene, width, height); break;
-      case 'x': look_from(camera, "+x", scene, width, height); break;
-      case 'X': look_from(camera, "-x", scene, width, height); break;
-      case 'y': look_from(camera, "+y", scene, width, height); break;
-      case 'Y': look_from(camera, "-y", scene, width, height); break;
-      case 'z': look_from(camera, "+z", scene, width, height); break;
-      case 'Z': look_from(camera, "-z", scene, width, height); break;
-      case 'o': camera.orthographic = !camera.orthographic; break;
-      case 'e': look.edges = !look.edges; break;
-      case 'p': look.panel = !look.panel; break;
-      case '?': state.help = !state.help; break;
-      case ' ': look.play = !look.play; break;
-      default: break;
-    }
-  return wishes;
 }
 
 }  // namespace nacre

@@ -1,21 +1,32 @@
-// Nacre: the camera of the viewer: mouse and keys.
+// Nacre: the camera of the viewer: what mouse and menus do to it.
 #pragma once
+
+#include <array>
+#include <span>
+#include <string>
 
 #include "compute/raycast/camera.hpp"
 
 namespace nacre {
 
-struct PanelState;
-class Scene;
-struct Session;
+/// The part of the window that no panel covers, pixels from the left upper corner.
+struct FreeArea {
+  int x = 0, y = 0, width = 0, height = 0;
 
-/// What keys ask for apart from the camera.
-struct KeyWishes {
-  bool quit = false;
+  double aspect() const { return double(width) / double(height > 0 ? height : 1); }
 };
 
-/// Moves the session's camera by what the mouse and the keys have done since the last frame, where no panel wants them; keys also
-/// switch what is shown. Between Interface::begin and end.
-KeyWishes control_camera(Session& session, const Scene& scene, PanelState& state, int width, int height);
+/// A place of the window as cameras count: from (-1, -1) to (1, 1) over the area.
+std::array<double, 2> place_in(const FreeArea& area, double x, double y);
+
+/// Moves the camera by what the mouse has done since the last frame, where no panel wants it. `turning`: turntable or
+/// trackball. Between Interface::begin and end.
+void move_camera(Camera& camera, const std::string& turning, const FreeArea& area);
+
+/// All of `points` from a named view; perspective or orthographic as before.
+void look_from(Camera& camera, const std::string& view, std::span<const Vec3d> points, int width, int height);
+
+/// All of `points` from where the camera looks now.
+void fit(Camera& camera, std::span<const Vec3d> points);
 
 }  // namespace nacre

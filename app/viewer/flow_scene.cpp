@@ -43,8 +43,7 @@ void FlowScene::advance(double now) {
 }
 
 void FlowScene::advance_and_wait(const std::atomic<bool>& stop) {
-  const int before = steps_;
-  while (steps_ == before && !stop) {
+  for (int before = steps_; steps_ <= before && !stop; before = std::min(before, steps_)) {  // 0 after an embedding
     if (!failure_.empty()) throw Error(failure_);
     if (worker_.ready()) begin_step(true);
     std::optional<FlowEvent> event = worker_.wait(stop);

@@ -12,6 +12,7 @@
 #include "engine/io/reader.hpp"
 #include "engine/scene/prepare.hpp"
 #include "engine/scene/samples.hpp"
+#include "engine/system/faults.hpp"
 
 namespace nacre {
 namespace {
@@ -159,6 +160,7 @@ void FlowWorker::perform(Task task) {
     tell(FlowFailed{what});
   };
   try {
+    if (fault_due("out-of-memory")) throw std::bad_alloc();
     switch (task) {
       case Task::read: read(); [[fallthrough]];
       case Task::embed: embed(); [[fallthrough]];

@@ -153,6 +153,10 @@ void MeshWorker::write_result() {
   };
   if (complete)
     if (const std::optional<std::string> failure = failure_of(write)) told.failure = *failure;
+  {
+    std::scoped_lock lock(mutex_);
+    all_turns_ = false;
+  }
   tell(std::move(told));
 }
 

@@ -2,21 +2,28 @@
 // the last frame's is told to the scene, to the recorder, and can be taken back.
 #include "app/viewer/viewer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <thread>
 #include <utility>
 
 #include "app/viewer/camera_control.hpp"
-#include "app/viewer/panel.hpp"
+#include "app/viewer/interface.hpp"
+#include "app/viewer/recent_files.hpp"
 #include "app/viewer/scene.hpp"
+#include "app/viewer/ui.hpp"
+#include "app/viewer/undo.hpp"
 #include "compute/device/error.hpp"
 #include "engine/gl/framebuffer.hpp"
 #include "engine/gl/window.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/render/axes_pass.hpp"
 #include "engine/scene/recording.hpp"
+#include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace {
@@ -40,22 +47,34 @@ double radius_of(const std::vector<Vec3d>& points) {
 class Viewer {
  public:
   explicit Viewer(const ViewerOptions& options)
-      : options_(options), session_(options.session), player_(options.session), started_(now()), last_(started_) {
+      : options_(options),
+        session_(options.session),
+        player_(options.session),
+        fps_(session_.settings.fps),
+        started_(now()) {
     session_.events.clear();
     session_.duration = 0;
-    if (options.recorded) recorder_.emplace(session_, session_.settings.fps);
+    if (options.recorded) recorder_.emplace(session_, fps_);
     make_graphics();
     open();
+    check_result_format();
   }
 
   ~Viewer() { drop_graphics(); }
 
   ViewerResult run() {
-    while (!done()) {
-      if (*options_.stop) throw Interrupted();
-      if (window_) window_->poll();
-      frame();
+    try {
+      while (!done()) {
+        if (*options_.stop) throw Interrupted();
+        if (window_) window_->poll();
+        frame();
+        if (context_->lost()) begin_again();
+      }
+    } catch (...) {
+      tell_recording();
+      throw;
     }
+    tell_recording();
     finish();
     return std::move(result_);
   }
@@ -86,50 +105,60 @@ class Viewer {
     context_.reset();
   }
 
+  /// The graphics device was reset, and all that lay on it is gone. The session is not.
+  void begin_again() {
+    options_.say("the graphics device was reset: drawing begins again");
+    drop_graphics();
+    make_graphics();
+    open();
+  }
+
   void open() {
     scene_.reset();
     said_ = 0;
     fitted_ = false;
-    const SceneOptions options{options_.open_device, window_ || options_.live, waits(), options_.stop};
+    // A number of frames is for headless runs to compare with: these do not begin again after the last time.
+    const SceneOptions options{options_.open_device, options_.frames == 0, waits(), options_.stop};
+    for (const auto& file : session_.inputs)
+      if (window_) recent_.add(file);
     scene_ = is_mesh_input(session_) ? make_mesh_scene(session_, options) : make_flow_scene(session_, options);
     told_ = session_;
   }
 
   bool done() const {
-    const bool played = player_.duration() > 0 && !window_ && clock() > player_.duration();
-    const bool settled = options_.frames == 0 && player_.duration() <= 0 && !window_ && scene_->settled();
-    return quit_ || played || settled || (options_.frames > 0 && counted_ >= options_.frames) ||
-           (window_ && window_->should_close());
+    // A replay without an end of its own ends with the mesh.
+    const bool settled = waits() && !window_ && options_.frames == 0 && player_->duration() <= 0 && scene_->settled();
+    return quit_ || settled || (!window_ && player_->ended(clock() - played_since_)) ||
+           (options_.frames > 0 && counted_ >= options_.frames) || (window_ && window_->should_close());
   }
 
-  /// Seconds of the session: those of its frames where these wait for compute, else those that have passed.
-  double clock() const {
-    return waits() ? double(result_.frame_seconds.size()) / session_.settings.fps : now() - started_;
-  }
+  /// Seconds of the session: a frame's share for each that waited for compute, else those that have passed.
+  double clock() const { return double(waited_) / fps_ + passed_; }
 
   void frame() {
     const auto [width, height] = size();
-    if (width <= 0 || height <= 0) return;  // minimised
+    if (width <= 0 || height <= 0) return rest(now());  // minimised
     const double time = clock();
-    std::vector<Screenshot> pictures = player_.advance(time, session_);
+    std::vector<Screenshot> pictures = player_->advance(time - played_since_, session_);
     if (!dropped_.empty()) open_dropped();
     take_changes();
     if (waits())
       scene_->advance_and_wait(*options_.stop);
     else
-      scene_->advance(now());
+      attempt([&] { scene_->advance(now()); });
     if (options_.offscreen && !scene_->failure().empty()) throw Error(scene_->failure());
     const double begin = now();
-    fit_once(width, height);
     if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
-    draw(width, height, begin - last_);
-    last_ = begin;
+    draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
     glFinish();
     const double end = now();
-    if (options_.video) options_.video->add(frame_->read());
-    for (const Screenshot& picture : pictures) take_picture(picture);
-    if (recorder_) recorder_->note(time, session_, pictures);
+    if (FrameSink* video = video_ ? video_.get() : options_.video) video->add(frame_->read());
+    if (wishes_.screenshot) pictures.push_back(*wishes_.screenshot);
+    for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
+    if (recorder_) recorder_->note(time - recording_since_, session_, pictures);
     note_times(begin, end);
+    count_time(begin);
+    obey(wishes_);
     if (window_) window_->swap();
     tell_news();
     if (!waits()) rest(begin);
@@ -147,20 +176,36 @@ class Viewer {
     return view;
   }
 
-  void draw_scene(Framebuffer& frame, const std::array<float, 4>& background, double scale) {
+  void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background, double scale) {
     frame.bind();
     frame.clear(background);
     if (!fitted_) return;
-    const View view = view_of(frame.width(), frame.height());
+    frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
+    const View view = view_of(area.width, area.height);
     scene_->draw(view);
     if (session_.settings.legend) axes_->draw(view, float(scale));
+    frame.bind();
   }
 
   void draw(int width, int height, double seconds) {
-    draw_scene(*frame_, background_of(session_.settings), window_ ? window_->scale() : 1);
-    interface_->begin(width, height, seconds);
-    if (control_camera(session_, *scene_, state_, width, height).quit) quit_ = true;
-    draw_panel(state_, session_, *scene_, clock_, result_.renderer);
+    interface_->begin(width, height, seconds, session_.settings.look);
+    const FreeArea area = ui_.free_area(session_.settings.look, width, height);
+    area_ = area;
+    fit_new(area.width, area.height);
+    draw_scene(*frame_, area, background_of(session_.settings), window_ ? window_->scale() : 1);
+    if (session_.camera) move_camera(*session_.camera, session_.settings.look.turning, area);
+    const UiFacts facts{clock_,
+                        result_.renderer,
+                        recent_.files(),
+                        undo_.can_undo(),
+                        undo_.can_redo(),
+                        recorder_.has_value(),
+                        video_ != nullptr,
+                        width,
+                        height,
+                        window_ ? window_->take_keys() : std::vector<KeyPress>()};
+    wishes_ = ui_.draw(session_, *scene_, facts);
+    undo_.note(session_, Interface::busy());
     interface_->end();
     if (window_) {
       frame_->show_in_window();
@@ -174,12 +219,97 @@ class Viewer {
       image = frame_->read();
     } else {
       Framebuffer large(frame_->width() * picture.scale, frame_->height() * picture.scale, 4);
-      draw_scene(large, picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings),
+      draw_scene(large, {0, 0, large.width(), large.height()},
+                 picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings),
                  picture.scale);
       image = large.read();
     }
     write_png(picture.file, image);
     result_.pictures.push_back(picture.file);
+  }
+
+  void count_time(double frame_begin) {
+    if (waits())
+      ++waited_;
+    else if (last_ > 0)
+      passed_ += frame_begin - last_;
+    last_ = frame_begin;
+  }
+
+  /// In a window an error is a line for the user, who goes on; without one it ends the program.
+  template <class Action>
+  void attempt(const Action& action) {
+    if (!window_) return action();
+    try {
+      action();
+    } catch (const Error& error) {
+      ui_.tell(error.what());
+    }
+  }
+
+  void obey(const Wishes& wishes) {
+    if (wishes.quit) quit_ = true;
+    if (wishes.undo) undo_.undo(session_);
+    if (wishes.redo) undo_.redo(session_);
+    if (wishes.cancel) scene_->cancel();
+    if (wishes.resume) scene_->resume();
+    if (session_.camera && wishes.fit) fit(*session_.camera, scene_->corners());
+    if (session_.camera && !wishes.look_from.empty())
+      look_from(*session_.camera, wishes.look_from, scene_->corners(), area_.width, area_.height);
+    if (wishes.load_session) attempt([&] { load_session(*wishes.load_session); });
+    if (wishes.save_session) attempt([&] { save(*wishes.save_session, session_text(session_)); });
+    if (wishes.save_result)
+      attempt([&] {
+        scene_->write_result(*wishes.save_result);
+        ui_.tell("saved " + wishes.save_result->string());
+      });
+    obey_recording(wishes);
+  }
+
+  void obey_recording(const Wishes& wishes) {
+    if (wishes.record) {
+      recorder_.emplace(session_, session_.settings.fps);
+      recording_since_ = clock();
+    }
+    if (wishes.save_recording && recorder_)
+      attempt([&] {
+        save(*wishes.save_recording, session_text(recorder_->recording()));
+        if (!options_.recorded) recorder_.reset();
+      });
+    if (wishes.film) attempt([&] { begin_film(*wishes.film); });
+    if (wishes.end_film && video_)
+      attempt([&] {
+        const std::unique_ptr<FrameSink> video = std::move(video_);
+        video->finish();
+        ui_.tell("saved " + film_.string());
+      });
+  }
+
+  void begin_film(const std::filesystem::path& file) {
+    passed_ = clock();
+    waited_ = 0;
+    fps_ = session_.settings.fps;
+    video_ = make_video(file, fps_);
+    film_ = file;
+  }
+
+  void save(const std::filesystem::path& file, const std::string& text) {
+    OutputFile out(file);
+    out.write(text);
+    out.commit();
+    ui_.tell("saved " + file.string());
+  }
+
+  /// Its state; where it is a recording, that is played.
+  void load_session(const std::filesystem::path& file) {
+    Session loaded = read_session(file);
+    player_.emplace(loaded);
+    played_since_ = clock();
+    loaded.events.clear();
+    loaded.duration = 0;
+    if (!loaded.camera) fitted_ = false;
+    session_ = std::move(loaded);
+    recent_.add(file);
   }
 
   std::array<int, 2> size() const {
@@ -200,7 +330,7 @@ class Viewer {
     return session_.settings.samples > 1 && (waits() || !software) ? 4 : 1;
   }
 
-  bool waits() const { return options_.offscreen && !options_.live; }
+  bool waits() const { return (options_.offscreen && !options_.live) || options_.video || video_; }
 
   /// What has been changed since the last frame: by the user, the script, a file.
   void take_changes() {
@@ -213,19 +343,22 @@ class Viewer {
     told_ = session_;
   }
 
-  void fit_once(int width, int height) {
-    if (fitted_ || scene_->corners().empty()) return;
+  void fit_new(int width, int height) {
+    if (scene_->corners().empty()) return;
     if (!session_.camera) {
       Settings settings = session_.settings;
       settings.width = width;
       settings.height = height;
       session_.camera = options_.first_camera(settings, scene_->corners());
-      if (recorder_) recorder_->accept_camera(*session_.camera);
     }
     fitted_ = true;
   }
 
   void open_dropped() {
+    if (dropped_.size() == 1 && dropped_[0].extension() == ".json") {
+      const std::vector<std::filesystem::path> file = std::exchange(dropped_, {});
+      return attempt([&] { load_session(file[0]); });
+    }
     static_cast<SessionInput&>(session_) = {std::exchange(dropped_, {}), "", 0};
     session_.camera.reset();
   }
@@ -251,9 +384,21 @@ class Viewer {
     if (!remark.empty() && !std::exchange(said_remark_, true)) options_.say(remark);
   }
 
+  void check_result_format() const {
+    if (options_.out.empty()) return;
+    const std::vector<std::string> formats = scene_->result_formats();
+    if (std::find(formats.begin(), formats.end(), options_.out.extension()) == formats.end())
+      throw Error(fmt::format("cannot write {}", options_.out.string()), "its extension says no format of this result",
+                  fmt::format("use one of {}", fmt::join(formats, " ")));
+  }
+
+  void tell_recording() {
+    if (recorder_ && options_.recorded) options_.recorded(recorder_->recording());
+  }
+
   void finish() {
+    if (video_) video_->finish();
     if (options_.picture && frame_) result_.image = frame_->read();
-    if (recorder_) result_.recording = recorder_->recording(clock());
     if (!options_.out.empty()) scene_->write_result(options_.out);
     scene_->finish();
     result_.steps = scene_->steps();
@@ -267,16 +412,26 @@ class Viewer {
 
   const ViewerOptions& options_;
   Session session_, told_;
-  SessionPlayer player_;
+  std::optional<SessionPlayer> player_;
   std::optional<SessionRecorder> recorder_;
-  double started_, last_;
+  std::unique_ptr<FrameSink> video_;  ///< begun in the menu
+  std::filesystem::path film_;
+  int fps_;                                        ///< of frames that wait, whatever becomes of the knob meanwhile
+  double started_, last_ = 0;                      ///< on the machine's clock
+  double passed_ = 0;                              ///< seconds of frames that did not wait
+  long waited_ = 0;                                ///< frames that did
+  double played_since_ = 0, recording_since_ = 0;  ///< on the session's clock
   std::unique_ptr<Context> context_;
   Window* window_ = nullptr;  ///< the context, where it is one
   std::optional<Interface> interface_;
   std::optional<AxesPass> axes_;
   std::optional<Framebuffer> frame_;
   std::unique_ptr<Scene> scene_;
-  PanelState state_;
+  Ui ui_;
+  Undo undo_;
+  RecentFiles recent_;
+  Wishes wishes_;
+  FreeArea area_;
   FrameClock clock_;
   bool fitted_ = false, quit_ = false, said_remark_ = false;
   int counted_ = 0;

@@ -18,6 +18,8 @@ struct Camera {
   double height = 2;
   bool orthographic = false;
 
+  bool operator==(const Camera&) const = default;
+
   Vec3d forward() const { return normalized(target - eye); }
   Vec3d right() const {
     const Vec3d r = cross(forward(), up);

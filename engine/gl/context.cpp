@@ -5,6 +5,7 @@
 
 #include "compute/device/error.hpp"
 #include "engine/gl/errors.hpp"
+#include "engine/system/faults.hpp"
 
 namespace nacre {
 namespace {
@@ -28,6 +29,8 @@ Error opengl_missing(const std::string& why) {
       "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1 to draw with Mesa; nacre flow and nacre mesh "
       "need no OpenGL");
 }
+
+bool Context::lost() const { return fault_due("lost-context") || glGetGraphicsResetStatus() != GL_NO_ERROR; }
 
 std::vector<std::string> Context::messages() const {
   std::scoped_lock lock(mutex_);

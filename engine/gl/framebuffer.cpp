@@ -55,9 +55,11 @@ Framebuffer::Names::~Names() {
   glDeleteRenderbuffers(1, &depth);
 }
 
-void Framebuffer::bind() const {
+void Framebuffer::bind() const { bind_part(0, 0, width_, height_); }
+
+void Framebuffer::bind_part(int x, int y, int width, int height) const {
   glBindFramebuffer(GL_FRAMEBUFFER, names_.frame);
-  glViewport(0, 0, width_, height_);
+  glViewport(x, y, width, height);
 }
 
 void Framebuffer::clear(const std::array<float, 4>& colour) const {

@@ -25,6 +25,8 @@ class Framebuffer {
 
   /// Draws go here from now on, to all of it.
   void bind() const;
+  /// Draws go to a part of it from now on; (0, 0) is the left lower corner.
+  void bind_part(int x, int y, int width, int height) const;
   /// All of it to one colour, encoded; depth to far away.
   void clear(const std::array<float, 4>& colour) const;
   /// Puts the picture into the left lower corner of the window.

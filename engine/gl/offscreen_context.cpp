@@ -64,16 +64,24 @@ class OffscreenContext final : public Context {
 EGLContext create(EGLDisplay display) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
     return EGL_NO_CONTEXT;
-  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
-                           4,
-                           EGL_CONTEXT_MINOR_VERSION,
-                           5,
-                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                           EGL_CONTEXT_OPENGL_DEBUG,
-                           EGL_TRUE,
-                           EGL_NONE};
-  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+  // Told of resets where the driver can do that.
+  constexpr EGLint strategy = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
+  for (const EGLint told : {EGL_LOSE_CONTEXT_ON_RESET, EGL_NO_RESET_NOTIFICATION}) {
+    const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
+                             4,
+                             EGL_CONTEXT_MINOR_VERSION,
+                             5,
+                             EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                             EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                             EGL_CONTEXT_OPENGL_DEBUG,
+                             EGL_TRUE,
+                             strategy,
+                             told,
+                             EGL_NONE};
+    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+    if (context != EGL_NO_CONTEXT) return context;
+  }
+  return EGL_NO_CONTEXT;
 }
 
 }  // namespace

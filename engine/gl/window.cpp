@@ -30,7 +30,10 @@ Window::Window(const std::string& title, int width, int height) {
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);  // all is drawn into a Framebuffer, the window only gets the picture
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  for (const int told : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // of resets, where the driver can do that
+    glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, told);
+    if (!window_) window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  }
   if (!window_) {
     const std::string why = glfw_complaint();
     glfwTerminate();
@@ -45,6 +48,12 @@ Window::Window(const std::string& title, int width, int height) {
   }
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int held) {
+    const bool ctrl = held & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER), escape = key == GLFW_KEY_ESCAPE;
+    if (action != GLFW_PRESS || !(ctrl || escape)) return;
+    auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    self->keys_.push_back({escape ? 27 : key, ctrl, (held & GLFW_MOD_SHIFT) != 0});
+  });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** names) {
     const auto* self = static_cast<const Window*>(glfwGetWindowUserPointer(window));
     if (self->on_drop) self->on_drop({names, names + count});

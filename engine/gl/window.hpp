@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/gl/context.hpp"
@@ -13,6 +14,12 @@
 struct GLFWwindow;
 
 namespace nacre {
+
+/// A key that went down with others held, by the letter that is on it on an American keyboard; 27 is Escape.
+struct KeyPress {
+  int key = 0;
+  bool ctrl = false, shift = false;
+};
 
 /// One window by GLFW. Its context is current on the thread that made it, which must be the main thread.
 class Window : public Context {
@@ -32,11 +39,15 @@ class Window : public Context {
   std::array<int, 2> pixels() const;  ///< of its framebuffer; (0, 0) while minimised
   float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI)
 
+  /// Keys with ctrl, and Escape, since the last call: every one, however long a frame takes.
+  std::vector<KeyPress> take_keys() { return std::exchange(keys_, {}); }
+
   /// Called in `poll` with the files that were dropped on the window.
   std::function<void(const std::vector<std::filesystem::path>& files)> on_drop;
 
  private:
   GLFWwindow* window_ = nullptr;
+  std::vector<KeyPress> keys_;
 };
 
 }  // namespace nacre

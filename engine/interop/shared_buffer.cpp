@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "compute/device/error.hpp"
+#include "engine/system/faults.hpp"
 
 namespace nacre {
 namespace {
@@ -15,6 +16,7 @@ constexpr GLuint64 longest_wait = 5'000'000'000;  // ns: a graphics device that 
 }  // namespace
 
 SharedBuffer::Path SharedBuffer::best_path(const Device& device) {
+  if (fault_due("other-device")) return Path::copied;
   if (device.backend() != "cuda") return Path::mapped;
   return cuda_draws_here() ? Path::registered : Path::copied;
 }

@@ -75,6 +75,17 @@ void blend_over(Image& bottom, const Image& top, int x, int y) {
     }
 }
 
+Image on_canvas(const Image& image, int width, int height) {
+  if (image.width == width && image.height == height) return image;
+  Image canvas(width, height);
+  for (std::size_t i = 0; i < canvas.pixels.size(); ++i) canvas.pixels[i] = image.pixels[i % 4];
+  const int left = (width - image.width) / 2, top = (height - image.height) / 2;
+  const int first = std::max(0, left), past = std::min(width, left + image.width);
+  for (int y = std::max(0, top); y < std::min(height, top + image.height); ++y)
+    std::copy_n(image.at(first - left, y - top), std::size_t(past - first) * 4, canvas.at(first, y));
+  return canvas;
+}
+
 Image downsample(const Image& image, int factor) {
   assert(factor >= 1);
   if (factor == 1 || image.width == 0 || image.height == 0) return image;

@@ -120,4 +120,12 @@ std::string text_to_fit(std::string_view text, float pixels, int width) {
   return fitting > 0 ? std::string(text.substr(0, fitting)) + ellipsis : std::string();
 }
 
+std::string_view font_bytes() {
+#ifdef NACRE_HAS_FONT
+  return {reinterpret_cast<const char*>(nacre_font_begin), std::size_t(nacre_font_end - nacre_font_begin)};
+#else
+  return {};
+#endif
+}
+
 }  // namespace nacre

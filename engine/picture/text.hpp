@@ -23,4 +23,7 @@ void draw_text(Image& image, int x, int y, std::string_view text, float pixels, 
 /// The text, or as much of its beginning as fits into `width` pixels with an ellipsis; empty where nothing fits.
 std::string text_to_fit(std::string_view text, float pixels, int width);
 
+/// The TrueType font that all this is drawn with; empty where the build found none.
+std::string_view font_bytes();
+
 }  // namespace nacre

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "compute/device/error.hpp"
+#include "engine/picture/compose.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/system/child_process.hpp"
 #include "engine/system/output_file.hpp"
@@ -33,7 +34,7 @@ class FrameFolder : public FrameSink {
                   advice_on_writing(failed.value()));
   }
 
-  void add(const Image& frame) override {
+  void write(const Image& frame) override {
     write_png(folder_ / fmt::format("frame_{:04}.png", count_), frame);
     ++count_;
   }
@@ -89,7 +90,7 @@ class Video : public FrameSink {
                   "install the package ffmpeg, or write pictures with --frames DIR");
   }
 
-  void add(const Image& frame) override {
+  void write(const Image& frame) override {
     if (!child_) start(frame.width, frame.height);
     assert(frame.width == width_ && frame.height == height_);
     pack(frame);
@@ -149,6 +150,12 @@ class Video : public FrameSink {
 };
 
 }  // namespace
+
+void FrameSink::add(const Image& frame) {
+  if (width_ == 0) width_ = frame.width, height_ = frame.height;
+  const bool fits = frame.width == width_ && frame.height == height_;
+  write(fits ? frame : on_canvas(frame, width_, height_));
+}
 
 std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder) { return std::make_unique<FrameFolder>(folder); }
 

@@ -8,17 +8,24 @@
 
 namespace nacre {
 
-/// Takes frames in the order of their showing. All have the size of the first.
+/// Takes frames in the order of their showing.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
 
-  /// Throws Error where the frame cannot be written; the sink is of no further use then.
-  virtual void add(const Image& frame) = 0;
+  /// One of another size than the first is cut off or framed to that. Throws Error where the frame cannot be written; the
+  /// sink is of no further use then.
+  void add(const Image& frame);
 
   /// Makes the result whole. Throws Error where that fails or no frame was added. A sink that goes without `finish`
   /// leaves no half-written file.
   virtual void finish() = 0;
+
+ protected:
+  virtual void write(const Image& frame) = 0;
+
+ private:
+  int width_ = 0, height_ = 0;
 };
 
 /// frame_0000.png, frame_0001.png and so on in `folder`, which is made if missing. Frames of an earlier run are

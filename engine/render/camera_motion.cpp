@@ -22,6 +22,12 @@ Vec3d point_under(const Camera& camera, double x, double y, double aspect) {
   return camera.target + (right * (x * aspect) + up * y) * (0.5 * camera.height);
 }
 
+ViewRay ray_under(const Camera& camera, double x, double y, double aspect) {
+  const Vec3d point = point_under(camera, x, y, aspect);
+  if (camera.orthographic) return {point - (camera.target - camera.eye), camera.forward()};
+  return {camera.eye, normalized(point - camera.eye)};
+}
+
 Camera turn_table(const Camera& camera, double dx, double dy) {
   const Vec3d up = normalized(camera.up), right = camera.right();
   Vec3d arm = camera.eye - camera.target;

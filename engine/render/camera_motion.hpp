@@ -11,6 +11,12 @@ namespace nacre {
 /// The point under (x, y) in the plane through the target that faces the camera.
 Vec3d point_under(const Camera& camera, double x, double y, double aspect);
 
+/// The ray through (x, y), unit; it begins at the eye (in its plane where the camera is orthographic).
+struct ViewRay {
+  Vec3d from, along;
+};
+ViewRay ray_under(const Camera& camera, double x, double y, double aspect);
+
 /// Turntable: a movement across the whole picture turns by half a circle, about `up` and about the axis across. It stops
 /// a degree short of looking along `up`.
 Camera turn_table(const Camera& camera, double dx, double dy);

@@ -29,11 +29,6 @@ std::size_t distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::string snake_case(std::string name) {
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
 std::string range_of(const Knob& knob) {
   if (!knob.choices.empty()) return fmt::format("{}", fmt::join(knob.choices, "|"));
   if (std::holds_alternative<bool*>(knob.value)) return "true|false";
@@ -77,6 +72,11 @@ void assign(const Knob& knob, const std::string& text) {
 }
 
 }  // namespace
+
+std::string snake_case(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
 
 std::string Knob::option() const {
   std::string dashes = name;

@@ -10,6 +10,9 @@
 
 namespace nacre {
 
+/// A knob's name for what may be written with dashes.
+std::string snake_case(std::string name);
+
 /// One knob, bound to its place in a Settings.
 struct Knob {
   std::string name;   ///< snake_case; on the command line --with-dashes

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nacre {
 namespace {
+
+constexpr double same = 1e-9;  // seconds: times of frames are sums of rounded numbers
 
 /// The camera's own axes: right, up, backward.
 struct Frame {
@@ -56,57 +59,83 @@ SessionPlayer::SessionPlayer(Session recording) : recording_(std::move(recording
 
 std::vector<Screenshot> SessionPlayer::advance(double time, Session& now) {
   std::vector<Screenshot> pictures;
-  constexpr double same = 1e-9;  // seconds: times of frames are sums of rounded numbers
   for (; next_ < recording_.events.size() && recording_.events[next_].time <= time + same; ++next_) {
     const SessionEvent& event = recording_.events[next_];
+    move_camera(event.time, now);
     const std::optional<Camera> before = now.camera;
     apply_event(event, now);
-    if (event.input && !event.camera) now.camera.reset();  // to be fitted
-    if (event.input || event.camera) glide_.reset();
-    if (event.camera && event.over > 0 && before) glide_ = {*before, *event.camera, event.time, event.over};
+    if (event.camera || fits_camera(event)) glide_.reset();
+    if (event.over > 0 && before && !event.input) {
+      glide_ = {*before, *event.camera, *before, event.time, event.over};
+      now.camera = before;
+    }
     if (event.screenshot) pictures.push_back(*event.screenshot);
   }
-  if (glide_) {
-    const double share = (time - glide_->begin) / glide_->over;
-    const double eased = share >= 1 ? 1 : share * share * (3 - 2 * share);  // starts and ends at rest
-    now.camera = between(glide_->from, glide_->to, eased);
-    if (share >= 1) glide_.reset();
-  }
+  move_camera(time, now);
   return pictures;
 }
 
-SessionRecorder::SessionRecorder(const Session& start, int fps) : start_(start), last_(start), fps_(fps) {
+void SessionPlayer::move_camera(double time, Session& now) {
+  if (glide_ && now.camera != glide_->last) glide_.reset();  // somebody else has it
+  if (!glide_) return;
+  const double share = (time - glide_->begin) / glide_->over;
+  const double eased = share >= 1 ? 1 : share * share * (3 - 2 * share);  // starts and ends at rest
+  now.camera = glide_->last = between(glide_->from, glide_->to, eased);
+  if (share >= 1) glide_.reset();
+}
+
+bool SessionPlayer::ended(double time) const {
+  return (!recording_.events.empty() || recording_.duration > 0) && time > recording_.duration + same;
+}
+
+SessionRecorder::SessionRecorder(const Session& start, int fps) : start_(start), fps_(fps) {
   start_.events.clear();
   start_.duration = 0;
+  before_ = now_ = start_;
 }
-
-/// The first frame at or after `time`.
-double SessionRecorder::frame_time(double time) const { return std::ceil(time * fps_ - 1e-6) / fps_; }
 
 void SessionRecorder::note(double time, const Session& now, const std::vector<Screenshot>& pictures) {
-  std::optional<SessionEvent> event = session_change(last_, now);
-  last_ = now;
-  if (!event && pictures.empty()) return;
-  if (!event) event.emplace();
-  event->time = frame_time(time);
-  // Two frames of a fast display in one of the recording's: the later change wins.
-  if (!events_.empty() && events_.back().time == event->time && !events_.back().screenshot && !event->input) {
-    SessionEvent& same = events_.back();
-    for (const auto& [name, text] : event->knobs) same.knobs[name] = text;
-    if (event->camera) same.camera = event->camera;
-  } else {
-    events_.push_back(*event);
-  }
-  for (std::size_t k = 0; k < pictures.size(); ++k) {
-    if (events_.back().screenshot) events_.push_back({events_.back().time, {}, {}, {}, 0, {}});
-    events_.back().screenshot = pictures[k];
-  }
+  // Nothing may change after a picture in the same frame: a replay makes all changes before it takes pictures.
+  const long next = pictures_.empty() ? frame_ : frame_ + 1;
+  const long frame = std::max(next, long(std::ceil(time * fps_ - 1e-6)));
+  if (frame > frame_) close_frame();
+  frame_ = frame;
+  static_cast<SessionInput&>(now_) = now;
+  now_.settings = now.settings;
+  now_.camera = now.camera;
+  pictures_.insert(pictures_.end(), pictures.begin(), pictures.end());
 }
 
-Session SessionRecorder::recording(double time) const {
-  Session session = start_;
-  session.events = events_;
-  session.duration = frame_time(time);
+void SessionRecorder::close_frame() {
+  SessionEvent event = session_change(before_, now_).value_or(SessionEvent());
+  event.time = double(frame_) / fps_;
+  const std::optional<Camera> camera = std::exchange(event.camera, std::nullopt);
+  if (fits_camera(event))
+    event.camera = now_.camera;
+  else if (camera && !before_.camera)
+    camera_of_opened() = camera;
+  else
+    event.camera = camera;
+  if (event.input || !event.knobs.empty() || event.camera || !pictures_.empty()) events_.push_back(event);
+  for (std::size_t k = 0; k < pictures_.size(); ++k) {
+    if (k > 0) events_.push_back({event.time, {}, {}, {}, 0, {}});
+    events_.back().screenshot = pictures_[k];
+  }
+  pictures_.clear();
+  before_ = now_;
+}
+
+std::optional<Camera>& SessionRecorder::camera_of_opened() {
+  const auto opened = std::find_if(events_.rbegin(), events_.rend(), fits_camera);
+  return opened == events_.rend() ? start_.camera : opened->camera;
+}
+
+Session SessionRecorder::recording() const {
+  SessionRecorder whole = *this;
+  whole.close_frame();
+  Session session = whole.start_;
+  session.events = whole.events_;
+  session.duration = double(frame_) / fps_;
   return session;
 }
 

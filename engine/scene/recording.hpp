@@ -15,16 +15,20 @@ class SessionPlayer {
   explicit SessionPlayer(Session recording);
 
   /// Brings `now` to `time` (seconds, never less than at the last call): makes the changes of all events up to then, and
-  /// moves the camera where one is on its way. Returns the pictures to be taken of this frame.
+  /// moves the camera where one is on its way. Whoever else moves it meanwhile has it: until the next event's camera.
+  /// Returns the pictures to be taken of this frame.
   std::vector<Screenshot> advance(double time, Session& now);
 
-  double duration() const { return recording_.duration; }
+  /// Is there something to play, and was a frame at `time` one too many? The last one is that at the duration.
+  bool ended(double time) const;
 
  private:
   struct Glide {
-    Camera from, to;
+    Camera from, to, last;
     double begin, over;
   };
+
+  void move_camera(double time, Session& now);
 
   Session recording_;
   std::size_t next_ = 0;  ///< event
@@ -34,26 +38,28 @@ class SessionPlayer {
 /// Between two cameras, 0 <= share <= 1: about the target, at even speed of angle and logarithm of distance.
 Camera between(const Camera& from, const Camera& to, double share);
 
-/// Writes down what changes. Times are those of the frames of a clock with `fps` frames a second, so that a recording of a
-/// replay is the recording again.
+/// Writes down what changes. Times are those of the frames of a clock with `fps` frames a second: the first frame at or
+/// after what happened. All that happens within one such frame is one event, so that a recording of a replay is the
+/// recording again. A camera that has been fitted to what was opened belongs to it, and is written there.
 class SessionRecorder {
  public:
   SessionRecorder(const Session& start, int fps);
 
-  /// The session as it is in the frame at `time` (seconds since the start), and the pictures taken of it.
+  /// The session as it is at `time` (seconds since the start, never less than at the last call), and the pictures taken
+  /// of it.
   void note(double time, const Session& now, const std::vector<Screenshot>& pictures = {});
 
-  /// The camera has been fitted to what was read: no doing of the user's. A replay fits it, too.
-  void accept_camera(const Camera& camera) { last_.camera = camera; }
-
-  /// From the start to `time`.
-  Session recording(double time) const;
+  /// From the start to what was noted last.
+  Session recording() const;
 
  private:
-  double frame_time(double time) const;
+  void close_frame();
+  std::optional<Camera>& camera_of_opened();  ///< of what was opened last and waits for one
 
-  Session start_, last_;
+  Session start_, before_, now_;  ///< before_: at the end of the last frame of the clock that is written
   int fps_;
+  long frame_ = 0;  ///< of the clock: not written yet
+  std::vector<Screenshot> pictures_;
   std::vector<SessionEvent> events_;
 };
 

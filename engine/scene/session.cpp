@@ -1,6 +1,8 @@
 // Nacre: reading and writing of session files.
 #include "engine/scene/session.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -15,76 +17,119 @@ namespace {
 using nlohmann::json;
 using std::filesystem::path;
 
+constexpr const char* format_name = "session 1";
+constexpr double longest_session = 1e6;  // seconds
+
 path beside(const path& folder, const path& file) { return file.is_absolute() ? file : folder / file; }
 
-bool has_input(const json& from) { return from.contains("inputs") || from.contains("sample"); }
+/// Only names that a session knows: a misspelt one would be left out in silence.
+void check_names(const json& object, std::initializer_list<const char*> names, const char* what) {
+  if (!object.is_object()) throw Error(fmt::format("{} is no JSON object", what));
+  for (const auto& [name, value] : object.items())
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw Error(fmt::format("'{}' means nothing in {}", name, what), "",
+                  fmt::format("use {}", fmt::join(names, ", ")));
+}
+
+int whole_number(const json& from, const char* name, int otherwise) {
+  if (!from.contains(name)) return otherwise;
+  const json& value = from[name];
+  if (!value.is_number_integer() || !(value.get<double>() >= 0 && value.get<double>() <= 1e9))
+    throw Error(fmt::format("'{}' takes a whole number, not {}", name, value.dump()));
+  return value.get<int>();
+}
+
+double seconds(const json& from, const char* name) {
+  const double value = from.value(name, 0.0);
+  if (!(value >= 0 && value <= longest_session))
+    throw Error(fmt::format("'{}' {} is out of range", name, value), "",
+                fmt::format("use 0..{} seconds", longest_session));
+  return value;
+}
 
 SessionInput read_input(const json& from, const path& folder) {
   SessionInput input;
   for (const auto& file : from.value("inputs", json::array()))
     input.inputs.push_back(beside(folder, file.get<std::string>()));
   input.sample = from.value("sample", "");
-  input.detail = from.value("detail", 0);
-  if (!input.inputs.empty() && !input.sample.empty()) throw Error("a session has inputs or a sample, not both");
-  if (input.detail < 0) throw Error("the detail of a sample is below zero");
+  input.detail = whole_number(from, "detail", 0);
+  if (!input.inputs.empty() && !input.sample.empty())
+    throw Error("there are inputs and a sample", "", "use one of them");
   return input;
 }
 
-/// Values as text, each checked against the table.
+Camera read_camera(const json& from) {
+  check_names(from, {"eye", "target", "up", "height", "orthographic"}, "a camera");
+  return camera_of(from);
+}
+
+/// Values as text, each checked against the table and written as the table writes it.
 std::map<std::string, std::string> read_knobs(const json& from) {
   Settings settings;
   set_knobs(settings, from);
-  std::map<std::string, std::string> knobs;
-  for (const auto& [name, value] : from.items())
-    knobs[name] = value.is_string() ? value.get<std::string>() : value.dump();
-  return knobs;
+  std::map<std::string, std::string> texts;
+  for (const auto& [name, value] : from.items()) texts[snake_case(name)];
+  for (const Knob& knob : knobs(settings))
+    if (texts.contains(knob.name)) texts[knob.name] = knob.text();
+  return texts;
 }
 
 Screenshot read_screenshot(const json& from, const path& folder) {
+  check_names(from, {"file", "scale", "panel", "transparent"}, "a screenshot");
   Screenshot shot;
   shot.file = beside(folder, from.at("file").get<std::string>());
-  shot.scale = from.value("scale", 1);
+  shot.scale = whole_number(from, "scale", 1);
   shot.panel = from.value("panel", false);
   shot.transparent = from.value("transparent", false);
-  if (shot.scale < 1 || shot.scale > 4) throw Error("the scale of a screenshot is 1 to 4");
+  if (shot.scale < 1 || shot.scale > 4) throw Error("the scale of a screenshot is out of range", "", "use 1..4");
   return shot;
 }
 
 SessionEvent read_event(const json& from, const path& folder) {
+  check_names(from, {"time", "inputs", "sample", "detail", "knobs", "camera", "over", "screenshot"}, "an event");
   SessionEvent event;
-  event.time = from.at("time").get<double>();
-  if (!(event.time >= 0 && event.time < 1e6)) throw Error("the time of an event is not in 0 .. 1e6 seconds");
-  if (has_input(from)) event.input = read_input(from, folder);
+  if (!from.contains("time")) throw Error("an event has no time");
+  event.time = seconds(from, "time");
+  if (from.contains("inputs") || from.contains("sample") || from.contains("detail")) {
+    event.input = read_input(from, folder);
+    if (event.input->inputs.empty() && event.input->sample.empty())
+      throw Error("an event opens nothing", "", "give it inputs or a sample");
+  }
   if (from.contains("knobs")) event.knobs = read_knobs(from["knobs"]);
-  if (from.contains("camera")) event.camera = camera_of(from["camera"]);
-  event.over = from.value("over", 0.0);
-  if (!(event.over >= 0 && event.over < 1e6)) throw Error("the camera of an event takes 0 .. 1e6 seconds");
+  if (from.contains("camera")) event.camera = read_camera(from["camera"]);
+  event.over = seconds(from, "over");
+  if (event.over > 0 && !event.camera) throw Error("'over' is how long a camera takes", "the event has no camera");
   if (from.contains("screenshot")) event.screenshot = read_screenshot(from["screenshot"], folder);
   return event;
 }
 
-/// Only names that a session knows: a misspelt one would be left out in silence.
-void check_names(const json& object, std::initializer_list<const char*> names) {
-  for (const auto& [name, value] : object.items())
-    if (std::find(names.begin(), names.end(), name) == names.end()) throw Error("'" + name + "' means nothing here");
+std::vector<SessionEvent> read_events(const json& from, const path& folder) {
+  std::vector<SessionEvent> events;
+  if (!from.is_array()) throw Error("'events' is no JSON array");
+  for (const json& event : from) try {
+      events.push_back(read_event(event, folder));
+    } catch (const json::exception& error) {
+      throw Error(fmt::format("event {}: {}", events.size() + 1, error.what()));
+    } catch (const Error& error) {
+      throw Error(fmt::format("event {}: {}", events.size() + 1, error.what()));
+    }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const SessionEvent& a, const SessionEvent& b) { return a.time < b.time; });
+  return events;
 }
 
 Session read_json(const json& from, const path& folder) {
-  if (!from.is_object()) throw Error("not a JSON object");
-  check_names(from, {"nacre", "inputs", "sample", "detail", "knobs", "camera", "events", "duration"});
+  check_names(from, {"nacre", "inputs", "sample", "detail", "knobs", "camera", "events", "duration"}, "a session");
+  if (from.value("nacre", format_name) != format_name)
+    throw Error(fmt::format("it is {}", from["nacre"].dump()), "",
+                fmt::format("this version reads \"{}\"", format_name));
   Session session;
   static_cast<SessionInput&>(session) = read_input(from, folder);
   if (from.contains("knobs")) set_knobs(session.settings, from["knobs"]);
-  if (from.contains("camera")) session.camera = camera_of(from["camera"]);
-  for (const json& event : from.value("events", json::array())) {
-    check_names(event, {"time", "inputs", "sample", "detail", "knobs", "camera", "over", "screenshot"});
-    session.events.push_back(read_event(event, folder));
-  }
-  std::stable_sort(session.events.begin(), session.events.end(),
-                   [](const SessionEvent& a, const SessionEvent& b) { return a.time < b.time; });
-  session.duration = from.value("duration", 0.0);
-  for (const SessionEvent& e : session.events)
-    session.duration = std::max(session.duration, e.time + (e.camera ? e.over : 0));
+  if (from.contains("camera")) session.camera = read_camera(from["camera"]);
+  if (from.contains("events")) session.events = read_events(from["events"], folder);
+  session.duration = seconds(from, "duration");
+  for (const SessionEvent& e : session.events) session.duration = std::max(session.duration, e.time + e.over);
   return session;
 }
 
@@ -119,7 +164,8 @@ json event_json(const SessionEvent& event) {
 
 Session read_session(const path& file) {
   std::ifstream stream(file);
-  if (!stream) throw Error("cannot read session " + file.string(), "no such file or no permission");
+  if (!stream || std::filesystem::is_directory(file))
+    throw Error("cannot read session " + file.string(), "no such file or no permission");
   try {
     return read_json(json::parse(stream), file.parent_path());
   } catch (const json::exception& error) {
@@ -131,7 +177,7 @@ Session read_session(const path& file) {
 
 std::string session_text(const Session& session) {
   json to;
-  to["nacre"] = "session 1";
+  to["nacre"] = format_name;
   write_input(session, to);
   to["knobs"] = knob_values(session.settings);
   if (session.camera) to["camera"] = camera_json(*session.camera);
@@ -148,15 +194,16 @@ std::optional<SessionEvent> session_change(const Session& before, const Session&
   const std::vector<Knob> old = knobs(was), now = knobs(is);
   for (std::size_t k = 0; k < now.size(); ++k)
     if (old[k].text() != now[k].text()) event.knobs[now[k].name] = now[k].text(), changed = true;
-  if (after.camera && (!before.camera || camera_json(*before.camera) != camera_json(*after.camera)))
-    event.camera = after.camera, changed = true;
+  if (after.camera && after.camera != before.camera) event.camera = after.camera, changed = true;
   return changed ? std::optional(event) : std::nullopt;
 }
+
+bool fits_camera(const SessionEvent& event) { return !event.camera && (event.input || event.knobs.contains("camera")); }
 
 void apply_event(const SessionEvent& event, Session& session) {
   if (event.input) static_cast<SessionInput&>(session) = *event.input;
   for (const auto& [name, text] : event.knobs) set_knob(session.settings, name, text);
-  if (event.camera) session.camera = event.camera;
+  if (event.camera || fits_camera(event)) session.camera = event.camera;
 }
 
 }  // namespace nacre

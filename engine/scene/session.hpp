@@ -46,13 +46,14 @@ struct SessionEvent {
 ///    "events": [{"time": 0.4, "knobs": {...}, "camera": {...}, "over": 1, "inputs": .., "sample": .., "detail": ..,
 ///                "screenshot": {"file": "a.png", "scale": 2, "panel": false, "transparent": false}}],
 ///    "duration": 5}
-/// All but the first may be left out. Relative files are relative to the session file. A session with events is a
-/// recording; without, it is the state of a view.
+/// All may be left out, and "detail" goes with inputs or a sample. Relative files are relative to the session file. A
+/// session with events is a recording, or a script that somebody wrote; without, it is the state of a view. An event's
+/// input without a camera, or its knob "camera" without one, has the camera fitted as at the start.
 struct Session : SessionInput {
   Settings settings;
   std::optional<Camera> camera;      ///< none: as the knob says
   std::vector<SessionEvent> events;  ///< by time
-  double duration = 0;               ///< of the recording, seconds; at least the last event's time
+  double duration = 0;               ///< of the recording, seconds; at least to the last event's end
 };
 
 /// Throws Error where the file cannot be read, is no session, or holds a knob that is not known or out of range.
@@ -64,7 +65,10 @@ std::string session_text(const Session& session);
 /// What has to happen (at time 0) to `before` so that it becomes `after`: inputs, knobs, camera. None where they agree.
 std::optional<SessionEvent> session_change(const Session& before, const Session& after);
 
-/// Makes the change, all of it at once. Throws Error where a knob is not known or out of range.
+/// Does the event leave the camera to be fitted anew?
+bool fits_camera(const SessionEvent& event);
+
+/// Makes the change, all of it at once; a camera that is to be fitted is none. Throws Error where a knob is not known or out of range.
 void apply_event(const SessionEvent& event, Session& session);
 
 }  // namespace nacre

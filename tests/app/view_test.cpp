@@ -1,37 +1,17 @@
 // Nacre: the viewer as a script runs it, without a display.
 #include <cstdlib>
+#include <map>
 
 #include "engine/picture/png.hpp"
-#include "tests/app/program.hpp"
+#include "tests/app/view_program.hpp"
 
 namespace nacre::test {
 namespace {
 
-const Words small_view = {"view", "--offscreen", "--sample", "sphere", "--detail", "24",         "--resolution",
-                          "64",   "--steps",     "4",        "--size", "200x150",  "--no-panel", "--quiet"};
+const Words small_view = {"view", "--offscreen", "--sample", "sphere", "--detail", "24",     "--resolution",
+                          "64",   "--steps",     "4",        "--size", "200x150",  "--quiet"};
 
-/// Why the viewer cannot run here; empty: it can.
-std::string no_viewer() {
-  static const std::string why = [] {
-    const Outcome tried = nacre({"view", "--offscreen", "--sample", "sphere", "--detail", "24", "--resolution", "32",
-                                 "--frames-count", "1", "--quiet"});
-    return tried.status == 1 && (contains(tried.err, "no viewer") || contains(tried.err, "no OpenGL")) ? tried.err : "";
-  }();
-  return why;
-}
-
-class View : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!no_viewer().empty()) GTEST_SKIP() << no_viewer();
-  }
-  TemporaryFolder folder;
-};
-
-nlohmann::json read_json(const fs::path& file) {
-  std::ifstream stream(file);
-  return nlohmann::json::parse(stream);
-}
+using View = ViewTest;
 
 TEST_F(View, OffscreenWritesThePictureOfTheLastFrame) {
   const fs::path png = folder / "view.png", json = folder / "view.json";
@@ -77,6 +57,39 @@ TEST_F(View, LiveFramesDoNotWaitForCompute) {
   EXPECT_GE(view.at("frames"), 60);
   EXPECT_LT(view.at("first_frame_seconds"), 2.0);
   EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
+}
+
+Outcome with_faults(const std::string& faults, const Words& words) {
+  return run("/bin/bash",
+             Words{"-c", "NACRE_FAULTS=" + faults + " exec \"$0\" \"$@\"", NACRE_PROGRAM} + small_view + words);
+}
+
+TEST_F(View, AResetGraphicsDeviceIsBornAndTheSessionGoesOn) {
+  const fs::path png = folder / "view.png", json = folder / "view.json", whole = folder / "whole.png";
+  ASSERT_EQ(nacre(small_view + Words{"--image", whole.string()}).status, 0);
+  // In the second frame: the flow begins anew, so that six frames show what four do without it.
+  const Outcome outcome =
+      with_faults("lost-context@2", {"--frames-count", "6", "--image", png.string(), "--report", json.string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_png(png).pixels, read_png(whole).pixels);
+  EXPECT_TRUE(read_json(json).at("view").at("driver_messages").empty());
+}
+
+TEST_F(View, AnotherDevicesPictureIsTheSameAndItsCopiesAreCounted) {
+  const fs::path png = folder / "view.png", json = folder / "view.json", mapped = folder / "mapped.png";
+  ASSERT_EQ(nacre(small_view + Words{"--image", mapped.string()}).status, 0);
+  const Outcome outcome = with_faults("other-device", {"--image", png.string(), "--report", json.string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_png(png).pixels, read_png(mapped).pixels);
+  EXPECT_GT(read_json(json).at("view").at("copied_bytes"), 0);
+}
+
+TEST_F(View, OutOfMemoryIsOneLineThatSaysWhatToDo) {
+  const Outcome outcome = with_faults("out-of-memory@1", {"--image", (folder / "view.png").string()});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_TRUE(contains(outcome.err, "out of memory")) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "resolution")) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder / "view.png"));
 }
 
 TEST_F(View, WordsThatAreOffAreUsageErrors) {
@@ -127,6 +140,28 @@ TEST_F(View, WindowUnderXvfb) {
       coloured += std::abs(int(p[0]) - int(p[2])) > 30;
     }
   EXPECT_GT(coloured, image.width * image.height / 10);
+}
+
+TEST_F(View, KeysAndMouseInTheWindow) {
+  const fs::path recording = folder / "done.json", report = folder / "keys.json", png = folder / "keys.png";
+  const Outcome outcome = run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_keys.sh", NACRE_PROGRAM,
+                                            recording.string(), report.string(), png.string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::map<std::string, std::vector<nlohmann::json>> knobs;
+  int turns = 0, orthographic = 0;
+  const nlohmann::json done = read_json(recording);
+  for (const auto& event : done.at("events")) {
+    if (event.contains("knobs"))
+      for (const auto& [name, value] : event.at("knobs").items()) knobs[name].push_back(value);
+    if (event.contains("camera")) ++turns, orthographic += event.at("camera").at("orthographic").get<bool>();
+  }
+  EXPECT_EQ(knobs["edges"], (std::vector<nlohmann::json>{true}));
+  EXPECT_EQ(knobs["theme"], (std::vector<nlohmann::json>{"light", "dark", "light"}));  // undone, and done again
+  EXPECT_EQ(knobs["panel"], (std::vector<nlohmann::json>{false}));
+  EXPECT_GE(turns, 3);  // orthographic, turned, nearer
+  EXPECT_EQ(orthographic, turns);
+  EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Nacre: runs every command that the README and the guide show. Usage: run_commands.sh PROGRAM [ROOT]; the fenced ```sh
-# blocks of each page run in order, as one script, in an empty folder, where `nacre` is PROGRAM. Blocks that begin with
-# ./dev are the repository's own commands and are only checked to exist. Fails at the first command that fails, and where
-# a page has no command.
+# Nacre: runs every command that the README, the guide and the viewer's page show. Usage: run_commands.sh PROGRAM [ROOT];
+# the fenced ```sh blocks of each page run in order, as one script, in an empty folder, where `nacre` is PROGRAM. Blocks
+# that begin with ./dev are the repository's own commands and are only checked to exist. Fails at the first command that
+# fails, and where a page has no command.
 set -euo pipefail
 
 program=$(readlink -f "${1:?usage: run_commands.sh PROGRAM [ROOT]}")
@@ -22,7 +22,7 @@ commands() { awk '/^```sh$/ { on = 1; next } /^```/ { on = 0 } on' "$1"; }
 
 # Files that the commands of SCRIPT name with --image, --out and the like: they must be there afterwards.
 expected_files() {
-  grep -oE -- '--(image|video|out|report|frames|save-session) [^ ]+' "$1" | cut -d' ' -f2 | sort -u || true
+  grep -oE -- '--(image|video|out|report|frames|record|save-session|save-recording) [^ ]+' "$1" | cut -d' ' -f2 | sort -u || true
 }
 
 run_page() {
@@ -48,7 +48,13 @@ run_page() {
   done < <(expected_files "$script")
 }
 
-for page in "$root/README.md" "$root/docs/guide.md"; do
+pages=("$root/README.md" "$root/docs/guide.md")
+if "$program" view --offscreen --sample sphere --detail 24 --resolution 32 --frames-count 1 --quiet 2>/dev/null; then
+  pages+=("$root/docs/viewer.md")
+else
+  echo "docs/viewer.md is skipped: the viewer does not run here"
+fi
+for page in "${pages[@]}"; do
   echo "== ${page#"$root/"}"
   run_page "$page"
 done

@@ -77,5 +77,20 @@ TEST(Downsample, SizesThatAreNoMultiple) {
   EXPECT_EQ(downsample(Image(), 2).width, 0);
 }
 
+TEST(OnCanvas, CutsOffAndFrames) {
+  Image image = plain_image(3, 2, {9, 8, 7, 255});
+  image.at(1, 1)[0] = 200;
+  EXPECT_EQ(on_canvas(image, 3, 2).pixels, image.pixels);
+  const Image wide = on_canvas(image, 7, 4);
+  ASSERT_EQ(wide.width, 7);
+  ASSERT_EQ(wide.height, 4);
+  EXPECT_EQ(wide.at(3, 2)[0], 200);
+  EXPECT_EQ(wide.at(0, 0)[0], 9);
+  EXPECT_EQ(wide.at(6, 3)[2], 7);
+  const Image narrow = on_canvas(image, 1, 1);
+  EXPECT_EQ(narrow.pixels, (std::vector<std::uint8_t>{9, 8, 7, 255}));
+  EXPECT_EQ(on_canvas(image, 1, 4).at(0, 2)[0], 200);
+}
+
 }  // namespace
 }  // namespace nacre

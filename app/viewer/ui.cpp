@@ -1,0 +1,245 @@
+// Nacre: the frame of the user interface: keys, panel, status line.
+#include "app/viewer/ui.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/viewer/camera_control.hpp"
+#include "app/viewer/knob_widgets.hpp"
+#include "engine/render/camera_motion.hpp"
+#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples.hpp"
+
+namespace nacre {
+namespace {
+
+void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
+
+/// Pixels that the parts take.
+struct Layout {
+  float menu, status, panel;
+};
+
+Layout layout(int width) {
+  const float row = ImGui::GetFontSize() + 2 * ImGui::GetStyle().FramePadding.y;
+  return {row, 1.6f * row, std::floor(std::min(27 * ImGui::GetFontSize(), 0.6f * float(width)))};
+}
+
+const char* job_of(const Session& session) { return is_mesh_input(session) ? "mesh" : "flow"; }
+
+void stage_table(const StageTimers& timers) {
+  if (!ImGui::BeginTable("stages", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
+  for (const char* head : {"stage", "calls", "total s", "mean ms"}) ImGui::TableSetupColumn(head);
+  ImGui::TableHeadersRow();
+  for (const StageTimers::Stage& stage : timers.stages()) {
+    const auto column = [](const std::string& words) {
+      ImGui::TableNextColumn();
+      text(words);
+    };
+    column(stage.name);
+    column(fmt::format("{}", stage.calls));
+    column(fmt::format("{:.2f}", stage.seconds));
+    column(fmt::format("{:.1f}", 1e3 * stage.seconds / double(std::max(1L, stage.calls))));
+  }
+  ImGui::EndTable();
+}
+
+void timings_tab(const Scene& scene, const UiFacts& facts) {
+  const double frame = facts.clock.mean_seconds();
+  text(fmt::format("{:.1f} frames/s, {:.1f} ms drawing", frame > 0 ? 1 / frame : 0, 1e3 * frame));
+  const std::array<float, 120> history = facts.clock.milliseconds();
+  const float top = std::max(20.0f, *std::max_element(history.begin(), history.end()));
+  ImGui::PlotLines("##frames", history.data(), int(history.size()), 0, nullptr, 0, top,
+                   ImVec2(-1, 3 * ImGui::GetFontSize()));
+  stage_table(scene.timers());
+  ImGui::Spacing();
+  ImGui::TextWrapped("compute: %s (%s)", scene.device().name().c_str(), scene.device().backend().c_str());
+  ImGui::TextWrapped("drawing: %s", facts.renderer.c_str());
+  text(fmt::format("memory: {:.0f} MiB of the device", double(scene.peak_bytes()) / (1 << 20)));
+  text(fmt::format("copied between compute and drawing: {} bytes", scene.copied_bytes()));
+}
+
+void sample_choice(Session& session) {
+  const auto offer = [&](const std::string& name, const std::string& help) {
+    if (ImGui::Selectable(name.c_str(), session.sample == name) && session.sample != name)
+      static_cast<SessionInput&>(session) = {{}, name, 0}, session.camera.reset();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
+  };
+  if (!ImGui::BeginCombo("sample", session.sample.empty() ? "(a file)" : session.sample.c_str())) return;
+  ImGui::TextDisabled("flow on surfaces");
+  for (const SampleInfo& sample : samples()) offer(sample.name, sample.help);
+  ImGui::TextDisabled("volumes to mesh");
+  for (const PhantomInfo& phantom : phantoms()) offer(phantom.name, phantom.help);
+  ImGui::EndCombo();
+}
+
+void data_tab(Session& session, const Scene& scene) {
+  Settings& settings = session.settings;
+  sample_choice(session);
+  if (!session.sample.empty()) {
+    ImGui::InputInt("detail", &session.detail, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue);
+    session.detail = std::clamp(session.detail, 0, 4096);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("cells along the longest side; 0: its own");
+  }
+  for (const auto& file : session.inputs) ImGui::TextWrapped("%s", file.string().c_str());
+  ImGui::Separator();
+  if (is_mesh_input(session)) {
+    for (const char* name : {"labels", "isovalue", "threshold", "materials", "merge", "min_component"})
+      knob_widget(settings, name);
+  } else {
+    for (const char* name : {"vectors", "color", "colormap"}) knob_widget(settings, name);
+  }
+  for (const std::string& warning : scene.warnings()) ImGui::TextWrapped("! %s", warning.c_str());
+}
+
+void look_tab(Session& session) {
+  Settings& settings = session.settings;
+  const auto several = [&](std::initializer_list<const char*> names) {
+    for (const char* name : names) knob_widget(settings, name);
+  };
+  if (is_mesh_input(session))
+    several({"triangles", "edges", "show_particles", "particle_color", "curves", "boxes", "hidden", "ghosts", "worst",
+             "slice", "slice_at", "slice_field"});
+  else
+    several({"play", "fps", "contrast", "edges", "arrows", "arrow_count", "arrow_length"});
+  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back"});
+  if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
+  if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
+  if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size"});
+}
+
+}  // namespace
+
+FreeArea Ui::free_area(const Look& look, int width, int height) const {
+  if (!look.panel) return {0, 0, width, height};
+  const Layout l = layout(width);
+  const int left = int(l.panel), above = int(l.menu), below = int(l.status);
+  return {left, above, std::max(16, width - left), std::max(16, height - above - below)};
+}
+
+void Ui::tell(const std::string& line) {
+  told_ = line;
+  told_until_ = ImGui::GetTime() + 8;
+}
+
+void Ui::knob_tab(Session& session) {
+  ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  ImGui::InputTextWithHint("##filter", "find a knob", &filter_);
+  ImGui::SameLine();
+  if (ImGui::Button("reset all")) reset_knobs(session.settings, job_of(session));
+  if (ImGui::BeginChild("knobs")) knob_groups(session.settings, job_of(session), filter_);
+  ImGui::EndChild();
+}
+
+/// The session's tab is shown, whoever chose it; a click on another changes the session.
+void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
+  std::string& tab = session.settings.look.tab;
+  const bool told = tab != drawn_tab_;
+  const auto item = [&](const char* name, const auto& content) {
+    if (!ImGui::BeginTabItem(name, nullptr, told && tab == name ? ImGuiTabItemFlags_SetSelected : 0)) return;
+    if (!told) tab = name;
+    content();
+    ImGui::EndTabItem();
+  };
+  if (!ImGui::BeginTabBar("tabs")) return;
+  item("data", [&] { data_tab(session, scene); });
+  item("knobs", [&] { knob_tab(session); });
+  item("look", [&] { look_tab(session); });
+  item("result", [&] { scene.result_panel(session); });
+  item("timings", [&] { timings_tab(scene, facts); });
+  ImGui::EndTabBar();
+  drawn_tab_ = tab;
+}
+
+void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
+  const Layout l = layout(facts.width);
+  ImGui::SetNextWindowPos(ImVec2(0, l.menu));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, std::max(50.0f, float(facts.height) - l.menu - l.status)));
+  const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus;
+  if (ImGui::Begin("panel", nullptr, fixed)) {
+    ImGui::TextWrapped("%s", scene.title().empty() ? "opening ..." : scene.title().c_str());
+    ImGui::TextWrapped("%s", scene.state().c_str());
+    if (!scene.failure().empty()) {
+      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.95f, 0.4f, 0.3f, 1));
+      ImGui::TextWrapped("%s", scene.failure().c_str());
+      ImGui::PopStyleColor();
+    }
+    tabs(session, scene, facts);
+  }
+  ImGui::End();
+}
+
+/// What goes on, how far it is, and a way to end it; what is under the cursor.
+void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
+  const float high = layout(facts.width).status;
+  ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - high));
+  ImGui::SetNextWindowSize(ImVec2(float(facts.width), high));
+  const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoNav;
+  if (ImGui::Begin("status", nullptr, fixed)) {
+    const SceneProgress progress = scene.progress();
+    if (!progress.stage.empty()) {
+      if (ImGui::Button("cancel")) wishes.cancel = true;
+      ImGui::SameLine();
+      ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
+      if (progress.fraction >= 0)
+        ImGui::ProgressBar(float(progress.fraction), ImVec2(14 * ImGui::GetFontSize(), 0), progress.stage.c_str());
+      else
+        text(progress.stage + " ...");
+      ImGui::SameLine();
+    } else if (!scene.complete() || !scene.failure().empty()) {
+      if (ImGui::Button("compute")) wishes.resume = true;
+      ImGui::SameLine();
+    }
+    const double frame = facts.clock.mean_seconds();
+    text(fmt::format("{:.0f} ms a frame   {:.0f} MiB", 1e3 * frame, double(scene.peak_bytes()) / (1 << 20)));
+    ImGui::SameLine();
+    if (facts.recording) text("   recording");
+    ImGui::SameLine();
+    if (facts.filming) text("   filming: frames wait for compute");
+    ImGui::SameLine();
+    if (ImGui::GetTime() < told_until_) text("   " + told_);
+  }
+  ImGui::End();
+}
+
+void Ui::probe_window(Session& session, Scene& scene, const FreeArea& area) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse || !session.camera || !ImGui::IsMousePosValid()) return;
+  if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return;
+  const auto [x, y] = place_in(area, io.MousePos.x, io.MousePos.y);
+  const auto [from, along] = ray_under(*session.camera, x, y, area.aspect());
+  const std::optional<Probed> probed = scene.probe(from, along);
+  if (!probed) return;
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y + area.height) - 8), ImGuiCond_Always, ImVec2(0, 1));
+  ImGui::SetNextWindowBgAlpha(0.7f);
+  const auto quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+  if (ImGui::Begin("under the cursor", nullptr, quiet))
+    for (const std::string& line : probed->lines) text(line);
+  ImGui::End();
+}
+
+Wishes Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
+  Wishes wishes;
+  use_keys(session, scene, facts, wishes);
+  if (session.settings.look.panel) {
+    menus(session, scene, facts, wishes);
+    panel(session, scene, facts);
+    status(scene, facts, wishes);
+    probe_window(session, scene, free_area(session.settings.look, facts.width, facts.height));
+  }
+  if (std::exchange(asks_record_, false)) switch_recording(facts, wishes);
+  help_windows(facts);
+  screenshot_window(facts);
+  if (const auto files = dialog_.draw()) then_(*files, session, wishes);
+  return wishes;
+}
+
+}  // namespace nacre

@@ -1,0 +1,81 @@
+// Nacre: menus, panel and dialogs over the picture. They change the session; what concerns the program they wish for.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/camera_control.hpp"
+#include "app/viewer/file_dialog.hpp"
+#include "app/viewer/frame_clock.hpp"
+#include "app/viewer/scene.hpp"
+#include "engine/gl/window.hpp"
+
+namespace nacre {
+
+/// What the loop tells about itself.
+struct UiFacts {
+  const FrameClock& clock;
+  std::string renderer;
+  const std::vector<std::filesystem::path>& recent;
+  bool can_undo = false, can_redo = false;
+  bool recording = false;  ///< of what the user does
+  bool filming = false;    ///< every frame goes to a video
+  int width = 0, height = 0;
+  std::vector<KeyPress> keys;  ///< since the last frame
+};
+
+/// What the user wants of the program.
+struct Wishes {
+  bool quit = false, undo = false, redo = false, cancel = false, resume = false;
+  bool record = false;  ///< begin
+  bool end_film = false;
+  std::string look_from;  ///< a view such as "+x"
+  bool fit = false;
+  std::optional<std::filesystem::path> load_session, save_session, save_result, save_recording, film;
+  std::optional<Screenshot> screenshot;
+};
+
+class Ui {
+ public:
+  /// Makes all of it, between Interface::begin and end.
+  Wishes draw(Session& session, Scene& scene, const UiFacts& facts);
+
+  /// Where the picture is to be, in a window of this size. As wide as the panel allows; never empty.
+  FreeArea free_area(const Look& look, int width, int height) const;
+
+  /// A line at the bottom for some seconds: something was saved, or did not work.
+  void tell(const std::string& line);
+
+ private:
+  using Then = std::function<void(const std::vector<std::filesystem::path>& files, Session& session, Wishes& wishes)>;
+
+  void use_keys(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes);
+  void use_shortcuts(Scene& scene, const UiFacts& facts, Wishes& wishes);
+  void menus(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes);
+  void file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes);
+  void view_menu(Session& session, Wishes& wishes);
+  void panel(Session& session, Scene& scene, const UiFacts& facts);
+  void tabs(Session& session, Scene& scene, const UiFacts& facts);
+  void knob_tab(Session& session);
+  void status(Scene& scene, const UiFacts& facts, Wishes& wishes);
+  void screenshot_window(const UiFacts& facts);
+  void probe_window(Session& session, Scene& scene, const FreeArea& area);
+  void help_windows(const UiFacts& facts);
+  void ask_open();
+  void ask_result(Scene& scene);
+  void switch_recording(const UiFacts& facts, Wishes& wishes);
+  void ask_save(const std::string& title, std::vector<std::string> extensions, const std::string& name,
+                std::optional<std::filesystem::path> Wishes::*wish);
+
+  FileDialog dialog_;
+  Then then_;  ///< what happens to the dialog's files
+  Screenshot shot_;
+  bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
+  std::string filter_, told_, drawn_tab_;
+  double told_until_ = 0;
+};
+
+}  // namespace nacre

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Nacre: a user at the window under Xvfb: keys and mouse. Usage: view_keys.sh PROGRAM RECORDING REPORT PICTURE; 77: tools are
+# missing. Waits for what it sees, not for times.
+set -euo pipefail
+program=$1 recording=$2 report=$3 picture=$4
+for tool in xvfb-run xdotool; do
+  command -v $tool >/dev/null || {
+    echo "no $tool here" >&2
+    exit 77
+  }
+done
+export XDG_STATE_HOME program recording report picture
+XDG_STATE_HOME=$(mktemp -d)
+trap 'rm -rf "$XDG_STATE_HOME"' EXIT
+
+xvfb-run -a -s "-screen 0 640x480x24" bash -euo pipefail -c '
+  "$program" view --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet \
+    --save-recording "$recording" --report "$report" --image "$picture" &
+  viewer=$!
+  trap "kill $viewer 2>/dev/null || true" EXIT
+  window=
+  for try in {1..100}; do
+    window=$(xdotool search --name "^Nacre$" 2>/dev/null | head -1) && [[ -n $window ]] && break
+    sleep 0.1
+  done
+  [[ -n $window ]]
+  sleep 2  # for the first texture
+  xdotool windowfocus "$window" mousemove 540 240
+  press() { xdotool "$@"; sleep 0.4; }
+  press type e             # edges
+  press type t             # light
+  press key ctrl+z         # dark again
+  press key ctrl+y         # light again
+  press type o             # orthographic
+  press mousedown 1
+  press mousemove_relative 40 10
+  press mouseup 1          # turned
+  press click 4            # nearer
+  press key ctrl+o         # the dialog: keys are its own now
+  press key Escape
+  press type p             # no panels
+  press key ctrl+q
+  for try in {1..100}; do
+    kill -0 $viewer 2>/dev/null || break
+    sleep 0.1
+  done
+  wait $viewer
+'

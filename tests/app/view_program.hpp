@@ -1,0 +1,31 @@
+// Nacre: runs of `nacre view`.
+#pragma once
+
+#include "tests/app/program.hpp"
+
+namespace nacre::test {
+
+/// Why the viewer cannot run here; empty: it can.
+inline std::string no_viewer() {
+  static const std::string why = [] {
+    const Outcome tried = nacre({"view", "--offscreen", "--sample", "sphere", "--detail", "24", "--resolution", "32",
+                                 "--frames-count", "1", "--quiet"});
+    return tried.status == 1 && (contains(tried.err, "no viewer") || contains(tried.err, "no OpenGL")) ? tried.err : "";
+  }();
+  return why;
+}
+
+inline nlohmann::json read_json(const fs::path& file) {
+  std::ifstream stream(file);
+  return nlohmann::json::parse(stream);
+}
+
+class ViewTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!no_viewer().empty()) GTEST_SKIP() << no_viewer();
+  }
+  TemporaryFolder folder;
+};
+
+}  // namespace nacre::test

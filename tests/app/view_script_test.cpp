@@ -1,0 +1,262 @@
+// Nacre: scripts, recordings and videos of the viewer, as other people's scripts run them.
+#include <algorithm>
+
+#include "engine/picture/png.hpp"
+#include "tests/app/view_program.hpp"
+
+namespace nacre::test {
+namespace {
+
+using json = nlohmann::json;
+
+const json start = {{"sample", "sphere"},
+                    {"detail", 24},
+                    {"knobs",
+                     {{"resolution", 48},
+                      {"steps", 4},
+                      {"width", 96},
+                      {"height", 72},
+                      {"fps", 10},
+                      {"panel", false},
+                      {"background", "#203040"}}}};
+
+json camera(double x, double y, double z, double height) {
+  return {{"eye", {x, y, z}}, {"target", {0, 0, 0}}, {"height", height}};
+}
+
+class Scripts : public ViewTest {
+ protected:
+  /// `start` with these events, in a file.
+  std::string script(const json& events, double duration = 0, const std::string& name = "script.json") const {
+    json text = start;
+    if (!events.is_null()) text["events"] = events;
+    if (duration > 0) text["duration"] = duration;
+    std::ofstream(folder / name) << text.dump(1);
+    return (folder / name).string();
+  }
+
+  /// Everything that a script can do to a flow: 13 frames.
+  std::string demo() const {
+    return script(
+        {{{"time", 0.2}, {"knobs", {{"ttl", 2}}}},
+         {{"time", 0.3}, {"camera", camera(0, -9, 3, 3)}, {"over", 0.4}},
+         {{"time", 0.4}, {"knobs", {{"resolution", 32}}}},
+         {{"time", 0.5}, {"knobs", {{"contrast", 0.1}}}},
+         {{"time", 0.6}, {"screenshot", {{"file", "large.png"}, {"scale", 2}, {"transparent", true}}}},
+         {{"time", 0.7}, {"knobs", {{"panel", true}}}, {"screenshot", {{"file", "panel.png"}, {"panel", true}}}},
+         {{"time", 0.8}, {"knobs", {{"panel", false}, {"legend", false}}}},
+         {{"time", 0.9}, {"sample", "torus"}, {"detail", 24}},
+         {{"time", 1.1}, {"knobs", {{"camera", "+z"}}}}},
+        1.2);
+  }
+
+  Outcome play(const std::string& file, const Words& more) const {
+    return nacre(Words{"view", "--offscreen", "--quiet", "--script", file} + more);
+  }
+
+  /// All but that with the panel, in which are times.
+  void expect_same_frames(const std::string& a, const std::string& b) const {
+    ASSERT_EQ(names(a), names(b));
+    for (const std::string& name : names(a))
+      EXPECT_TRUE(name == "frame_0007.png" || content(a + "/" + name) == content(b + "/" + name)) << name;
+  }
+
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+  std::string content(const std::string& name) const { return read_all(folder / name); }
+
+  Words names(const std::string& of) const {
+    Words found;
+    for (const auto& entry : fs::directory_iterator(folder / of)) found.push_back(entry.path().filename().string());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+};
+
+TEST_F(Scripts, OfADurationHaveFramesFromItsStartToItsEnd) {
+  const Outcome run = play(demo(), {"--record", path("frames"), "--report", path("r.json")});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, path("large.png") + "\n" + path("panel.png") + "\n" + path("frames") + "\n");
+  EXPECT_EQ(run.err, "");
+  const Words frames = names("frames");
+  ASSERT_EQ(frames.size(), 13u);
+  EXPECT_EQ(frames.front(), "frame_0000.png");
+  EXPECT_EQ(frames.back(), "frame_0012.png");
+  const json report = read_json(folder / "r.json");
+  EXPECT_EQ(report["view"]["frames"], 13);
+  EXPECT_TRUE(report["view"]["driver_messages"].empty()) << report["view"].dump(1);
+  EXPECT_EQ(report["outputs"].size(), 3u);
+  EXPECT_GT(report["memory"]["peak_bytes"], 1 << 20);
+}
+
+TEST_F(Scripts, TakePictures) {
+  ASSERT_EQ(play(demo(), {"--record", path("frames")}).status, 0);
+  const Image large = read_png(folder / "large.png"), panel = read_png(folder / "panel.png");
+  EXPECT_EQ(large.width, 192);
+  EXPECT_EQ(large.height, 144);
+  EXPECT_EQ(large.at(0, 0)[3], 0);      // transparent beside the sphere
+  EXPECT_EQ(large.at(96, 72)[3], 255);  // and not on it
+  const Image seventh = read_png(folder / "frames/frame_0007.png"), fifth = read_png(folder / "frames/frame_0005.png");
+  EXPECT_EQ(panel.pixels, seventh.pixels);
+  EXPECT_EQ(std::vector<std::uint8_t>(fifth.at(0, 0), fifth.at(0, 0) + 3), (std::vector<std::uint8_t>{32, 48, 64}));
+  int differ = 0;
+  for (std::size_t i = 0; i < fifth.pixels.size(); ++i) differ += fifth.pixels[i] != seventh.pixels[i];
+  EXPECT_GT(differ, 96 * 72 / 4) << "the panel covers much of so small a frame";
+}
+
+TEST_F(Scripts, RunWhatDependsOnEachKnob) {
+  const std::string file =
+      script({{{"time", 0.2}, {"knobs", {{"ttl", 2}}}},
+              {{"time", 0.4}, {"knobs", {{"resolution", 32}}}},
+              {{"time", 0.6}, {"knobs", {{"contrast", 0.1}, {"edges", true}, {"colormap", "ember"}}}}},
+             0.8);
+  ASSERT_EQ(play(file, {"--report", path("r.json")}).status, 0);
+  const json report = read_json(folder / "r.json");
+  json calls;
+  for (const json& stage : report["stages"]) calls[stage["name"].get<std::string>()] = stage["calls"];
+  EXPECT_EQ(calls["read"], 1);
+  EXPECT_EQ(calls["embed"], 2);
+}
+
+TEST_F(Scripts, GiveTheSameBytesOnEachRunAndAnyNumberOfThreads) {
+  ASSERT_EQ(play(demo(), {"--record", path("a")}).status, 0);
+  ASSERT_EQ(play(demo(), {"--record", path("b")}).status, 0);
+  ASSERT_EQ(play(demo(), {"--record", path("c"), "--threads", "1"}).status, 0);
+  expect_same_frames("a", "b");
+  expect_same_frames("a", "c");
+  EXPECT_NE(content("a/frame_0000.png"), content("a/frame_0001.png"));
+}
+
+TEST_F(Scripts, RecordingsOfReplaysAreTheSame) {
+  ASSERT_EQ(play(demo(), {"--save-recording", path("a.json"), "--record", path("first")}).status, 0);
+  ASSERT_EQ(play(path("a.json"), {"--save-recording", path("b.json"), "--record", path("second")}).status, 0);
+  ASSERT_EQ(play(path("b.json"), {"--save-recording", path("c.json")}).status, 0);
+  EXPECT_EQ(content("a.json"), content("b.json"));
+  EXPECT_EQ(content("b.json"), content("c.json"));
+  expect_same_frames("first", "second");
+  const json recording = read_json(folder / "a.json");
+  EXPECT_EQ(recording["duration"], 1.2);
+  EXPECT_EQ(recording["events"].size(), 8u);  // each frame of the glide is one, with what else changes in it
+}
+
+TEST_F(Scripts, RecordVideos) {
+  if (find_program("ffmpeg").empty() || find_program("ffprobe").empty()) GTEST_SKIP() << "there is no ffmpeg";
+  ASSERT_EQ(play(demo(), {"--record", path("demo.mp4"), "--size", "97x73"}).status, 0);
+  const Outcome probe = run(find_program("ffprobe"),
+                            {"-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
+                             "stream=width,height,r_frame_rate,nb_read_frames", "-of", "csv=p=0", path("demo.mp4")});
+  EXPECT_EQ(probe.out, "98,74,10/1,13\n") << probe.err;
+}
+
+TEST_F(Scripts, FrameRateIsTheKnobsAndStaysWhenThatIsChanged) {
+  const std::string file = script({{{"time", 0.5}, {"knobs", {{"fps", 3}}}}}, 1);
+  ASSERT_EQ(play(file, {"--fps", "20", "--record", path("frames")}).status, 0);
+  EXPECT_EQ(names("frames").size(), 21u);
+}
+
+TEST_F(Scripts, FramesOfAVideoHaveTheSizeOfTheFirst) {
+  const std::string file = script({{{"time", 0.2}, {"knobs", {{"width", 64}, {"height", 120}}}}}, 0.3);
+  ASSERT_EQ(play(file, {"--record", path("frames"), "--image", path("last.png")}).status, 0);
+  const Image frame = read_png(folder / "frames/frame_0003.png");
+  EXPECT_EQ(frame.width, 96);
+  EXPECT_EQ(frame.height, 72);
+  EXPECT_EQ(read_png(folder / "last.png").width, 64);
+}
+
+TEST_F(Scripts, ASessionIsTheStateAtTheStart) {
+  const Words still = {"--frames-count", "1", "--record"};
+  ASSERT_EQ(play(demo(), still + Words{path("script")}).status, 0);
+  ASSERT_EQ(nacre(Words{"view", "--offscreen", "--quiet", "--session", demo()} + still + Words{path("session")}).status,
+            0);
+  EXPECT_EQ(content("script/frame_0000.png"), content("session/frame_0000.png"));
+}
+
+TEST_F(Scripts, CameraOfASessionIsEveryCommands) {
+  json text = start;
+  text["camera"] = camera(0, -9, 0, 6);
+  std::ofstream(folder / "s.json") << text;
+  const auto blank_above = [&](const Words& words) {  // rows above the sphere
+    EXPECT_EQ(nacre(words + Words{"--session", path("s.json"), "--quiet", "--set", "legend=false", "--set",
+                                  "time_stamp=false", "--image", path("x.png")})
+                  .status,
+              0);
+    const Image image = read_png(folder / "x.png");
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        if (std::abs(int(image.at(x, y)[0]) - 32) > 8) return y;
+    return image.height;
+  };
+  const int expected = 24;  // a ball of radius 1 in a picture of 72 rows and height 6
+  EXPECT_NEAR(blank_above({"flow"}), expected, 2);
+  EXPECT_NEAR(blank_above({"view", "--offscreen"}), expected, 2);
+  EXPECT_LT(blank_above({"flow", "--camera", "+x"}), 8);
+  EXPECT_LT(blank_above({"view", "--offscreen", "--camera", "+x"}), 8);
+  std::ofstream(folder / "s.json") << json{
+      {"sample", "two-spheres"}, {"detail", 24}, {"camera", camera(12, -900, 12, 400)}, {"knobs", start["knobs"]}};
+  EXPECT_GT(blank_above({"mesh"}), 20);
+  EXPECT_LT(blank_above({"mesh", "--camera", "+x"}), 12);
+}
+
+TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
+  if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg";
+  const std::string file = script(nullptr, 100000);
+  const Outcome stopped = run("/usr/bin/timeout", {"--foreground", "--preserve-status", "-s", "INT", "-k", "30", "3",
+                                                   NACRE_PROGRAM, "view", "--offscreen", "--quiet", "--script", file,
+                                                   "--record", path("v.mp4"), "--save-recording", path("done.json")});
+  EXPECT_EQ(stopped.status, 130) << stopped.err;
+  EXPECT_EQ(names(""), (Words{"done.json", "script.json"}));
+  EXPECT_EQ(read_json(folder / "done.json")["sample"], "sphere");
+}
+
+TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
+  json changes;
+  for (int k = 1; k < 20; ++k)
+    changes.push_back({{"time", 10.0 * k}, {"knobs", {{"resolution", k % 2 ? 32 : 48}, {"edges", k % 3 == 0}}}});
+  const std::string file = script(changes, 200);
+  const auto peak = [&](int frames) {
+    EXPECT_EQ(
+        play(file, {"--frames-count", std::to_string(frames), "--size", "64x48", "--report", path("r.json")}).status,
+        0);
+    const json report = read_json(folder / "r.json");
+    EXPECT_EQ(report["view"]["frames"], frames);
+    return report["memory"]["peak_bytes"].get<double>();
+  };
+  const double hundred = peak(150);  // with one change of the resolution, to and fro as later on
+  EXPECT_LT(peak(1000), hundred + 6e6);
+}
+
+TEST_F(Scripts, ThatMeanNothingAreRefusedBeforeAnyFrame) {
+  const auto refused = [&](const std::string& file, int status, const Words& parts, const Words& more = {}) {
+    expect_failure(play(file, more + Words{"--record", path("never")}), status, parts);
+    EXPECT_FALSE(exists(folder / "never")) << file;
+  };
+  refused(path("nosuch.json"), 1, {"cannot read session", "nosuch.json"});
+  refused(script(nullptr), 1, {"nothing to play", "--session"});
+  refused(script({{{"time", 1}, {"knobs", {{"tttl", 3}}}}}), 1, {"event 1", "no knob 'tttl'", "ttl"});
+  refused(script({{{"time", 1}, {"knobs", {{"ttl", 99}}}}}), 1, {"event 1", "out of range"});
+  refused(script({{{"time", 1}, {"colour", "red"}}}), 1, {"event 1", "'colour' means nothing"});
+  refused(script({{{"time", 1}, {"knobs", {{"colormap", "rust"}}}}}), 2, {"the event at 1 s", "rust"});
+  refused(script({{{"time", 1}, {"sample", "teapot"}}}), 2, {"the event at 1 s", "teapot"});
+  refused(script({{{"time", 1}, {"knobs", {{"background", "blue"}}}}}), 2, {"the event at 1 s", "blue"});
+  refused(demo(), 2, {"--session or --script"}, {"--session", demo()});
+  refused(demo(), 2, {"--live or --record"}, {"--live"});
+  refused(demo(), 2, {"--panel or --no-panel"}, {"--panel", "--no-panel"});
+}
+
+TEST_F(Scripts, WhatCannotBeWrittenIsSaid) {
+  expect_failure(play(demo(), {"--record", path("x.avi")}), 1, {"x.avi", ".mp4"});
+  expect_failure(play(demo(), {"--record", path("none/x.mp4")}), 1, {"none"});
+  const std::string file = script({{{"time", 0}, {"screenshot", {{"file", "none/a.png"}}}}});
+  expect_failure(play(file, {}), 1, {"none/a.png"});
+  expect_failure(play(file, {"--out", path("a.txt")}), 1, {"a.txt"});
+}
+
+TEST_F(Scripts, AnInputThatFailsInTheMiddleEndsTheRunWithItsName) {
+  const std::string file = script({{{"time", 0.3}, {"inputs", {"nosuch.vtp"}}}}, 1);
+  const Outcome run = play(file, {"--record", path("v.mp4"), "--save-recording", path("done.json")});
+  expect_failure(run, 1, {"nosuch.vtp"});
+  EXPECT_FALSE(exists(folder / "v.mp4"));
+  EXPECT_EQ(read_json(folder / "done.json")["events"].size(), 0u);
+}
+
+}  // namespace
+}  // namespace nacre::test
