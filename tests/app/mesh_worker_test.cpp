@@ -23,6 +23,8 @@ struct WorkerRun {
   std::int64_t capacity = 0;
   std::vector<std::int64_t> counts;  ///< of particles, where they were shown
   std::vector<Float4> last_places;
+  VoxelFrame frame;
+  std::vector<Vec3d> corners;
   std::size_t triangles = 0;
   std::string failure, written;
   SliceFilled slice;
@@ -50,7 +52,11 @@ struct WorkerRun {
   }
 
   void take(MeshEvent& event) {
-    if (std::holds_alternative<VolumeRead>(event)) note('V');
+    if (const auto* read = std::get_if<VolumeRead>(&event)) {
+      note('V');
+      frame = read->frame;
+      corners = read->corners;
+    }
     if (const auto* begun = std::get_if<RelaxBegun>(&event)) {
       note('B');
       capacity = begun->capacity;
@@ -97,7 +103,8 @@ struct WorkerRun {
 
   std::map<std::string, long> calls() const {
     std::map<std::string, long> all;
-    for (const StageTimers::Stage& stage : worker->timers().stages()) all[stage.name] = stage.calls;
+    const StageTimers timers = worker->timers();
+    for (const StageTimers::Stage& stage : timers.stages()) all[stage.name] = stage.calls;
     return all;
   }
 
@@ -128,7 +135,14 @@ TEST(MeshWorker, TellsInOrder) {
   EXPECT_TRUE(run.worker->settled());
   ASSERT_FALSE(run.counts.empty());
   EXPECT_GT(run.counts.back(), 300);
-  for (const Float4& p : run.last_places) ASSERT_TRUE(p.w > 0 && p.x > -1 && p.x < 20) << p.x << ' ' << p.w;
+  for (const Float4& p : run.last_places) {
+    ASSERT_GT(p.w, 0);
+    const Vec3d place = run.frame.to_world(Vec3d(p.x, p.y, p.z));
+    for (int a = 0; a < 3; ++a) {
+      ASSERT_GT(place[a], run.corners.front()[a] - 1);
+      ASSERT_LT(place[a], run.corners.back()[a] + 1);
+    }
+  }
 }
 
 TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
@@ -138,7 +152,7 @@ TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
   EXPECT_EQ(run.rerun("theta", "0.6"), particles);
   EXPECT_EQ(run.order, "BITM");
   EXPECT_EQ(run.rerun("delta", "0.3"), "sizing embed " + particles);
-  EXPECT_EQ(run.rerun("epsilon", "0.6"), "sizing embed " + particles);
+  EXPECT_EQ(run.rerun("epsilon", "0.6"), "distance sizing embed " + particles);  // which looks farther
   EXPECT_EQ(run.rerun("tighten", "1"), "tighten distance sizing embed " + particles);
   EXPECT_EQ(run.rerun("mend", "0"), "triangulate quality");
   EXPECT_EQ(run.rerun("merge", "2:1"), "classify materials tighten distance sizing embed " + particles);
