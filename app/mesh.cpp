@@ -8,7 +8,6 @@
 #include "app/picture_words.hpp"
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
-#include "engine/io/volume_reader.hpp"
 #include "engine/scene/knobs.hpp"
 #include "engine/scene/material_words.hpp"
 #include "engine/scene/phantoms.hpp"
@@ -52,44 +51,15 @@ void check_words(const MeshOptions& options, const Session& session) {
   check_mesh_outputs(options);
 }
 
-std::vector<Volume> read_volumes(const MeshOptions& options, const Session& session) {
-  std::vector<Volume> volumes;
-  if (!session.sample.empty())
-    volumes.push_back(checked_words([&] { return make_phantom(session.sample, session.detail, &interrupt_flag()); }));
-  for (const auto& file : session.inputs) {
-    volumes.push_back(read_volume(file));
-    for (const std::string& warning : volumes.back().warnings) warn(options.common, warning);
-    if (interrupt_flag()) throw Interrupted();
-  }
-  return volumes;
-}
-
 /// Reads the volumes and makes materials of them; `input` is told what the report wants to know.
 MeshVolume read_input(const MeshOptions& options, const Session& session, StageTimers& timers, MeshInput& input) {
   StageTimers::Scope scope(timers, "read");
-  const std::vector<Volume> volumes = read_volumes(options, session);
-  MaterialOptions materials = parse_material_words(session.settings.materials);
-  const bool scalar_sample = !session.sample.empty() && !volume_statistics(volumes.front()).integral;
-  if (scalar_sample && materials.mode == MaterialOptions::Mode::automatic && !materials.threshold)
-    materials.isovalues = {phantom_isovalue};
-  for (const Volume& volume : volumes)
-    input.warnings.insert(input.warnings.end(), volume.warnings.begin(), volume.warnings.end());
+  const auto say_warning = [&](const std::string& warning) { warn(options.common, warning); };
+  const auto read = [&] { return read_mesh_volumes(session, &interrupt_flag(), say_warning); };
+  const bool sample = !session.sample.empty();
+  const std::vector<Volume> volumes = sample ? checked_words(read) : read();
   if (interrupt_flag()) throw Interrupted();
-  const std::size_t said = input.warnings.size();
-  MeshVolume volume = make_mesh_volume(volumes, materials, &input.warnings);
-  for (std::size_t i = said; i < input.warnings.size(); ++i) warn(options.common, input.warnings[i]);
-  input.name = volumes.front().name;
-  for (std::size_t i = 1; i < volumes.size(); ++i) input.name += ", " + volumes[i].name;
-  input.kind = volume.kind;
-  input.dims = volume.dims;
-  input.spacing = volume.spacing;
-  input.origin = volume.origin;
-  input.axes = volume.axes;
-  input.labels = volume.labels;
-  input.names = volume.names;
-  input.voxels.assign(volume.labels.size(), 0);
-  for (const std::uint16_t material : volume.material) ++input.voxels.at(material);
-  return volume;
+  return make_materials(volumes, sample, session.settings.materials, input, say_warning);
 }
 
 /// The source rebuilds scalar volumes from B-splines and labels by Catmull-Rom.
@@ -110,12 +80,6 @@ void show_progress(MeshPipeline& pipeline, Progress& bar) {
 /// Throws Interrupted unless what there is shall be kept.
 void check_interrupt(bool kept) {
   if (!kept && interrupt_flag()) throw Interrupted();
-}
-
-EdgeLength edge_length(const Settings& settings, const Vec3d& spacing) {
-  if (settings.max_cell <= 0) return {};
-  const float longest = float(settings.max_cell * std::min({spacing.x, spacing.y, spacing.z}));
-  return [longest](std::span<const Vec3d> points) { return std::vector<float>(points.size(), longest); };
 }
 
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
@@ -145,21 +109,11 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   if (wants_cells(options)) {
     bar.update("tetrahedra", 0.97);
     StageTimers::Scope scope(pipeline.timers(), "tetrahedra");
-    result.cells = fill_with_tetrahedra(result.mesh, edge_length(settings, input.spacing),
+    result.cells = fill_with_tetrahedra(result.mesh, longest_edge(settings.max_cell, input.spacing),
                                         result.interrupted ? nullptr : &interrupt_flag());
     result.cell_quality = cell_quality(*result.cells, volume.materials());
   }
   return result;
-}
-
-void warn_of_flaws(const MeshOptions& options, const MeshInput& input, const MeshResult& result) {
-  for (std::size_t m = 1; m < result.topology.materials.size(); ++m) {
-    const MaterialTopology& material = result.topology.materials[m];
-    if (material.facets == 0)
-      warn(options.common, fmt::format("label {} has no surface: it is lost", input.labels[m]));
-    else if (!material.closed)
-      warn(options.common, fmt::format("the surface of label {} is not closed", input.labels[m]));
-  }
 }
 
 void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
@@ -190,7 +144,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
     report["seconds"] = seconds;
     write_report(options.common, std::move(report), outputs);
   }
-  warn_of_flaws(options, input, result);
+  for (const std::string& flaw : mesh_flaws(input.labels, result.topology)) warn(options.common, flaw);
   say(options.common, mesh_summary(input, pipeline->info(), result, seconds));
   print_outputs(outputs);
   if (result.interrupted) throw Interrupted();

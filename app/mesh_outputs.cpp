@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -14,7 +13,7 @@
 #include "engine/io/mesh_writer.hpp"
 #include "engine/io/vtp_writer.hpp"
 #include "engine/picture/legend.hpp"
-#include "engine/picture/oklab.hpp"
+#include "engine/picture/material_colours.hpp"
 #include "engine/picture/png.hpp"
 
 namespace nacre {
@@ -50,24 +49,6 @@ void write_particles(const std::string& file, const MeshParticles& particles) {
   for (std::size_t i = 0; i < n; ++i)
     for (int k = 0; k < 3; ++k) arrays[3].values[3 * i + k] = particles.normal[i][k];
   write_vtp(file, std::span<const Vec3d>(particles.points), {}, arrays);
-}
-
-/// A colour of its own for each material: hues a golden angle apart, of one lightness.
-Color material_colour(int material) {
-  const float hue = 0.6f + 2.3999632f * float(material), chroma = 0.11f;
-  Color rgb = linear_from_oklab({0.74f, chroma * std::cos(hue), chroma * std::sin(hue)});
-  for (float& c : rgb) c = srgb_from_linear(std::clamp(c, 0.0f, 1.0f));
-  return rgb;
-}
-
-/// Facets to the outside have their material's colour, those between two materials a lighter mixture.
-Color pair_colour(const std::array<std::uint16_t, 2>& pair) {
-  const Color b = material_colour(pair[1]);
-  if (pair[0] == 0) return b;
-  const Color a = material_colour(pair[0]);
-  Color mixed;
-  for (int k = 0; k < 3; ++k) mixed[k] = 0.35f + 0.65f * 0.5f * (a[k] + b[k]);
-  return mixed;
 }
 
 Image draw_mesh(const SurfaceMesh& mesh, const Session& session, bool cut_away) {

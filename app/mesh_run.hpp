@@ -9,6 +9,7 @@
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
+#include "engine/io/mesh_input.hpp"
 
 namespace nacre {
 
@@ -18,19 +19,6 @@ struct MeshOptions {
   std::string preset, out, particles_out, image;
   bool labels = false, curvature = false, per_material = false, surface_only = false;
   bool keep_on_interrupt = false, cut_away = false;
-};
-
-/// What the report says about the volume once the volume itself is gone.
-struct MeshInput {
-  std::string name;
-  MeshVolume::Kind kind = MeshVolume::Kind::labels;
-  Int3 dims{};
-  Vec3d spacing, origin;
-  std::array<Vec3d, 3> axes;
-  std::vector<std::int64_t> labels;  ///< per material; [0]: the outside's
-  std::vector<std::string> names;    ///< may be empty
-  std::vector<std::size_t> voxels;   ///< per material
-  std::vector<std::string> warnings;
 };
 
 struct MeshResult {

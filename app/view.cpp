@@ -16,6 +16,7 @@
 #include "engine/scene/prepare.hpp"
 #include "engine/scene/samples.hpp"
 #if NACRE_HAS_VIEWER
+#include "app/viewer/scene.hpp"
 #include "app/viewer/viewer.hpp"
 #endif
 
@@ -168,7 +169,8 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
   viewer.session.settings.look.panel = begins_with_panel(options, settings.look);
-  const bool by_steps = options.offscreen && options.script.empty() && options.frames == 0;
+  const bool flow = !is_mesh_input(viewer.session);  // a mesh is done when it is done
+  const bool by_steps = options.offscreen && options.script.empty() && options.frames == 0 && flow;
   viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
   viewer.picture = !options.image.empty();
   const std::unique_ptr<FrameSink> record = make_record(options.record, settings.fps);

@@ -86,6 +86,7 @@ class Scene {
 struct SceneOptions {
   std::function<std::unique_ptr<Device>()> open_device;
   bool loop = true, lockstep = false;
+  const std::atomic<bool>* stop = nullptr;  ///< ends what waits for compute; may be null
 };
 
 std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options);

@@ -120,7 +120,7 @@ class Viewer {
     said_ = 0;
     fitted_ = false;
     // A number of frames is for headless runs to compare with: these do not begin again after the last time.
-    const SceneOptions options{options_.open_device, options_.frames == 0, waits()};
+    const SceneOptions options{options_.open_device, options_.frames == 0, waits(), options_.stop};
     for (const auto& file : session_.inputs)
       if (window_) recent_.add(file);
     scene_ = is_mesh_input(session_) ? make_mesh_scene(session_, options) : make_flow_scene(session_, options);
@@ -128,7 +128,10 @@ class Viewer {
   }
 
   bool done() const {
-    return quit_ || (!window_ && player_->ended(clock() - played_since_)) ||
+    // A replay without an end of its own ends with the mesh.
+    const bool settled =
+        waits() && !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene_->settled();
+    return quit_ || settled || (!window_ && player_->ended(clock() - played_since_)) ||
            (options_.frames > 0 && counted_ >= options_.frames) || (window_ && window_->should_close());
   }
 

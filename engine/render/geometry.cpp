@@ -146,6 +146,13 @@ SurfaceBuffers& SurfaceBuffers::operator=(SurfaceBuffers&& other) noexcept {
   return *this;
 }
 
+void SurfaceBuffers::set_edges(std::span<const std::array<std::uint32_t, 2>> edges) {
+  if (edge_array_ == 0) return;
+  edge_ = Buffer::of<std::array<std::uint32_t, 2>>(edges);
+  edges_ = GLsizei(edges.size());
+  glVertexArrayElementBuffer(edge_array_, edge_.id());
+}
+
 void SurfaceBuffers::draw_triangles() const {
   if (triangles_ == 0) return;
   glBindVertexArray(triangle_array_);

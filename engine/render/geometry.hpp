@@ -43,6 +43,9 @@ class SurfaceBuffers {
   SurfaceBuffers(SurfaceBuffers&& other) noexcept { *this = static_cast<SurfaceBuffers&&>(other); }
   SurfaceBuffers& operator=(SurfaceBuffers&& other) noexcept;
 
+  /// Other edges of the same vertices from now on: those of a part of the triangles.
+  void set_edges(std::span<const std::array<std::uint32_t, 2>> edges);
+
   void draw_triangles() const;
   void draw_edges() const;
 

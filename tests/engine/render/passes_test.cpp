@@ -14,6 +14,8 @@
 #include "engine/render/line_passes.hpp"
 #include "engine/render/material_pass.hpp"
 #include "engine/render/particle_pass.hpp"
+#include "engine/render/segment_pass.hpp"
+#include "engine/render/slice_pass.hpp"
 #include "tests/engine/gl/offscreen.hpp"
 
 namespace nacre {
@@ -291,6 +293,47 @@ TEST_F(Pass, ArrowsTakeTheMapsColours) {
   EXPECT_EQ(at(plain, 55, 50)[0], 0);
   EXPECT_GT(at(plain, 55, 50)[2], 80);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(at(mapped, 55, 49)[k], 255 * last[std::size_t(k)], 90) << k;
+}
+
+TEST_F(Pass, SegmentsHaveTheirWidthAndLieBehindWhatIsBeforeThem) {
+  const SegmentPass pass;
+  const Buffer segments = Buffer::of<Segment>(std::vector<Segment>{{{-0.5f, 1, 0}, {0.5f, 1, 0}}});
+  const View view = front();
+  const auto draw = [&](float width, bool through) {
+    return picture(view, [&] {
+      const Buffer before = Buffer::of<Segment>(std::vector<Segment>{{{0, 0, -1}, {0, 0, 1}}});
+      pass.draw(view, world, before, {{0, 0, 1, 1}, 10, false});
+      glEnable(GL_DEPTH_TEST);
+      pass.draw(view, world, segments, {{1, 0, 0, 1}, width, through});
+    });
+  };
+  const Image narrow = draw(4, false), wide = draw(8, false);
+  EXPECT_NEAR(covered(wide) - covered(narrow), 4 * 36 / 1e4, 0.006);
+  EXPECT_EQ(at(narrow, 30, 50), (Pixel{255, 0, 0}));
+  EXPECT_EQ(at(narrow, 30, 58), (Pixel{255, 255, 255}));
+  View behind = view;  // an end that lies behind the eye does not turn the line round
+  behind.camera.eye = {0, -1, 0};
+  behind.camera.target = {0, 0, 0};
+  const Buffer past = Buffer::of<Segment>(std::vector<Segment>{{{0.2f, 5, 0}, {0.2f, -20, 0}}});
+  const Image image = picture(behind, [&] { pass.draw(behind, world, past, {{1, 0, 0, 1}, 4, false}); });
+  EXPECT_EQ(at(image, 80, 50), (Pixel{255, 0, 0}));
+  EXPECT_EQ(at(image, 20, 50), (Pixel{255, 255, 255}));
+}
+
+TEST_F(Pass, ASliceLiesWhereItIsPutAndIsNotCut) {
+  SlicePass pass;
+  View view = front();
+  EXPECT_EQ(covered(picture(view, [&] { pass.draw(view); })), 0);
+  Image image(2, 1);
+  const std::uint8_t red_and_nothing[] = {255, 0, 0, 255, 0, 0, 0, 0};
+  std::copy_n(red_and_nothing, 8, image.pixels.begin());
+  pass.set_image(image, false);
+  pass.set_place({-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1});
+  view.clip = ClipPlane{{1, 0, 0}, 0.9};
+  const Image drawn = picture(view, [&] { pass.draw(view); });
+  EXPECT_NEAR(covered(drawn), 0.125, 0.01);
+  EXPECT_EQ(at(drawn, 40, 50), (Pixel{255, 0, 0}));
+  EXPECT_EQ(at(drawn, 60, 50), (Pixel{255, 255, 255}));
 }
 
 }  // namespace

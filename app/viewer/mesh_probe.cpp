@@ -1,0 +1,78 @@
+// Nacre: what is under the cursor of a mesh: a triangle, or a place of the slice.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/viewer/clip.hpp"
+#include "app/viewer/mesh_scene.hpp"
+#include "compute/meshing/quality.hpp"
+
+namespace nacre {
+namespace {
+
+std::string place_line(const char* name, const Vec3d& p) {
+  return fmt::format("{}: {:.5g} {:.5g} {:.5g}", name, p.x, p.y, p.z);
+}
+
+bool is_cut(const std::optional<ClipPlane>& clip, const Vec3d& p) {
+  return clip && dot(clip->normal, p) < clip->offset;
+}
+
+/// Where a ray passes the parallelogram of a slice.
+std::optional<double> distance_to(const SlicePlane& plane, const Vec3d& from, const Vec3d& along) {
+  const Vec3d normal = cross(plane.across, plane.up);
+  const double distance = dot(plane.corner - from, normal) / dot(along, normal);
+  if (!(distance > 0) || !std::isfinite(distance)) return {};
+  const Vec3d p = from + along * distance - plane.corner;
+  const double x = dot(p, plane.across) / dot(plane.across, plane.across);
+  const double y = dot(p, plane.up) / dot(plane.up, plane.up);
+  if (x < 0 || x > 1 || y < 0 || y > 1) return {};
+  return distance;
+}
+
+}  // namespace
+
+void MeshScene::describe_hit(Probed& probed, const TriangleHit& hit) const {
+  const auto& pair = results_.mesh->materials[hit.triangle];
+  const MeshInput& input = results_.volume->input;
+  probed.lines.push_back(
+      fmt::format("between: {} and {}", material_name(input, pair[0]), material_name(input, pair[1])));
+  const Triangle& t = results_.mesh->triangles[hit.triangle];
+  const std::vector<Vec3d>& p = results_.mesh->points;
+  probed.lines.push_back(fmt::format("triangle: {}", hit.triangle));
+  probed.lines.push_back(fmt::format("radius ratio: {:.3f}", radius_ratio(p[t.a], p[t.b], p[t.c])));
+  if (!results_.measures) return;
+  const std::vector<float>& size = results_.measures->size;
+  probed.lines.push_back(
+      fmt::format("wanted size: {:.4g}", (1 - hit.u - hit.v) * size[t.a] + hit.u * size[t.b] + hit.v * size[t.c]));
+}
+
+std::optional<Probed> MeshScene::probe(const Vec3d& from, const Vec3d& along) {
+  if (!results_.volume) return {};
+  const ViewedVolume& volume = *results_.volume;
+  std::optional<TriangleHit> hit;
+  if (triangles_drawn()) {
+    const std::optional<ClipPlane> clip = clip_plane(settings_.look, corners_);
+    hit = rays_.first_hit(from, along, [&](const TriangleHit& h) {
+      const auto& pair = results_.mesh->materials[h.triangle];
+      return !is_cut(clip, h.place) && (looks_[pair[0]].opacity > 0 || looks_[pair[1]].opacity > 0);
+    });
+  }
+  std::optional<double> slice;
+  if (const int axis = slice_axis(settings_.look); axis >= 0)
+    slice = distance_to(slice_plane(volume.input, axis, settings_.look.slice_at), from, along);
+  if (!hit && !slice) return {};
+  const bool on_slice = slice && (!hit || *slice < hit->distance);
+  Probed probed;
+  probed.place = on_slice ? from + along * *slice : hit->place;
+  probed.lines.push_back(place_line("place", probed.place));
+  probed.lines.push_back(place_line("voxel", volume.to_voxels(probed.place)));
+  if (!on_slice) describe_hit(probed, *hit);
+  if (const std::optional<std::size_t> index = volume.index_at(probed.place)) {
+    probed.lines.push_back(fmt::format("volume: {:.6g}", volume.value(*index)));
+    if (on_slice) probed.lines.push_back("material: " + material_name(volume.input, volume.material[*index]));
+  }
+  return probed;
+}
+
+}  // namespace nacre

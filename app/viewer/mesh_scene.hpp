@@ -1,0 +1,129 @@
+// Nacre: a mesh in the making as the viewer shows it: what the worker has told, on the graphics device.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/mesh_results.hpp"
+#include "app/viewer/mesh_worker.hpp"
+#include "app/viewer/ray_triangles.hpp"
+#include "app/viewer/scene.hpp"
+#include "engine/interop/shared_buffer.hpp"
+#include "engine/render/line_passes.hpp"
+#include "engine/render/material_pass.hpp"
+#include "engine/render/particle_pass.hpp"
+#include "engine/render/segment_pass.hpp"
+#include "engine/render/slice_pass.hpp"
+
+namespace nacre {
+
+/// Particles are drawn until there are triangles, which they would pierce; and where triangles are switched off.
+class MeshScene : public Scene {
+ public:
+  MeshScene(const Session& session, const SceneOptions& options);
+  ~MeshScene() override;
+  MeshScene(const MeshScene&) = delete;
+  MeshScene& operator=(const MeshScene&) = delete;
+
+  void advance(double now) override;
+  void advance_and_wait(const std::atomic<bool>& stop) override;
+  void set_settings(const Settings& settings) override;
+  void cancel() override { worker_.cancel(); }
+  void resume() override;
+  void draw(const View& view) override;
+  Image overlay(int width, int height) override;
+  std::uint64_t overlay_version() const override;
+  void result_panel(Session& session) override;
+  std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
+  void write_result(const std::filesystem::path& file) override;
+  std::vector<std::string> result_formats() const override;
+
+  const std::vector<Vec3d>& corners() const override { return corners_; }
+  bool complete() const override { return results_.mesh || counts_.total() > 0; }
+  bool settled() const override { return worker_.settled(); }
+  std::string title() const override;
+  std::string state() const override;
+  SceneProgress progress() const override;
+  const std::string& failure() const override { return failure_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  std::string remark() const override { return place_ ? place_->remark() : std::string(); }
+  int steps() const override { return steps_; }
+  std::uint64_t copied_bytes() const override;
+  StageTimers timers() const override { return worker_.timers(); }
+  std::size_t peak_bytes() const override { return worker_.peak_bytes(); }
+  const Device& device() const override { return worker_.device(); }
+  void finish() override { worker_.finish(); }
+
+ private:
+  void take(MeshEvent& event);
+  void take(VolumeRead& told);
+  void take(RelaxBegun& told);
+  void take(MeshIterated& told);
+  void take(MeshTriangulated& told);
+  void take(MeshMeasured& told);
+  void take(SliceFilled& told);
+  void take(MeshWritten& told);
+  void take(MeshFailed& told);
+  void lend(bool wait);
+  void drop_memory();
+  void warn_once(const std::string& warning);
+  void update_looks();
+  void update_edges();
+  void update_worst();
+  void update_slice();
+  void show_volume_slice(int axis, double at);
+  std::array<double, 2> slice_range(const std::vector<float>& values, MeshField field);
+  void draw_particles(const View& view) const;
+  void draw_triangles(const View& view) const;
+  void draw_volume(const View& view) const;
+  bool particles_drawn() const;
+  bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.look.triangles; }
+  std::array<double, 2> size_range() const;
+  void describe_hit(Probed& probed, const TriangleHit& hit) const;
+
+  MeshWorker worker_;  // before what it writes to, whose device it owns
+  const bool lockstep_;
+  const std::atomic<bool>* stop_;
+  Settings settings_;
+  MeshResults results_;
+  RayTriangles rays_;
+  std::vector<Vec3d> corners_;
+  std::vector<std::string> warnings_;
+  std::string failure_;
+  std::optional<std::string> written_;  ///< how the writing that was asked for went
+
+  // Particles and boxes, which the worker writes.
+  std::unique_ptr<SharedBuffer> place_, direction_, boxes_;
+  std::int64_t capacity_ = 0;
+  ShownCounts counts_;
+  std::int64_t box_count_ = 0, box_capacity_ = 0;
+  int lease_ = 0, steps_ = 0;
+  bool lent_ = false, boxes_lent_ = false;
+  std::uint64_t copied_ = 0;
+  ParticlePass particle_pass_;
+  BoxPass box_pass_;
+  Placement voxels_{1.0};
+
+  // Triangles; `stale_`: the particles have moved on since.
+  MeshDrawing drawing_;
+  SurfaceBuffers surface_;
+  bool stale_ = false;
+  std::vector<MaterialLook> looks_;
+  MaterialPass material_pass_;
+  EdgePass edge_pass_;
+  SegmentPass segment_pass_;
+  Buffer curves_, worst_, outline_;
+  Placement outline_place_{1.0};
+
+  // The slice, and what it was asked for.
+  SlicePass slice_pass_;
+  SliceRequest request_;
+  bool slice_of_field_ = false, slice_values_ = false;
+  std::array<double, 2> slice_range_{0, 1};
+  double farthest_ = 0;  ///< distance seen in slices so far
+};
+
+}  // namespace nacre

@@ -1,0 +1,163 @@
+// Nacre: the mesh pipeline on a thread of its own: what its stages do.
+#include <algorithm>
+#include <utility>
+
+#include "app/viewer/mesh_worker.hpp"
+#include "compute/device/error.hpp"
+#include "compute/meshing/tetrahedra.hpp"
+#include "engine/io/mesh_writer.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int slice_pixels = 512;         ///< along the longer side of a slice of a field
+constexpr std::size_t most_worst = 1000;  ///< triangles that can be told apart as the worst
+
+bool has_cells(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::vector<std::string> known = tetrahedral_mesh_extensions();
+  return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+}  // namespace
+
+void MeshWorker::read() {
+  note_progress({"read", 0, 0, 0, 0});
+  StageTimers::Scope scope(pipeline_->timers(), "read");
+  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(session_, &interrupt_));
+}
+
+void MeshWorker::choose_materials() {
+  note_progress({"materials", 0, 0, 0, 0});
+  MaterialWords words;
+  {
+    std::scoped_lock lock(mutex_);
+    words = wanted_.materials;
+  }
+  auto viewed = std::make_shared<ViewedVolume>();
+  MeshVolume volume;
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "classify");
+    volume = make_materials(*volumes_, !session_.sample.empty(), words, viewed->input);
+    if (volume.kind == MeshVolume::Kind::scalar) {
+      const VolumeStatistics statistics = volume_statistics(volumes_->front());
+      viewed->low = statistics.min;
+      viewed->high = statistics.max;
+    }
+  }
+  pipeline_->load(volume);
+  viewed->volumes = volumes_;
+  viewed->material = std::move(volume.material);
+  viewed_ = std::move(viewed);
+  tell(VolumeRead{viewed_, viewed_->corners(), pipeline_->voxel_frame()});
+}
+
+void MeshWorker::build_fields() { pipeline_->build_fields(); }
+
+void MeshWorker::relax() {
+  RelaxBegun told{pipeline_->info(), 0, 0, 0};
+  const int particles = pipeline_->parameters.particles;
+  const double wanted = particles > 0 ? particles : told.info.expected_particles;
+  told.capacity = std::int64_t(1.6 * wanted) + 20000;  // as the solver has
+  told.box_capacity = told.capacity;
+  {
+    std::scoped_lock lock(mutex_);
+    lent_.reset();
+    told.lease = ++lease_;
+  }
+  tell(told);
+  pipeline_->relax();
+}
+
+void MeshWorker::triangulate() {
+  auto mesh = std::make_shared<SurfaceMesh>(pipeline_->triangulate());
+  MeshTriangulated told{mesh, make_mesh_drawing(*mesh), RayTriangles(mesh->points, mesh->triangles), pipeline_->info()};
+  if (!await_turn()) throw Interrupted();
+  mesh_ = std::move(mesh);
+  MeshProgress last;
+  {
+    std::scoped_lock lock(mutex_);
+    last = progress_;
+  }
+  last.particles = told.info.final;
+  show(last, false);
+  tell(std::move(told));
+}
+
+void MeshWorker::measure() {
+  note_progress({"quality", 0.95, 0, 0, 0});
+  auto measures = std::make_shared<MeshMeasures>();
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "quality");
+    measures->topology = check_topology(*mesh_, int(viewed_->input.labels.size()));
+    measures->quality = surface_quality(*mesh_);
+    measures->worst = worst_triangles(*mesh_, most_worst);
+  }
+  if (interrupt_) throw Interrupted();
+  measures->distance = pipeline_->surface_distance(*mesh_);
+  measures->size = pipeline_->field_at(MeshField::size, mesh_->points);
+  tell(MeshMeasured{std::move(measures)});
+}
+
+void MeshWorker::fill_slice() {
+  SliceRequest request;
+  {
+    std::scoped_lock lock(mutex_);
+    if (!slice_due()) return;
+    request = *slice_;
+  }
+  SliceFilled told;
+  told.number = request.number;
+  told.field = request.field;
+  told.plane = slice_plane(viewed_->input, request.axis, request.at);
+  const double width = length(told.plane.across), height = length(told.plane.up), longer = std::max(width, height);
+  told.columns = std::max(1, int(slice_pixels * width / longer));
+  told.rows = std::max(1, int(slice_pixels * height / longer));
+  told.values = pipeline_->field_at(request.field, told.plane.places(told.columns, told.rows));
+  {
+    std::scoped_lock lock(mutex_);
+    if (slice_ && slice_->number == request.number) slice_filled_ = true;
+    events_.push_back(std::move(told));
+  }
+  told_.notify_all();
+}
+
+void MeshWorker::write_result() {
+  std::filesystem::path file;
+  bool complete;
+  double max_cell;
+  {
+    std::scoped_lock lock(mutex_);
+    file = *std::exchange(file_, std::nullopt);
+    complete = next_ == MeshStage::done;
+    max_cell = wanted_.max_cell;
+    progress_ = {"write", -1, 0, 0, 0};
+  }
+  MeshWritten told{complete ? "interrupted" : "there is no mesh yet; let it be made first"};
+  const auto write = [&] {
+    const std::vector<std::int64_t>& labels = viewed_->input.labels;
+    if (has_cells(file)) {
+      TetrahedralMesh cells;
+      {
+        StageTimers::Scope scope(pipeline_->timers(), "tetrahedra");
+        cells = fill_with_tetrahedra(*mesh_, longest_edge(max_cell, viewed_->input.spacing), &interrupt_);
+      }
+      StageTimers::Scope scope(pipeline_->timers(), "write");
+      write_tetrahedral_mesh(file, cells, *mesh_, labels);
+    } else {
+      StageTimers::Scope scope(pipeline_->timers(), "write");
+      write_surface_mesh(file, *mesh_, labels);
+    }
+    told.failure.clear();
+  };
+  if (complete)
+    if (const std::optional<std::string> failure = failure_of(write)) told.failure = *failure;
+  {
+    std::scoped_lock lock(mutex_);
+    all_turns_ = false;
+  }
+  tell(std::move(told));
+}
+
+}  // namespace nacre

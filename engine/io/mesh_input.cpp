@@ -1,0 +1,73 @@
+// Nacre: the volumes of a session as the mesh pipeline takes them.
+#include "engine/io/mesh_input.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "compute/device/error.hpp"
+#include "engine/io/volume_reader.hpp"
+#include "engine/scene/material_words.hpp"
+#include "engine/scene/phantoms.hpp"
+
+namespace nacre {
+
+std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atomic<bool>* stop,
+                                      const WarningSink& warn) {
+  std::vector<Volume> volumes;
+  if (!input.sample.empty()) volumes.push_back(make_phantom(input.sample, input.detail, stop));
+  for (const auto& file : input.inputs) {
+    volumes.push_back(read_volume(file));
+    if (warn)
+      for (const std::string& warning : volumes.back().warnings) warn(warning);
+    if (stop && *stop) throw Interrupted();
+  }
+  return volumes;
+}
+
+MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialWords& words,
+                          MeshInput& described, const WarningSink& warn) {
+  MaterialOptions options = parse_material_words(words);
+  const bool scalar_sample = sample && !volume_statistics(volumes.front()).integral;
+  if (scalar_sample && options.mode == MaterialOptions::Mode::automatic && !options.threshold)
+    options.isovalues = {phantom_isovalue};
+  described = {};
+  for (const Volume& volume : volumes)
+    described.warnings.insert(described.warnings.end(), volume.warnings.begin(), volume.warnings.end());
+  const std::size_t said = described.warnings.size();
+  MeshVolume volume = make_mesh_volume(volumes, options, &described.warnings);
+  if (warn)
+    for (std::size_t i = said; i < described.warnings.size(); ++i) warn(described.warnings[i]);
+  described.name = volumes.front().name;
+  for (std::size_t i = 1; i < volumes.size(); ++i) described.name += ", " + volumes[i].name;
+  described.kind = volume.kind;
+  described.dims = volume.dims;
+  described.spacing = volume.spacing;
+  described.origin = volume.origin;
+  described.axes = volume.axes;
+  described.labels = volume.labels;
+  described.names = volume.names;
+  described.voxels.assign(volume.labels.size(), 0);
+  for (const std::uint16_t material : volume.material) ++described.voxels.at(material);
+  return volume;
+}
+
+EdgeLength longest_edge(double max_cell, const Vec3d& spacing) {
+  if (max_cell <= 0) return {};
+  const float longest = float(max_cell * std::min({spacing.x, spacing.y, spacing.z}));
+  return [longest](std::span<const Vec3d> points) { return std::vector<float>(points.size(), longest); };
+}
+
+std::vector<std::string> mesh_flaws(std::span<const std::int64_t> labels, const TopologyReport& topology) {
+  std::vector<std::string> flaws;
+  for (std::size_t m = 1; m < topology.materials.size(); ++m) {
+    const MaterialTopology& material = topology.materials[m];
+    if (material.facets == 0)
+      flaws.push_back(fmt::format("label {} has no surface: it is lost", labels[m]));
+    else if (!material.closed)
+      flaws.push_back(fmt::format("the surface of label {} is not closed", labels[m]));
+  }
+  return flaws;
+}
+
+}  // namespace nacre

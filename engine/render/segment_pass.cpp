@@ -1,0 +1,44 @@
+// Nacre: draws line segments that are wider than a pixel.
+#include "engine/render/segment_pass.hpp"
+
+#include <cstddef>
+
+namespace nacre {
+
+SegmentPass::SegmentPass() : program_("segments.vert", "lines.frag") {
+  glCreateVertexArrays(1, &array_);
+  for (GLuint k = 0; k < 2; ++k) {
+    glEnableVertexArrayAttrib(array_, k);
+    glVertexArrayAttribFormat(array_, k, 3, GL_FLOAT, GL_FALSE,
+                              k == 0 ? offsetof(Segment, from) : offsetof(Segment, to));
+    glVertexArrayAttribBinding(array_, k, 0);
+  }
+  glVertexArrayBindingDivisor(array_, 0, 1);
+}
+
+SegmentPass::~SegmentPass() { glDeleteVertexArrays(1, &array_); }
+
+void SegmentPass::draw(const View& view, const Placement& placement, const Buffer& segments,
+                       const SegmentLook& look) const {
+  if (!segments) return;
+  set_view(program_, view, placement);
+  program_.set("colour", look.colour);
+  program_.set("width", look.width);
+  program_.set("lift", view.camera.orthographic ? 1e-5f : 8e-4f);
+  program_.use();
+  glVertexArrayVertexBuffer(array_, 0, segments.id(), 0, sizeof(Segment));
+  glBindVertexArray(array_);
+  if (look.through)
+    glDisable(GL_DEPTH_TEST);
+  else
+    glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_BLEND);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(segments.bytes() / sizeof(Segment)));
+  glDisable(GL_BLEND);
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+}
+
+}  // namespace nacre

@@ -1,0 +1,38 @@
+// Nacre: draws line segments that are wider than a pixel.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "engine/gl/buffer.hpp"
+#include "engine/render/view.hpp"
+
+namespace nacre {
+
+/// Two ends, in the model's coordinates.
+struct Segment {
+  Vec3f from, to;
+};
+
+struct SegmentLook {
+  std::array<float, 4> colour{0, 0, 0, 1};  ///< encoded, with opacity
+  float width = 2;                          ///< pixels
+  bool through = false;                     ///< also where something lies before them
+};
+
+/// Segments on the graphics device, drawn into what is bound.
+class SegmentPass {
+ public:
+  SegmentPass();
+  ~SegmentPass();
+  SegmentPass(const SegmentPass&) = delete;
+  SegmentPass& operator=(const SegmentPass&) = delete;
+
+  void draw(const View& view, const Placement& placement, const Buffer& segments, const SegmentLook& look) const;
+
+ private:
+  Program program_;
+  GLuint array_ = 0;
+};
+
+}  // namespace nacre

@@ -1,0 +1,129 @@
+// Nacre: meshes in the viewer, as a script runs it without a display.
+#include <cstdlib>
+
+#include "engine/picture/png.hpp"
+#include "tests/app/mesh_program.hpp"
+
+namespace nacre::test {
+namespace {
+
+const Words small_view = {"view", "--offscreen", "--sample", "two-spheres", "--detail",
+                          "24",   "--size",      "240x180",  "--no-panel",  "--quiet"};
+
+class ViewMesh : public MeshTest {
+ protected:
+  void SetUp() override {
+    static const Outcome tried = nacre({"view", "--offscreen", "--sample", "sphere", "--detail", "24", "--resolution",
+                                        "32", "--frames-count", "1", "--quiet"});
+    if (tried.status == 1 && (contains(tried.err, "no viewer") || contains(tried.err, "no OpenGL")))
+      GTEST_SKIP() << tried.err;
+  }
+
+  /// A picture of frame `frames`, and what the run says in "view" of its report.
+  Image picture(int frames, const Words& more = {}) {
+    const Outcome run = nacre(
+        small_view +
+        Words{"--frames-count", std::to_string(frames), "--image", path("v.png"), "--report", path("v.json")} + more);
+    EXPECT_EQ(run.status, 0) << run.err;
+    if (run.status != 0) return {};
+    report = read_json("v.json");
+    EXPECT_EQ(report["view"]["copied_bytes"], 0);
+    EXPECT_TRUE(report["view"]["driver_messages"].empty()) << report["view"].dump(1);
+    return read_png(path("v.png"));
+  }
+
+  nlohmann::json report;
+};
+
+double difference(const Image& a, const Image& b) {
+  if (a.pixels.size() != b.pixels.size() || a.pixels.empty()) return 255;
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += std::abs(int(a.pixels[i]) - int(b.pixels[i]));
+  return sum / double(a.pixels.size());
+}
+
+/// Share of pixels that are not the white background.
+double covered(const Image& image) {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+    n += image.pixels[i] < 250 || image.pixels[i + 1] < 250 || image.pixels[i + 2] < 250;
+  return 4 * double(n) / double(std::max<std::size_t>(image.pixels.size(), 1));
+}
+
+TEST_F(ViewMesh, ParticlesGrowAndSettle) {
+  const Image early = picture(2), later = picture(60);
+  EXPECT_EQ(report["view"]["steps"], 60);
+  EXPECT_GT(covered(early), 0.002);
+  EXPECT_GT(covered(later), 0.2);
+  EXPECT_GT(difference(early, later), 3);
+}
+
+TEST_F(ViewMesh, TrianglesAreThoseOfTheHeadlessCommand) {
+  const std::string camera = write("camera.json", R"({"eye": [60, -50, 40], "target": [12, 12, 12], "up": [0, 0, 1],
+                                                      "height": 26})");
+  const Image view =
+      picture(400, {"--set", "edges=true", "--set", "curves=false", "--set", "legend=false", "--camera", camera});
+  ASSERT_EQ(nacre(small_mesh +
+                  Words{"--size", "240x180", "--image", path("m.png"), "--camera", camera, "--set", "legend=false"})
+                .status,
+            0);
+  EXPECT_LT(difference(view, read_png(path("m.png"))), 2);
+  EXPECT_GT(covered(view), 0.1);
+}
+
+TEST_F(ViewMesh, TwoReplaysAreTheSame) {
+  const Image first = picture(40), second = picture(40, {"--threads", "1"});
+  EXPECT_EQ(first.pixels, second.pixels);
+}
+
+TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
+  for (const char* name : {"a.vtp", "a.msh"}) {
+    ASSERT_EQ(nacre(small_mesh + Words{"--out", path(name)}).status, 0);
+    const std::string mesh = content(name);
+    fs::remove(path(name));
+    const Outcome run = nacre(small_view + Words{"--frames-count", "3", "--out", path(name)});
+    if (contains(run.err, "--out")) GTEST_SKIP() << run.err;
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_TRUE(content(name) == mesh) << name;
+  }
+}
+
+TEST_F(ViewMesh, LooksChangeWhatIsSeenAndNothingElse) {
+  const Image plain = picture(400);
+  const double all = covered(plain);
+  EXPECT_LT(covered(picture(400, {"--set", "hidden=1"})), 0.85 * all);
+  const double ghosts = difference(plain, picture(400, {"--set", "ghosts=1"}));
+  EXPECT_GT(ghosts, 1);
+  EXPECT_LT(covered(picture(400, {"--set", "clip=x", "--set", "clip_at=0.6"})), 0.85 * all);
+  EXPECT_GT(difference(plain, picture(400, {"--set", "worst=30"})), 0.2);
+  EXPECT_GT(difference(plain, picture(400, {"--set", "triangles=false"})), 1);  // particles instead
+  for (const char* field : {"volume", "material", "distance", "size"})
+    EXPECT_GT(covered(picture(
+                  400, {"--set", "slice=y", "--set", std::string("slice_field=") + field, "--set", "hidden=1,2"})),
+              0.2)
+        << field;
+}
+
+TEST_F(ViewMesh, ALabelThatIsNotThereIsAWarning) {
+  Words words = small_view;
+  words.pop_back();  // --quiet
+  const Outcome run = nacre(words + Words{"--frames-count", "2", "--set", "hidden=9", "--image", path("x.png")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "no label 9")) << run.err;
+}
+
+TEST_F(ViewMesh, FailuresAreOneLine) {
+  const Outcome run = nacre({"view", "--offscreen", "--sample", "two-spheres", "--detail", "24", "--set", "materials=7",
+                             "--image", path("x.png"), "--quiet"});
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_TRUE(contains(run.err, "7")) << run.err;
+  EXPECT_FALSE(exists("x.png"));
+}
+
+TEST_F(ViewMesh, LiveFramesDoNotWaitForCompute) {
+  picture(30, {"--live", "--panel"});
+  EXPECT_GE(report["view"]["frames"], 30);
+}
+
+}  // namespace
+}  // namespace nacre::test
