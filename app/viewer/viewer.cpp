@@ -150,7 +150,7 @@ class Viewer {
     draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
     glFinish();
     const double end = now();
-    if (FrameSink* video = video_ ? video_.get() : options_.video) video->add(frame_->read());
+    if (FrameSink* video = video_ ? video_.get() : options_.video) attempt([&] { video->add(frame_->read()); });
     if (wishes_.screenshot) pictures.push_back(*wishes_.screenshot);
     for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
     if (recorder_) recorder_->note(time - recording_since_, session_, pictures);

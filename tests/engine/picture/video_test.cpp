@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "compute/device/error.hpp"
-#include "engine/system/child_process.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/system/child_process.hpp"
 #include "tests/engine/picture/small_disk.hpp"
 #include "tests/engine/picture/temporary_folder.hpp"
 #include "tests/engine/picture/test_images.hpp"
@@ -115,6 +115,17 @@ TEST_F(VideoTest, HasEveryFrameAndAnEvenSize) {
     EXPECT_EQ(probe(folder / "plain.mp4"), expected);
     EXPECT_EQ(folder.entries(), 1);
   }
+}
+
+TEST_F(VideoTest, AFrameOfAnotherSizeIsBroughtToThatOfTheFirst) {
+  const auto video = make_video(folder / "a.mp4", 25), pictures = make_frame_folder(folder / "frames");
+  for (const auto& [width, height] : {std::pair{64, 48}, {300, 20}, {16, 90}, {64, 48}})
+    for (FrameSink* sink : {video.get(), pictures.get()}) sink->add(noise_image(width, height, 7));
+  video->finish();
+  EXPECT_EQ(probe(folder / "a.mp4"), "64,48,4");
+  const Image third = read_png(folder / "frames/frame_0002.png");
+  EXPECT_EQ(third.width, 64);
+  EXPECT_EQ(third.height, 48);
 }
 
 TEST_F(VideoTest, OtherContainers) {
