@@ -184,7 +184,7 @@ TEST(Video, MissingFfmpegNamesThePackageAndTheWayAround) {
   const OnlyPath path(folder.path());
   const std::string error = failure_of_video(folder / "a.mp4", 1, 8);
   EXPECT_TRUE(has(error, "install the package ffmpeg")) << error;
-  EXPECT_TRUE(has(error, "--frames")) << error;
+  EXPECT_TRUE(has(error, "folder of pictures")) << error;
   EXPECT_EQ(folder.entries(), 0);
 }
 
