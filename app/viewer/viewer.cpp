@@ -126,7 +126,7 @@ class Viewer {
   }
 
   bool done() const {
-    return quit_ || (!window_ && player_->ended(clock() - played_since_)) ||
+    return quit_ || (!window_ && player_->ended()) ||
            (options_.frames > 0 && counted_ >= options_.frames) || (window_ && window_->should_close());
   }
 

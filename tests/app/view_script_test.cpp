@@ -197,6 +197,17 @@ TEST_F(Scripts, CameraOfASessionIsEveryCommands) {
   EXPECT_LT(blank_above({"mesh", "--camera", "+x"}), 12);
 }
 
+TEST_F(Scripts, PlayInRealTimeWhereFramesDoNotWait) {
+  const std::string file = script({{{"time", 0.3}, {"knobs", {{"ttl", 2}}}},
+                                   {{"time", 1}, {"knobs", {{"contrast", 0.1}}}},
+                                   {{"time", 1}, {"screenshot", {{"file", "end.png"}}}}});
+  ASSERT_EQ(play(file, {"--live", "--save-recording", path("live.json")}).status, 0);
+  EXPECT_TRUE(exists(folder / "end.png"));
+  const json recording = read_json(folder / "live.json");
+  EXPECT_GE(recording["duration"], 1);
+  EXPECT_EQ(recording["events"].back()["knobs"]["contrast"], 0.1);
+}
+
 TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg";
   const std::string file = script(nullptr, 100000);
