@@ -79,7 +79,7 @@ void FlowScene::show_embedding() const {
   const float most = *std::max_element(step_seconds_.begin(), step_seconds_.end());
   text(fmt::format("{:.3f} s the last step", step_seconds_.back()));
   ImGui::PlotLines("##steps", step_seconds_.data(), int(step_seconds_.size()), 0, nullptr, 0, 1.1f * most,
-                   ImVec2(-1, 48));
+                   ImVec2(ImGui::GetContentRegionAvail().x, 48));
 }
 
 }  // namespace nacre

@@ -23,7 +23,7 @@ void row(const char* name, const std::string& value) {
 
 template <class Rows>
 void figures(const char* id, const Rows& rows) {
-  if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
+  if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchSame)) return;
   rows();
   ImGui::EndTable();
 }
@@ -32,7 +32,7 @@ void plot(const char* id, const char* name, const std::vector<float>& values) {
   if (values.empty()) return;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const std::string label = fmt::format("{} {:.5g}", name, values.back());
-  ImGui::PlotLines(id, values.data(), int(values.size()), 0, label.c_str(), *low, *high, ImVec2(-1, 60));
+  ImGui::PlotLines(id, values.data(), int(values.size()), 0, label.c_str(), *low, *high, ImVec2(ImGui::GetContentRegionAvail().x, 60));
 }
 
 std::string words_of(const std::vector<std::int64_t>& labels) { return fmt::format("{}", fmt::join(labels, ",")); }
@@ -118,7 +118,7 @@ void quality_figures(const MeshMeasures& measures) {
   const std::string label =
       fmt::format("radius ratio {:.3f} mean, {:.3f} min", q.radius_ratio_mean, q.radius_ratio_min);
   ImGui::PlotHistogram("##ratios", bins.data(), int(bins.size()), 0, label.c_str(), 0,
-                       *std::max_element(bins.begin(), bins.end()), ImVec2(-1, 80));
+                       *std::max_element(bins.begin(), bins.end()), ImVec2(ImGui::GetContentRegionAvail().x, 80));
   figures("quality", [&] {
     row("angles", fmt::format("{:.1f} to {:.1f} degrees", q.angle_min, q.angle_max));
     row("under 25 degrees", fmt::format("{:.2f}% of triangles", 100 * q.share_under_25));

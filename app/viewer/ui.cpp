@@ -55,7 +55,7 @@ void timings_tab(const Scene& scene, const UiFacts& facts) {
   const std::array<float, 120> history = facts.clock.milliseconds();
   const float top = std::max(20.0f, *std::max_element(history.begin(), history.end()));
   ImGui::PlotLines("##frames", history.data(), int(history.size()), 0, nullptr, 0, top,
-                   ImVec2(-1, 3 * ImGui::GetFontSize()));
+                   ImVec2(ImGui::GetContentRegionAvail().x, 3 * ImGui::GetFontSize()));
   stage_table(scene.timers());
   ImGui::Spacing();
   ImGui::TextWrapped("compute: %s (%s)", scene.device().name().c_str(), scene.device().backend().c_str());

@@ -131,7 +131,7 @@ class Viewer {
     // A replay without an end of its own ends with the mesh.
     const bool settled =
         waits() && !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene_->settled();
-    return quit_ || settled || (!window_ && player_->ended(clock() - played_since_)) ||
+    return quit_ || settled || (!window_ && player_->ended()) ||
            (options_.frames > 0 && counted_ >= options_.frames) || (window_ && window_->should_close());
   }
 
@@ -155,7 +155,7 @@ class Viewer {
     draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
     glFinish();
     const double end = now();
-    if (FrameSink* video = video_ ? video_.get() : options_.video) video->add(frame_->read());
+    if (FrameSink* video = video_ ? video_.get() : options_.video) attempt([&] { video->add(frame_->read()); });
     if (wishes_.screenshot) pictures.push_back(*wishes_.screenshot);
     for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
     if (recorder_) recorder_->note(time - recording_since_, session_, pictures);

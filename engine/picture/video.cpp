@@ -87,7 +87,7 @@ class Video : public FrameSink {
     assert(fps > 0);
     if (program_.empty())
       throw Error("cannot write the video " + name_, "the program ffmpeg was not found",
-                  "install the package ffmpeg, or write pictures with --frames DIR");
+                  "install the package ffmpeg, or write a folder of pictures");
   }
 
   void write(const Image& frame) override {
@@ -136,7 +136,7 @@ class Video : public FrameSink {
     if (reason.empty()) reason = "ffmpeg ended before its time";
     const bool full = reason.find(std::strerror(ENOSPC)) != std::string::npos;
     throw Error("cannot write the video " + name_, "ffmpeg: " + reason,
-                full ? advice_on_writing(ENOSPC) : "write pictures with --frames DIR instead");
+                full ? advice_on_writing(ENOSPC) : "write a folder of pictures instead");
   }
 
   std::string name_;

@@ -72,6 +72,7 @@ std::vector<Screenshot> SessionPlayer::advance(double time, Session& now) {
     if (event.screenshot) pictures.push_back(*event.screenshot);
   }
   move_camera(time, now);
+  time_ = time;
   return pictures;
 }
 
@@ -84,8 +85,8 @@ void SessionPlayer::move_camera(double time, Session& now) {
   if (share >= 1) glide_.reset();
 }
 
-bool SessionPlayer::ended(double time) const {
-  return (!recording_.events.empty() || recording_.duration > 0) && time > recording_.duration + same;
+bool SessionPlayer::ended() const {
+  return (!recording_.events.empty() || recording_.duration > 0) && time_ + same >= recording_.duration;
 }
 
 SessionRecorder::SessionRecorder(const Session& start, int fps) : start_(start), fps_(fps) {

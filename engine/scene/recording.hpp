@@ -19,8 +19,8 @@ class SessionPlayer {
   /// Returns the pictures to be taken of this frame.
   std::vector<Screenshot> advance(double time, Session& now);
 
-  /// Is there something to play, and was a frame at `time` one too many? The last one is that at the duration.
-  bool ended(double time) const;
+  /// Was there something to play, and has it been brought to its duration? So the last frame is the first at or after it.
+  bool ended() const;
 
  private:
   struct Glide {
@@ -32,6 +32,7 @@ class SessionPlayer {
 
   Session recording_;
   std::size_t next_ = 0;  ///< event
+  double time_ = -1;      ///< of the last call
   std::optional<Glide> glide_;
 };
 

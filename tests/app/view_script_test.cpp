@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "engine/picture/png.hpp"
+#include "engine/scene/session.hpp"
 #include "tests/app/view_program.hpp"
 
 namespace nacre::test {
@@ -196,6 +197,17 @@ TEST_F(Scripts, CameraOfASessionIsEveryCommands) {
   EXPECT_LT(blank_above({"mesh", "--camera", "+x"}), 12);
 }
 
+TEST_F(Scripts, PlayInRealTimeWhereFramesDoNotWait) {
+  const std::string file = script({{{"time", 0.3}, {"knobs", {{"ttl", 2}}}},
+                                   {{"time", 1}, {"knobs", {{"contrast", 0.1}}}},
+                                   {{"time", 1}, {"screenshot", {{"file", "end.png"}}}}});
+  ASSERT_EQ(play(file, {"--live", "--save-recording", path("live.json")}).status, 0);
+  EXPECT_TRUE(exists(folder / "end.png"));
+  const json recording = read_json(folder / "live.json");
+  EXPECT_GE(recording["duration"], 1);
+  EXPECT_EQ(recording["events"].back()["knobs"]["contrast"], 0.1);
+}
+
 TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg";
   const std::string file = script(nullptr, 100000);
@@ -213,9 +225,18 @@ TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
     changes.push_back({{"time", 10.0 * k}, {"knobs", {{"resolution", k % 2 ? 32 : 48}, {"edges", k % 3 == 0}}}});
   const std::string file = script(changes, 200);
   const auto peak = [&](int frames) {
-    EXPECT_EQ(
-        play(file, {"--frames-count", std::to_string(frames), "--size", "64x48", "--report", path("r.json")}).status,
-        0);
+    const Words words = {"view",
+                         "--offscreen",
+                         "--quiet",
+                         "--script",
+                         file,
+                         "--size",
+                         "64x48",
+                         "--report",
+                         path("r.json"),
+                         "--frames-count",
+                         std::to_string(frames)};
+    EXPECT_EQ(run_child(NACRE_PROGRAM, words, std::chrono::seconds(400)).exit_status, 0);
     const json report = read_json(folder / "r.json");
     EXPECT_EQ(report["view"]["frames"], frames);
     return report["memory"]["peak_bytes"].get<double>();
@@ -256,6 +277,66 @@ TEST_F(Scripts, AnInputThatFailsInTheMiddleEndsTheRunWithItsName) {
   expect_failure(run, 1, {"nosuch.vtp"});
   EXPECT_FALSE(exists(folder / "v.mp4"));
   EXPECT_EQ(read_json(folder / "done.json")["events"].size(), 0u);
+}
+
+/// The window under Xvfb, which has no memory of where it was.
+Outcome window(const Words& words) {
+  const fs::path xvfb = find_program("xvfb-run");
+  return xvfb.empty()
+             ? Outcome{77, "", "there is no xvfb-run"}
+             : run(xvfb, Words{"-a", "-s", "-screen 0 1280x1024x24", NACRE_PROGRAM, "view", "--quiet"} + words);
+}
+
+TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
+  json with_camera = json::array();
+  with_camera.push_back({{"time", 0}, {"camera", camera(0, -9, 0, 3)}});
+  with_camera.push_back({{"time", 0.2}, {"camera", camera(9, -9, 0, 3)}, {"over", 0.4}});
+  with_camera.push_back({{"time", 0.5}, {"knobs", {{"ttl", 2}}}});
+  const std::string file = script(with_camera, 1);
+  const Words words = {"--script", file, "--frames-count", "11"};
+  const Outcome shown = window(words + Words{"--record", path("window"), "--save-recording", path("window.json")});
+  if (shown.status == 77) GTEST_SKIP() << shown.err;
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  ASSERT_EQ(nacre(Words{"view", "--offscreen", "--quiet", "--save-recording", path("offscreen.json")} + words).status,
+            0);
+  EXPECT_EQ(names("window").size(), 11u);
+  EXPECT_EQ(content("window.json"), content("offscreen.json"));
+}
+
+TEST_F(Scripts, ASessionGivesTheSameValuesHeadlessOffscreenAndInAWindow) {
+  const Words session = {"--quiet", "--session", script(nullptr)};
+  ASSERT_EQ(nacre(Words{"flow", "--out", path("flow.vtp")} + session).status, 0);
+  const Outcome offscreen = nacre(Words{"view", "--offscreen", "--out", path("view.vtp")} + session);
+  if (contains(offscreen.err, "no format")) GTEST_SKIP() << offscreen.err;
+  ASSERT_EQ(offscreen.status, 0) << offscreen.err;
+  EXPECT_EQ(content("flow.vtp"), content("view.vtp"));
+  const Outcome shown =
+      window(session + Words{"--record", path("frames"), "--frames-count", "4", "--out", path("window.vtp")});
+  if (shown.status == 77) GTEST_SKIP() << shown.err;
+  ASSERT_EQ(shown.status, 0) << shown.err;
+  EXPECT_EQ(content("flow.vtp"), content("window.vtp"));
+}
+
+TEST_F(Scripts, ASessionGivesTheSameMeshHeadlessAndOffscreen) {
+  std::ofstream(folder / "s.json") << json{
+      {"sample", "two-spheres"}, {"detail", 24}, {"knobs", {{"width", 96}, {"height", 72}, {"max_size", 3}}}};
+  const Words session = {"--quiet", "--session", path("s.json")};
+  const Outcome offscreen =
+      nacre(Words{"view", "--offscreen", "--frames-count", "300", "--out", path("view.vtp")} + session);
+  if (contains(offscreen.err, "cannot be viewed yet")) GTEST_SKIP() << offscreen.err;
+  ASSERT_EQ(offscreen.status, 0) << offscreen.err;
+  ASSERT_EQ(nacre(Words{"mesh", "--out", path("mesh.vtp")} + session).status, 0);
+  EXPECT_EQ(content("mesh.vtp"), content("view.vtp"));
+}
+
+TEST(DemoSessions, AreSessionsThatPlay) {
+  for (const char* name : {"flow_demo.json", "mesh_demo.json"}) {
+    const Session demo = read_session(fs::path(NACRE_SOURCE_DIR "/assets") / name);
+    EXPECT_TRUE(demo.camera) << name;
+    EXPECT_GE(demo.events.size(), 5u) << name;
+    EXPECT_GE(demo.duration, 8) << name;
+    EXPECT_LE(demo.duration, 12) << name;
+  }
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "compute/device/error.hpp"
-#include "engine/system/child_process.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/system/child_process.hpp"
 #include "tests/engine/picture/small_disk.hpp"
 #include "tests/engine/picture/temporary_folder.hpp"
 #include "tests/engine/picture/test_images.hpp"
@@ -117,6 +117,17 @@ TEST_F(VideoTest, HasEveryFrameAndAnEvenSize) {
   }
 }
 
+TEST_F(VideoTest, AFrameOfAnotherSizeIsBroughtToThatOfTheFirst) {
+  const auto video = make_video(folder / "a.mp4", 25), pictures = make_frame_folder(folder / "frames");
+  for (const auto& [width, height] : {std::pair{64, 48}, {300, 20}, {16, 90}, {64, 48}})
+    for (FrameSink* sink : {video.get(), pictures.get()}) sink->add(noise_image(width, height, 7));
+  video->finish();
+  EXPECT_EQ(probe(folder / "a.mp4"), "64,48,4");
+  const Image third = read_png(folder / "frames/frame_0002.png");
+  EXPECT_EQ(third.width, 64);
+  EXPECT_EQ(third.height, 48);
+}
+
 TEST_F(VideoTest, OtherContainers) {
   for (const char* name : {"a.mkv", "a.mov", "a.webm", "a.gif", "A.MP4"}) {
     EXPECT_EQ(failure_of_video(folder / name, 3, 64), "") << name;
@@ -173,7 +184,7 @@ TEST(Video, MissingFfmpegNamesThePackageAndTheWayAround) {
   const OnlyPath path(folder.path());
   const std::string error = failure_of_video(folder / "a.mp4", 1, 8);
   EXPECT_TRUE(has(error, "install the package ffmpeg")) << error;
-  EXPECT_TRUE(has(error, "--frames")) << error;
+  EXPECT_TRUE(has(error, "folder of pictures")) << error;
   EXPECT_EQ(folder.entries(), 0);
 }
 

@@ -137,7 +137,7 @@ struct Replay {
   }
 
   Session run() {
-    for (double time = 0; !player.ended(time); time = double(frames) / fps) frame(time);
+    for (double time = 0; !player.ended(); time = double(frames) / fps) frame(time);
     return recorder.recording();
   }
 };
@@ -183,7 +183,18 @@ TEST(SessionPlayer, LastFrameIsThatOfTheDuration) {
   Replay at_once(script_of({knob_event(0, "ttl", "3")}, 0));
   at_once.run();
   EXPECT_EQ(at_once.frames, 1);
-  EXPECT_FALSE(SessionPlayer(script_of({}, 0)).ended(100));  // nothing to play
+  SessionPlayer nothing(script_of({}, 0));
+  nothing.advance(100, at_once.session);
+  EXPECT_FALSE(nothing.ended());
+}
+
+TEST(SessionPlayer, WhatHappensAtTheEndBetweenTwoFramesIsShown) {
+  Replay replay(script_of({picture_event(0.97, "/a.png"), knob_event(0.97, "ttl", "3")}, 0.97));
+  EXPECT_EQ(replay.run().duration, 1);
+  EXPECT_EQ(replay.frames, 11);
+  EXPECT_EQ(replay.pictures.size(), 1u);
+  EXPECT_EQ(replay.session.settings.flow.ttl, 3);
+  expect_same_again(script_of({picture_event(0.97, "/a.png")}, 0.97));
 }
 
 TEST(SessionPlayer, CameraGlidesFromRestToRest) {
