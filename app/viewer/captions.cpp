@@ -6,7 +6,9 @@
 namespace nacre {
 
 Rgba paper_of(const std::string& background) {
-  if (background == "transparent") return {255, 255, 255, 0};
+  const bool colour = background.size() == 7 && background[0] == '#' &&
+                      background.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+  if (!colour) return {255, 255, 255, 0};
   const int rgb = std::stoi(background.substr(1), nullptr, 16);
   return {std::uint8_t(rgb >> 16), std::uint8_t(rgb >> 8), std::uint8_t(rgb), 255};
 }

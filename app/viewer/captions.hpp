@@ -38,7 +38,7 @@ class Captions {
   Seen seen_;
 };
 
-/// The background behind a frame: `#rrggbb`; white where it is transparent.
+/// The background behind a frame: `#rrggbb`; white without opacity for any other word, such as transparent.
 Rgba paper_of(const std::string& background);
 
 }  // namespace nacre

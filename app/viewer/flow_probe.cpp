@@ -49,10 +49,13 @@ std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
   if (!shown_) return lines;
   // The texture's value lies on the device of compute: the worker looks it up between its steps.
   const double near = shown_->info.cell_size;
+  if (!asked_ || asked_step_ != taken_ || length(*asked_ - hit.place) > 0.5 * near) {
+    worker_.sample(hit.place);
+    asked_ = hit.place;
+    asked_step_ = taken_;
+  }
   if (sampled_ && length(sampled_->place - hit.place) <= near)
     lines.push_back(fmt::format("texture: {:.2f}", sampled_->value));
-  else if (!asked_ || length(*asked_ - hit.place) > near || !sampled_)
-    worker_.sample(*(asked_ = hit.place));
   return lines;
 }
 

@@ -206,7 +206,6 @@ void FlowScene::take(FlowStepped& told) {
   show_colours(told.scalar);
   vectors_ = std::move(told.vectors);
   move_arrows();
-  sampled_.reset();
   if (settings_.time_stamp) ++time_version_;
 }
 

@@ -113,7 +113,8 @@ class FlowScene : public Scene {
   std::vector<std::string> warnings_;
   std::string name_, failure_;
   std::optional<FlowSampled> sampled_;
-  std::optional<Vec3d> asked_;
+  std::optional<Vec3d> asked_;  ///< of the worker: the texture's value there, after that step
+  std::uint64_t asked_step_ = 0;
   Settings settings_;
   View view_;  ///< of the last frame
   std::vector<float> step_seconds_;

@@ -159,7 +159,9 @@ void FlowWorker::answer_sample(const Vec3d& place) {
 
 double FlowWorker::wrapped(double time) const {
   const double period = span_.end - span_.first;
-  return loop_ && period > 0 ? span_.first + std::fmod(time - span_.first, period) : time;
+  if (!loop_ || !(period > 0)) return time;
+  const double since = std::fmod(time - span_.first, period);
+  return since > (1 - 1e-9) * period ? span_.first : span_.first + since;
 }
 
 std::vector<float> FlowWorker::scalar(double time) {

@@ -32,8 +32,8 @@ namespace {
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::array<float, 4> background_of(const Settings& settings) {
-  if (settings.background == "transparent") return {0, 0, 0, 0};
   const Rgba paper = paper_of(settings.background);
+  if (paper.a == 0) return {0, 0, 0, 0};
   return {float(paper.r) / 255, float(paper.g) / 255, float(paper.b) / 255, 1};
 }
 

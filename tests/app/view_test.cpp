@@ -29,12 +29,18 @@ TEST_F(View, OffscreenWritesThePictureOfTheLastFrame) {
   EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
 }
 
-/// Mean difference of all channels, 0..255; where a box is given, within it.
+/// Mean difference of opacity and of the colours as far as they are opaque, 0..255; from a column and a row on.
 double mean_difference(const Image& a, const Image& b, int left = 0, int top = 0) {
   double sum = 0;
   for (int y = top; y < a.height; ++y)
     for (int x = left; x < a.width; ++x)
-      for (int c = 0; c < 4; ++c) sum += std::abs(int(a.at(x, y)[c]) - int(b.at(x, y)[c]));
+      for (int c = 0; c < 4; ++c) {
+        const auto value = [&](const Image& image) {
+          const std::uint8_t* p = image.at(x, y);
+          return c == 3 ? double(p[3]) : p[c] * p[3] / 255.0;
+        };
+        sum += std::abs(value(a) - value(b));
+      }
   return sum / (4.0 * (a.width - left) * (a.height - top));
 }
 
