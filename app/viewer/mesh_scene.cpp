@@ -65,6 +65,7 @@ void MeshScene::resume() {
 
 void MeshScene::advance(double) {
   while (std::optional<MeshEvent> event = worker_.poll()) take(*event);
+  if (lockstep_) worker_.grant_turn();
   lend(false);
 }
 

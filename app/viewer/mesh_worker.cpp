@@ -279,8 +279,8 @@ void MeshWorker::make(MeshStage stage) {
   }
 }
 
-/// In lockstep, waits until the frames have taken what they were told; slices are filled meanwhile. False where it was
-/// interrupted.
+/// In lockstep, waits until the frames have taken what they were told and lent memory for more; slices are filled
+/// meanwhile. False where it was interrupted.
 bool MeshWorker::await_turn() {
   std::unique_lock lock(mutex_);
   while (true) {
@@ -291,7 +291,7 @@ bool MeshWorker::await_turn() {
       lock.lock();
     } else if (!lockstep_ || all_turns_) {
       return true;
-    } else if (turns_ > 0) {
+    } else if (turns_ > 0 && memory_due()) {
       --turns_;
       return true;
     } else {

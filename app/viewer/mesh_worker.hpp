@@ -108,7 +108,7 @@ struct SliceRequest {
 /// the destructor.
 class MeshWorker {
  public:
-  /// `lockstep`: each iteration, and the triangles, wait for a turn.
+  /// `lockstep`: each iteration, and the triangles, wait for a turn and for memory.
   MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep);
   ~MeshWorker();
   MeshWorker(const MeshWorker&) = delete;
