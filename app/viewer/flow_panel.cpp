@@ -29,9 +29,11 @@ Range range_of(const RangeEdit& edit) { return {edit.ends[0], edit.ends[1]}; }
 
 void FlowScene::result_panel(Session& session) {
   if (data_.array.empty()) return text("nothing read yet");
-  ImGui::PushID("flow");  // the rest of the panel has a "play", too
+  ImGui::PushID("flow");                            // the rest of the panel has a "play", too
+  ImGui::PushItemWidth(-9 * ImGui::GetFontSize());  // room for a label and a button
   show_time(session);
   show_range(session);
+  ImGui::PopItemWidth();
   ImGui::PopID();
   show_vectors();
   if (shown_) show_embedding();
@@ -81,7 +83,7 @@ void FlowScene::show_embedding() const {
   const float most = *std::max_element(step_seconds_.begin(), step_seconds_.end());
   text(fmt::format("{:.3f} s the last step", step_seconds_.back()));
   ImGui::PlotLines("##steps", step_seconds_.data(), int(step_seconds_.size()), 0, nullptr, 0, 1.1f * most,
-                   ImVec2(-1, 48));
+                   ImVec2(ImGui::GetContentRegionAvail().x, 48));
 }
 
 }  // namespace nacre
