@@ -31,19 +31,20 @@ TEST(SpreadPlaces, KeepTheirDistance) {
 }
 
 TEST(SpreadPlaces, CountByAreaNotByTriangles) {
-  // A large triangle, and many small ones with a quarter of its area together.
+  // A large triangle, and many small ones with half of its area together.
   std::vector<Vec3d> points{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
   std::vector<Triangle> triangles{{0, 1, 2}};
   for (std::uint32_t k = 0; k < 50; ++k) {
     const double x = 3 + 0.02 * k;
     const auto n = std::uint32_t(points.size());
-    points.insert(points.end(), {{x, 0, 0}, {x + 0.02, 0, 0}, {x, 1, 0}});
+    points.insert(points.end(), {{x, 0, 0}, {x + 0.02, 0, 0}, {x, 1, 0}, {x + 0.02, 1, 0}});
     triangles.push_back({n, n + 1, n + 2});
+    triangles.push_back({n + 2, n + 1, n + 3});
   }
   const auto places = spread_places(points, triangles, 500, 3);
   ASSERT_EQ(places.size(), 500u);
   const auto large = std::count_if(places.begin(), places.end(), [](const SurfacePlace& p) { return p.triangle == 0; });
-  EXPECT_NEAR(double(large), 500 * 2 / 2.5, 25);
+  EXPECT_NEAR(double(large), 500 * 2 / 3.0, 25);
 }
 
 TEST(SpreadPlaces, OneSeedOneResult) {
