@@ -14,6 +14,7 @@
 #include "engine/scene/knobs.hpp"
 #include "engine/scene/phantoms.hpp"
 #include "engine/scene/prepare.hpp"
+#include "engine/scene/ranges.hpp"
 #include "engine/scene/samples.hpp"
 #if NACRE_HAS_VIEWER
 #include "app/viewer/scene.hpp"
@@ -81,6 +82,8 @@ void check_names(const Session& session) {
   checked_words([&] {
     colormap(session.settings.colormap);
     if (session.settings.vectors.starts_with('@')) choose_vectors({}, session.settings.vectors);
+    if (!session.settings.time.empty()) time_words(session.settings);
+    if (!session.settings.color_range.empty()) color_words(session.settings);
     if (!session.sample.empty() && !names(samples(), session.sample) && !names(phantoms(), session.sample))
       throw Error(fmt::format("no sample '{}'", session.sample), "", "`nacre sample` lists them");
   });

@@ -7,7 +7,7 @@ required_packages=(
   ffmpeg fonts-dejavu-core
 )
 optional_packages=(ccache)
-viewer_packages=(libglfw3-dev libglew-dev libegl-dev libglm-dev libimgui-dev libgl1-mesa-dri xvfb xauth)
+viewer_packages=(libglfw3-dev libglew-dev libegl-dev libglm-dev libimgui-dev libgl1-mesa-dri xvfb xauth xdotool)
 vtk_packages=(libvtk9-dev)
 check_packages=(clang-format clang-tidy)
 

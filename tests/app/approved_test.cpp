@@ -1,0 +1,96 @@
+// Nacre: pictures that someone has looked at and approved, and what the viewer draws today. After a change that is meant,
+// NACRE_APPROVE=1 writes them anew: look at each before it is committed.
+#include <cstdlib>
+
+#include "engine/picture/compose.hpp"
+#include "engine/picture/png.hpp"
+#include "tests/app/view_program.hpp"
+
+namespace nacre::test {
+namespace {
+
+struct Approved {
+  std::string name;
+  Words words;
+};
+
+const Words flow_words = {"--sample", "torus", "--detail", "48", "--resolution", "160", "--steps", "6"};
+const Words mesh_words = {"--sample", "three-sectors", "--detail", "24", "--set", "iterations=40"};
+
+void PrintTo(const Approved& approved, std::ostream* out) { *out << approved.name; }
+
+Approved of_flow(const std::string& name, const Words& more) { return {name, flow_words + more}; }
+Approved of_mesh(const std::string& name, const Words& more) { return {name, mesh_words + more}; }
+Words tab(const std::string& name) { return {"--panel", "--set", "tab=" + name}; }
+
+/// Every tab of the panel for both jobs, and what the look can do.
+const std::vector<Approved> all = {
+    of_flow("flow", {}),
+    of_flow("flow_octree", {"--method", "octree", "--background", "#203040"}),
+    of_flow("flow_arrows", {"--set", "arrows=true", "--set", "arrow_count=400", "--color", "none"}),
+    of_flow("flow_clip", {"--set", "clip=x", "--set", "edges=true", "--set", "light_azimuth=60"}),
+    of_flow("flow_data", tab("data")),
+    of_flow("flow_knobs", tab("knobs")),
+    of_flow("flow_look", tab("look") + Words{"--set", "theme=light"}),
+    of_flow("flow_result", tab("result")),
+    of_mesh("mesh", {"--set", "edges=true"}),
+    of_mesh("mesh_particles", {"--frames-count", "56"}),
+    of_mesh("mesh_boxes", {"--frames-count", "56", "--set", "boxes=true"}),
+    of_mesh("mesh_ghost", {"--set", "ghosts=1", "--set", "hidden=2", "--set", "worst=8"}),
+    of_mesh("mesh_slice", {"--set", "slice=z", "--set", "slice_field=distance", "--set", "clip=z"}),
+    of_mesh("mesh_data", tab("data")),
+    of_mesh("mesh_knobs", tab("knobs")),
+    of_mesh("mesh_look", tab("look")),
+    of_mesh("mesh_result", tab("result")),
+};
+
+class ApprovedPicture : public ViewTest, public testing::WithParamInterface<Approved> {};
+
+/// Share of pixels that differ by more than a shade.
+double share_that_differs(const Image& a, const Image& b) {
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); i += 4) {
+    int most = 0;
+    for (std::size_t c = 0; c < 4; ++c) most = std::max(most, std::abs(int(a.pixels[i + c]) - int(b.pixels[i + c])));
+    differ += most > 40;
+  }
+  return double(differ) / double(a.pixels.size() / 4);
+}
+
+/// Timings and memory differ from run to run: the status line, and a line of times in the panel.
+void paint_over_status(Image& image) {
+  for (int y = image.height - 28; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) *image.at(x, y) = 0;
+}
+
+TEST_P(ApprovedPicture, IsDrawn) {
+  const bool panel = std::find(GetParam().words.begin(), GetParam().words.end(), "--panel") != GetParam().words.end();
+  const Words size = {"--size", panel ? "640x480" : "240x180"};
+  const fs::path drawn = folder / "drawn.png";
+  const fs::path approved = fs::path(NACRE_SOURCE_DIR) / "tests/app/approved" / (GetParam().name + ".png");
+  const Outcome outcome =
+      nacre(Words{"view", "--offscreen", "--quiet", "--image", drawn.string()} + GetParam().words + size);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  if (std::getenv("NACRE_APPROVE")) fs::copy_file(drawn, approved, fs::copy_options::overwrite_existing);
+  ASSERT_TRUE(fs::exists(approved)) << "run with NACRE_APPROVE=1 and look at it";
+  Image a = read_png(drawn), b = read_png(approved);
+  ASSERT_EQ(a.width, b.width);
+  ASSERT_EQ(a.height, b.height);
+  if (panel) paint_over_status(a), paint_over_status(b);
+  EXPECT_LT(share_that_differs(a, b), 0.02);
+  if (testing::Test::HasFailure())
+    fs::copy_file(drawn, fs::path(testing::TempDir()) / (GetParam().name + ".png"),
+                  fs::copy_options::overwrite_existing);
+}
+
+INSTANTIATE_TEST_SUITE_P(, ApprovedPicture, testing::ValuesIn(all),
+                         [](const auto& approved) { return approved.param.name; });
+
+TEST(ApprovedPictures, AreSmall) {
+  std::uintmax_t bytes = 0;
+  for (const auto& file : fs::directory_iterator(NACRE_SOURCE_DIR "/tests/app/approved")) bytes += file.file_size();
+  EXPECT_LT(bytes, 1500000u);
+}
+
+}  // namespace
+}  // namespace nacre::test
