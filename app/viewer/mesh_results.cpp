@@ -32,7 +32,8 @@ void plot(const char* id, const char* name, const std::vector<float>& values) {
   if (values.empty()) return;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const std::string label = fmt::format("{} {:.5g}", name, values.back());
-  ImGui::PlotLines(id, values.data(), int(values.size()), 0, label.c_str(), *low, *high, ImVec2(ImGui::GetContentRegionAvail().x, 60));
+  ImGui::PlotLines(id, values.data(), int(values.size()), 0, label.c_str(), *low, *high,
+                   ImVec2(ImGui::GetContentRegionAvail().x, 60));
 }
 
 std::string words_of(const std::vector<std::int64_t>& labels) { return fmt::format("{}", fmt::join(labels, ",")); }
