@@ -29,9 +29,11 @@ Range range_of(const RangeEdit& edit) { return {edit.ends[0], edit.ends[1]}; }
 
 void FlowScene::result_panel(Session& session) {
   if (data_.array.empty()) return text("nothing read yet");
-  ImGui::PushID("flow");  // the rest of the panel has a "play", too
+  ImGui::PushID("flow");                            // the rest of the panel has a "play", too
+  ImGui::PushItemWidth(-9 * ImGui::GetFontSize());  // room for a label and a button
   show_time(session);
   show_range(session);
+  ImGui::PopItemWidth();
   ImGui::PopID();
   show_vectors();
   if (shown_) show_embedding();

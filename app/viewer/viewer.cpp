@@ -13,10 +13,10 @@
 
 #include "app/viewer/camera_control.hpp"
 #include "app/viewer/captions.hpp"
-#include "app/viewer/clip.hpp"
 #include "app/viewer/interface.hpp"
 #include "app/viewer/recent_files.hpp"
 #include "app/viewer/scene.hpp"
+#include "app/viewer/scene_view.hpp"
 #include "app/viewer/ui.hpp"
 #include "app/viewer/undo.hpp"
 #include "compute/device/error.hpp"
@@ -30,20 +30,6 @@ namespace nacre {
 namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-std::array<float, 4> background_of(const Settings& settings) {
-  const Rgba paper = paper_of(settings.background);
-  if (paper.a == 0) return {0, 0, 0, 0};
-  return {float(paper.r) / 255, float(paper.g) / 255, float(paper.b) / 255, 1};
-}
-
-/// Of the middle of their bounding box to its corners.
-double radius_of(const std::vector<Vec3d>& points) {
-  if (points.empty()) return 0;
-  Vec3d low = points.front(), high = low;
-  for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
-  return 0.5 * length(high - low);
-}
 
 class Viewer {
  public:
@@ -131,8 +117,8 @@ class Viewer {
     // A replay without an end of its own ends with the mesh.
     const bool settled =
         waits() && !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene_->settled();
-    return quit_ || settled || (!window_ && player_->ended()) ||
-           (options_.frames > 0 && counted_ >= options_.frames) || (window_ && window_->should_close());
+    return quit_ || settled || (!window_ && player_->ended()) || (options_.frames > 0 && counted_ >= options_.frames) ||
+           (window_ && window_->should_close());
   }
 
   /// Seconds of the session: a frame's share for each that waited for compute, else those that have passed.
@@ -167,26 +153,12 @@ class Viewer {
     if (!waits()) rest(begin);
   }
 
-  View view_of(int width, int height) const {
-    const Settings& settings = session_.settings;
-    View view;
-    view.camera = orbit(session_.camera.value_or(Camera()), settings.orbit * double(result_.frame_seconds.size()));
-    view.width = width;
-    view.height = height;
-    view.light =
-        turned_light(flow_light(view.camera), view.camera, settings.look.light_azimuth, settings.look.light_height);
-    view.clip = clip_plane(settings.look, scene_->corners());
-    view.ambient = float(settings.look.ambient);
-    view.extent = 2 * radius_of(scene_->corners()) + length(view.camera.eye - view.camera.target);
-    return view;
-  }
-
   void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background) {
     frame.bind();
     frame.clear(background);
     if (!fitted_) return;
     frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
-    const View view = view_of(area.width, area.height);
+    const View view = scene_view(session_, scene_->corners(), result_.frame_seconds.size(), area.width, area.height);
     scene_->draw(view);
     captions_->draw(*scene_, view, session_.settings);
     frame.bind();

@@ -10,7 +10,7 @@
 #include <set>
 #include <thread>
 
-#include "app/viewer/panel.hpp"
+#include "app/viewer/interface.hpp"
 #include "engine/gl/framebuffer.hpp"
 #include "engine/picture/png.hpp"
 #include "tests/engine/gl/offscreen.hpp"
@@ -223,7 +223,7 @@ TEST_F(FlowInView, PanelShowsFiguresAndChangesNothingByItself) {
     for (int k = 0; k < 3; ++k) {  // sizes are known from the second one on
       frame.bind();
       frame.clear({1, 1, 1, 1});
-      interface.begin(420, 420, 0.1);
+      interface.begin(420, 420, 0.1, session_.settings.look);
       scene_->result_panel(session_);
       interface.end();
     }

@@ -23,7 +23,7 @@ class ViewMesh : public MeshTest {
   /// A picture of frame `frames`, and what the run says in "view" of its report.
   Image picture(int frames, const Words& more = {}) {
     const Outcome run = nacre(
-        small_view +
+        Words{"view", "--offscreen"} + quick +
         Words{"--frames-count", std::to_string(frames), "--image", path("v.png"), "--report", path("v.json")} + more);
     EXPECT_EQ(run.status, 0) << run.err;
     if (run.status != 0) return {};

@@ -1,0 +1,18 @@
+// Nacre: the view of a frame, from the session.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "engine/render/view.hpp"
+#include "engine/scene/session.hpp"
+
+namespace nacre {
+
+/// Camera, light and clip plane of frame number `frame`, for a scene with these `corners` (world) on width x height pixels.
+View scene_view(const Session& session, std::span<const Vec3d> corners, std::size_t frame, int width, int height);
+
+/// Behind the scene, encoded.
+std::array<float, 4> background_of(const Settings& settings);
+
+}  // namespace nacre
