@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "app/viewer/clip.hpp"
 #include "app/viewer/mesh_scene.hpp"
 #include "compute/particles/energy.hpp"
 #include "engine/picture/colormap.hpp"
@@ -16,8 +15,10 @@ namespace nacre {
 namespace {
 
 constexpr float ghost_opacity = 0.25f;
-constexpr std::array<double, 2> energy_range{0.4, 1.2};  ///< of particles, in ideal energies
 constexpr std::array<float, 4> worst_colour{0.93f, 0.05f, 0.45f, 1};
+
+/// Of the colours, in ideal energies: where particles are split, and where they are deleted.
+std::array<double, 2> energy_range(const MeshParameters& p) { return {p.add_below, std::min(p.delete_above, 3.0)}; }
 
 MeshField field_of(const std::string& name) {
   return name == "distance" ? MeshField::distance : name == "size" ? MeshField::size : MeshField::material;
@@ -155,12 +156,13 @@ bool MeshScene::particles_drawn() const {
 }
 
 void MeshScene::draw(const View& frame) {
-  View view = frame;
-  if (!view.clip) view.clip = clip_plane(settings_.look, corners_);
-  view.light = mesh_light(view.camera);
+  View view = frame, whole = frame;
+  whole.clip.reset();
+  view.light =
+      turned_light(mesh_light(view.camera), view.camera, settings_.look.light_azimuth, settings_.look.light_height);
   const bool begun = complete();
   if (!begun || slice_axis(settings_.look) >= 0) slice_pass_.draw(view);
-  if (!begun) segment_pass_.draw(frame, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
+  if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
   if (particles_drawn()) draw_particles(view);
   if (triangles_drawn()) draw_triangles(view);
   if (settings_.look.boxes && boxes_ && box_count_ > 0) {
@@ -174,9 +176,9 @@ void MeshScene::draw(const View& frame) {
 void MeshScene::draw_particles(const View& view) const {
   const bool by_energy = settings_.look.particle_color == "energy";
   const double ideal = settings_.mesh.ideal_energy > 0 ? settings_.mesh.ideal_energy : hexagonal_energy;
-  const std::array<double, 2> sizes = size_range();
+  const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const auto range = [&](double energy) {
-    return by_energy ? std::array{float(energy_range[0] * energy), float(energy_range[1] * energy)}
+    return by_energy ? std::array{float(energies[0] * energy), float(energies[1] * energy)}
                      : std::array{float(sizes[0]), float(sizes[1])};
   };
   const auto draw = [&](std::int64_t first, std::int64_t count, const ParticleLook& look) {
@@ -203,11 +205,11 @@ void MeshScene::draw_triangles(const View& view) const {
 }
 
 std::uint64_t MeshScene::overlay_version() const {
-  const std::array<double, 2> sizes = size_range();
+  const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const std::string key =
-      fmt::format("{} {} {} {} {} {} {} {} {} {}", settings_.legend, particles_drawn(), settings_.look.particle_color,
-                  sizes[0], sizes[1], slice_axis(settings_.look), slice_values_, slice_range_[0], slice_range_[1],
-                  settings_.colormap + settings_.look.slice_field);
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", settings_.legend, energies[0], energies[1], particles_drawn(),
+                  settings_.look.particle_color, sizes[0], sizes[1], slice_axis(settings_.look), slice_values_,
+                  slice_range_[0], slice_range_[1], settings_.colormap + settings_.look.slice_field);
   return std::hash<std::string>()(key);
 }
 
@@ -219,7 +221,7 @@ Image MeshScene::overlay(int width, int height) {
   const Colormap& map = colormap(settings_.colormap);
   if (particles_drawn()) {
     const bool by_energy = settings_.look.particle_color == "energy";
-    const std::array<double, 2> range = by_energy ? energy_range : size_range();
+    const std::array<double, 2> range = by_energy ? energy_range(settings_.mesh) : size_range();
     draw_legend(image, map, range[0], range[1], by_energy ? "energy / ideal" : "size, voxels");
   } else if (slice_axis(settings_.look) >= 0 && slice_values_) {
     draw_legend(image, map, slice_range_[0], slice_range_[1], settings_.look.slice_field);

@@ -1,7 +1,9 @@
 // Nacre: what is under the cursor of a mesh: a triangle, or a place of the slice.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/viewer/clip.hpp"
 #include "app/viewer/mesh_scene.hpp"
@@ -32,6 +34,22 @@ std::optional<double> distance_to(const SlicePlane& plane, const Vec3d& from, co
 
 }  // namespace
 
+/// The nearest triangle that is not hidden or cut away.
+std::optional<TriangleHit> MeshScene::first_seen(const Vec3d& from, const Vec3d& along) const {
+  if (!triangles_drawn()) return {};
+  const std::optional<ClipPlane> clip = clip_plane(settings_.look, corners_);
+  constexpr int most_layers = 100;
+  double near = 0;
+  for (int layer = 0; layer < most_layers; ++layer) {
+    const std::optional<TriangleHit> hit = rays_.first(from, along, near);
+    if (!hit) return {};
+    const auto& pair = results_.mesh->materials[hit->triangle];
+    if (!is_cut(clip, hit->place) && std::max(looks_[pair[0]].opacity, looks_[pair[1]].opacity) > 0) return hit;
+    near = std::nextafter(hit->distance, std::numeric_limits<double>::infinity());
+  }
+  return {};
+}
+
 void MeshScene::describe_hit(Probed& probed, const TriangleHit& hit) const {
   const auto& pair = results_.mesh->materials[hit.triangle];
   const MeshInput& input = results_.volume->input;
@@ -43,21 +61,14 @@ void MeshScene::describe_hit(Probed& probed, const TriangleHit& hit) const {
   probed.lines.push_back(fmt::format("radius ratio: {:.3f}", radius_ratio(p[t.a], p[t.b], p[t.c])));
   if (!results_.measures) return;
   const std::vector<float>& size = results_.measures->size;
-  probed.lines.push_back(
-      fmt::format("wanted size: {:.4g}", (1 - hit.u - hit.v) * size[t.a] + hit.u * size[t.b] + hit.v * size[t.c]));
+  probed.lines.push_back(fmt::format(
+      "wanted size: {:.4g}", hit.weights.x * size[t.a] + hit.weights.y * size[t.b] + hit.weights.z * size[t.c]));
 }
 
 std::optional<Probed> MeshScene::probe(const Vec3d& from, const Vec3d& along) {
   if (!results_.volume) return {};
   const ViewedVolume& volume = *results_.volume;
-  std::optional<TriangleHit> hit;
-  if (triangles_drawn()) {
-    const std::optional<ClipPlane> clip = clip_plane(settings_.look, corners_);
-    hit = rays_.first_hit(from, along, [&](const TriangleHit& h) {
-      const auto& pair = results_.mesh->materials[h.triangle];
-      return !is_cut(clip, h.place) && (looks_[pair[0]].opacity > 0 || looks_[pair[1]].opacity > 0);
-    });
-  }
+  const std::optional<TriangleHit> hit = first_seen(from, along);
   std::optional<double> slice;
   if (const int axis = slice_axis(settings_.look); axis >= 0)
     slice = distance_to(slice_plane(volume.input, axis, settings_.look.slice_at), from, along);

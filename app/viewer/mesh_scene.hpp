@@ -9,7 +9,6 @@
 
 #include "app/viewer/mesh_results.hpp"
 #include "app/viewer/mesh_worker.hpp"
-#include "app/viewer/ray_triangles.hpp"
 #include "app/viewer/scene.hpp"
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/render/line_passes.hpp"
@@ -82,6 +81,7 @@ class MeshScene : public Scene {
   bool particles_drawn() const;
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.look.triangles; }
   std::array<double, 2> size_range() const;
+  std::optional<TriangleHit> first_seen(const Vec3d& from, const Vec3d& along) const;
   void describe_hit(Probed& probed, const TriangleHit& hit) const;
 
   MeshWorker worker_;  // before what it writes to, whose device it owns
@@ -89,7 +89,7 @@ class MeshScene : public Scene {
   const std::atomic<bool>* stop_;
   Settings settings_;
   MeshResults results_;
-  RayTriangles rays_;
+  TriangleTree rays_;
   std::vector<Vec3d> corners_;
   std::vector<std::string> warnings_;
   std::string failure_;

@@ -72,7 +72,7 @@ void MeshWorker::relax() {
 
 void MeshWorker::triangulate() {
   auto mesh = std::make_shared<SurfaceMesh>(pipeline_->triangulate());
-  MeshTriangulated told{mesh, make_mesh_drawing(*mesh), RayTriangles(mesh->points, mesh->triangles), pipeline_->info()};
+  MeshTriangulated told{mesh, make_mesh_drawing(*mesh), TriangleTree(mesh->points, mesh->triangles), pipeline_->info()};
   if (!await_turn()) throw Interrupted();
   mesh_ = std::move(mesh);
   MeshProgress last;

@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "app/viewer/mesh_measures.hpp"
-#include "app/viewer/ray_triangles.hpp"
 #include "app/viewer/viewed_volume.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
+#include "compute/raycast/triangle_tree.hpp"
 #include "engine/scene/session.hpp"
 
 namespace nacre {
@@ -58,7 +58,7 @@ struct MeshIterated {
 struct MeshTriangulated {
   std::shared_ptr<const SurfaceMesh> mesh;
   MeshDrawing drawing;
-  RayTriangles rays;  ///< looks at `mesh`
+  TriangleTree rays;
   MeshInfo info;
 };
 

@@ -1,0 +1,183 @@
+// Nacre: a mesh in the viewer's loop, on an OpenGL context without a display.
+#if NACRE_HAS_VIEWER
+
+#include "app/viewer/mesh_scene.hpp"
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "app/viewer/scene_view.hpp"
+#include "engine/gl/framebuffer.hpp"
+#include "tests/engine/gl/offscreen.hpp"
+#include "tests/engine/io/temporary_folder.hpp"
+
+namespace nacre {
+namespace {
+
+class MeshInView : public test::Offscreen {
+ protected:
+  void open(bool lockstep) {
+    session_.sample = "two-spheres";
+    session_.detail = 20;
+    session_.settings.mesh.iterations = 20;
+    session_.settings.mesh.mend = 0;
+    SceneOptions options;
+    options.open_device = [] { return make_cpu_device(2); };
+    options.lockstep = lockstep;
+    scene_ = std::make_unique<MeshScene>(session_, options);
+  }
+
+  void TearDown() override {
+    scene_.reset();  // before the context
+    test::Offscreen::TearDown();
+  }
+
+  void change(const std::function<void(Settings&)>& how) {
+    how(session_.settings);
+    scene_->set_settings(session_.settings);
+  }
+
+  void advance() { scene_->advance_and_wait(stop_); }
+
+  bool settles() {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!scene_->settled() && std::chrono::steady_clock::now() < end) advance();
+    return scene_->settled();
+  }
+
+  /// Pixels that are not white.
+  int drawn() {
+    View view = scene_view(session_, scene_->corners(), 0, 120, 120);
+    view.camera = fit_camera("iso", scene_->corners(), 120, 120);
+    const Framebuffer frame(120, 120);
+    frame.bind();
+    frame.clear({1, 1, 1, 1});
+    scene_->draw(view);
+    const Image image = frame.read();
+    int count = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+      count += image.pixels[i] != 255 || image.pixels[i + 1] != 255;
+    return count;
+  }
+
+  /// The line of a probe that begins like this.
+  static std::string line(const Probed& probed, const std::string& name) {
+    for (const std::string& one : probed.lines)
+      if (one.starts_with(name + ": ")) return one.substr(name.size() + 2);
+    return "";
+  }
+
+  std::atomic<bool> stop_{false};
+  Session session_;
+  std::unique_ptr<MeshScene> scene_;
+};
+
+TEST_F(MeshInView, EachCallIsOneIteration) {
+  open(true);
+  for (int k = 1; k <= 25; ++k) {
+    advance();
+    EXPECT_EQ(scene_->steps(), k);
+    EXPECT_TRUE(scene_->complete());
+    EXPECT_GT(drawn(), 0) << k;
+  }
+  EXPECT_FALSE(scene_->settled());
+  EXPECT_TRUE(settles());
+  EXPECT_GT(drawn(), 1500);
+  EXPECT_EQ(scene_->copied_bytes(), 0u);
+  EXPECT_EQ(scene_->failure(), "");
+}
+
+TEST_F(MeshInView, ChangesInTheMiddleAreTakenOver) {
+  open(true);
+  for (int k = 0; k < 12; ++k) {
+    for (int i = 0; i < 3 * k; ++i) advance();
+    change([&](Settings& s) {
+      (k % 3 == 0 ? s.mesh.theta : k % 3 == 1 ? s.mesh.epsilon : s.mesh.max_size) *= k % 2 ? 0.9 : 1.1;
+      s.look.boxes = k % 2 == 0;
+      s.look.slice = k % 4 == 0 ? "none" : "y";
+      s.look.slice_field = k % 3 == 0 ? "distance" : "size";
+    });
+    advance();
+    drawn();
+  }
+  EXPECT_TRUE(settles());
+  EXPECT_EQ(scene_->failure(), "");
+}
+
+TEST_F(MeshInView, CancelStopsAndResumeGoesOn) {
+  open(true);
+  for (int k = 0; k < 25; ++k) advance();
+  scene_->cancel();
+  advance();
+  advance();
+  EXPECT_LE(scene_->steps(), 26);
+  EXPECT_FALSE(scene_->settled());
+  EXPECT_GT(drawn(), 100);  // what there is stays
+  scene_->resume();
+  EXPECT_TRUE(settles());
+}
+
+TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
+  open(true);
+  EXPECT_FALSE(scene_->probe({0, 0, 0}, {0, 0, 1}));
+  ASSERT_TRUE(settles());
+  const std::vector<Vec3d>& corners = scene_->corners();
+  const Vec3d middle = (corners.front() + corners.back()) * 0.5, from = middle - Vec3d(100, 0, 0), along(1, 0, 0);
+  const std::optional<Probed> probed = scene_->probe(from, along);
+  ASSERT_TRUE(probed);
+  EXPECT_NEAR(probed->place.x, corners.front().x, 1.5);
+  EXPECT_EQ(line(*probed, "between"), "outside and 1");
+  const double ratio = std::stod(line(*probed, "radius ratio"));
+  EXPECT_TRUE(ratio > 0.3 && ratio <= 1) << ratio;
+  EXPECT_NE(line(*probed, "wanted size"), "");
+  change([](Settings& s) { s.look.hidden = "1"; });
+  const std::optional<Probed> behind = scene_->probe(from, along);
+  ASSERT_TRUE(behind);
+  EXPECT_EQ(line(*behind, "between"), "1 and 2");
+  change([](Settings& s) { s.look.clip = "x", s.look.clip_at = 0.9; });
+  const std::optional<Probed> beyond = scene_->probe(from, along);
+  ASSERT_TRUE(beyond);
+  EXPECT_EQ(line(*beyond, "between"), "outside and 2");
+  change([](Settings& s) { s.look.slice = "x", s.look.slice_at = 0.1; });
+  advance();
+  const std::optional<Probed> slice = scene_->probe(from, along);
+  ASSERT_TRUE(slice);
+  EXPECT_LT(slice->place.x, beyond->place.x);
+  EXPECT_NE(line(*slice, "material"), "");
+  EXPECT_FALSE(scene_->probe(from, along * -1.0));
+}
+
+TEST_F(MeshInView, WritesWhereItIsLiveToo) {
+  open(false);
+  const test::TemporaryFolder folder;
+  EXPECT_THROW(scene_->write_result(folder / "a.nosuch"), Error);
+  scene_->write_result(folder / "a.vtp");
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.vtp"));
+  const std::vector<std::string> formats = scene_->result_formats();
+  for (const char* format : {".vtp", ".stl", ".vtu", ".msh"})
+    EXPECT_EQ(std::count(formats.begin(), formats.end(), format), 1) << format;
+}
+
+TEST_F(MeshInView, AFailureIsToldAndOtherKnobsMendIt) {
+  open(true);
+  ASSERT_TRUE(settles());
+  change([](Settings& s) { s.materials.materials = "77"; });
+  EXPECT_THROW(
+      {
+        for (int k = 0; k < 5; ++k) advance();
+      },
+      Error);
+  EXPECT_NE(scene_->failure(), "");
+  change([](Settings& s) { s.materials.materials = "2"; });
+  for (int k = 0; k < 10000 && !scene_->failure().empty(); ++k) {
+    scene_->advance(0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(settles());
+}
+
+}  // namespace
+}  // namespace nacre
+
+#endif
