@@ -30,8 +30,8 @@ constexpr const char* not_drawn =
 FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
     : lookup(surface_texture(told)), info(told.info), values(device, told.lookup.values * sizeof(float), GL_R32F) {}
 
-FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop)
-    : worker_(session, std::move(device), loop), settings_(session.settings) {
+FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool makes_way)
+    : worker_(session, std::move(device), loop, makes_way), settings_(session.settings) {
   colours_.set_map(colormap(settings_.colormap).table);
   arrow_pass_.set_map(colormap(settings_.colormap).table);
 }
@@ -259,7 +259,7 @@ void FlowScene::draw_arrows(const View& view) {
 }
 
 std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options) {
-  return std::make_unique<FlowScene>(session, options.open_device(), options.loop);
+  return std::make_unique<FlowScene>(session, options.open_device(), options.loop, options.makes_way);
 }
 
 }  // namespace nacre

@@ -26,7 +26,7 @@ struct RangeEdit {
 
 class FlowScene : public Scene {
  public:
-  FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop);
+  FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool makes_way = false);
   ~FlowScene() override;
   FlowScene(const FlowScene&) = delete;
   FlowScene& operator=(const FlowScene&) = delete;

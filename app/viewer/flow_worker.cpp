@@ -9,14 +9,16 @@
 #include "compute/device/error.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/system/faults.hpp"
+#include "engine/system/priority.hpp"
 
 namespace nacre {
 
-FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loop)
+FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loop, bool makes_way)
     : session_(std::move(session)),
       device_(std::move(device)),
       pipeline_(make_flow_pipeline(*device_)),
       loop_(loop),
+      makes_way_(makes_way),
       due_{FlowStage::surface, FlowStage::embed, FlowStage::start},
       wanted_(session_.settings) {
   if (wanted_.look.arrows) due_.add(FlowStage::arrows);
@@ -170,6 +172,7 @@ std::optional<FlowStage> FlowWorker::next() const {
 bool FlowWorker::has_work() const { return next() || errand_ || sample_ || step_; }
 
 void FlowWorker::run() {
+  if (makes_way_) make_way();
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [&] { return ends_ || has_work(); });

@@ -102,7 +102,8 @@ inline SparseLookup sparse_lookup(const FlowLookup& l) {
 class FlowWorker {
  public:
   /// `loop`: after the last time comes the first again, without end; else it stands still there, as headless runs do.
-  FlowWorker(Session session, std::unique_ptr<Device> device, bool loop);
+  /// `makes_way`: see SceneOptions.
+  FlowWorker(Session session, std::unique_ptr<Device> device, bool loop, bool makes_way = false);
   ~FlowWorker();
   FlowWorker(const FlowWorker&) = delete;
   FlowWorker& operator=(const FlowWorker&) = delete;
@@ -169,7 +170,7 @@ class FlowWorker {
   Session session_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<FlowPipeline> pipeline_;
-  bool loop_;
+  bool loop_, makes_way_;
 
   // The thread's own.
   Settings settings_;  ///< of what it does

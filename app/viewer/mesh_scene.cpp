@@ -34,7 +34,7 @@ std::vector<Segment> box_edges(const Int3& dims) {
 }  // namespace
 
 MeshScene::MeshScene(const Session& session, const SceneOptions& options)
-    : worker_(session, options.open_device(), options.lockstep),
+    : worker_(session, options.open_device(), options.lockstep, options.makes_way),
       lockstep_(options.lockstep),
       stop_(options.stop),
       settings_(session.settings) {

@@ -9,6 +9,8 @@
 
 #include "compute/device/error.hpp"
 #include "compute/pipeline/mesh_rerun.hpp"
+#include "engine/system/faults.hpp"
+#include "engine/system/priority.hpp"
 
 namespace nacre {
 namespace {
@@ -30,11 +32,12 @@ MeshStage mesh_restart(const Settings& before, const Settings& after) {
   return MeshStage::done;
 }
 
-MeshWorker::MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep)
+MeshWorker::MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep, bool makes_way)
     : session_(std::move(session)),
       device_(std::move(device)),
       pipeline_(make_mesh_pipeline(*device_)),
       lockstep_(lockstep),
+      makes_way_(makes_way),
       wanted_(session_.settings) {
   pipeline_->watch(&interrupt_);
   pipeline_->progress = [this](const MeshProgress& progress) { note_progress(progress); };
@@ -187,6 +190,7 @@ MeshWorker::Task MeshWorker::due() const {
 }
 
 void MeshWorker::run() {
+  if (makes_way_) make_way();
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [&] { return ends_ || due() != Task::none; });
@@ -230,6 +234,7 @@ void MeshWorker::perform(Task task) {
 /// What went wrong in words; none: nothing, or an interruption.
 std::optional<std::string> MeshWorker::failure_of(const std::function<void()>& work) {
   try {
+    if (fault_due("out-of-memory")) throw std::bad_alloc();
     work();
   } catch (const Interrupted&) {
   } catch (const std::bad_alloc&) {

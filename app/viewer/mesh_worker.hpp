@@ -109,7 +109,7 @@ struct SliceRequest {
 class MeshWorker {
  public:
   /// `lockstep`: each iteration, and the triangles, wait for a turn and for memory.
-  MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep);
+  MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep, bool makes_way = false);
   ~MeshWorker();
   MeshWorker(const MeshWorker&) = delete;
   MeshWorker& operator=(const MeshWorker&) = delete;
@@ -181,7 +181,7 @@ class MeshWorker {
   Session session_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<MeshPipeline> pipeline_;
-  const bool lockstep_;
+  const bool lockstep_, makes_way_;
 
   // The worker's own.
   std::shared_ptr<const std::vector<Volume>> volumes_;

@@ -86,6 +86,7 @@ class Scene {
 struct SceneOptions {
   std::function<std::unique_ptr<Device>()> open_device;
   bool loop = true, lockstep = false;
+  bool makes_way = false;                   ///< compute takes the time that drawing leaves
   const std::atomic<bool>* stop = nullptr;  ///< ends what waits for compute; may be null
 };
 

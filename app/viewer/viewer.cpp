@@ -106,7 +106,7 @@ class Viewer {
     said_ = 0;
     fitted_ = false;
     // A number of frames is for headless runs to compare with: these do not begin again after the last time.
-    const SceneOptions options{options_.open_device, options_.frames == 0, waits(), options_.stop};
+    const SceneOptions options{options_.open_device, options_.frames == 0, waits(), !waits(), options_.stop};
     for (const auto& file : session_.inputs)
       if (window_) recent_.add(file);
     scene_ = is_mesh_input(session_) ? make_mesh_scene(session_, options) : make_flow_scene(session_, options);
