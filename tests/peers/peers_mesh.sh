@@ -1,6 +1,6 @@
 # Nacre: the peers that mesh label images or fill surfaces: Mesh_3, surface nets, TetGen. Sourced by run.sh.
 
-phantoms="torso:64 head:64 nested-shells:64"
+phantoms="torso:64 nested-shells:64"
 spheres="10,14,18 23.5 23.5 23.5" # of nested-shells: the radii and the centre in the world
 
 # measure LABELS NAME SURFACE RESULT: quality and distances of a surface; distances from spheres where the phantom has them.

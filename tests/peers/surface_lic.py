@@ -12,7 +12,13 @@ import statistics
 import sys
 import time
 
+import numpy as np
 from paraview import simple
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+
+import raw_vtp
 
 SIZE = (1024, 768)
 
@@ -33,6 +39,23 @@ def turned(camera, degrees):
     return dict(camera, eye=[t[0] + c * x - s * y, t[1] + s * x + c * y, t[2] + z])
 
 
+def source_of(path):
+    """The surface as the output of a source in the pipeline."""
+    places, triangles, vectors = raw_vtp.read(path)
+    points, cells, mesh = vtkPoints(), vtkCellArray(), vtkPolyData()
+    points.SetData(numpy_to_vtk(places, deep=True))
+    cells.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(triangles).ravel(), deep=True))
+    mesh.SetPoints(points)
+    mesh.SetPolys(cells)
+    velocity = numpy_to_vtk(vectors, deep=True)
+    velocity.SetName("velocity")
+    mesh.GetPointData().AddArray(velocity)
+    source = simple.TrivialProducer()
+    source.GetClientSideObject().SetOutput(mesh)
+    source.UpdatePipeline()
+    return source
+
+
 def main(surface, cameras, folder, frames):
     simple._DisableFirstRenderCameraReset()
     view = simple.CreateView("RenderView")
@@ -40,7 +63,7 @@ def main(surface, cameras, folder, frames):
     view.OrientationAxesVisibility = 0
     view.UseColorPaletteForBackground = 0
     view.Background = [1, 1, 1]
-    shown = simple.Show(simple.XMLPolyDataReader(FileName=[surface]), view)
+    shown = simple.Show(source_of(surface), view)
     shown.ColorArrayName = ["POINTS", ""]
     shown.DiffuseColor = shown.AmbientColor = [1, 1, 1]
     cameras = json.load(open(cameras))
@@ -57,7 +80,8 @@ def main(surface, cameras, folder, frames):
         started = time.perf_counter()
         simple.Render(view)
         seconds.append(time.perf_counter() - started)
-    print("version ParaView", simple.GetParaViewVersion())
+    version = simple.GetParaViewVersion()
+    print(f"version ParaView {version.major}.{version.minor}")
     print("seconds", statistics.median(seconds[1:]))
 
 

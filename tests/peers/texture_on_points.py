@@ -3,7 +3,7 @@
 texture_on_points.py SURFACE.vtp CAMERAS.json FOLDER NAME
 
 Takes FOLDER/NAME-K.png and FOLDER/NAME-K-plain.png of the first two cameras (orthographic). The light is taken out by
-division. Points are drawn on the surface by area, seen by both cameras and not edge-on. Tells
+division, and what varies over more than 10 pixels, too. Points are drawn on the surface by area, seen by both cameras and not edge-on. Tells
   difference   mean absolute difference of brightness at the same points, over the mean absolute deviation of brightness
   correlation  of the brightness at the same points
   angle        median angle in degrees, in the picture, between the projected flow and the streaks: across the direction of
@@ -15,7 +15,8 @@ import sys
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+import raw_vtp
 
 SPREAD = 3.0  # pixels of the Gaussian, as in the evidence tests texture cells
 
@@ -85,9 +86,9 @@ def sample(image, x, y):
             + (image[j + 1, i] * (1 - u) + image[j + 1, i + 1] * u) * v)
 
 
-def blur(image):
-    reach = int(3 * SPREAD)
-    weight = np.exp(-np.arange(-reach, reach + 1) ** 2 / (2 * SPREAD ** 2))
+def blur(image, spread=SPREAD):
+    reach = int(3 * spread)
+    weight = np.exp(-np.arange(-reach, reach + 1) ** 2 / (2 * spread ** 2))
     for axis in (0, 1):
         image = np.apply_along_axis(lambda line: np.convolve(line, weight / weight.sum(), "same"), axis, image)
     return image
@@ -104,18 +105,13 @@ def angles(texture, view, place, vectors):
 
 
 def main(surface, cameras, folder, name):
-    reader = vtkXMLPolyDataReader()
-    reader.SetFileName(surface)
-    reader.Update()
-    mesh = reader.GetOutput()
-    points = vtk_to_numpy(mesh.GetPoints().GetData()).astype(float)
-    triangles = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
-    vectors = vtk_to_numpy(mesh.GetPointData().GetArray("velocity")).astype(float)
+    points, triangles, vectors = raw_vtp.read(surface)
     place, normal, flow = draw_points(points, triangles, vectors, 2000000, 1)
     textures, views, visible = [], [], np.ones(len(place), bool)
     for k, camera in enumerate(json.load(open(cameras))[:2]):
         plain = brightness(f"{folder}/{name}-{k}-plain.png")
-        textures.append(brightness(f"{folder}/{name}-{k}.png") / np.maximum(plain, 1))
+        texture = brightness(f"{folder}/{name}-{k}.png") / np.maximum(plain, 1)
+        textures.append(texture - blur(texture, 10))  # what is left of the light is no texture
         views.append(View(camera, plain.shape))
         visible &= seen(views[k], place, normal)
     chosen = np.flatnonzero(visible)[:60000]
