@@ -39,7 +39,7 @@ Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {
   try {
     return camera_of(nlohmann::json::parse(stream), fit_camera("iso", corners, settings.width, settings.height).height);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(settings.camera + " is no camera", error.what());
+    throw Error(settings.camera + " is no camera", error.what(), camera_advice);
   } catch (const Error& error) {
     throw Error(settings.camera + ": " + error.what());
   }

@@ -27,7 +27,6 @@ nlohmann::json camera_json(const Camera& camera) {
 }
 
 Camera camera_of(const nlohmann::json& json, double height) {
-  constexpr const char* advice = R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})";
   Camera camera;
   try {
     camera.eye = vec(json.at("eye"));
@@ -36,10 +35,10 @@ Camera camera_of(const nlohmann::json& json, double height) {
     camera.height = json.value("height", height);
     camera.orthographic = json.value("orthographic", false);
   } catch (const nlohmann::json::exception& error) {
-    throw Error("this is no camera", error.what(), advice);
+    throw Error("this is no camera", error.what(), camera_advice);
   }
   if (!(length(camera.target - camera.eye) > 0) || !(length(camera.up) > 0) || !(camera.height > 0))
-    throw Error("this is no camera", "eye and target must differ, up and height be above zero", advice);
+    throw Error("this is no camera", "eye and target must differ, up and height be above zero", camera_advice);
   return camera;
 }
 

@@ -10,6 +10,9 @@ namespace nacre {
 /// {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h,"orthographic":false}
 nlohmann::json camera_json(const Camera& camera);
 
+/// What such JSON holds, for messages.
+inline constexpr const char* camera_advice = R"(it holds {"eye":[x,y,z],"target":[x,y,z],"up":[x,y,z],"height":h})";
+
 /// What is left out of `up`, `height` and `orthographic` is (0, 0, 1), `height` and false. Throws Error where that is no
 /// camera: eye and target must differ, up and height be above zero.
 Camera camera_of(const nlohmann::json& json, double height = 2);
