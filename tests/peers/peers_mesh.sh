@@ -1,6 +1,6 @@
 # Nacre: the peers that mesh label images or fill surfaces: Mesh_3, surface nets, TetGen. Sourced by run.sh.
 
-phantoms="torso:64 nested-shells:64"
+phantoms=${PEERS_PHANTOMS-torso:64 nested-shells:64} # of surfaces
 spheres="10,14,18 23.5 23.5 23.5" # of nested-shells: the radii and the centre in the world
 
 # measure LABELS NAME SURFACE RESULT: quality and distances of a surface; distances from spheres where the phantom has them.
@@ -10,7 +10,7 @@ measure() {
   "$build/bin/peer_measure" "$1" "$3" "${words[@]}" >"$4"
 }
 
-# mesh_3_pair PHANTOM DETAIL LABEL [words of ours --] [words of peer_mesh_3]: rows of one comparison of surfaces.
+# mesh_3_surface PHANTOM DETAIL: rows of the surfaces, without and, where there are any, with junction curves protected.
 mesh_3_surface() {
   local name=$1 labels=$out/$1-$2.nrrd work="surface of $1 $2" size target
   shift 2
@@ -71,10 +71,11 @@ peer_mesh_3() {
     sample "${one%:*}" "${one#*:}"
     mesh_3_surface "${one%:*}" "${one#*:}"
   done
+  sample torso 64
   mesh_3_cells torso 64
 }
 
-# Vertices of surface nets are given by the voxels: the size of ours is sought that gives as many.
+# surface_nets_pair PHANTOM DETAIL. Vertices of surface nets are given by the voxels: the size of ours is sought that gives as many.
 surface_nets_pair() {
   local name=$1 labels=$out/$1-$2.nrrd work="surface of $1 $2" size=1 k vertices target
   nets() {

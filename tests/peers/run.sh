@@ -2,8 +2,9 @@
 # Nacre: runs our program and each peer that is installed on the same work, in pairs, and prints one table.
 # Usage: run.sh [PEER...], of mesh_3 surface_nets tetgen openvdb embree surface_lic; all without a word.
 # Environment: NACRE_BUILD (build folder; else build/release or build/cpu), PEERS_PYTHON (a python that has the wheel vtk),
-# PVPYTHON (ParaView's), PEERS_RUNS (pairs of each, default 3), PEERS_THREADS (default 2), PEERS_PREFIX (words before
-# each command that is timed, such as "chrt -f 1"), PEERS_SECONDS (limit of each command, default 300), OUT (keeps reports, meshes and peers.json).
+# PVPYTHON (ParaView's), PEERS_PHANTOMS (surfaces of which, as torso:64), PEERS_RUNS (pairs of each, default 3),
+# PEERS_THREADS (default 2), PEERS_PREFIX (words before each command that is timed, such as "chrt -f 1"), PEERS_SECONDS
+# (limit of each command, default 300), OUT (keeps reports, meshes and peers.json).
 set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 source "$here/../bench/report.sh"
@@ -67,7 +68,7 @@ pairs() {
   their_median=$(printf '%s\n' "${b[@]}" | middle)
 }
 
-# measured NAME WORK: rows of both surfaces, $out/ours-NAME.txt against $out/theirs-NAME.txt.
+# surface_rows NAME WORK: rows of both surfaces, $out/ours-NAME.txt against $out/theirs-NAME.txt.
 surface_rows() {
   local key
   for key in vertices triangles radius_ratio_mean radius_ratio_min angle_min share_under_25 stairs_vertex_mean \
