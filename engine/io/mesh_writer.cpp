@@ -192,13 +192,13 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels)
       mesh.points.size(), cells);
   xml += announce_cell_data(appended, cells, std::span(&material, 1));
   const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3d);
-  xml += "<Points>\n" + appended.announce("Float64", "Points", 3, bytes, [&](OutputFile& file) {
+  xml += "<Points>\n" + appended.announce("Float64", "Points", 3, bytes, [&](Base64Text& file) {
     file.write(mesh.points.data(), bytes);
   }) + "</Points>\n<Cells>\n";
   xml += announce_indices(appended, "connectivity", 4 * cells, mesh.points.size(),
                           [&mesh](std::uint64_t i) { return mesh.cells[i / 4][i % 4]; });
   xml += announce_indices(appended, "offsets", cells, 4 * cells, [](std::uint64_t i) { return 4 * i + 4; });
-  xml += appended.announce("UInt8", "types", 1, cells, [cells](OutputFile& file) {
+  xml += appended.announce("UInt8", "types", 1, cells, [cells](Base64Text& file) {
     write_generated<std::uint8_t>(file, cells, [](std::uint64_t) { return vtk_tetrahedron; });
   });
   OutputFile file(path);

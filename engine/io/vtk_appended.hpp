@@ -1,4 +1,5 @@
-// Nacre: the appended raw data of VTK XML files that we write.
+// Nacre: the appended data of VTK XML files that we write, in base64: raw bytes behind an underscore are no XML, and
+// readers that parse strictly refuse them.
 #pragma once
 
 #include <fmt/format.h>
@@ -38,25 +39,73 @@ inline std::string xml_escaped(const std::string& text) {
   return out;
 }
 
+/// Bytes on their way into a file as base64 text.
+class Base64Text {
+ public:
+  explicit Base64Text(OutputFile& file) : file_(file) {}
+
+  void write(const void* data, std::size_t bytes) {
+    const auto* from = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) {
+      held_ = held_ << 8 | from[i];
+      if (++count_ == 3) put(4);
+    }
+  }
+
+  /// The rest, padded. To be called once, at the end.
+  void finish() {
+    if (count_ > 0) {
+      const int digits = count_ + 1;
+      held_ <<= 8 * (3 - count_);
+      put(digits);
+      text_.append(std::size_t(4 - digits), '=');
+    }
+    file_.write(text_);
+    text_.clear();
+  }
+
+  /// Characters for so many bytes.
+  static std::uint64_t length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
+
+ private:
+  void put(int digits) {
+    static constexpr char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (int k = 0; k < digits; ++k) text_ += alphabet[held_ >> (18 - 6 * k) & 63];
+    held_ = 0;
+    count_ = 0;
+    if (text_.size() >= 1 << 16) {
+      file_.write(text_);
+      text_.clear();
+    }
+  }
+
+  OutputFile& file_;
+  std::string text_;
+  std::uint32_t held_ = 0;
+  int count_ = 0;  ///< bytes in held_
+};
+
 /// The blocks behind the XML: each is announced first, which gives it its offset, and written afterwards.
 class Appended {
  public:
   /// The XML element of a block of `bytes` that `write` will put into the file.
   std::string announce(const std::string& type, const std::string& name, int components, std::uint64_t bytes,
-                       std::function<void(OutputFile&)> write) {
+                       std::function<void(Base64Text&)> write) {
     const std::string element = fmt::format(
         "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
         xml_escaped(name), components, offset_);
-    offset_ += sizeof(std::uint64_t) + bytes;
+    offset_ += Base64Text::length(sizeof(std::uint64_t) + bytes);
     blocks_.push_back({bytes, std::move(write)});
     return element;
   }
 
   void write(OutputFile& file) const {
-    file.write("<AppendedData encoding=\"raw\">\n_");
+    file.write("<AppendedData encoding=\"base64\">\n_");
     for (const Block& block : blocks_) {
-      file.write(&block.bytes, sizeof block.bytes);
-      block.write(file);
+      Base64Text text(file);
+      text.write(&block.bytes, sizeof block.bytes);
+      block.write(text);
+      text.finish();
     }
     file.write("\n</AppendedData>\n");
   }
@@ -64,7 +113,7 @@ class Appended {
  private:
   struct Block {
     std::uint64_t bytes;
-    std::function<void(OutputFile&)> write;
+    std::function<void(Base64Text&)> write;
   };
   std::vector<Block> blocks_;
   std::uint64_t offset_ = 0;
@@ -72,7 +121,7 @@ class Appended {
 
 /// Writes value(0), value(1), ... value(count - 1) by way of a small buffer.
 template <class Index, class Value>
-void write_generated(OutputFile& file, std::uint64_t count, const Value& value) {
+void write_generated(Base64Text& file, std::uint64_t count, const Value& value) {
   std::vector<Index> buffer(std::min<std::uint64_t>(count, 1 << 16));
   for (std::uint64_t begin = 0; begin < count; begin += buffer.size()) {
     const std::uint64_t n = std::min<std::uint64_t>(buffer.size(), count - begin);
@@ -88,9 +137,9 @@ std::string announce_numbers(Appended& appended, const std::string& name, std::u
   using Narrow = std::numeric_limits<std::int32_t>;
   if (lower >= Narrow::min() && upper <= Narrow::max())
     return appended.announce("Int32", name, 1, 4 * count,
-                             [=](OutputFile& file) { write_generated<std::int32_t>(file, count, value); });
+                             [=](Base64Text& file) { write_generated<std::int32_t>(file, count, value); });
   return appended.announce("Int64", name, 1, 8 * count,
-                           [=](OutputFile& file) { write_generated<std::int64_t>(file, count, value); });
+                           [=](Base64Text& file) { write_generated<std::int64_t>(file, count, value); });
 }
 
 /// The same for indices from 0 to `largest`.

@@ -25,7 +25,7 @@ std::string announce_cells(Appended& appended, std::uint64_t points, std::span<c
            announce_indices(appended, "offsets", points, points, after) + "</Verts>\n";
   const std::string corners =
       appended.announce("UInt32", "connectivity", 1, triangles.size_bytes(),
-                        [triangles](OutputFile& file) { file.write(triangles.data(), triangles.size_bytes()); });
+                        [triangles](Base64Text& file) { file.write(triangles.data(), triangles.size_bytes()); });
   const auto end = [](std::uint64_t i) { return 3 * i + 3; };
   return "<Polys>\n" + corners + announce_indices(appended, "offsets", triangles.size(), 3 * triangles.size(), end) +
          "</Polys>\n";
@@ -36,7 +36,7 @@ std::string announce_arrays(Appended& appended, std::span<const PointArray> arra
   for (const PointArray& array : arrays)
     xml += appended.announce(
         "Float32", array.name, array.components, array.values.size() * sizeof(float),
-        [&array](OutputFile& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
+        [&array](Base64Text& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
   return xml + "</PointData>\n";
 }
 
@@ -64,7 +64,7 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
   xml += announce_arrays(appended, arrays) + announce_cell_data(appended, triangles.size(), cells);
   xml += "<Points>\n" +
          appended.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
-                           [points](OutputFile& file) { file.write(points.data(), points.size_bytes()); }) +
+                           [points](Base64Text& file) { file.write(points.data(), points.size_bytes()); }) +
          "</Points>\n";
   xml += announce_cells(appended, points.size(), triangles) + "</Piece>\n</PolyData>\n";
 

@@ -18,7 +18,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 
-import raw_vtp
+import read_vtp
 
 SIZE = (1024, 768)
 
@@ -41,7 +41,7 @@ def turned(camera, degrees):
 
 def source_of(path):
     """The surface as the output of a source in the pipeline."""
-    places, triangles, vectors = raw_vtp.read(path)
+    places, triangles, vectors = read_vtp.read(path)
     points, cells, mesh = vtkPoints(), vtkCellArray(), vtkPolyData()
     points.SetData(numpy_to_vtk(places, deep=True))
     cells.SetData(3, numpy_to_vtkIdTypeArray(np.ascontiguousarray(triangles).ravel(), deep=True))

@@ -16,7 +16,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOImage import vtkPNGReader
 
-import raw_vtp
+import read_vtp
 
 SPREAD = 3.0  # pixels of the Gaussian, as in the evidence tests texture cells
 
@@ -105,7 +105,7 @@ def angles(texture, view, place, vectors):
 
 
 def main(surface, cameras, folder, name):
-    points, triangles, vectors = raw_vtp.read(surface)
+    points, triangles, vectors = read_vtp.read(surface)
     place, normal, flow = draw_points(points, triangles, vectors, 2000000, 1)
     textures, views, visible = [], [], np.ones(len(place), bool)
     for k, camera in enumerate(json.load(open(cameras))[:2]):

@@ -24,6 +24,19 @@ Surface two_triangles() {
   return s;
 }
 
+/// The first bytes that a base64 text stands for.
+std::string decoded(const std::string& text, std::size_t bytes) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  unsigned bits = 0;
+  for (std::size_t i = 0; out.size() < bytes && i < text.size(); ++i) {
+    bits = bits << 6 | unsigned(text[i] == '=' ? 0 : digits.find(text[i]));
+    if (i % 4 == 0) continue;
+    out += char(bits >> (6 - 2 * (i % 4)) & 255);
+  }
+  return out;
+}
+
 /// The block of the array called `name` in a .vtp: type, components, values.
 template <class T>
 std::vector<T> block(const std::string& file, const std::string& name, const std::string& type, int components) {
@@ -33,11 +46,12 @@ std::vector<T> block(const std::string& file, const std::string& name, const std
   EXPECT_NE(element.find("type=\"" + type + "\""), std::string::npos) << element;
   EXPECT_NE(element.find("NumberOfComponents=\"" + std::to_string(components) + "\""), std::string::npos) << element;
   const std::size_t offset = std::stoull(element.substr(element.find("offset=\"") + 8));
-  const char* start = file.data() + file.find("encoding=\"raw\">\n_") + 17 + offset;
+  const std::string head = "encoding=\"base64\">\n_";
+  const std::string text = file.substr(file.find(head) + head.size() + offset);
   std::uint64_t bytes;
-  std::memcpy(&bytes, start, 8);
+  std::memcpy(&bytes, decoded(text, 8).data(), 8);
   std::vector<T> values(bytes / sizeof(T));
-  std::memcpy(values.data(), start + 8, bytes);
+  std::memcpy(values.data(), decoded(text, 8 + bytes).data() + 8, bytes);
   return values;
 }
 
@@ -56,6 +70,14 @@ TEST(VtpWriter, BlocksAreWhereTheXmlSays) {
   EXPECT_EQ(block<std::uint32_t>(file, "connectivity", "UInt32", 1), (std::vector<std::uint32_t>{0, 1, 2, 0, 2, 3}));
   EXPECT_EQ(block<std::int32_t>(file, "offsets", "Int32", 1), (std::vector<std::int32_t>{3, 6}));
   EXPECT_TRUE(file.ends_with("</VTKFile>\n"));
+}
+
+TEST(VtpWriter, FilesAreXmlToTheLastByte) {
+  const TemporaryFolder folder;
+  Surface s = two_triangles();
+  s.arrays[0].values = {1e-38f, -3.7e20f, 0, 123456};  // bytes of all kinds
+  write_surface(folder / "a.vtp", s, 2.5);
+  for (const char c : read_all(folder / "a.vtp")) ASSERT_TRUE((c >= ' ' && c <= '~') || c == '\n') << int(c);
 }
 
 TEST(VtpWriter, PointsWithoutTrianglesBecomeVertices) {
