@@ -46,9 +46,9 @@ class ExecutorBase {
 ///   for_each_team(n, kernel)         kernel(team, i): the lanes of a team (team.hpp) work on item i together, with
 ///                                    kernel.scratch_bytes() bytes of shared memory
 ///   exclusive_scan(in, out, n)       out[i] = in[0] + .. + in[i-1]; returns the sum of all; in == out allowed
-///   sort(keys, n)                    ascending 64-bit keys (unique, or it does not matter which of two equals is first)
-///   sort_pairs(keys, values, n)      the same, and values go with their keys; of equal keys the smaller value first, if
-///                                    values ascend before
+///   sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those below
+///                                    need not be looked at where they ascend before
+///   sort_pairs(keys, values, n)      the same by all bits, and values go with their keys
 ///   reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if merge
 ///                                    is exact (integers, minimum, maximum)
 ///   stage(name)                      a scope that times a stage, the device's work included

@@ -4,13 +4,13 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_reduce.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "compute/device/cpu_device.hpp"
 #include "compute/device/executor.hpp"
+#include "compute/device/radix_sort.hpp"
 
 namespace nacre {
 
@@ -65,23 +65,27 @@ class Executor<Cpu> : public ExecutorBase {
     return sums[blocks];
   }
 
-  void sort(std::uint64_t* keys, std::int64_t n) {
+  void sort(std::uint64_t* keys, std::int64_t n, int lowest = 0) {
     check_stop();
+    if (n <= 1) return;
+    Arena::Scope scope(arena());
+    Array<std::uint64_t> other = arena().temporary<std::uint64_t>(n);
     CpuDevice::Access access(cpu_);
-    cpu_.workers().execute([&] { tbb::parallel_sort(keys, keys + n); });
+    cpu_.workers().execute(
+        [&] { detail::radix_sort(detail::KeysAlone{keys}, detail::KeysAlone{other.data()}, n, lowest); });
   }
 
   void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
     check_stop();
-    struct Pair {
-      std::uint64_t key;
-      std::uint32_t value;
-      bool operator<(const Pair& other) const { return key != other.key ? key < other.key : value < other.value; }
-    };
-    std::vector<Pair> pairs(n);
-    for_each_plain(n, [&](std::int64_t i) { pairs[i] = {keys[i], values[i]}; });
-    cpu_.workers().execute([&] { tbb::parallel_sort(pairs.begin(), pairs.end()); });
-    for_each_plain(n, [&](std::int64_t i) { keys[i] = pairs[i].key, values[i] = pairs[i].value; });
+    if (n <= 1) return;
+    Arena::Scope scope(arena());
+    Array<std::uint64_t> other_keys = arena().temporary<std::uint64_t>(n);
+    Array<std::uint32_t> other_values = arena().temporary<std::uint32_t>(n);
+    CpuDevice::Access access(cpu_);
+    cpu_.workers().execute([&] {
+      detail::radix_sort(detail::KeysWithValues{keys, values},
+                         detail::KeysWithValues{other_keys.data(), other_values.data()}, n);
+    });
   }
 
   template <class T, class Get, class Merge>
@@ -102,13 +106,6 @@ class Executor<Cpu> : public ExecutorBase {
   }
 
  private:
-  template <class Body>
-  void for_each_plain(std::int64_t n, const Body& body) {
-    run(n, [&](std::int64_t first, std::int64_t last) {
-      for (std::int64_t i = first; i < last; ++i) body(i);
-    });
-  }
-
   /// Calls body(first, last) over pieces of 0..n-1 on the device's workers; leaves early when the user asks to stop.
   template <class Body>
   void run(std::int64_t n, const Body& body) {

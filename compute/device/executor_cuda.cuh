@@ -91,14 +91,15 @@ class Executor<Cuda> : public ExecutorBase {
     return last_out + last_in;
   }
 
-  void sort(std::uint64_t* keys, std::int64_t n) {
+  void sort(std::uint64_t* keys, std::int64_t n, int lowest = 0) {
     check_stop();
     if (n <= 1) return;
     Arena::Scope scope(arena());
     Array<std::uint64_t> other = arena().temporary<std::uint64_t>(n);
     cub::DoubleBuffer<std::uint64_t> buffer(keys, other.data());
-    with_scratch(
-        [&](void* scratch, std::size_t& bytes) { return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n); });
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n, lowest);
+    });
     if (buffer.Current() != keys)
       cuda_check(cudaMemcpyAsync(keys, buffer.Current(), n * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice), "copy");
   }

@@ -159,7 +159,7 @@ class BrickOctreeBuilder {
     {
       Arena::Scope scope(arena);
       const int size = BrickOctreeView::width << tree_.levels;
-      const Clusters clusters = make_clusters(exec_, mesh_, triangles_, Int3(size), 2);
+      const Clusters clusters = make_clusters(exec_, mesh_, triangles_, Int3(size));
       Array<TriangleFrame> frame = arena.temporary<TriangleFrame>(triangles_);
       exec_.for_each(triangles_, FrameTriangle{mesh_, clusters.order.data(), frame.data()});
       // A brick's cells lie half a cell inside of it.

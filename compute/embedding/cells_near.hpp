@@ -49,6 +49,31 @@ NACRE_HD inline void extent_in_slab(const Corners& t, int u, int v, double low, 
   }
 }
 
+constexpr double touching = 1e-7;  ///< what is nearer to a cell than this touches it
+
+/// The cells that a triangle's bounding box, grown by `slack`, overlaps; empty if its coordinates are no numbers.
+struct CellBox {
+  Int3 first, last;
+  bool empty = true;
+
+  NACRE_HD_INLINE CellBox(const Corners& t, double slack, const Int3& dims) {
+    if (!is_finite(t.a + t.b + t.c)) return;
+    const Vec3d low = min(t.a, min(t.b, t.c)) - Vec3d(slack), high = max(t.a, max(t.b, t.c)) + Vec3d(slack);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (low[axis] >= dims[axis] || high[axis] < 0) return;
+      first[axis] = clamp_cell(low[axis], dims[axis]);
+      last[axis] = clamp_cell(high[axis], dims[axis]);
+    }
+    empty = false;
+  }
+
+  /// One cell wide along two axes: then the triangle passes through all of its cells.
+  NACRE_HD_INLINE bool thin() const {
+    return int(first.x == last.x) + int(first.y == last.y) + int(first.z == last.z) >= 2;
+  }
+  NACRE_HD_INLINE int length() const { return last.x - first.x + last.y - first.y + last.z - first.z + 1; }
+};
+
 /// The columns of cells that come near a triangle, along the largest axis `w` of its normal, in rows along `u`.
 struct ColumnWalk {
   Corners t;
@@ -56,19 +81,9 @@ struct ColumnWalk {
   double slack, reach;  // of the plane over the middle of a column: how far cells along w may be near
   int u, v, w;
   Int3 dims, first, last;
-  bool empty = true;
 
-  NACRE_HD ColumnWalk(const Corners& corners, double margin, Int3 dims_) : t(corners), dims(dims_) {
-    if (!is_finite(t.a + t.b + t.c)) return;
-    n = plane_normal(t);
-    slack = margin + 1e-7;
-    const Vec3d low = min(t.a, min(t.b, t.c)), high = max(t.a, max(t.b, t.c));
-    for (int axis = 0; axis < 3; ++axis) {
-      if (low[axis] - slack >= dims[axis] || high[axis] + slack < 0) return;
-      first[axis] = clamp_cell(low[axis] - slack, dims[axis]);
-      last[axis] = clamp_cell(high[axis] + slack, dims[axis]);
-    }
-    empty = false;
+  NACRE_HD ColumnWalk(const Corners& corners, double slack_, const CellBox& box, Int3 dims_)
+      : t(corners), n(plane_normal(t)), slack(slack_), dims(dims_), first(box.first), last(box.last) {
     const double ax = std::fabs(n.x), ay = std::fabs(n.y), az = std::fabs(n.z);
     w = ax >= ay && ax >= az ? 0 : ay >= az ? 1 : 2;
     u = w == 0 ? 1 : 0;
@@ -105,8 +120,10 @@ struct ColumnWalk {
 
 /// About how many columns of cells lie under a triangle: `for_cells_near` visits no fewer cells.
 NACRE_HD inline std::uint64_t columns_under(const Corners& t, Int3 dims) {
-  const detail::ColumnWalk walk(t, 0.0, dims);
-  if (walk.empty) return 0;
+  const detail::CellBox box(t, detail::touching, dims);
+  if (box.empty) return 0;
+  if (box.thin()) return std::uint64_t(box.length());
+  const detail::ColumnWalk walk(t, detail::touching, box, dims);
   std::uint64_t columns = 0;
   const int stride = 1 + (walk.last[walk.v] - walk.first[walk.v]) / 1024;  // some rows stand for all of many
   int from = 0, to = 0;
@@ -122,8 +139,15 @@ NACRE_HD inline std::uint64_t columns_under(const Corners& t, Int3 dims) {
 /// coordinates are no numbers is near nothing.
 template <class Visit>
 NACRE_HD void for_cells_near(const Corners& t, double margin, Int3 dims, Visit&& visit) {
-  const detail::ColumnWalk walk(t, margin, dims);
-  if (walk.empty) return;
+  const detail::CellBox box(t, margin + detail::touching, dims);
+  if (box.empty) return;
+  if (margin == 0 && box.thin()) {
+    for (int z = box.first.z; z <= box.last.z; ++z)
+      for (int y = box.first.y; y <= box.last.y; ++y)
+        for (int x = box.first.x; x <= box.last.x; ++x) visit(Int3(x, y, z));
+    return;
+  }
+  const detail::ColumnWalk walk(t, margin + detail::touching, box, dims);
   const int u = walk.u, v = walk.v, w = walk.w;
   const double sphere = margin + 0.8660254037844387;  // half the diagonal of a cell
 
@@ -147,7 +171,7 @@ NACRE_HD void for_cells_near(const Corners& t, double margin, Int3 dims, Visit&&
           const Vec3d d = closest_point(t, centre) - centre;
           near = dot(d, d) <= sphere * sphere;
         } else {
-          near = touches_cube(t, centre, 0.5 + 1e-7);
+          near = touches_cube(t, centre, 0.5 + detail::touching);
         }
         if (near) visit(cell);
       }

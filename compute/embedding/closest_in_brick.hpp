@@ -6,6 +6,7 @@
 
 #include "compute/device/executor.hpp"
 #include "compute/embedding/brick_octree.hpp"
+#include "compute/embedding/closest_of_eight.hpp"
 #include "compute/embedding/clusters.hpp"
 #include "compute/embedding/triangle_frame.hpp"
 #include "compute/grid/eight.hpp"
@@ -18,6 +19,15 @@ NACRE_HD_INLINE int claim_slot(int* count) {
   return atomicAdd(count, 1);
 #else
   return (*count)++;
+#endif
+}
+
+/// Lowers eight floats >= 0 in memory that the lanes of a team share.
+NACRE_HD_INLINE void lower_to(float* shared, const Eight& to) {
+#if defined(__CUDA_ARCH__)
+  for (int k = 0; k < 8; ++k) atomicMin(reinterpret_cast<int*>(shared) + k, __float_as_int(to[k]));
+#else
+  store_eight(shared, min(load_eight(shared), to));
 #endif
 }
 
@@ -66,89 +76,82 @@ struct ClusterView {
     const Vec3f s = w * (2 * half);
     return at_corners(dot(w, w) + 3 * half * half, s.x, s.y, s.z);
   }
-
-  /// The point of the cluster closest to `x`.
-  NACRE_HD Vec3d closest(std::uint32_t c, const Vec3d& x) const {
-    Vec3d closest{};
-    double best = 1e300;
-    for (std::uint32_t j = start[c]; j < start[c + 1]; ++j) {
-      const Vec3d p = closest_point(mesh.corners(order[j]), x);
-      const double d = dot(p - x, p - x);
-      if (d < best) best = d, closest = p;
-    }
-    return closest;
-  }
 };
 
 constexpr float cell_diagonal = 0.8660256f;  ///< half of it: a triangle that touches a cell is that near to its centre
 
 /// What may hold the closest points of a cube of cells, and the triangles that touch them.
-template <int Room>
+template <class Item, int Room>
 struct ShortList {
-  Vec3f pivot;  // a point of the surface, from the cube's centre
-  int count;    // over `Room`: some are not listed
-  std::uint32_t cluster[Room];
-};
+  static constexpr int room = Room;
+  int count;  // over `Room`: some are not listed
+  Item item[Room];
 
-/// The nearest of many clusters to each of eight places.
-struct Nearest {
-  float squared[8];
-  std::uint32_t cluster[8];
-};
-NACRE_HD_INLINE Nearest operator+(const Nearest& a, const Nearest& b) {
-  Nearest n;
-  for (int k = 0; k < 8; ++k) {
-    const bool second = b.squared[k] < a.squared[k] || (b.squared[k] == a.squared[k] && b.cluster[k] < a.cluster[k]);
-    n.squared[k] = second ? b.squared[k] : a.squared[k];
-    n.cluster[k] = second ? b.cluster[k] : a.cluster[k];
+  NACRE_HD_INLINE bool listed() const { return count <= Room; }
+  NACRE_HD_INLINE void add(Item what) {
+    const int slot = claim_slot(&count);
+    if (slot < Room) item[slot] = what;
   }
-  return n;
-}
+};
 
 /// The eight cells of an octet (2^3 cells) and their closest points so far.
 class OctetSearch {
  public:
-  /// `pivot` is a point of the surface, from the octet's centre.
-  NACRE_HD OctetSearch(const ClusterView& clusters, const Vec3d& centre, const Vec3f& pivot, float radius)
+  /// `near`: the surface is no farther from the octet's centre.
+  NACRE_HD OctetSearch(const ClusterView& clusters, const Vec3d& centre, float near, float radius)
       : clusters_(clusters), centre_(centre), radius_(radius) {
-    const Eight bound = sqrt(ClusterView::from_point(-pivot, 0.5f)) + 1e-4f;
-    nearest_ = bound * bound;
+    const float bound = near + (cell_diagonal + 1e-4f);
+    nearest_ = eight(bound * bound);
     look();
     for (int k = 0; k < 8; ++k) best_[k] = 1e300, winner_[k] = none;
   }
 
-  NACRE_HD void search(const std::uint32_t* cluster, std::uint64_t count) {
+  /// Looks at the clusters at(0) .. at(count - 1), that with the nearest centre first: it may spare the others.
+  template <class At>
+  NACRE_HD void search(std::uint64_t count, const At& at) {
+    std::uint64_t first = 0;
+    float nearest = 1e30f;
     for (std::uint64_t k = 0; k < count; ++k) {
-      const std::uint32_t first = clusters_.start[cluster[k]], last = clusters_.start[cluster[k] + 1];
-      if (last - first > 1) {
-        Eight lower;
-        const float error = clusters_.lower(cluster[k], centre_, 0.5f, lower);
-        const Eight limit = reach_ + error;
-        if (!at_most(lower, limit * limit)) continue;
-      }
-      for (std::uint32_t j = first; j < last; ++j) {
-        const TriangleFrame& frame = clusters_.frame[j];
-        if (last - first > 1 && !in_reach(frame)) continue;
-        Eight squared;
-        const float error = frame.distances(centre_, 0.5f, squared);
-        const Eight limit = reach_ + error;
-        if (at_most(squared, limit * limit)) keep(clusters_.order[j], squared, error);
-      }
+      const Vec3f w = Vec3f(centre_) - clusters_.bound[at(k)].centre;
+      const float d = dot(w, w);
+      if (d < nearest) nearest = d, first = k;
     }
+    look_at(at(first));
+    for (std::uint64_t k = 0; k < count; ++k)
+      if (k != first) look_at(at(k));
     settle();
   }
 
   /// Whether the cell is within `radius`.
   NACRE_HD bool in_band(int k, double radius) const { return best_[k] <= radius * radius; }
   NACRE_HD bool touched(int k) const { return touched_ >> k & 1; }
-  NACRE_HD const Vec3d& offset(int k) const { return offset_[k]; }
-  NACRE_HD std::uint32_t triangle(int k) const { return winner_[k]; }
+  NACRE_HD Vec3d offset(int k) const { return {x_[k], y_[k], z_[k]}; }
+  NACRE_HD std::uint32_t triangle(int k) const { return std::uint32_t(winner_[k]); }
 
  private:
   static constexpr int room = 32;
 
   NACRE_HD Vec3d cell(int k) const {
     return centre_ + Vec3d(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);
+  }
+
+  NACRE_HD_INLINE void look_at(std::uint32_t c) {
+    const std::uint32_t first = clusters_.start[c], last = clusters_.start[c + 1];
+    const bool many = last - first > 1;
+    if (many) {
+      Eight lower;
+      const float error = clusters_.lower(c, centre_, 0.5f, lower);
+      const Eight limit = reach_ + error;
+      if (!at_most(lower, limit * limit)) return;
+    }
+    for (std::uint32_t j = first; j < last; ++j) {
+      const TriangleFrame& frame = clusters_.frame[j];
+      if (!in_reach(frame)) continue;
+      Eight squared;
+      const float error = frame.distances(centre_, 0.5f, squared);
+      const Eight limit = reach_ + error;
+      if (at_most(squared, limit * limit)) keep(clusters_.order[j], squared, error);
+    }
   }
 
   /// Whether a ball around the triangle, centred on the middle of its longest edge, comes near enough to a cell.
@@ -179,28 +182,60 @@ class OctetSearch {
     const Eight limit = min(sqrt(nearest_), eight(radius_)) + error;
     const Eight limit2 = limit * limit;
     for (int i = 0; i < pending_; ++i)
-      for (unsigned bits = at_most(squared_[i], limit2); bits; bits &= bits - 1) offer(lowest_bit(bits), triangle_[i]);
+      if (const unsigned bits = at_most(squared_[i], limit2)) offer(bits, triangle_[i]);
     const Eight touching = eight((cell_diagonal + error) * (cell_diagonal + error));
-    if (at_most(nearest_, touching) & ~touched_)
-      for (int i = 0; i < pending_; ++i)
-        for (unsigned bits = at_most(squared_[i], touching) & ~touched_; bits; bits &= bits - 1) {
-          const int k = lowest_bit(bits);
-          if (touches_cube(clusters_.mesh.corners(triangle_[i]), cell(k), 0.5 + 1e-7)) touched_ |= 1u << k;
-        }
+    if (const unsigned near = at_most(nearest_, touching) & ~touched_) touch(near, touching);
     pending_ = 0;
   }
 
-  NACRE_HD void offer(int k, std::uint32_t t) {
-    const Vec3d x = cell(k);
-    const Vec3d d = closest_point(clusters_.mesh.corners(t), x) - x;
+  /// Finds out which cells of `near` a pending triangle touches; mostly it is the one that holds the closest point.
+  NACRE_HD_INLINE void touch(unsigned near, const Eight& touching) {
+    constexpr double half = 0.5 + 1e-7;
+    for (unsigned bits = near; bits; bits &= bits - 1) {
+      const int k = lowest_bit(bits);
+      if (best_[k] < 1 && std::fabs(x_[k]) <= half && std::fabs(y_[k]) <= half && std::fabs(z_[k]) <= half)
+        touched_ |= 1u << k;
+    }
+    if (!(near & ~touched_)) return;
+    for (int i = 0; i < pending_; ++i)
+      for (unsigned bits = at_most(squared_[i], touching) & ~touched_; bits; bits &= bits - 1) {
+        const int k = lowest_bit(bits);
+        if (touches_cube(clusters_.mesh.corners(triangle_[i]), cell(k), half)) touched_ |= 1u << k;
+      }
+  }
+
+  /// Takes a triangle for those of the cells in `bits` that it is the nearest to so far.
+  NACRE_HD_INLINE void offer(unsigned bits, std::uint32_t t) {
+    const Corners corners = clusters_.mesh.corners(t);
+#if !defined(__CUDACC__)
+    ClosestOfEight found;
+    if (closest_of_eight(corners, centre_, 0.5, found)) {
+      const auto wins = (found.squared < best_) | ((found.squared == best_) & (std::int64_t(t) < winner_));
+      x_ = wins ? found.x : x_, y_ = wins ? found.y : y_, z_ = wins ? found.z : z_;
+      best_ = wins ? found.squared : best_;
+      winner_ = wins ? winner_ - winner_ + std::int64_t(t) : winner_;
+      return;
+    }
+#endif
+    for (; bits; bits &= bits - 1) offer_one(lowest_bit(bits), t, corners);
+  }
+
+  NACRE_HD void offer_one(int k, std::uint32_t t, const Corners& corners) {
+    const Vec3d x = cell(k), d = closest_point(corners, x) - x;
     const double square = dot(d, d);
     if (square > best_[k] || (square == best_[k] && t > winner_[k])) return;
     best_[k] = square;
-    offset_[k] = d;
+    x_[k] = d.x, y_[k] = d.y, z_[k] = d.z;
     winner_[k] = t;
-    constexpr double half = 0.5 + 1e-7;
-    if (std::fabs(d.x) <= half && std::fabs(d.y) <= half && std::fabs(d.z) <= half) touched_ |= 1u << k;
   }
+
+#if defined(__CUDACC__)
+  typedef double Doubles[8];
+  typedef std::int64_t Numbers[8];
+#else
+  typedef EightDoubles Doubles;
+  typedef std::int64_t Numbers __attribute__((vector_size(64)));
+#endif
 
   const ClusterView& clusters_;
   Vec3d centre_;
@@ -210,19 +245,19 @@ class OctetSearch {
   unsigned touched_ = 0;
   Eight nearest_;  // squared, of the triangles looked at
   Eight reach_;
-  double best_[8];
-  Vec3d offset_[8];
-  std::uint32_t winner_[8];
+  Doubles best_;  // squared
+  Doubles x_, y_, z_;
+  Numbers winner_;
   std::uint32_t triangle_[room];
   Eight squared_[room];
 };
 
-/// Masks and closest points of a brick's cells: a team per brick. What may be near is sifted for each of its eight blocks
-/// (4^3 cells), in which every octet is searched.
+/// Masks and closest points of a brick's cells: a team per brick. What may be near is sifted twice, for the brick's eight
+/// blocks (4^3 cells) and for their octets, then every octet is searched.
 ///
-/// A block leaves out a cluster if some point p of the surface is nearer than the cluster to all corners of the block:
-/// then it is nearer everywhere in the block. For the square of the distance from a convex set is |x|^2 plus a minimum of
-/// linear functions of x; minus |x - p|^2 that is concave, and is nowhere below its least value at a corner.
+/// A part (a block, an octet) leaves a cluster out that is farther from its centre than the surface, a way there and back
+/// between the centre and the part's outermost cells included: some other triangle is nearer to all of its cells. It
+/// leaves out as well what is beyond the band's radius, and with it the parts that have no cell in the band.
 struct ClosestInBrick {
   static constexpr int cells = 512;  // room for points per brick
 
@@ -237,8 +272,13 @@ struct ClosestInBrick {
 
   static constexpr int room = 96;
   struct Scratch {
-    ShortList<room> block[8];
-    std::uint8_t band[64], surface[64];  // per octet
+    float near[8];  // how far the surface is from the centres of a cube's parts, at most
+    float octet_near[64];
+    float error[room];  // of a block's clusters, and their distances from its octets
+    float squared[8 * room];
+    ShortList<std::uint32_t, room> block[8];
+    ShortList<std::uint8_t, 44> octet[64];  // of the items of the block's list
+    std::uint8_t band[64], surface[64];     // per octet
   };
   std::size_t scratch_bytes() const { return sizeof(Scratch); }
 
@@ -247,26 +287,22 @@ struct ClosestInBrick {
     const Vec3d corner(morton_cell(code[i]) * Int3(BrickOctreeView::width));
     const std::uint32_t* all = list + list_start[i];
     const auto count = int(list_start[i + 1] - list_start[i]);
-    sift(team, corner, all, count, s.block);
+    sift_brick(team, corner + Vec3d(4.0), all, count, s);
+    for (int b = 0; b < 8; ++b) sift_block(team, corner + Vec3d(part(b)) * 4.0 + Vec3d(2.0), b, s);
     team.each(64, [&](int o) {
-      const ShortList<room>& block = s.block[o >> 3];
-      const Int3 low = part(o >> 3) * Int3(4) + part(o & 7) * Int3(2);
+      const auto& block = s.block[o >> 3];
+      const auto& octet = s.octet[o];
       s.band[o] = s.surface[o] = 0;
-      if (block.count == 0) return;
-      const Vec3f from_block = Vec3f(part(o & 7) * Int3(2)) - Vec3f(1.0f);
-      OctetSearch search(clusters, corner + Vec3d(low) + Vec3d(1.0), block.pivot - from_block, float(radius));
-      const bool listed = block.count <= room;
-      search.search(listed ? block.cluster : all, std::uint64_t(listed ? block.count : count));
-      unsigned band = 0, surface = 0;
-      for (int k = 0; k < 8; ++k) {
-        if (!search.in_band(k, radius)) continue;
-        band |= 1u << k;
-        surface |= unsigned(search.touched(k)) << k;
-        const Int3 c = low + part(k);
-        point[i * cells + 64 * c.z + 8 * c.y + c.x] = CellPoint::pack(search.offset(k), quantum, search.triangle(k));
-      }
-      s.band[o] = std::uint8_t(band);
-      s.surface[o] = std::uint8_t(surface);
+      if (octet.count == 0) return;
+      const Int3 low = part(o >> 3) * Int3(4) + part(o & 7) * Int3(2);
+      OctetSearch search(clusters, corner + Vec3d(low) + Vec3d(1.0), s.octet_near[o], float(radius));
+      if (octet.listed())
+        search.search(octet.count, [&](std::uint64_t k) { return block.item[octet.item[k]]; });
+      else if (block.listed())
+        search.search(block.count, [&](std::uint64_t k) { return block.item[k]; });
+      else
+        search.search(count, [&](std::uint64_t k) { return all[k]; });
+      store(i, o, low, search, s);
     });
     team.each(8, [&](int z) {
       brick[i].band.word[z] = word(s.band, z);
@@ -274,43 +310,62 @@ struct ClosestInBrick {
     });
   }
 
-  /// Fills the lists of the blocks.
-  NACRE_HD void sift(Team& team, const Vec3d& corner, const std::uint32_t* all, int count,
-                     ShortList<room>* blocks) const {
-    const Vec3d centre = corner + Vec3d(4.0);
-    Nearest nothing;
-    for (int b = 0; b < 8; ++b) nothing.squared[b] = 1e30f, nothing.cluster[b] = none;
-    const Nearest nearest = team.sum(count, nothing, [&](int k) {
-      Nearest n;
-      Eight squared;
-      clusters.upper(all[k], centre, 2, squared);
-      for (int b = 0; b < 8; ++b) n.squared[b] = squared[b], n.cluster[b] = all[k];
-      return n;
-    });
-    team.each(8, [&](int b) {
-      const Vec3d middle = corner + Vec3d(part(b)) * 4.0 + Vec3d(2.0);
-      blocks[b].count = 0;
-      const std::uint32_t c = nearest.cluster[b] == none ? all[0] : nearest.cluster[b];  // none: beyond 1e15 cells
-      blocks[b].pivot = Vec3f(clusters.closest(c, middle) - middle);
-    });
-    for (int b = 0; b < 8; ++b) {
-      const Vec3d middle = corner + Vec3d(part(b)) * 4.0 + Vec3d(2.0);
-      const Vec3f pivot = blocks[b].pivot;
-      constexpr float spread = 2.5981f;  // from the block's centre to the farthest cell's
-      const Eight reach = sqrt(ClusterView::from_point(-pivot, 1.5f)) + 1e-4f;
-      team.each(count, [&](int k) {
-        const std::uint32_t c = all[k];
-        const ClusterBound& bound = clusters.bound[c];
-        const float away = length(Vec3f(middle) - bound.centre) - bound.radius - clusters.rounding - 1e-3f;
-        if (away > float(radius) + spread) return;
-        Eight lower;
-        const float error = clusters.lower(c, middle, 1.5f, lower);
-        const Eight limit = reach + error;
-        if (away > cell_diagonal + spread && !at_most(lower, limit * limit)) return;
-        const int slot = claim_slot(&blocks[b].count);
-        if (slot < room) blocks[b].cluster[slot] = c;
-      });
+  /// Takes over what was found for an octet.
+  NACRE_HD void store(std::int64_t i, int o, const Int3& low, const OctetSearch& found, Scratch& s) const {
+    unsigned band = 0, surface = 0;
+    for (int k = 0; k < 8; ++k) {
+      if (!found.in_band(k, radius)) continue;
+      band |= 1u << k;
+      surface |= unsigned(found.touched(k)) << k;
+      const Int3 c = low + part(k);
+      point[i * cells + 64 * c.z + 8 * c.y + c.x] = CellPoint::pack(found.offset(k), quantum, found.triangle(k));
     }
+    s.band[o] = std::uint8_t(band);
+    s.surface[o] = std::uint8_t(surface);
+  }
+
+  /// How far from the centres of parts a cluster is of interest; `spread` is from there to the outermost cells.
+  NACRE_HD_INLINE Eight reach(const float* near, float spread) const {
+    return max(min(load_eight(near) + spread, eight(float(radius))), eight(cell_diagonal)) + (spread + 1e-4f);
+  }
+
+  /// Fills the lists of the blocks.
+  NACRE_HD void sift_brick(Team& team, const Vec3d& centre, const std::uint32_t* all, int count, Scratch& s) const {
+    team.each(8, [&](int b) { s.near[b] = 1e15f, s.block[b].count = 0; });
+    team.each(count, [&](int k) {
+      Eight squared;
+      const float error = clusters.upper(all[k], centre, 2, squared);
+      lower_to(s.near, sqrt(squared) + error);
+    });
+    const Eight limit = reach(s.near, 3 * cell_diagonal);
+    team.each(count, [&](int k) {
+      Eight squared;
+      const Eight farthest = limit + clusters.lower(all[k], centre, 2, squared);
+      for (unsigned bits = at_most(squared, farthest * farthest); bits; bits &= bits - 1)
+        s.block[lowest_bit(bits)].add(all[k]);
+    });
+  }
+
+  /// Fills the lists of a block's octets; those of a block without a list overflow.
+  NACRE_HD void sift_block(Team& team, const Vec3d& centre, int b, Scratch& s) const {
+    const auto& block = s.block[b];
+    const int count = block.listed() ? block.count : 0;
+    team.each(8, [&](int o) { s.near[o] = 1e15f, s.octet[8 * b + o].count = block.listed() ? 0 : 1 << 20; });
+    team.each(count, [&](int k) {
+      const std::uint32_t c = block.item[k];
+      Eight squared;
+      s.error[k] = clusters.lower(c, centre, 1, squared);
+      store_eight(s.squared + 8 * k, squared);
+      const float error = clusters.single(c) ? s.error[k] : clusters.upper(c, centre, 1, squared);
+      lower_to(s.near, sqrt(squared) + error);
+    });
+    const Eight limit = reach(s.near, cell_diagonal);
+    team.each(count, [&](int k) {
+      const Eight farthest = limit + s.error[k];
+      for (unsigned bits = at_most(load_eight(s.squared + 8 * k), farthest * farthest); bits; bits &= bits - 1)
+        s.octet[8 * b + lowest_bit(bits)].add(std::uint8_t(k));
+    });
+    team.each(8, [&](int o) { s.octet_near[8 * b + o] = s.near[o]; });
   }
 
   NACRE_HD_INLINE static Int3 part(int k) { return {k & 1, k >> 1 & 1, k >> 2}; }

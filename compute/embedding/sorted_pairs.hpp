@@ -70,7 +70,7 @@ Array<std::uint64_t> sorted_pairs(Executor<Backend>& exec, std::int64_t items, c
   const std::uint64_t total = exec.exclusive_scan(start.data(), start.data(), items);
   Array<std::uint64_t> keys = arena.temporary<std::uint64_t>(total);
   exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, start.data(), keys.data()});
-  exec.sort(keys.data(), total);
+  exec.sort(keys.data(), total, 32);  // items ascend already
   return keys;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 
 #include "compute/device/backend.hpp"
 #include "compute/grid/vec.hpp"
@@ -72,6 +73,7 @@ NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
 
 /// On the host they are one SIMD register.
 typedef float Eight __attribute__((vector_size(32)));
+typedef double EightDoubles __attribute__((vector_size(64)));
 
 NACRE_HD_INLINE Eight eight(float a) { return Eight{a, a, a, a, a, a, a, a}; }
 NACRE_HD_INLINE Eight min(Eight a, Eight b) { return a < b ? a : b; }
@@ -101,7 +103,19 @@ NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
   return Eight{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
          (Eight{-1, -1, 1, 1, -1, -1, 1, 1} * y + Eight{-1, -1, -1, -1, 1, 1, 1, 1} * z);
 }
+NACRE_HD_INLINE EightDoubles at_corners(double a, double x, double y, double z) {
+  return EightDoubles{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
+         (EightDoubles{-1, -1, 1, 1, -1, -1, 1, 1} * y + EightDoubles{-1, -1, -1, -1, 1, 1, 1, 1} * z);
+}
 
 #endif
+
+/// Eight floats as they lie in memory that has no need to be aligned.
+NACRE_HD_INLINE Eight load_eight(const float* from) {
+  Eight a;
+  std::memcpy(&a, from, sizeof a);
+  return a;
+}
+NACRE_HD_INLINE void store_eight(float* to, const Eight& a) { std::memcpy(to, &a, sizeof a); }
 
 }  // namespace nacre
