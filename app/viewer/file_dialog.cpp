@@ -145,8 +145,9 @@ std::optional<std::vector<fs::path>> FileDialog::draw() {
   draw_entries();
   if (!trouble_.empty()) ImGui::TextUnformatted(trouble_.c_str());
   ImGui::SetNextItemWidth(-1);
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   if (ImGui::InputTextWithHint("##name", mode_ == Mode::save ? "name" : "name or path", &name_,
-                               ImGuiInputTextFlags_EnterReturnsTrue))
+                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
     entered_ = true;
   std::optional<std::vector<fs::path>> result;
   const std::vector<fs::path> files = chosen();

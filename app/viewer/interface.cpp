@@ -1,6 +1,8 @@
 // Nacre: Dear ImGui, in a window or without one.
 #include "app/viewer/interface.hpp"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_opengl3.h>
@@ -59,11 +61,20 @@ void Interface::dress(const Look& look) {
   size_ = size;
 }
 
+/// Dear ImGui sees which keys are down when a frame begins. One that came and went in a long frame is held for the next.
+void Interface::hold_keys() {
+  ImGuiIO& io = ImGui::GetIO();
+  for (const int key : held_) io.KeysDown[key] = glfwGetKey(window_->handle(), key) == GLFW_PRESS;
+  held_ = window_->take_pressed();
+  for (const int key : held_) io.KeysDown[key] = true;
+}
+
 void Interface::begin(int width, int height, double seconds, const Look& look) {
   ImGui_ImplOpenGL3_NewFrame();
   dress(look);
   if (window_) {
     ImGui_ImplGlfw_NewFrame();
+    hold_keys();
   } else {
     ImGui::GetIO().DisplaySize = ImVec2(float(width), float(height));
     ImGui::GetIO().DeltaTime = float(std::max(seconds, 1e-4));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "engine/gl/window.hpp"
 #include "engine/scene/settings.hpp"
@@ -24,8 +25,10 @@ class Interface {
 
  private:
   void dress(const Look& look);
+  void hold_keys();
 
   Window* window_;
+  std::vector<int> held_;  ///< keys that were down for less than a frame
   std::string theme_;
   float size_ = 0;  ///< of the font, pixels
 };

@@ -44,6 +44,7 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"ctrl e", "save the result"},
                                    {"ctrl p", "screenshot"},
                                    {"ctrl r", "record what you do; once more: end and save"},
+                                   {"ctrl m", "video of every frame; once more: end"},
                                    {"ctrl z, ctrl y", "take a change back; make it again"},
                                    {"escape", "cancel what is being computed"},
                                    {"?", "this list"},
@@ -109,6 +110,13 @@ void Ui::switch_recording(const UiFacts& facts, Wishes& wishes) {
     wishes.record = true;
 }
 
+void Ui::switch_film(const UiFacts& facts, Wishes& wishes) {
+  if (facts.filming)
+    wishes.end_film = true;
+  else
+    ask_save("save video", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, "video.mp4", &Wishes::film);
+}
+
 void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes& wishes) {
   if (!ImGui::BeginMenu("File")) return;
   if (ImGui::MenuItem("Open ...", "ctrl o")) ask_open();
@@ -127,11 +135,8 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes&
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
     asks_record_ = true;
-  if (facts.filming) {
-    if (ImGui::MenuItem("End the video")) wishes.end_film = true;
-  } else if (ImGui::MenuItem("Video of every frame ...")) {
-    ask_save("save video", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, "video.mp4", &Wishes::film);
-  }
+  if (ImGui::MenuItem(facts.filming ? "End the video" : "Video of every frame ...", "ctrl m", facts.filming))
+    switch_film(facts, wishes);
   ImGui::Separator();
   if (ImGui::MenuItem("Quit", "ctrl q")) wishes.quit = true;
   ImGui::EndMenu();
@@ -186,6 +191,7 @@ void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, Wishes& wishes) {
       case 'E': ask_result(scene); break;
       case 'P': asks_shot_ = true; break;
       case 'R': asks_record_ = true; break;
+      case 'M': switch_film(facts, wishes); break;
       case 'Z': (pressed.shift ? wishes.redo : wishes.undo) = true; break;
       case 'Y': wishes.redo = true; break;
       case 'Q': wishes.quit = true; break;

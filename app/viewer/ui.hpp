@@ -66,6 +66,7 @@ class Ui {
   void help_windows(const UiFacts& facts);
   void ask_open();
   void ask_result(Scene& scene);
+  void switch_film(const UiFacts& facts, Wishes& wishes);
   void switch_recording(const UiFacts& facts, Wishes& wishes);
   void ask_save(const std::string& title, std::vector<std::string> extensions, const std::string& name,
                 std::optional<std::filesystem::path> Wishes::*wish);

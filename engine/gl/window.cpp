@@ -50,8 +50,10 @@ Window::Window(const std::string& title, int width, int height) {
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int held) {
     const bool ctrl = held & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER), escape = key == GLFW_KEY_ESCAPE;
-    if (action != GLFW_PRESS || !(ctrl || escape)) return;
+    if (action != GLFW_PRESS || key < 0) return;
     auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    self->pressed_.push_back(key);
+    if (!(ctrl || escape)) return;
     self->keys_.push_back({escape ? 27 : key, ctrl, (held & GLFW_MOD_SHIFT) != 0});
   });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** names) {

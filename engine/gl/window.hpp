@@ -42,12 +42,16 @@ class Window : public Context {
   /// Keys with ctrl, and Escape, since the last call: every one, however long a frame takes.
   std::vector<KeyPress> take_keys() { return std::exchange(keys_, {}); }
 
+  /// All keys that went down since the last call, by GLFW's numbers, also those that are up again.
+  std::vector<int> take_pressed() { return std::exchange(pressed_, {}); }
+
   /// Called in `poll` with the files that were dropped on the window.
   std::function<void(const std::vector<std::filesystem::path>& files)> on_drop;
 
  private:
   GLFWwindow* window_ = nullptr;
   std::vector<KeyPress> keys_;
+  std::vector<int> pressed_;
 };
 
 }  // namespace nacre

@@ -205,5 +205,24 @@ TEST_F(View, KeysAndMouseInTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
+TEST_F(View, ANewcomerGetsAVideoAndAMesh) {
+  const fs::path flow = folder / "flow.vtp", labels = folder / "labels.nrrd";
+  ASSERT_EQ(nacre({"sample", "torus", "--detail", "48", "--out", flow.string()}).status, 0);
+  ASSERT_EQ(nacre({"sample", "three-sectors", "--detail", "24", "--out", labels.string()}).status, 0);
+  const Outcome outcome =
+      run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_newcomer.sh", NACRE_PROGRAM, flow.string(), labels.string(),
+                        fs::path(folder).string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "19 actions")) << outcome.out;  // as docs/viewer.md says
+  EXPECT_GT(fs::file_size(folder / "video.mp4"), 1000u);
+  EXPECT_GT(fs::file_size(folder / "mesh.ply"), 1000u);
+  const nlohmann::json done = read_json(folder / "done.json");
+  bool changed = false;
+  for (const auto& event : done.at("events"))
+    changed |= event.contains("knobs") && event.at("knobs").contains("ttl") && event.at("knobs").at("ttl") == 6;
+  EXPECT_TRUE(changed) << done.dump(1);
+}
+
 }  // namespace
 }  // namespace nacre::test
