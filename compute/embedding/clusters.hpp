@@ -38,8 +38,8 @@ struct alignas(16) ClusterBound {
   }
 };
 
-/// Clusters of triangles whose centroids lie in one cube of some cells; a triangle that reaches farther from its centroid
-/// than the cube is wide stands alone.
+/// Clusters of triangles whose centroids lie in one cell; a triangle that reaches farther than a cell from its centroid
+/// stands alone.
 /// `order` sorts the triangles along a Morton curve; cluster k holds order[start[k]] .. order[start[k + 1] - 1].
 struct Clusters {
   std::uint32_t count = 0;
@@ -52,24 +52,22 @@ namespace detail {
 
 struct CentroidCell {
   MeshView mesh;
-  Int3 dims;  // in edges
-  double edge;
+  Int3 dims;
   std::uint64_t* code;
   std::uint32_t* order;
   NACRE_HD void operator()(std::int64_t t) const {
     const Float4 b = triangle_bound(mesh.corners(std::uint32_t(t)));
-    code[t] = morton({clamp_cell(b.x / edge, dims.x), clamp_cell(b.y / edge, dims.y), clamp_cell(b.z / edge, dims.z)});
+    code[t] = morton({clamp_cell(b.x, dims.x), clamp_cell(b.y, dims.y), clamp_cell(b.z, dims.z)});
     order[t] = std::uint32_t(t);
   }
 };
 
 struct ClusterHead {
   MeshView mesh;
-  float edge;
   const std::uint64_t* code;
   const std::uint32_t* order;
   std::uint32_t* head;
-  NACRE_HD bool big(std::uint32_t t) const { return !(triangle_bound(mesh.corners(t)).w <= edge); }
+  NACRE_HD bool big(std::uint32_t t) const { return !(triangle_bound(mesh.corners(t)).w <= 1); }
   NACRE_HD void operator()(std::int64_t i) const {
     head[i] = i == 0 || code[i] != code[i - 1] || big(order[i]) || big(order[i - 1]);
   }
@@ -118,20 +116,18 @@ struct BoundCluster {
 
 /// Groups the triangles (points in cells, in a domain of `dims` cells, up to 2^20 per axis); the arrays are temporary.
 template <class Backend>
-Clusters make_clusters(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, Int3 dims,
-                       int edge = 1) {
+Clusters make_clusters(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, Int3 dims) {
   Arena& arena = exec.arena();
   Clusters clusters;
   clusters.order = arena.temporary<std::uint32_t>(triangles);
   clusters.start = arena.temporary<std::uint32_t>(triangles + 1);
   clusters.bound = arena.temporary<ClusterBound>(triangles);
   Arena::Scope scope(arena);
-  const Int3 cubes{(dims.x + edge - 1) / edge, (dims.y + edge - 1) / edge, (dims.z + edge - 1) / edge};
   Array<std::uint64_t> code = arena.temporary<std::uint64_t>(triangles);
-  exec.for_each(triangles, detail::CentroidCell{mesh, cubes, double(edge), code.data(), clusters.order.data()});
+  exec.for_each(triangles, detail::CentroidCell{mesh, dims, code.data(), clusters.order.data()});
   exec.sort_pairs(code.data(), clusters.order.data(), triangles);
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(triangles);
-  exec.for_each(triangles, detail::ClusterHead{mesh, float(edge), code.data(), clusters.order.data(), number.data()});
+  exec.for_each(triangles, detail::ClusterHead{mesh, code.data(), clusters.order.data(), number.data()});
   clusters.count = exec.exclusive_scan(number.data(), number.data(), triangles);
   exec.for_each(triangles, detail::ClusterStart{triangles, clusters.count, number.data(), clusters.start.data()});
   exec.for_each(clusters.count,
