@@ -38,7 +38,7 @@ xvfb-run -a -s "-screen 0 800x600x24" bash -euo pipefail -c '
   does key ctrl+o
   does type "$flow"
   does key Return
-  sleep 2
+  sleep 4
   does mousemove 71 75 click 1                # the tab of the knobs
   does mousemove 90 101 click 1               # find a knob
   does type ttl
@@ -55,7 +55,7 @@ xvfb-run -a -s "-screen 0 800x600x24" bash -euo pipefail -c '
   does key ctrl+o
   does type "$labels"
   does key Return
-  sleep 8
+  sleep 15
   does key ctrl+e
   xdotool key ctrl+a
   does type mesh.ply
