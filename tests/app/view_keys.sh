@@ -13,7 +13,7 @@ export XDG_STATE_HOME program recording report picture
 XDG_STATE_HOME=$(mktemp -d)
 trap 'rm -rf "$XDG_STATE_HOME"' EXIT
 
-xvfb-run -a -s "-screen 0 640x480x24" bash -euo pipefail -c '
+xvfb-run -a -n $((100 + $$ % 20000)) -s "-screen 0 640x480x24" bash -euo pipefail -c '
   "$program" view --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet \
     --save-recording "$recording" --report "$report" --image "$picture" &
   viewer=$!

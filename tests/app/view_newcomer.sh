@@ -12,7 +12,7 @@ for tool in xvfb-run xdotool ffmpeg; do
 done
 export XDG_STATE_HOME=$folder/state
 
-xvfb-run -a -s "-screen 0 800x600x24" bash -euo pipefail -c '
+xvfb-run -a -n $((100 + $$ % 20000)) -s "-screen 0 800x600x24" bash -euo pipefail -c '
   cd "$folder"
   "$program" view --size 800x600 --set steps=8 --resolution 64 --set max_size=2 --quiet --save-recording done.json &
   viewer=$!

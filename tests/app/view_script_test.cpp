@@ -1,4 +1,6 @@
 // Nacre: scripts, recordings and videos of the viewer, as other people's scripts run them.
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "engine/picture/png.hpp"
@@ -279,12 +281,14 @@ TEST_F(Scripts, AnInputThatFailsInTheMiddleEndsTheRunWithItsName) {
   EXPECT_EQ(read_json(folder / "done.json")["events"].size(), 0u);
 }
 
-/// The window under Xvfb, which has no memory of where it was.
+/// The window under Xvfb. Its display is numbered by the process: of two runs that begin at once, -a alone can give both
+/// the same.
 Outcome window(const Words& words) {
   const fs::path xvfb = find_program("xvfb-run");
-  return xvfb.empty()
-             ? Outcome{77, "", "there is no xvfb-run"}
-             : run(xvfb, Words{"-a", "-s", "-screen 0 1280x1024x24", NACRE_PROGRAM, "view", "--quiet"} + words);
+  return xvfb.empty() ? Outcome{77, "", "there is no xvfb-run"}
+                      : run(xvfb, Words{"-a", "-n", std::to_string(100 + getpid() % 20000), "-s",
+                                        "-screen 0 1280x1024x24", NACRE_PROGRAM, "view", "--quiet"} +
+                                      words);
 }
 
 TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
