@@ -28,30 +28,8 @@ FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loo
 
 FlowWorker::~FlowWorker() { finish(); }
 
-void FlowWorker::finish() {
-  if (!thread_.joinable()) return;
-  {
-    std::scoped_lock lock(mutex_);
-    ends_ = true;
-    interrupt_ = true;
-  }
-  wake_.notify_all();
-  thread_.join();
-}
-
-std::optional<FlowEvent> FlowWorker::poll() {
-  std::scoped_lock lock(mutex_);
-  if (events_.empty()) return {};
-  FlowEvent event = std::move(events_.front());
-  events_.pop_front();
-  return event;
-}
-
 std::optional<FlowEvent> FlowWorker::wait(const std::atomic<bool>& stop) {
-  std::unique_lock lock(mutex_);
-  while (events_.empty() && (working_ || has_work()) && !stop) told_.wait_for(lock, std::chrono::milliseconds(100));
-  lock.unlock();
-  return poll();
+  return wait_while([this] { return working_ || has_work(); }, stop);
 }
 
 bool FlowWorker::ready() const {
@@ -261,14 +239,6 @@ void FlowWorker::take_timers() {
   std::scoped_lock lock(mutex_);
   timers_ = pipeline_->timers();
   peak_bytes_ = peak;
-}
-
-void FlowWorker::tell(FlowEvent event) {
-  {
-    std::scoped_lock lock(mutex_);
-    events_.push_back(std::move(event));
-  }
-  told_.notify_all();
 }
 
 }  // namespace nacre

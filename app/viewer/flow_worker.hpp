@@ -2,19 +2,17 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
 #include "app/viewer/flow_rerun.hpp"
+#include "app/viewer/worker.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/triangle_tree.hpp"
@@ -99,21 +97,17 @@ inline SparseLookup sparse_lookup(const FlowLookup& l) {
 
 /// Reads, embeds and starts by itself; then one step for each call of `step`. All calls come from one other thread, and
 /// none waits for compute but `wait`, `write` and the destructor.
-class FlowWorker {
+class FlowWorker : public Worker<FlowEvent> {
  public:
   /// `loop`: after the last time comes the first again, without end; else it stands still there, as headless runs do.
   /// `makes_way`: see SceneOptions.
   FlowWorker(Session session, std::unique_ptr<Device> device, bool loop, bool makes_way = false);
   ~FlowWorker();
-  FlowWorker(const FlowWorker&) = delete;
-  FlowWorker& operator=(const FlowWorker&) = delete;
 
   Device& device() { return *device_; }
   const Device& device() const { return *device_; }
 
-  /// The oldest event that was not taken.
-  std::optional<FlowEvent> poll();
-  /// The same, but waits for it. None where the worker has nothing to do. Gives up when `stop` is set.
+  /// `poll`, but waits for an event. None where the worker has nothing to do. Gives up when `stop` is set.
   std::optional<FlowEvent> wait(const std::atomic<bool>& stop);
 
   /// May `step` be called? Not before FlowStarted, not before the last step's event, and not while knobs are taken over.
@@ -134,10 +128,6 @@ class FlowWorker {
   void sample(const Vec3d& place);
   /// Writes the values as `nacre flow --out` does, after what goes on. Waits. Throws Error.
   void write(const std::filesystem::path& file);
-
-  /// Interrupts what it does and ends the thread; the memory of a step is not written any more. Nothing may be asked for
-  /// after this.
-  void finish();
 
   StageTimers timers() const;  ///< of all stages so far
   std::string stage() const;   ///< what it does now, for the panel: "embedding"; empty: nothing
@@ -161,7 +151,6 @@ class FlowWorker {
   void start();
   void make_step();
   void answer_sample(const Vec3d& place);
-  void tell(FlowEvent event);
   void take_timers();
   double wrapped(double time) const;
   std::vector<float> scalar(double time);
@@ -181,20 +170,16 @@ class FlowWorker {
   bool has_values_ = false;
   float* memory_ = nullptr;  ///< of the step that it makes
 
-  mutable std::mutex mutex_;
-  std::condition_variable wake_, told_;
-  std::deque<FlowEvent> events_;
+  // Guarded by the mutex.
   FlowRerun due_;
   std::optional<FlowStage> doing_;
   std::optional<float*> step_;  ///< is to be made, into this memory
   std::optional<Vec3d> sample_;
   std::function<void()> errand_;
-  bool started_ = false, ends_ = false, failed_ = false, cancelled_ = false, working_ = false;
+  bool started_ = false, failed_ = false, cancelled_ = false, working_ = false;
   Settings wanted_;
   StageTimers timers_;
   std::size_t peak_bytes_ = 0;
-  std::atomic<bool> interrupt_{false};
-  std::thread thread_;
 };
 
 }  // namespace nacre

@@ -46,31 +46,8 @@ MeshWorker::MeshWorker(Session session, std::unique_ptr<Device> device, bool loc
 
 MeshWorker::~MeshWorker() { finish(); }
 
-void MeshWorker::finish() {
-  if (!thread_.joinable()) return;
-  {
-    std::scoped_lock lock(mutex_);
-    ends_ = true;
-    interrupt_ = true;
-  }
-  wake_.notify_all();
-  thread_.join();
-}
-
-std::optional<MeshEvent> MeshWorker::poll() {
-  std::scoped_lock lock(mutex_);
-  if (events_.empty()) return {};
-  MeshEvent event = std::move(events_.front());
-  events_.pop_front();
-  return event;
-}
-
 std::optional<MeshEvent> MeshWorker::wait(const std::atomic<bool>& stop) {
-  std::unique_lock lock(mutex_);
-  while (events_.empty() && (at_work_ || due() != Task::none) && !stop)
-    told_.wait_for(lock, std::chrono::milliseconds(100));
-  lock.unlock();
-  return poll();
+  return wait_while([this] { return at_work_ || due() != Task::none; }, stop);
 }
 
 void MeshWorker::grant_turn(bool all) {
@@ -339,14 +316,6 @@ void MeshWorker::take_timers() {
   std::scoped_lock lock(mutex_);
   timers_ = pipeline_->timers();
   peak_bytes_ = peak;
-}
-
-void MeshWorker::tell(MeshEvent event) {
-  {
-    std::scoped_lock lock(mutex_);
-    events_.push_back(std::move(event));
-  }
-  told_.notify_all();
 }
 
 }  // namespace nacre

@@ -2,21 +2,19 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "app/viewer/mesh_measures.hpp"
 #include "app/viewer/viewed_volume.hpp"
+#include "app/viewer/worker.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
 #include "compute/raycast/triangle_tree.hpp"
@@ -106,20 +104,16 @@ struct SliceRequest {
 
 /// Reads, meshes and measures by itself. All calls come from one other thread, and none waits for compute but `wait` and
 /// the destructor.
-class MeshWorker {
+class MeshWorker : public Worker<MeshEvent> {
  public:
   /// `lockstep`: each iteration, and the triangles, wait for a turn and for memory.
   MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep, bool makes_way = false);
   ~MeshWorker();
-  MeshWorker(const MeshWorker&) = delete;
-  MeshWorker& operator=(const MeshWorker&) = delete;
 
   Device& device() { return *device_; }
   const Device& device() const { return *device_; }
 
-  /// The oldest event that was not taken.
-  std::optional<MeshEvent> poll();
-  /// The same, but waits for it. None where the worker has nothing to do. Gives up when `stop` is set.
+  /// `poll`, but waits for an event. None where the worker has nothing to do. Gives up when `stop` is set.
   std::optional<MeshEvent> wait(const std::atomic<bool>& stop);
 
   /// In lockstep: one more iteration may be told; `all`: all that follow.
@@ -145,9 +139,6 @@ class MeshWorker {
   bool busy() const;
   bool settled() const;  ///< all is done, and told
   bool halted() const;   ///< cancelled, or failed
-
-  /// Interrupts what it does and ends the thread; lent memory is not written any more.
-  void finish();
 
   StageTimers timers() const;
   std::size_t peak_bytes() const;
@@ -176,7 +167,6 @@ class MeshWorker {
   void show(const MeshProgress& progress, bool step);
   bool await_turn();
   void take_timers();
-  void tell(MeshEvent event);
 
   Session session_;
   std::unique_ptr<Device> device_;
@@ -188,14 +178,12 @@ class MeshWorker {
   std::shared_ptr<const ViewedVolume> viewed_;
   std::shared_ptr<const SurfaceMesh> mesh_;
 
-  mutable std::mutex mutex_;
-  std::condition_variable wake_, told_;
-  std::deque<MeshEvent> events_;
+  // Guarded by the mutex.
   Settings wanted_;
   MeshStage next_ = MeshStage::read;     ///< all before it are done
   MeshStage restart_ = MeshStage::done;  ///< where to begin when what is under way has been interrupted
   MeshStage doing_ = MeshStage::done;
-  bool at_work_ = false, ends_ = false, cancelled_ = false, failed_ = false;
+  bool at_work_ = false, cancelled_ = false, failed_ = false;
   bool fields_ = false;   ///< can be asked
   bool unshown_ = false;  ///< the particles have changed since they were shown
   int turns_ = 0;
@@ -208,8 +196,6 @@ class MeshWorker {
   StageTimers timers_;
   MeshProgress progress_;
   std::size_t peak_bytes_ = 0;
-  std::atomic<bool> interrupt_{false};
-  std::thread thread_;
 };
 
 }  // namespace nacre

@@ -9,23 +9,16 @@ for tool in xvfb-run xdotool; do
     exit 77
   }
 done
-export XDG_STATE_HOME program recording report picture
+here=$(dirname "${BASH_SOURCE[0]}")
+export XDG_STATE_HOME here program recording report picture
 XDG_STATE_HOME=$(mktemp -d)
 trap 'rm -rf "$XDG_STATE_HOME"' EXIT
 
 xvfb-run -a -n $((100 + $$ % 20000)) -s "-screen 0 640x480x24" bash -euo pipefail -c '
-  "$program" view --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet \
-    --save-recording "$recording" --report "$report" --image "$picture" &
-  viewer=$!
-  trap "kill $viewer 2>/dev/null || true" EXIT
-  window=
-  for try in {1..100}; do
-    window=$(xdotool search --name "^Nacre$" 2>/dev/null | head -1) && [[ -n $window ]] && break
-    sleep 0.1
-  done
-  [[ -n $window ]]
-  sleep 2  # for the first texture
-  xdotool windowfocus "$window" mousemove 540 240
+  source "$here/window.sh"
+  open_window --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet --save-recording "$recording" \
+    --report "$report" --image "$picture"
+  xdotool mousemove 540 240
   press() { xdotool "$@"; sleep 0.4; }
   press type e             # edges
   press type t             # light

@@ -10,21 +10,14 @@ for tool in xvfb-run xdotool ffmpeg; do
     exit 77
   }
 done
-export XDG_STATE_HOME=$folder/state
+export XDG_STATE_HOME=$folder/state here
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 xvfb-run -a -n $((100 + $$ % 20000)) -s "-screen 0 800x600x24" bash -euo pipefail -c '
   cd "$folder"
-  "$program" view --size 800x600 --set steps=8 --resolution 64 --set max_size=2 --quiet --save-recording done.json &
-  viewer=$!
-  trap "kill $viewer 2>/dev/null || true" EXIT
-  window=
-  for try in {1..100}; do
-    window=$(xdotool search --name "^Nacre$" 2>/dev/null | head -1) && [[ -n $window ]] && break
-    sleep 0.1
-  done
-  [[ -n $window ]]
-  sleep 1
-  xdotool windowfocus "$window" mousemove 600 300
+  source "$here/window.sh"
+  open_window --size 800x600 --set steps=8 --resolution 64 --set max_size=2 --quiet --save-recording done.json
+  xdotool mousemove 600 300
   actions=0
   does() { actions=$((actions + 1)); xdotool "$@"; sleep 0.5; }
   waits_for() {  # a file that is whole
