@@ -1,6 +1,8 @@
 // Nacre: what stands over a frame and belongs to the picture.
 #include "app/viewer/captions.hpp"
 
+#include <fmt/format.h>
+
 #include "engine/picture/legend.hpp"
 
 namespace nacre {
@@ -36,6 +38,18 @@ void Captions::draw_triad(const View& view, const std::string& background) {
     triad_.set_image(orientation_sheet(view.width, view.height, paper_of(background), right, up, forward));
   seen_ = wanted;
   triad_.draw(view);
+}
+
+std::string window_title(const Scene& scene, bool filming) {
+  const SceneProgress progress = scene.progress();
+  std::string words = filming ? "film - " : "";
+  if (!progress.stage.empty()) {
+    words += progress.stage;
+    if (progress.fraction >= 0) words += fmt::format(" {:.0f}%", 100 * progress.fraction);
+    words += " - ";
+  }
+  if (!scene.title().empty()) words += scene.title() + " - ";
+  return words + "Nacre";
 }
 
 }  // namespace nacre

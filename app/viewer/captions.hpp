@@ -38,6 +38,10 @@ class Captions {
   Seen seen_;
 };
 
+/// How far the work is and what is open, also for who looks at other windows meanwhile: "relax 40% - head.nrrd - Nacre",
+/// or with "film" before all that.
+std::string window_title(const Scene& scene, bool filming);
+
 /// The background behind a frame: `#rrggbb`; white without opacity for any other word, such as transparent.
 Rgba paper_of(const std::string& background);
 

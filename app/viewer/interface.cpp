@@ -19,7 +19,7 @@ Interface::Interface(Window* window) : window_(window) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // no file beside the user's data
   io.LogFilename = nullptr;
-  if (window_) ImGui_ImplGlfw_InitForOpenGL(window_->handle(), true);
+  if (window_) ImGui_ImplGlfw_InitForOpenGL(window_->handle(), false);
   ImGui_ImplOpenGL3_Init("#version 450 core");
 }
 
@@ -61,12 +61,24 @@ void Interface::dress(const Look& look) {
   size_ = size;
 }
 
-/// Dear ImGui sees which keys are down when a frame begins. One that came and went in a long frame is held for the next.
-void Interface::hold_keys() {
+/// In place of what the backend polls: a user may do more in a frame than can be polled at its end.
+void Interface::take_input() {
+  const InputFrame input = window_->next_input();
   ImGuiIO& io = ImGui::GetIO();
-  for (const int key : held_) io.KeysDown[key] = glfwGetKey(window_->handle(), key) == GLFW_PRESS;
-  held_ = window_->take_pressed();
-  for (const int key : held_) io.KeysDown[key] = true;
+  for (const auto& [key, down] : input.keys) io.KeysDown[key] = down;
+  const auto either = [&](int left, int right) { return io.KeysDown[left] || io.KeysDown[right]; };
+  io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+  io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+  io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+  io.KeySuper = either(GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER);
+  for (const auto& [button, down] : input.buttons)
+    if (button < int(buttons_.size())) buttons_[std::size_t(button)] = down;
+  for (std::size_t k = 0; k < buttons_.size(); ++k) io.MouseDown[k] = buttons_[k];
+  io.MousePos = ImVec2(float(input.x), float(input.y));
+  io.MouseWheelH += float(input.wheel_x);
+  io.MouseWheel += float(input.wheel_y);
+  for (const char32_t letter : input.text) io.AddInputCharacter(letter);
+  chords_ = input.chords;
 }
 
 void Interface::begin(int width, int height, double seconds, const Look& look) {
@@ -74,7 +86,7 @@ void Interface::begin(int width, int height, double seconds, const Look& look) {
   dress(look);
   if (window_) {
     ImGui_ImplGlfw_NewFrame();
-    hold_keys();
+    take_input();
   } else {
     ImGui::GetIO().DisplaySize = ImVec2(float(width), float(height));
     ImGui::GetIO().DeltaTime = float(std::max(seconds, 1e-4));

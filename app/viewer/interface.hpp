@@ -1,6 +1,7 @@
 // Nacre: Dear ImGui, in a window or without one. It is used in this folder only.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,15 +21,19 @@ class Interface {
   void begin(int width, int height, double seconds, const Look& look);
   void end();
 
+  /// Keys with ctrl, and Escape, that went down in this frame.
+  const std::vector<KeyPress>& chords() const { return chords_; }
+
   /// Is the user in the middle of something: pulling a slider, typing?
   static bool busy();
 
  private:
   void dress(const Look& look);
-  void hold_keys();
+  void take_input();
 
   Window* window_;
-  std::vector<int> held_;  ///< keys that were down for less than a frame
+  std::array<bool, 3> buttons_{};  ///< of the mouse, down
+  std::vector<KeyPress> chords_;
   std::string theme_;
   float size_ = 0;  ///< of the font, pixels
 };

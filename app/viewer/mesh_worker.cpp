@@ -154,7 +154,9 @@ std::size_t MeshWorker::peak_bytes() const {
 
 MeshProgress MeshWorker::progress() const {
   std::scoped_lock lock(mutex_);
-  return doing_ != MeshStage::done ? progress_ : MeshProgress{};
+  const bool more = next_ != MeshStage::done && !cancelled_ && !failed_;  // also between two stages
+  if (doing_ == MeshStage::done && !more) return {};
+  return progress_.stage.empty() ? MeshProgress{"start", -1, 0, 0, 0} : progress_;
 }
 
 /// What comes next. A slice waits for nothing but fields; a file waits for the mesh, unless there will be none.

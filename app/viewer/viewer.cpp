@@ -150,6 +150,10 @@ class Viewer {
     obey(wishes_);
     if (window_) window_->swap();
     tell_news();
+    if (window_) {
+      window_->set_title(window_title(*scene_, video_ != nullptr));
+      attempt([&] { keep_recording(); });
+    }
     if (!waits()) rest(begin);
   }
 
@@ -180,7 +184,7 @@ class Viewer {
                         video_ != nullptr,
                         width,
                         height,
-                        window_ ? window_->take_keys() : std::vector<KeyPress>()};
+                        interface_->chords()};
     wishes_ = ui_.draw(session_, *scene_, facts);
     undo_.note(session_, Interface::busy());
     interface_->end();
@@ -368,6 +372,16 @@ class Viewer {
                   fmt::format("use one of {}", fmt::join(formats, " ")));
   }
 
+  /// A crash or a power cut costs the last seconds of a recording. Long ones are written less often.
+  void keep_recording() {
+    const double begin = now();
+    if (!recorder_ || !options_.recorded || recorder_->events() == kept_events_ || begin < keep_after_) return;
+    kept_events_ = recorder_->events();
+    keep_after_ = begin + 1;
+    options_.recorded(recorder_->recording());
+    keep_after_ = now() + std::max(1.0, 50 * (now() - begin));
+  }
+
   void tell_recording() {
     if (recorder_ && options_.recorded) options_.recorded(recorder_->recording());
   }
@@ -390,6 +404,8 @@ class Viewer {
   Session session_, told_;
   std::optional<SessionPlayer> player_;
   std::optional<SessionRecorder> recorder_;
+  std::size_t kept_events_ = 0;       ///< of the recorder, written so far
+  double keep_after_ = 0;             ///< on the machine's clock
   std::unique_ptr<FrameSink> video_;  ///< begun in the menu
   std::filesystem::path film_;
   int fps_;                                        ///< of frames that wait, whatever becomes of the knob meanwhile

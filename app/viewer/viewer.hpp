@@ -24,9 +24,10 @@ struct ViewerOptions {
   bool live = false;     ///< offscreen: frames do not wait for compute, as in a window
   int frames = 0;        ///< ends after as many complete ones; 0: when the window is closed, or what is played ends
   bool picture = false;  ///< return the last frame
-  FrameSink* video = nullptr;                         ///< takes every frame; these wait for compute, in a window, too
-  std::function<void(const Session& done)> recorded;  ///< told at the end, also after a failure, what the user did
-  std::filesystem::path out;                          ///< where to write the result at the end; empty: nowhere
+  FrameSink* video = nullptr;  ///< takes every frame; these wait for compute, in a window, too
+  std::function<void(const Session& done)>
+      recorded;  ///< what the user did: told at the end, also after a failure, and now and then in a window
+  std::filesystem::path out;  ///< where to write the result at the end; empty: nowhere
   const std::atomic<bool>* stop = nullptr;
   std::function<Camera(const Settings& settings, const std::vector<Vec3d>& corners)> first_camera;
   std::function<void(const std::string& line)> say;  ///< a line for stderr

@@ -48,18 +48,34 @@ Window::Window(const std::string& title, int width, int height) {
   }
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
-  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int held) {
-    const bool ctrl = held & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER), escape = key == GLFW_KEY_ESCAPE;
-    if (action != GLFW_PRESS || key < 0) return;
-    auto* self = static_cast<Window*>(glfwGetWindowUserPointer(window));
-    self->pressed_.push_back(key);
-    if (!(ctrl || escape)) return;
-    self->keys_.push_back({escape ? 27 : key, ctrl, (held & GLFW_MOD_SHIFT) != 0});
-  });
+  listen();
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** names) {
     const auto* self = static_cast<const Window*>(glfwGetWindowUserPointer(window));
     if (self->on_drop) self->on_drop({names, names + count});
   });
+}
+
+void Window::listen() {
+  static const auto queue = [](GLFWwindow* window) -> InputQueue& {
+    return static_cast<Window*>(glfwGetWindowUserPointer(window))->input_;
+  };
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (action != GLFW_REPEAT && key >= 0) queue(window).add(KeyMoved{key, action == GLFW_PRESS});
+  });
+  glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned letter) { queue(window).add(TextTyped{letter}); });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* window, int button, int action, int) {
+    queue(window).add(ButtonMoved{button, action == GLFW_PRESS});
+  });
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) {
+    queue(window).add(MouseMoved{x, y});
+  });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* window, int entered) {
+    const bool pulling = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS ||
+                         glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS ||
+                         glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_MIDDLE) == GLFW_PRESS;
+    if (!entered && !pulling) queue(window).add(MouseMoved{mouse_outside, mouse_outside});
+  });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) { queue(window).add(WheelTurned{x, y}); });
 }
 
 Window::~Window() { glfwTerminate(); }
@@ -74,6 +90,12 @@ void Window::poll() {
     glfwPollEvents();
   else
     glfwWaitEventsTimeout(0.1);
+}
+
+void Window::set_title(const std::string& title) {
+  if (title == title_) return;  // the window manager is another process
+  title_ = title;
+  glfwSetWindowTitle(window_, title.c_str());
 }
 
 void Window::swap() { glfwSwapBuffers(window_); }

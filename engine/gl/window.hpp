@@ -6,20 +6,14 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "engine/gl/context.hpp"
+#include "engine/gl/input_queue.hpp"
 
 struct GLFWwindow;
 
 namespace nacre {
-
-/// A key that went down with others held, by the letter that is on it on an American keyboard; 27 is Escape.
-struct KeyPress {
-  int key = 0;
-  bool ctrl = false, shift = false;
-};
 
 /// One window by GLFW. Its context is current on the thread that made it, which must be the main thread.
 class Window : public Context {
@@ -35,23 +29,23 @@ class Window : public Context {
   /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on.
   void poll();
   void swap();
+  void set_title(const std::string& title);
 
   std::array<int, 2> pixels() const;  ///< of its framebuffer; (0, 0) while minimised
   float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI)
 
-  /// Keys with ctrl, and Escape, since the last call: every one, however long a frame takes.
-  std::vector<KeyPress> take_keys() { return std::exchange(keys_, {}); }
-
-  /// All keys that went down since the last call, by GLFW's numbers, also those that are up again.
-  std::vector<int> take_pressed() { return std::exchange(pressed_, {}); }
+  /// What the user did, as a frame shall see it; to be asked for once in each.
+  InputFrame next_input() { return input_.next_frame(); }
 
   /// Called in `poll` with the files that were dropped on the window.
   std::function<void(const std::vector<std::filesystem::path>& files)> on_drop;
 
  private:
+  void listen();
+
   GLFWwindow* window_ = nullptr;
-  std::vector<KeyPress> keys_;
-  std::vector<int> pressed_;
+  std::string title_;
+  InputQueue input_;
 };
 
 }  // namespace nacre

@@ -53,6 +53,8 @@ class SessionRecorder {
   /// From the start to what was noted last.
   Session recording() const;
 
+  std::size_t events() const { return events_.size(); }  ///< of frames that are over
+
  private:
   void close_frame();
   std::optional<Camera>& camera_of_opened();  ///< of what was opened last and waits for one

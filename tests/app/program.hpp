@@ -25,7 +25,7 @@ struct Outcome {
 };
 
 inline Outcome run(const fs::path& program, const Words& words) {
-  const ChildResult result = run_child(program, words, std::chrono::seconds(120));
+  const ChildResult result = run_child(program, words, std::chrono::seconds(480));
   const int status = result.timed_out ? -1 : result.signal != 0 ? 128 + result.signal : result.exit_status;
   return {status, result.output, result.errors};
 }

@@ -1,17 +1,45 @@
-# Nacre: a viewer in a window, for scripts that play its user; to be sourced.
+# Nacre: a viewer in a window, for scripts that play its user; to be sourced. They wait for what they see, not for times.
 
-# open_window WORDS...: starts $program with them and focuses its window; sets `viewer` to its process, which dies with
-# the script.
-open_window() {
-  local try window=
-  "$program" view "$@" &
-  viewer=$!
-  trap 'kill $viewer 2>/dev/null || true' EXIT
-  for try in {1..100}; do
-    window=$(xdotool search --name '^Nacre$' 2>/dev/null | head -1) && [[ -n $window ]] && break
-    sleep 0.1
+# on_display SCREEN TOOLS...: brings up an Xvfb with a screen of that size, which dies with the script; ends with 77 where
+# it or a tool is missing. The server picks its number itself: others may be starting.
+on_display() {
+  local screen=$1 tool number
+  shift
+  for tool in Xvfb "$@"; do
+    command -v "$tool" >/dev/null || {
+      echo "no $tool here" >&2
+      exit 77
+    }
   done
-  [[ -n $window ]] || return 1
-  sleep 2 # for the first texture
-  xdotool windowfocus "$window"
+  exec {numbers}< <(exec Xvfb -displayfd 1 -screen 0 "${screen}x24" 2>/dev/null)
+  display=$!
+  trap 'kill $display' EXIT
+  read -r number <&"$numbers"
+  export DISPLAY=:$number
+}
+
+# open_window PROGRAM WORDS...: starts it with them and focuses its window once that shows something; sets `viewer` to its
+# process, which dies with the script.
+open_window() {
+  "$1" view "${@:2}" &
+  viewer=$!
+  trap 'kill $viewer $display 2>/dev/null || true' EXIT
+  until_true "the window" titled ' - Nacre$'
+  xdotool windowfocus "$(xdotool search --name 'Nacre$' | head -1)"
+}
+
+# titled PATTERN: does the window's title match? It says how far the work is and what is open: "relax 40% - a.nrrd - Nacre".
+titled() { [[ -n $(xdotool search --name "$1" 2>/dev/null) ]]; }
+
+# until_true WHAT WORDS...: waits until the words succeed, two minutes at most; then says that WHAT did not come.
+until_true() {
+  local what=$1 end=$((SECONDS + 120))
+  shift
+  until "$@"; do
+    kill -0 "$viewer" 2>/dev/null && ((SECONDS < end)) || {
+      echo "$what did not come" >&2
+      return 1
+    }
+    sleep 0.2
+  done
 }
