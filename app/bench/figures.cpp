@@ -112,7 +112,7 @@ void add_octree(Figures& figures, const json& report) {
         bricks.y.push_back(figure(row, part.bricks, "ours"));
         source.y.push_back(figure(row, part.quantity, "source"));
       }
-      ours.name = sample + ", ours";
+      ours.name = sample + ", octree";
       bricks.name = sample + ", bricks";
       source.name = sample + ", source";
       source.dashed = true;

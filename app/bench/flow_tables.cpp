@@ -139,8 +139,8 @@ BenchTable bench_octree_flow(Bench& bench) {
       {}};
   add_small(bench, table);
   for (const char* sample : {"train", "aircraft", "delta-wing"}) {
-    const int coarsest = bench.small ? 128 : 512;
-    const int finest = bench.small ? 512 : std::string(sample) == "delta-wing" ? 8192 : 4096;
+    const int coarsest = bench.small ? 64 : 512;
+    const int finest = bench.small ? 256 : std::string(sample) == "delta-wing" ? 8192 : 4096;
     for (int resolution = coarsest; resolution <= finest; resolution *= 2) octree_row(bench, table, sample, resolution);
   }
   return table;
@@ -152,7 +152,7 @@ BenchTable bench_neighbour_index(Bench& bench) {
                    {"source: Quadro K6000; simulation of a train", "source's octree, radius 5"},
                    {}};
   add_small(bench, table);
-  for (int resolution = bench.small ? 128 : 512; resolution <= (bench.small ? 512 : 2048); resolution *= 2) {
+  for (int resolution = bench.small ? 64 : 512; resolution <= (bench.small ? 256 : 2048); resolution *= 2) {
     const FlowJob with = octree_job(bench, "train", resolution, true),
                   without = octree_job(bench, "train", resolution, false);
     flow_row(bench, table, fmt::format("train {}", resolution), {with, without}, [&](BenchRow& row) {

@@ -23,7 +23,7 @@ struct Case {
 };
 constexpr std::array<Case, 3> scalar_cases{
     {{"heart", "heart", 64}, {"lungs", "lungs", 64}, {"ribcage", "ribcage", 56}}};
-constexpr std::array<Case, 2> material_cases{{{"torso (pig)", "torso", 40}, {"head", "head", 44}}};
+constexpr std::array<Case, 2> material_cases{{{"torso (pig)", "torso", 28}, {"head", "head", 32}}};
 
 MeshJob job_of(const Bench& bench, const Case& c) {
   MeshJob job;

@@ -16,6 +16,7 @@ namespace nacre {
 namespace {
 
 constexpr double width = 760, height = 460;
+constexpr double letter = 6.6;                                    // width of one, of 11 points
 constexpr double left = 84, right = 540, top = 48, bottom = 392;  // of the plotting area; the legend stands beside it
 
 /// Told apart also by those who see few colours (Okabe and Ito), darkest first.
@@ -46,11 +47,11 @@ class Svg {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
     text_ += '\n';
   }
-  void begin(const std::string& title) {
+  void begin(const std::string& title, double page_height = height) {
     add(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" )"
         R"(font-family="DejaVu Sans, Helvetica, Arial, sans-serif" font-size="13">)",
-        width, height);
-    add(R"(<rect width="{}" height="{}" fill="#ffffff"/>)", width, height);
+        width, page_height);
+    add(R"(<rect width="{}" height="{}" fill="#ffffff"/>)", width, page_height);
     add(R"(<text x="{}" y="28" font-size="16" fill="#222222">{}</text>)", left, escaped(title));
   }
   void text(double x, double y, const char* anchor, const std::string& words) {
@@ -205,8 +206,10 @@ std::string svg_stacked_bars(const StackedBars& plot) {
     if (part.values.size() != n) throw Error("the part '" + part.name + "' has not one value for each bar");
     for (std::size_t i = 0; i < n; ++i) sum[i] += std::max(0.0, part.values[i]);
   }
+  std::size_t longest = 0;
+  for (const std::string& bar : plot.bars) longest = std::max(longest, bar.size());
   Svg svg;
-  svg.begin(plot.title);
+  svg.begin(plot.title, std::max(height, bottom + 30 + 0.87 * letter * double(longest)));  // names slope by 60 degrees
   const Axis y{0, 1, false, nice_ticks(0, 1, 5)};
   LinePlot frame;
   frame.y_label = plot.y_label;
@@ -227,9 +230,9 @@ std::string svg_stacked_bars(const StackedBars& plot) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     const double x = left + pitch * (double(i) + 0.5);
-    svg.add(R"x(<text transform="translate({:.1f} {:.1f}) rotate(-24)" text-anchor="end" font-size="11" )x"
+    svg.add(R"x(<text transform="translate({:.1f} {:.1f}) rotate(-60)" text-anchor="end" font-size="11" )x"
             R"x(fill="#222222">{}</text>)x",
-            x + 6, bottom + 16, escaped(plot.bars[i]));
+            x + 6, bottom + 14, escaped(plot.bars[i]));
   }
   return svg.end();
 }
