@@ -212,7 +212,8 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
   const RelatedView related = this->related();
   std::int64_t movers = solver_->movers(exec_, related, order);
   const TreeRule rule = tree_rule();
-  const PopulationRule population = population_rule(order);
+  PopulationRule population = population_rule(order);
+  if (parameters.particles == 0) population.target = movers;  // as many as the sizing field asked for
   const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
   const int last_control = iterations - 2 * every;
   bool controls = true, sorted = false;
@@ -228,7 +229,7 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
     if (controls && k > 0 && k % every == 0 && k <= last_control) {
       auto stage = exec_.stage("population");
       const IterationResult changed =
-          solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, k);
+          solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, movers, k);
       movers = solver_->movers(exec_, related, order);
       controls = changed.added + changed.deleted > 0;
       sorted = false;
