@@ -82,11 +82,24 @@ void check_interrupt(bool kept) {
   if (!kept && interrupt_flag()) throw Interrupted();
 }
 
+/// Thin structures everywhere (a head's cortex between skull and white matter) ask for small particles everywhere. Whoever
+/// did not expect that shall know before the long part begins.
+void say_how_many(const MeshOptions& options, const MeshInfo& info, const MeshParameters& parameters) {
+  constexpr double many = 3e6;
+  if (parameters.particles > 0 || info.expected_particles < many) return;
+  say(options.common,
+      fmt::format("about {:.1f} million particles, {:.2g} to {:.2g} voxels apart, as thin as the materials are; their "
+                  "number falls with the square of --min-size (now {:.2g})",
+                  info.expected_particles / 1e6, info.smallest_size, info.largest_size, parameters.min_size));
+}
+
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
                    const MeshVolume& volume, MeshPipeline& pipeline, Progress& bar) {
   MeshResult result;
   pipeline.load(volume);
   pipeline.build_fields();
+  bar.clear();
+  say_how_many(options, pipeline.info(), settings.mesh);
   try {
     pipeline.relax();
   } catch (const Interrupted&) {

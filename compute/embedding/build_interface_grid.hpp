@@ -164,9 +164,10 @@ struct EmbedInterface {
       const Vec3f r = p - at.p;
       const Vec3f along =
           j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
-      if (dot(along, along) < 4e-3f) break;
+      if (dot(along, along) < 2.5f * last_step() * last_step()) break;
       JunctionPoint better;
-      if (!project(field, j, at.p + along, 4, better, last_step) || dot(better.p - p, better.p - p) >= dot(r, r)) break;
+      if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
+        break;
       at = better;
     }
     const Vec3f o = at.p * cells_per_voxel - cell;
@@ -176,14 +177,16 @@ struct EmbedInterface {
   }
 
  private:
-  static constexpr float last_step = 0.04f;
+  /// Steps end here: what is left then is less than WENO makes of such cells.
+  NACRE_HD float last_step() const { return 0.04f / std::fmin(cells_per_voxel, 1.0f); }
 
   /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
   /// also for a surface farther away than the stencils around its points reach, two cells along each axis.
   NACRE_HD bool first_guess(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
     float away = 0;
     const std::uint32_t q = j.order() == 2 ? distance.closest(p, away) : none;
-    if (q == none || !(distance.point[q].surface == j)) return project(field, j, p, 5 / cells_per_voxel, at, last_step);
+    if (q == none || !(distance.point[q].surface == j))
+      return project(field, j, p, 5 / cells_per_voxel, at, last_step());
     const Float4 n = distance.point[q].normal;
     const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
     if (away > reach) return false;
@@ -191,7 +194,8 @@ struct EmbedInterface {
     Vec3f along = r - normal * dot(r, normal);
     const float most = 2, size = length(along);
     if (size > most) along *= most / size;
-    return project(field, j, on + along, 3, at, last_step) || project(field, j, p, 5 / cells_per_voxel, at, last_step);
+    return project(field, j, on + along, 3, at, last_step()) ||
+           project(field, j, p, 5 / cells_per_voxel, at, last_step());
   }
 };
 

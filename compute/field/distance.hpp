@@ -195,16 +195,47 @@ struct FindInterfacePoints {
   }
 };
 
+/// Blocks that can be within reach of an interface: those with a list of materials, and `around` blocks about them.
+struct MarkNearBlocks {
+  MaterialBricksView field;
+  int around;
+  std::uint8_t* near;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Int3 n = field.blocks, b{int(i % n.x), int(i / n.x % n.y), int(i / n.x / n.y)};
+    const Int3 low = max(b - Int3(around), Int3(0)), high = min(b + Int3(around), n - Int3(1));
+    near[i] = 0;
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+          const std::int64_t k = field.block_number(x, y, z);
+          if (field.block_start[k] != field.block_start[k + 1]) near[i] = 1;
+        }
+  }
+};
+
 /// One round of jump flooding (Rong & Tan 2006): look `jump` cells away for a closer point.
 struct JumpFlood {
+  MaterialBricksView field;
+  const std::uint8_t* near;  ///< per block
   DistanceFieldView from;
   int jump;
   std::uint32_t* to;
+
+  NACRE_HD bool is_near(const Vec3f& p) const {
+    const Vec3f u = p * field.cells_per_unit;
+    const Int3 b = min(Int3(int(u.x), int(u.y), int(u.z)), field.voxels() - Int3(1));
+    return near[field.block_number(b.x / block_size, b.y / block_size, b.z / block_size)] != 0;
+  }
 
   NACRE_HD void operator()(std::int64_t i) const {
     const Int3 v = from.lattice.cell(i);
     const Vec3f p = from.lattice.centre(v);
     std::uint32_t best = none;
+    if (!is_near(p)) {
+      to[i] = none;
+      return;
+    }
     float least = from.reach * from.reach;
     for (int dz = -jump; dz <= jump; dz += jump)
       for (int dy = -jump; dy <= jump; dy += jump)
@@ -263,11 +294,15 @@ DistanceField distance_field(Executor<Backend>& exec, const MaterialBricks& b, f
   exec.for_each(n, detail::FindInterfacePoints{boundary, other.data(), d.nearest.data(), d.point.data()});
   int jump = 1;
   while (2 * jump * std::min({d.lattice.spacing.x, d.lattice.spacing.y, d.lattice.spacing.z}) < reach) jump *= 2;
+  // A list says what is within 4 voxels of its block, and an interface point lies up to 2.5 from its boundary voxel.
+  const int around = std::max(0, int(std::ceil((reach + 3.5f - 4) / block_size)));
+  Array<std::uint8_t> near = arena.temporary<std::uint8_t>(b.block_count());
+  exec.for_each(b.block_count(), detail::MarkNearBlocks{b.view(), around, near.data()});
   std::uint32_t *from = d.nearest.data(), *to = other.data();
   const auto flood = [&](int distance) {
     DistanceFieldView view = d.view();
     view.nearest = from;
-    exec.for_each(n, detail::JumpFlood{view, distance, to});
+    exec.for_each(n, detail::JumpFlood{b.view(), near.data(), view, distance, to});
     std::swap(from, to);
   };
   for (; jump >= 1; jump /= 2) flood(jump);

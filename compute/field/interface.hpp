@@ -85,7 +85,10 @@ NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& ju
     if (!field.inside(at.p, 2.5f)) return false;
     const CubicStencil stencil(field, at.p);
     FieldSample f[4];
-    for (int m = 0; m < count; ++m) f[m] = stencil.sample(field, junction.material(m));
+    if (count == 2)
+      f[0] = stencil.difference(field, junction.material(0), junction.material(1));  // f[1] is zero
+    else
+      for (int m = 0; m < count; ++m) f[m] = stencil.sample(field, junction.material(m));
     Vec3f step;
     if (!detail::junction_step(f, count, step, at)) return false;
     const float size = length(step);

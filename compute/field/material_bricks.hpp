@@ -79,20 +79,14 @@ class CubicStencil {
       : CubicStencil(field, p * field.cells_per_unit - Vec3f(0.5f), 0) {}
 
   NACRE_HD FieldSample sample(const MaterialBricksView& field, std::uint32_t material) const {
-    Rows rows(*this, field, material);
-    Lanes v = lanes(0, 0, 0), dy = v, dz = v;
-    for (int c = 0; c < 4; ++c) {
-      Lanes line = lanes(0, 0, 0), slope = line;
-      for (int b = 0; b < 4; ++b) {
-        const Lanes r = rows(b, c);
-        line = line + r * wy_[b];
-        slope = slope + r * sy_[b];
-      }
-      v = v + line * wz_[c];
-      dy = dy + slope * wz_[c];
-      dz = dz + line * sz_[c];
-    }
-    return {sum(v * x_.value), Vec3f(sum(v * x_.slope), sum(dy * x_.value), sum(dz * x_.value)) * field.cells_per_unit};
+    const Rows rows(*this, field, material);
+    return sample_rows(field, [&](int b, int c) { return rows(b, c); });
+  }
+
+  /// f_a - f_b, for little more than one of them.
+  NACRE_HD FieldSample difference(const MaterialBricksView& field, std::uint32_t a, std::uint32_t b) const {
+    const Rows first(*this, field, a), second(*this, field, b);
+    return sample_rows(field, [&](int y, int z) { return first(y, z) - second(y, z); });
   }
 
   NACRE_HD float value(const MaterialBricksView& field, std::uint32_t material) const {
@@ -130,6 +124,23 @@ class CubicStencil {
   }
 
  private:
+  template <class Row>
+  NACRE_HD_INLINE FieldSample sample_rows(const MaterialBricksView& field, const Row& row) const {
+    Lanes v = lanes(0, 0, 0), dy = v, dz = v;
+    for (int c = 0; c < 4; ++c) {
+      Lanes line = lanes(0, 0, 0), slope = line;
+      for (int b = 0; b < 4; ++b) {
+        const Lanes r = row(b, c);
+        line = line + r * wy_[b];
+        slope = slope + r * sy_[b];
+      }
+      v = v + line * wz_[c];
+      dy = dy + slope * wz_[c];
+      dz = dz + line * sz_[c];
+    }
+    return {sum(v * x_.value), Vec3f(sum(v * x_.slope), sum(dy * x_.value), sum(dz * x_.value)) * field.cells_per_unit};
+  }
+
   NACRE_HD CubicStencil(const MaterialBricksView& field, const Vec3f& u, int)
       : first_{int(std::floor(u.x)) - 1, int(std::floor(u.y)) - 1, int(std::floor(u.z)) - 1},
         x_(field.kernel, u.x - float(first_.x + 1)) {

@@ -37,8 +37,9 @@ NACRE_HD_INLINE PairEnergy cotangent_energy(float d) {
 /// Energy of a particle among the six neighbours of a hexagonal lattice with spacing h: 6 E(1/sqrt 3) = 0.7108 (the 3.462
 /// of sec. 3.1.3 is six scaled distances; see the source notes).
 inline constexpr float hexagonal_energy = 0.7108f;
-/// ... among the two neighbours of a row with the scaled distance 1/2: 2 E(1/2) = 2 - pi/2.
-inline constexpr float row_energy = 0.42920f;
+/// ... among the two neighbours of a row with spacing h, the rim of such a lattice: 2 E(1/sqrt 3). (At a scaled distance of
+/// 1/2, which would be the next round number, the rim's edges are an eighth too short for the triangles on them.)
+inline constexpr float row_energy = hexagonal_energy / 3;
 
 /// Distance, in h, of the particles of a hexagonal lattice (`row`: of a row) in which each has this energy.
 inline double lattice_spacing(double energy, bool row = false) {
@@ -59,11 +60,13 @@ inline double lattice_spacing(double energy, bool row = false) {
   return 0.5 * (low + high);
 }
 
-/// How much two particles of one surface concern each other: fully where their normals agree, not at all from a right angle
-/// on, so that two sheets close together do not push each other apart. Those nearer than a third of h (scaled distance d)
-/// are on one sheet, however much it bends there: the sizing field keeps sheets farther apart.
+/// How much two particles of one surface concern each other: not at all where their normals are 120 degrees apart or more, so
+/// that two sheets close together (whose normals are opposite: one interface between) do not push each other apart. Up to a
+/// right angle fully: were it less where a sheet bends, particles there would seem to have room for more. Those nearer than a
+/// third of h (scaled distance d) are on one sheet, however much it bends there: the sizing field keeps sheets farther apart.
 NACRE_HD_INLINE float normal_weight(float cosine, float d) {
-  const float agree = cosine > 0 ? (cosine < 1 ? cosine : 1.0f) : 0.0f;
+  const float bend = 1 + 2 * cosine;
+  const float agree = bend > 0 ? (bend < 1 ? bend : 1.0f) : 0.0f;
   const float close = 2 - d * 5.7735f;  // 1 at 0.3 h, 0 at 0.6 h
   return close > agree ? (close < 1 ? close : 1.0f) : agree;
 }

@@ -29,7 +29,10 @@ struct PopulationRule {
   bool by_density = true;                         ///< false: the original program's rule (see population_fate)
   float certain_above = 4;                        ///< deleted whatever chance says (a share, too)
   bool may_add = true;
+  std::int64_t target = 0;  ///< tree: how many there shall be, within `slack`; 0: as the energies have it
   std::uint32_t seed = 1;
+
+  static constexpr double slack = 0.05;
 };
 
 /// What an iteration did.
@@ -38,7 +41,12 @@ struct IterationResult {
   std::int64_t added = 0, deleted = 0;
 };
 
-/// The force on a particle at p from one at q: E, and dE/dp through the scaled distance |p - q| / (support min(h_p, h_q))
+/// The size that scales the distance of two particles in the tree solver: the mean. With the smaller of the two, as Eq. 3.2
+/// has it, a particle's neighbours stand at its own distance where h grows and closer where it falls: triangles are squeezed
+/// along the slope of h.
+NACRE_HD_INLINE float pair_size(float h_p, float h_q) { return 0.5f * (h_p + h_q); }
+
+/// The force on a particle at p from one at q: E, and dE/dp through the scaled distance |p - q| / (support pair_size)
 /// (Eq. 3.2, 3.3 with the chain factor that is missing there).
 struct PairForce {
   float energy;
@@ -47,7 +55,7 @@ struct PairForce {
 };
 
 NACRE_HD_INLINE PairForce pair_force(const Vec3f& p, float h_p, const Vec3f& q, float h_q) {
-  const float unit = 1 / (support * (h_p < h_q ? h_p : h_q));
+  const float unit = 1 / (support * pair_size(h_p, h_q));
   const Vec3f r = p - q;
   const float distance = std::sqrt(dot(r, r));
   const PairEnergy e = cotangent_energy(distance * unit);

@@ -17,9 +17,9 @@ enum class Fate { deleted, kept, split, spread };
 /// Number of particles around one, over the ideal number, by its energy: that of the hexagonal lattice (on curves: the
 /// row) with this energy, fitted to 1% between 0.6 and 3. At least 1/2.
 NACRE_HD inline float local_density(float energy, float ideal_energy, int order) {
-  const float least = order == 1 ? -3.49f : -3.11f;  // the minimum of the fit
+  const float least = order == 1 ? -2.26f : -3.11f;  // the minimum of the fit
   const float x = std::log(energy / ideal_energy), l = x > least ? x : least;
-  const float density = std::exp(order == 1 ? l * (0.2828f + 0.0405f * l) : l * (0.4220f + 0.0679f * l));
+  const float density = std::exp(order == 1 ? l * (0.2147f + 0.0476f * l) : l * (0.4220f + 0.0679f * l));
   return density > 0.5f ? density : 0.5f;
 }
 

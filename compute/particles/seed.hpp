@@ -15,7 +15,7 @@ namespace detail {
 
 /// Cells along an interface, each with its share of particles. By the coarea formula a cell of edge c whose centre is d < 1
 /// cells away stands for c^2 (1 - d) of a surface's area, or 3 c (1 - d) / pi of a curve's length. Particles stand
-/// 2 / (sqrt 3 h^2) to an area, 1 / (0.866 h) to a length.
+/// 2 / (sqrt 3 h^2) to an area, 1 / h to a length.
 struct SeedCells {
   InterfaceGridView grid;
   const std::uint8_t* order;  ///< per interface
@@ -31,8 +31,7 @@ struct SeedCells {
     const float cell = 1 / grid.cells_per_voxel;
     const float away = length(r);
     if (!(away < 1)) return 0;
-    return wanted == 2 ? cell * cell * (1 - away) * 1.1547005f / (d.w * d.w)
-                       : 3 * cell * (1 - away) / (pi * 0.8660254f * d.w);
+    return wanted == 2 ? cell * cell * (1 - away) * 1.1547005f / (d.w * d.w) : 3 * cell * (1 - away) / (pi * d.w);
   }
 
   NACRE_HD Int3 cell(std::int64_t i) const {

@@ -43,7 +43,8 @@ struct TreeView {
   const Float4* direction = nullptr;  ///< sorted
   float theta = 0;
 
-  /// Walks from `root` to all that is within `reach` of the box: calls particles(first, last) for leaves, and far(node)
+  /// Walks from `root` to all that may be felt in the box by particles that reach `reach` in their own size (how far two of
+  /// them feel each other is the mean of their reaches): calls particles(first, last) for leaves, and far(node)
   /// for nodes that count as one particle: smaller than theta times their distance from the box (their own, not that of
   /// the particle's node as sec. 4.1 has it). Nodes that the box may lie in are always opened.
   template <class Particles, class Far>
@@ -55,7 +56,7 @@ struct TreeView {
     while (depth > 0) {
       const TreeNode& n = node[stack[--depth]];
       if (n.first == n.last) continue;
-      const float limit = std::fmin(reach, support * n.largest);
+      const float limit = 0.5f * (reach + support * n.largest);
       const float gap2 = box_distance2(n.low, n.high, low, high);
       if (gap2 > limit * limit) continue;
       if (n.children == 0) {

@@ -38,8 +38,7 @@ NACRE_HD_INLINE void add_forces(const Candidates& c, int count, const Vec3f& p, 
 #endif
   for (int k = 0; k < count; ++k) {
     const float dx = p.x - c.x[k], dy = p.y - c.y[k], dz = p.z - c.z[k];
-    const float smaller = h < c.h[k] ? h : c.h[k];
-    const float unit = 1 / (support * smaller);
+    const float unit = 1 / (support * pair_size(h, c.h[k]));
     const float square = dx * dx + dy * dy + dz * dz;
     const float distance = std::sqrt(square);
     const PairEnergy e = cotangent_energy(distance * unit);
@@ -147,7 +146,7 @@ NACRE_HD inline ForceSum force_at(const TreeView& tree, const RelatedView& relat
       const PairForce f = pair_force(p, h, {q.x, q.y, q.z}, q.w);
       const float w = mass * (surface && root == group
                                   ? normal_weight(dot(n, Vec3f(d.x, d.y, d.z)),
-                                                  length(p - Vec3f(q.x, q.y, q.z)) / (support * std::fmin(h, q.w)))
+                                                  length(p - Vec3f(q.x, q.y, q.z)) / (support * pair_size(h, q.w)))
                                   : 1.0f);
       sum.energy += w * f.energy;
       sum.gradient += f.gradient * w;

@@ -95,13 +95,15 @@ struct MoveParticle {
 };
 
 /// Decides who is to be split or deleted (sec. 3.1.3): a random share of the deviation from the ideal energy must pass the
-/// threshold. A split puts the new particle where the force points, into the gap.
+/// threshold. Where the number of all is far from its target, chance takes more on that side of the ideal, as many as are
+/// missing or too many. A split puts the new particle where the force points, into the gap.
 struct JudgeParticle {
   TreeView tree;
   RelatedView related;
   EmbeddedGround ground;
   PopulationRule rule;
   int order;
+  float demand;  ///< share of the particles to be added (above 0) or deleted for the target's sake
   std::uint32_t round;
   const std::uint32_t* interface;
   const Float4* gradient;
@@ -118,15 +120,19 @@ struct JudgeParticle {
     const Float4 at = tree.place[i], d = tree.direction[i];
     const float ideal = rule.ideal_energy;
     const float bias = uniform_random(rule.seed, std::uint32_t(i), round) * (energy[i] - ideal) / ideal;
+    const float chance = uniform_random(rule.seed ^ 0x9e3779b9u, std::uint32_t(i), round);
+    const bool less = energy[i] > ideal && chance < -demand, more = energy[i] < ideal && chance < demand;
     const bool few = tree.node[group].mass() <= 24;  // an island needs them all
-    if (bias > rule.delete_above - 1 || energy[i] > rule.certain_above * ideal)
+    if (less || bias > rule.delete_above - 1 || energy[i] > rule.certain_above * ideal)
       deletion[i] = few ? 0 : energy[i];
-    else if (rule.may_add && bias < rule.add_below - 1)
-      split(i, group, at, d);
+    else if (rule.may_add && (more || bias < rule.add_below - 1))
+      split(i, group, at, d, more ? 4.0f : order == 1 ? 2.5f : 1.6f);
   }
 
  private:
-  NACRE_HD void split(std::int64_t i, std::uint32_t group, const Float4& at, const Float4& d) const {
+  /// `crowded`: the most energy that the new particle may have where it is put, in units of the ideal. In a gap of 1.6 h on a
+  /// curve it has 2.5 of it; among particles that are evenly a little too far apart there is no place with less than that.
+  NACRE_HD void split(std::int64_t i, std::uint32_t group, const Float4& at, const Float4& d, float crowded) const {
     const Vec3f n(d.x, d.y, d.z), p(at.x, at.y, at.z);
     Vec3f g(gradient[i].x, gradient[i].y, gradient[i].z);
     g = order == 2 ? g - n * dot(n, g) : n * dot(n, g);
@@ -143,7 +149,7 @@ struct JudgeParticle {
     if (dot(r, r) < 0.16f * at.w * at.w) return;
     // Only where there is room: its energy there must not be that of a crowd.
     const ForceSum there = force_at(tree, related, group, on.p, on.h, order == 2 ? on.direction : Vec3f(), none);
-    if (there.energy > 1.6f * rule.ideal_energy) return;
+    if (there.energy > crowded * rule.ideal_energy) return;
     child[i] = {on.p.x, on.p.y, on.p.z, on.h};
     child_direction[i] = {on.direction.x, on.direction.y, on.direction.z, there.energy};
   }
@@ -326,18 +332,22 @@ class TreeSolver {
     tree_.summarise(exec, set);
   }
 
-  /// Splits and deletes by the energies of the last `forces`. The tree is out of date after it.
+  /// Splits and deletes by the energies of the last `forces`; `movers`: particles of this order. The tree is out of date
+  /// after it.
   template <class Backend>
   IterationResult control(Executor<Backend>& exec, const EmbeddedGround& ground, const RelatedView& related, int order,
-                          float theta, const PopulationRule& rule, int round) {
+                          float theta, const PopulationRule& rule, std::int64_t movers, int round) {
     ParticleSet &from = set_[0], &to = set_[1];
     const std::int64_t n = from.count;
+    const double missing =
+        rule.target > 0 ? double(rule.target - movers) / double(std::max<std::int64_t>(movers, 1)) : 0;
+    const float demand = std::fabs(missing) > PopulationRule::slack ? float(missing) : 0.0f;
     Arena::Scope scope(exec.arena());
     Arena& arena = exec.arena();
     Array<Float4> child = arena.temporary<Float4>(n), child_direction = arena.temporary<Float4>(n);
     Array<float> deletion = arena.temporary<float>(n);
     Array<std::uint32_t> copies = arena.temporary<std::uint32_t>(n), start = arena.temporary<std::uint32_t>(n);
-    exec.for_each(n, detail::JudgeParticle{view(theta), related, ground, rule, order, std::uint32_t(round),
+    exec.for_each(n, detail::JudgeParticle{view(theta), related, ground, rule, order, demand, std::uint32_t(round),
                                            from.interface.data(), gradient_.data(), energy_.data(), child.data(),
                                            child_direction.data(), deletion.data()});
     exec.for_each(n, detail::SettleConflicts{view(0), related, order, from.interface.data(), child.data(),

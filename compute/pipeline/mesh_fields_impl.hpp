@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compute/field/boundary_area.hpp"
 #include "compute/field/tighten.hpp"
 #include "compute/particles/seed.hpp"
 #include "compute/pipeline/mesh_pipeline_impl.hpp"
@@ -37,6 +38,7 @@ void MeshPipelineOf<Backend>::load(const MeshVolume& volume) {
     for (const float v : volume.values.at(0)) scale = std::max(scale, std::fabs(v));
     fill_scalar(exec_, bricks_, volume.values[0], volume.levels, scale > 0 ? scale : 1);
   }
+  least_area_ = least_boundary_area(exec_, bricks_);
   info_.blocks = bricks_.blocks;
   mark_[0] = arena.mark();
   kind_ = volume.kind;
@@ -59,6 +61,14 @@ FieldRecipe MeshPipelineOf<Backend>::field_recipe() const {
   return recipe;
 }
 
+/// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels tell: a plane of
+/// particles max_size apart is the least that there can be. What the fields say is looked at again in `make_solver`.
+template <class Backend>
+void MeshPipelineOf<Backend>::require_room() const {
+  const double h = std::max(parameters.min_size, parameters.max_size);
+  if (parameters.particles == 0) require_room_for(least_area_ * 1.1547 / (h * h), "the boundaries ask for at least ");
+}
+
 template <class Backend>
 bool MeshPipelineOf<Backend>::build_fields() {
   if (!kind_) throw Error("no volume loaded");
@@ -66,9 +76,11 @@ bool MeshPipelineOf<Backend>::build_fields() {
   built_ = std::min(built_, recipe_.alike(wanted));
   if (built_ == field_stages) return false;
   drop_particles();
+  Arena& arena = exec_.arena();
+  arena.rewind(mark_[built_]);
+  require_room();
   recipe_ = wanted;
   bricks_.kernel = recipe_.kernel;
-  Arena& arena = exec_.arena();
   while (built_ < field_stages) {  // a stage that is interrupted is not counted, and begins anew
     arena.rewind(mark_[built_]);
     build_stage(FieldStage(built_));

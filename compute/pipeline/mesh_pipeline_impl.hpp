@@ -61,9 +61,11 @@ class MeshPipelineOf : public MeshPipeline {
     relaxed_.reset();
   }
   FieldRecipe field_recipe() const;
+  void require_room() const;
   void build_stage(FieldStage which);
   void relate_interfaces();
   void describe_fields();
+  double require_room_for(double particles, const std::string& why) const;
   void make_solver();
   void add_points();
   void seed_order(int order);
@@ -95,6 +97,7 @@ class MeshPipelineOf : public MeshPipeline {
   MeshInfo info_;
   std::optional<MeshVolume::Kind> kind_;  ///< of the volume; none: none is loaded
   MaterialBricks bricks_;
+  double least_area_ = 0;  ///< of all boundaries, squares of the smallest spacing
   DistanceField distance_;
   SizingField size_;
   InterfaceGrid grid_;

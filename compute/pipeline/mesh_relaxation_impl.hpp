@@ -40,21 +40,29 @@ PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
   return rule;
 }
 
+/// How many particles the solver shall have room for. Throws Error where the memory is too small for that; `why` goes
+/// before their number.
+template <class Backend>
+double MeshPipelineOf<Backend>::require_room_for(double particles, const std::string& why) const {
+  const std::size_t free = const_cast<Executor<Backend>&>(exec_).arena().free_bytes();
+  // Crowded places relax to fewer, holes fill: half as many again has always been enough.
+  const double capacity = 1.6 * particles + 20000;
+  const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);
+  if (capacity > 4e9 || bytes > double(free))
+    throw Error("too many particles for the memory",
+                why + std::to_string(std::int64_t(particles)) + ", which take " +
+                    std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " + std::to_string(free >> 20) +
+                    " MiB are free",
+                "raise --max-size and --min-size, or --epsilon");
+  return capacity;
+}
+
 template <class Backend>
 void MeshPipelineOf<Backend>::make_solver() {
-  Arena& arena = exec_.arena();
   drop_particles();
-  arena.rewind(mark_[field_stages]);
-  const double wanted = parameters.particles > 0 ? parameters.particles : info_.expected_particles;
-  // Crowded places relax to fewer, holes fill: half as many again has always been enough.
-  const double capacity = 1.6 * wanted + 20000;
-  const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);
-  if (capacity > 4e9 || bytes > double(arena.free_bytes()))
-    throw Error("too many particles for the memory",
-                "the sizing field asks for about " + std::to_string(std::int64_t(wanted)) + ", which take " +
-                    std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " +
-                    std::to_string(arena.free_bytes() >> 20) + " MiB are free",
-                "raise --max-size and --min-size, or --epsilon");
+  exec_.arena().rewind(mark_[field_stages]);
+  const double capacity = require_room_for(parameters.particles > 0 ? parameters.particles : info_.expected_particles,
+                                           "the sizing field asks for about ");
   solver_ = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
                                          float(frame_.extent()));
   solver_->particles().count = 0;
@@ -204,7 +212,8 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
   const RelatedView related = this->related();
   std::int64_t movers = solver_->movers(exec_, related, order);
   const TreeRule rule = tree_rule();
-  const PopulationRule population = population_rule(order);
+  PopulationRule population = population_rule(order);
+  if (parameters.particles == 0) population.target = movers;  // as many as the sizing field asked for
   const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
   const int last_control = iterations - 2 * every;
   bool controls = true, sorted = false;
@@ -220,7 +229,7 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
     if (controls && k > 0 && k % every == 0 && k <= last_control) {
       auto stage = exec_.stage("population");
       const IterationResult changed =
-          solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, k);
+          solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, movers, k);
       movers = solver_->movers(exec_, related, order);
       controls = changed.added + changed.deleted > 0;
       sorted = false;

@@ -79,9 +79,9 @@ struct Stopped {
 
 Stopped interrupt(const Words& words, double seconds) {
   const auto before = Clock::now();
-  const Outcome result =
-      run("/usr/bin/timeout",
-          Words{"--preserve-status", "-s", "INT", "-k", "30", std::to_string(seconds), NACRE_PROGRAM} + words);
+  const Outcome result = run("/usr/bin/timeout", Words{"--foreground", "--preserve-status", "-s", "INT", "-k", "30",
+                                                       std::to_string(seconds), NACRE_PROGRAM} +
+                                                     words);
   return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
 }
 

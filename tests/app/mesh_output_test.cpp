@@ -133,9 +133,9 @@ using Clock = std::chrono::steady_clock;
 /// What the program does when Ctrl-C comes after `seconds`, and how long it takes from there.
 std::pair<Outcome, double> interrupt(const Words& words, double seconds) {
   const auto before = Clock::now();
-  const Outcome result =
-      run("/usr/bin/timeout",
-          Words{"--preserve-status", "-s", "INT", "-k", "60", std::to_string(seconds), NACRE_PROGRAM} + words);
+  const Outcome result = run("/usr/bin/timeout", Words{"--foreground", "--preserve-status", "-s", "INT", "-k", "60",
+                                                       std::to_string(seconds), NACRE_PROGRAM} +
+                                                     words);
   return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
 }
 

@@ -39,9 +39,9 @@ TEST(CotangentEnergy, EndsAtOne) {
 
 TEST(CotangentEnergy, TheIdealIsAHexagonalLatticeWithSpacingH) {
   EXPECT_NEAR(6 * energy(1 / std::sqrt(3.0)), hexagonal_energy, 1e-4);
-  EXPECT_NEAR(2 * energy(0.5), row_energy, 1e-5);
+  EXPECT_NEAR(2 * energy(1 / std::sqrt(3.0)), row_energy, 1e-4);
   EXPECT_NEAR(lattice_spacing(hexagonal_energy), 1, 1e-3);
-  EXPECT_NEAR(lattice_spacing(row_energy, true), 0.5 * support, 1e-3);
+  EXPECT_NEAR(lattice_spacing(row_energy, true), 1, 1e-3);
   // The source's figure is six distances, and as an energy asks for 2.3 times the particles.
   EXPECT_NEAR(6 / std::sqrt(3.0), 3.462, 3e-3);
   EXPECT_NEAR(lattice_spacing(3.462), 0.657, 1e-3);
@@ -51,8 +51,9 @@ TEST(NormalWeight, FallsFromOneToZero) {
   for (const float d : {0.35f, 0.6f, 1.0f}) {
     EXPECT_EQ(normal_weight(1, d), 1);
     EXPECT_EQ(normal_weight(1.0001f, d), 1);
-    EXPECT_EQ(normal_weight(0.5f, d), 0.5f);
-    EXPECT_EQ(normal_weight(0, d), 0);
+    EXPECT_EQ(normal_weight(0, d), 1);
+    EXPECT_EQ(normal_weight(-0.25f, d), 0.5f);
+    EXPECT_EQ(normal_weight(-0.5f, d), 0);
     EXPECT_EQ(normal_weight(-1, d), 0);
   }
 }
@@ -68,7 +69,7 @@ TEST(PairForce, IsTheSlopeOfTheEnergy) {  // with the chain factor that Eq. 3.3 
     for (const float h_q : {0.7f, 1.0f})
       for (const Vec3f& q : {Vec3f(0, 0, 0), Vec3f(0.5f, 0.6f, 0.1f), Vec3f(-0.3f, 0.2f, 0)}) {
         const PairForce f = pair_force(p, h_p, q, h_q);
-        const double unit = 1 / (2 * std::cos(M_PI / 6) * std::min(h_p, h_q));
+        const double unit = 1 / (2 * std::cos(M_PI / 6) * (h_p + h_q) / 2);
         const auto at = [&](const Vec3d& x) {
           const double d = length(x - Vec3d(q)) * unit;
           return d < 1 ? energy(d) : 0;
@@ -143,7 +144,7 @@ TEST(PairSums, AreThoseOfTheFormula) {
     for (int k = 0; k < count; ++k) {
       const Vec3f r = Vec3f(crowd.list.x()[k], crowd.list.y()[k], crowd.list.z()[k]) - at.p;
       const float weight = dot(at.direction, Vec3f(crowd.list.nx()[k], crowd.list.ny()[k], crowd.list.nz()[k]));
-      if (length(r) < support * std::min(at.h, crowd.list.h()[k]) && (weight > 0 || crowd.list.always()[k] > 0))
+      if (length(r) < support * std::min(at.h, crowd.list.h()[k]) && (weight > -0.5f || crowd.list.always()[k] > 0))
         ++neighbours;
     }
     EXPECT_EQ(s.neighbours, float(neighbours));
@@ -158,9 +159,9 @@ TEST(PairSums, AgreeWithPairForce) {
   for (int k = 0; k < 40; ++k) {
     const NearList& l = crowd.list;
     const Vec3f q(l.x()[k], l.y()[k], l.z()[k]);
-    const float d = length(at.p - q) / (support * std::min(at.h, l.h()[k]));
+    const float h = std::min(at.h, l.h()[k]), d = length(at.p - q) / (support * h);  // Eq. 3.2; the tree takes the mean
     const float w = l.always()[k] > 0 ? 1 : normal_weight(l.nz()[k], d);
-    gradient += pair_force(at.p, at.h, q, l.h()[k]).gradient * w;
+    gradient += pair_force(at.p, h, q, h).gradient * w;
   }
   EXPECT_LT(length(pair_sums(lane, crowd.list, at).gradient - gradient), 1e-4f * length(gradient));
 }

@@ -80,7 +80,7 @@ void CurvesAreSeededByTheirLength(Executor<Backend>& exec) {
     if (interface[k] != axis) continue;
     const Vec3f r = Vec3f(seeds[k].x, seeds[k].y, seeds[k].z) - in_fields(sector_centre);
     EXPECT_LT(std::hypot(r.x, r.y), 0.02);
-    covered += 0.8660254 * seeds[k].w;  // 0.866 h apart
+    covered += seeds[k].w;  // h apart
   }
   EXPECT_NEAR(covered, 2 * sector_radius, 0.06 * 2 * sector_radius);
 }

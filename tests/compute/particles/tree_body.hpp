@@ -94,7 +94,7 @@ inline std::vector<ExactForce> all_pairs(const std::vector<Float4>& place, const
       const bool own = interface[i] == interface[j], rim = interface[i] == 0 && interface[j] == 1;
       if (i == j || interface[i] == 1 || !(own || rim)) continue;
       const Vec3d r(place[i].x - place[j].x, place[i].y - place[j].y, place[i].z - place[j].z);
-      const double unit = 1 / (double(support) * std::min(place[i].w, place[j].w)), d = length(r) * unit;
+      const double unit = 2 / (double(support) * (place[i].w + place[j].w)), d = length(r) * unit;
       if (d >= 1 || d == 0) continue;
       const double x = std::max(d, 0.02) * M_PI / 2, cot = 1 / std::tan(x);
       const double cosine =
