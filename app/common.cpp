@@ -85,7 +85,7 @@ void catch_interrupts() {
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup asked not to hear of it
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an Error, not a death
+  std::signal(SIGXFSZ, SIG_IGN);                                          // a file size limit is an Error, not a death
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -139,8 +139,10 @@ void check_output(const std::string& file, const std::string& option, std::strin
   for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  const bool special = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  if (!special && !extension.empty() && ending != extension)
+  const bool folder = std::filesystem::is_directory(status);
+  const bool device = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !folder;
+  const bool any_name = folder || (device && extension != ".png");  // of a folder the next says what is wrong
+  if (!any_name && !extension.empty() && ending != extension)
     throw UsageError(fmt::format("{} takes a {} file, not '{}'", option, extension, file));
   check_writable(path);
 }

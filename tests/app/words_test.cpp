@@ -61,6 +61,7 @@ TEST(Words, WrongOnesEndWithTwo) {
   expect_failure(nacre({"sample", "sphere"}), 2, {"--out"});
   expect_failure(nacre({"sample", "sphere", "--detail", "-3", "--out", "a.vtp"}), 2, {"-3", "0 to 1048576"});
   expect_failure(nacre(small_flow + Words{"--image", "a.jpg"}), 2, {"--image", ".png", "a.jpg"});
+  expect_failure(nacre(small_flow + Words{"--image", "/dev/null"}), 2, {"--image", ".png", "/dev/null"});
   expect_failure(nacre(small_flow + Words{"--out", "a.ply"}), 2, {"--out", ".vtp", "a.ply"});
   EXPECT_EQ(nacre({}).status, 2);
 }
