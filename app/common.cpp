@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -32,7 +33,10 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
   command.add_option("--report", options.report, "write a JSON report to this file");
   command.add_option("--session", options.session, "take inputs, knobs and camera from a session file");
   command.add_option("--save-session", options.save_session, "write inputs and knobs to a session file");
-  command.add_option("--set", options.set, "KNOB=VALUE, any knob by name")->take_all();
+  command.add_option("--set", options.set, "KNOB=VALUE, any knob by name")
+      ->expected(1)  // and no more: a FILE may follow
+      ->allow_extra_args(false)
+      ->take_all();
   command.add_flag("--quiet", options.quiet, "say nothing but errors");
 }
 
@@ -44,6 +48,7 @@ KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
     auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
     command.add_option(knob.option(), *value, knob.help + (knob.unit.empty() ? "" : " [" + knob.unit + "]"))
         ->default_str(knob.text())
+        ->take_last()
         ->group("Knobs: " + knob.group);
   }
 }
@@ -77,7 +82,10 @@ void catch_interrupts() {
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an Error, not a death
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup asked not to hear of it
+  std::signal(SIGXFSZ, SIG_IGN);                                          // a file size limit is an Error, not a death
   std::signal(SIGPIPE, SIG_IGN);
 }
 
@@ -122,6 +130,21 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
   report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()},
                       {"device_peak_bytes", arena_bytes}};
   return report;
+}
+
+void check_output(const std::string& file, const std::string& option, std::string_view extension) {
+  if (file.empty()) return;
+  const std::filesystem::path path = file;
+  std::string ending = path.extension().string();
+  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const bool folder = std::filesystem::is_directory(status);
+  const bool device = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !folder;
+  const bool any_name = folder || (device && extension != ".png");  // of a folder the next says what is wrong
+  if (!any_name && !extension.empty() && ending != extension)
+    throw UsageError(fmt::format("{} takes a {} file, not '{}'", option, extension, file));
+  check_writable(path);
 }
 
 void write_text(const std::filesystem::path& file, const std::string& text) {

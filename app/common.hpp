@@ -87,4 +87,9 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
                             std::size_t arena_bytes);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
+/// Before the work: throws UsageError where the name of `file` does not end in `extension`, as the only format of `option`
+/// does (a device or pipe has no such name, and takes no PNG), and Error where it cannot be written. Nothing where `file`
+/// is empty.
+void check_output(const std::string& file, const std::string& option, std::string_view extension);
+
 }  // namespace nacre

@@ -38,8 +38,8 @@ Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
   return session;
 }
 
-/// Names that mean something without any file: wrong ones are found before the work begins.
-void check_words(const Settings& settings) {
+/// Names that mean something without any file, and outputs: wrong ones are found before the work begins.
+void check_words(const FlowOptions& options, const Settings& settings) {
   checked_words([&] {
     colormap(settings.colormap);
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
@@ -47,6 +47,12 @@ void check_words(const Settings& settings) {
     if (!settings.color_range.empty()) color_words(settings);
   });
   check_picture_words(settings);
+  check_output(options.image, "--image", ".png");
+  check_output(options.out, "--out", ".vtp");
+  check_output(options.common.report, "--report", "");
+  for (const std::string& output : {options.image, options.frames, options.video, options.out, options.common.report})
+    if (!output.empty()) return;
+  warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
 
 VectorsInTime read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
@@ -155,7 +161,7 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const Session session = make_session(options, knob_options);
   const Settings& settings = session.settings;
-  check_words(settings);
+  check_words(options, settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);

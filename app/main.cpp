@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   nacre::add_sample_command(program, command);
   nacre::add_bench_command(program, command);
   nacre::add_view_command(program, command);
+  for (CLI::App* each : program.get_subcommands({})) each->set_version_flag("--version", program.version());
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version

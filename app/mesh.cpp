@@ -105,12 +105,13 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   } catch (const Interrupted&) {
     if (!options.keep_on_interrupt) throw;
     result.interrupted = true;
-    pipeline.watch(nullptr);
     bar.clear();
     say(options.common, "interrupted: making the mesh of the particles so far");
   }
+  const bool kept = options.keep_on_interrupt;  // from here on a first Ctrl-C asks for what is being made anyway
+  if (kept) pipeline.watch(nullptr);
   result.mesh = pipeline.triangulate();
-  check_interrupt(result.interrupted);
+  check_interrupt(kept);
   {
     bar.update("quality", 0.95);
     StageTimers::Scope scope(pipeline.timers(), "quality");
@@ -118,12 +119,12 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
     result.quality = surface_quality(result.mesh);
   }
   result.distance = pipeline.surface_distance(result.mesh);
-  check_interrupt(result.interrupted);
+  check_interrupt(kept);
   if (wants_cells(options)) {
     bar.update("tetrahedra", 0.97);
     StageTimers::Scope scope(pipeline.timers(), "tetrahedra");
     result.cells = fill_with_tetrahedra(result.mesh, longest_edge(settings.max_cell, input.spacing),
-                                        result.interrupted ? nullptr : &interrupt_flag());
+                                        kept ? nullptr : &interrupt_flag());
     result.cell_quality = cell_quality(*result.cells, volume.materials());
   }
   return result;

@@ -31,15 +31,6 @@ bool has(const std::vector<std::string>& list, const std::string& one) {
   return std::find(list.begin(), list.end(), one) != list.end();
 }
 
-/// Hours of work must not end at a folder that is not there.
-void check_folder(const std::string& file) {
-  if (file.empty()) return;
-  const fs::path folder = fs::absolute(file).parent_path();
-  std::error_code error;
-  if (!fs::is_directory(folder, error)) throw Error("cannot write " + file, "there is no folder " + folder.string());
-  if (fs::is_directory(file, error)) throw Error("cannot write " + file, "it is a folder");
-}
-
 void write_particles(const std::string& file, const MeshParticles& particles) {
   const std::size_t n = particles.points.size();
   std::vector<PointArray> arrays{{"size", 1, particles.size},
@@ -103,10 +94,10 @@ void check_mesh_outputs(const MeshOptions& options) {
   } else if (options.per_material || options.surface_only) {
     throw UsageError(options.per_material ? "--per-material needs --out FILE" : "--surface-only needs --out FILE");
   }
-  if (!options.particles_out.empty() && extension_of(options.particles_out) != ".vtp")
-    throw UsageError(fmt::format("--particles-out takes a .vtp file, not '{}'", options.particles_out));
-  for (const std::string& file : {options.out, options.particles_out, options.image, options.common.report})
-    check_folder(file);
+  check_output(options.out, "--out", "");
+  check_output(options.particles_out, "--particles-out", ".vtp");
+  check_output(options.image, "--image", ".png");
+  check_output(options.common.report, "--report", "");
 }
 
 std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Session& session, const MeshInput& input,

@@ -42,7 +42,7 @@ void add_mesh_report(nlohmann::json& report, const MeshInput& input, const Setti
 /// Some lines for people.
 std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds);
 
-/// Throws UsageError where a file's extension says nothing, Error where its folder is not there.
+/// Throws UsageError where a file's extension says nothing, Error where it cannot be written.
 void check_mesh_outputs(const MeshOptions& options);
 
 /// Will `--out` be a file of tetrahedra?

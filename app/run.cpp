@@ -11,7 +11,7 @@ void add_input_options(CLI::App& command, InputWords& words, const std::string& 
                        const std::string& detail_help) {
   command.add_option("FILE", words.files, file_help);
   command.add_option("--sample", words.sample, "a built-in data set; `nacre sample` lists them");
-  command.add_option("--detail", words.detail, detail_help)->check(CLI::NonNegativeNumber);
+  command.add_option("--detail", words.detail, detail_help)->check(CLI::Range(0, 1 << 20));
   command.add_option("--size", words.size, "WxH of the picture");
 }
 

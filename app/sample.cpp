@@ -46,7 +46,7 @@ void add_sample_command(CLI::App& program, std::function<void()>& run) {
                       "a surface: .pvd (all time steps), or .vtp .ply .obj .stl .off (the first); a volume: .nrrd");
   command
       ->add_option("--detail", words->detail, "triangle edges, or voxels, along the longest side (0: the sample's own)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1 << 20));
   command->callback([&run, words] {
     run = [words] {
       if (words->name.empty()) return list_samples();

@@ -72,6 +72,8 @@ void check_view_words(const ViewOptions& options) {
     throw UsageError("--live or --record: frames of a video wait for compute");
   if (!options.script.empty() && !options.common.session.empty())
     throw UsageError("--session or --script, not both: a script has inputs, knobs and camera, too");
+  check_output(options.image, "--image", ".png");
+  check_output(options.common.report, "--report", "");
   if (options.panel && options.no_panel) throw UsageError("--panel or --no-panel, not both");
 }
 
@@ -132,16 +134,24 @@ nlohmann::json frame_report(const ViewerResult& result) {
           {"driver_messages", result.driver_messages}};
 }
 
-nlohmann::json view_report(const ViewerResult& result, const Settings& settings) {
+nlohmann::json input_report(const SessionInput& input) {
+  if (!input.sample.empty()) return {{"sample", input.sample}, {"detail", input.detail}};
+  nlohmann::json files = nlohmann::json::array();
+  for (const std::filesystem::path& file : input.inputs) files.push_back(file.string());
+  return {{"files", files}};
+}
+
+nlohmann::json view_report(const ViewerResult& result, const Session& session) {
   nlohmann::json report;
   report["nacre"] = version;
   report["command"] = "view";
-  report["device"] = {{"backend", result.backend}, {"name", result.device_name}};
+  report["device"] = {{"backend", result.backend}, {"name", result.device_name}, {"threads", result.threads}};
+  report["input"] = input_report(session);
   report["stages"] = nlohmann::json::array();
   for (const StageTimers::Stage& stage : result.timers.stages())
     report["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}});
   report["memory"] = {{"peak_bytes", make_cpu_device()->peak_bytes()}, {"device_peak_bytes", result.peak_bytes}};
-  report["parameters"] = knob_values(settings);
+  report["parameters"] = knob_values(session.settings);
   report["view"] = frame_report(result);
   return report;
 }
@@ -187,7 +197,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   const ViewerResult result = run_viewer(viewer);
 
   const std::vector<std::string> outputs = write_outputs(options, result, record.get());
-  write_report(options.common, view_report(result, settings), outputs);
+  write_report(options.common, view_report(result, viewer.session), outputs);
   print_outputs(outputs);
 }
 
@@ -219,7 +229,7 @@ void add_view_command(CLI::App& program, std::function<void()>& run) {
   command
       ->add_option("--frames-count", options->frames,
                    "end after N frames with the texture (offscreen, without a script: one for each step)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1000000000));
   command->add_flag("--live", options->live, "offscreen: frames do not wait for compute, as in a window");
   command->add_flag("--panel", options->panel, "offscreen: draw the panel, too");
   command->add_flag("--no-panel", options->no_panel, "begin without the panel");

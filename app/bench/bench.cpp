@@ -40,11 +40,7 @@ void check_words(const BenchOptions& options) {
 
 /// What is found out before the hours of work rather than after.
 void check_outputs(const BenchOptions& options) {
-  if (!options.json.empty()) {
-    const std::filesystem::path folder = std::filesystem::absolute(options.json).parent_path();
-    if (!std::filesystem::is_directory(folder))
-      throw Error("cannot write " + options.json, folder.string() + " is no folder", "make it first");
-  }
+  check_output(options.json, "--json", "");
   if (options.plots.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(options.plots, error);

@@ -396,6 +396,7 @@ class Viewer {
     result_.timers = scene_->timers();
     result_.peak_bytes = scene_->peak_bytes();
     result_.device_name = scene_->device().name();
+    result_.threads = scene_->device().threads();
     result_.backend = scene_->device().backend();
     result_.driver_messages = context_->messages();
   }

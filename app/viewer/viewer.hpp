@@ -45,6 +45,7 @@ struct ViewerResult {
   StageTimers timers;
   std::size_t peak_bytes = 0;
   std::string device_name, backend;
+  int threads = 0;
   Image image;
   std::vector<std::filesystem::path> pictures;  ///< written for events
 };

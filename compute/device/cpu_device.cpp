@@ -28,6 +28,15 @@ std::size_t meminfo_bytes(const std::string& key) {
   return std::size_t(sysconf(_SC_PHYS_PAGES)) * std::size_t(sysconf(_SC_PAGE_SIZE));
 }
 
+/// Of files that were read or written once: the kernel gives it back before it refuses anything.
+std::size_t cgroup_cached_bytes() {
+  std::ifstream file("/sys/fs/cgroup/memory.stat");
+  std::size_t bytes = 0;
+  for (std::string word; file >> word >> bytes;)
+    if (word == "inactive_file") return bytes;
+  return 0;
+}
+
 std::size_t cgroup_free_bytes() {
   auto number = [](const char* path) {
     std::ifstream file(path);
@@ -36,7 +45,8 @@ std::size_t cgroup_free_bytes() {
   };
   const std::size_t limit = number("/sys/fs/cgroup/memory.max");
   const std::size_t used = number("/sys/fs/cgroup/memory.current");
-  return limit == std::numeric_limits<std::size_t>::max() || used > limit ? limit : limit - used;
+  if (std::max(limit, used) == std::numeric_limits<std::size_t>::max()) return limit;
+  return limit - std::min(limit, used - std::min(used, cgroup_cached_bytes()));
 }
 
 /// An address-space limit (ulimit -v) also bounds what may be reserved.

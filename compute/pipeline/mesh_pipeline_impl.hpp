@@ -127,7 +127,7 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
     LabelRepair repair;
     {
       auto stage = exec_.stage("triangulate");
-      const DelaunayCells cells = delaunay(particles.points, exec_.device().threads());
+      const DelaunayCells cells = delaunay(particles.points, exec_.device().threads(), stop_);
       std::vector<std::uint16_t> label = material_at(cells.circumcentres);
       repair = repair_labels(particles.points, cells, label);
       mesh = extract_interfaces(particles.points, cells, label, &point_of);

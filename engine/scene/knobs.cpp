@@ -4,30 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/edit_distance.hpp"
 
 namespace nacre {
 namespace {
-
-/// Edit distance, for "did you mean".
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t(0));
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t corner = row[0]++;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t change = corner + (a[i] != b[j]);
-      corner = row[j + 1];
-      row[j + 1] = std::min({change, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
 
 std::string range_of(const Knob& knob) {
   if (!knob.choices.empty()) return fmt::format("{}", fmt::join(knob.choices, "|"));
@@ -103,7 +89,7 @@ void set_knob(Settings& settings, const std::string& name, const std::string& te
   for (const Knob& knob : table)
     if (knob.name == wanted) return assign(knob, text);
   const auto nearest = std::min_element(table.begin(), table.end(), [&](const Knob& a, const Knob& b) {
-    return distance(a.name, wanted) < distance(b.name, wanted);
+    return edit_distance(a.name, wanted) < edit_distance(b.name, wanted);
   });
   throw Error(fmt::format("no knob '{}'", name), "",
               fmt::format("did you mean {}? `nacre --knobs` lists all", nearest->name));
@@ -124,10 +110,17 @@ void set_knobs(Settings& settings, const nlohmann::json& values) {
 
 std::string knob_table() {
   Settings defaults;
-  std::string table = fmt::format("{:<12} {:<10} {:<22} {:<8} {}\n", "knob", "default", "range", "unit", "");
+  std::vector<std::array<std::string, 5>> rows{{"knob", "default", "range", "unit", ""}};
   for (const Knob& knob : knobs(defaults))
-    table +=
-        fmt::format("{:<12} {:<10} {:<22} {:<8} {}\n", knob.name, knob.text(), range_of(knob), knob.unit, knob.help);
+    rows.push_back({knob.name, knob.text(), range_of(knob), knob.unit, knob.help});
+  std::array<std::size_t, 4> widths{};
+  for (const auto& row : rows)
+    for (std::size_t k = 0; k < widths.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  std::string table;
+  for (const auto& row : rows) {
+    for (std::size_t k = 0; k < widths.size(); ++k) table += fmt::format("{:<{}}  ", row[k], widths[k]);
+    table += row.back() + "\n";
+  }
   return table;
 }
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/edit_distance.hpp"
 #include "engine/scene/phantom_kit.hpp"
+#include "engine/scene/samples.hpp"
 
 namespace nacre {
 namespace {
@@ -25,6 +27,17 @@ const PhantomDefinition* find(const std::string& name) {
   for (const PhantomDefinition& definition : definitions())
     if (definition.info.name == name) return &definition;
   return nullptr;
+}
+
+[[noreturn]] void throw_unknown(const std::string& name) {
+  for (const SampleInfo& surface : samples())
+    if (surface.name == name) throw Error(fmt::format("the sample '{}' is a surface", name), "", "nacre flow takes it");
+  std::string known, advice;
+  for (const PhantomDefinition& one : definitions()) {
+    known += (known.empty() ? "" : ", ") + one.info.name;
+    if (edit_distance(name, one.info.name) <= 2) advice = fmt::format("did you mean '{}'?", one.info.name);
+  }
+  throw Error(fmt::format("there is no volume sample '{}'", name), "the volume samples are " + known, advice);
 }
 
 /// The phantom's own grid, or one with `detail` voxels along the longest side that covers the same box.
@@ -49,11 +62,7 @@ bool is_phantom(const std::string& name) { return find(name) != nullptr; }
 
 Volume make_phantom(const std::string& name, int detail, const std::atomic<bool>* stop) {
   const PhantomDefinition* definition = find(name);
-  if (!definition) {
-    std::string known;
-    for (const PhantomDefinition& one : definitions()) known += (known.empty() ? "" : ", ") + one.info.name;
-    throw Error(fmt::format("there is no volume sample '{}'", name), "the volume samples are " + known);
-  }
+  if (!definition) throw_unknown(name);
   if (detail != 0 && (detail < min_detail || detail > max_detail))
     throw Error(
         fmt::format("the sample '{}' cannot be made with detail {}", name, detail), "",

@@ -6,10 +6,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/edit_distance.hpp"
+#include "engine/scene/phantoms.hpp"
 #include "engine/scene/sample_kit.hpp"
 
 namespace nacre {
@@ -24,26 +25,13 @@ const std::vector<SampleDefinition>& definitions() {
   return all;
 }
 
-/// Number of single-letter edits between two words.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t(0));
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = std::exchange(row[j], std::min({replaced, row[j] + 1, row[j - 1] + 1}));
-    }
-  }
-  return row[b.size()];
-}
-
 [[noreturn]] void throw_unknown(const std::string& name) {
+  if (is_phantom(name)) throw Error(fmt::format("the sample '{}' is a volume", name), "", "nacre mesh takes it");
   std::string known, closest;
   std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
   for (const SampleDefinition& definition : definitions()) {
     known += (known.empty() ? "" : ", ") + definition.info.name;
-    const std::size_t distance = edit_distance(name.substr(0, 64), definition.info.name);
+    const std::size_t distance = edit_distance(name, definition.info.name);
     if (distance < best) best = distance, closest = definition.info.name;
   }
   const std::string advice = closest.empty() ? "" : fmt::format("did you mean '{}'?", closest);

@@ -114,11 +114,15 @@ VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
 }
 
 const VectorsInTime::Step& VectorsInTime::step(std::size_t number) {
-  for (const Step& kept : steps_)
-    if (kept.number == number) return kept;
+  for (std::size_t k = 0; k < 2; ++k)
+    if (steps_[k].number == number) {
+      oldest_ = 1 - k;  // who asks for two holds on to the first
+      return steps_[k];
+    }
   Step& place = steps_[oldest_];
+  place = load(number);
   oldest_ = 1 - oldest_;
-  return place = load(number);
+  return place;
 }
 
 VectorsInTime::Between VectorsInTime::around(double t) const {

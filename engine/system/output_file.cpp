@@ -143,6 +143,13 @@ void OutputFile::fail(int error_number) const {
               reason(error_number), advice_on_writing(error_number));
 }
 
+void check_writable(const fs::path& target) {
+  std::error_code error;
+  const fs::file_status status = fs::status(target, error);
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status)) return;
+  const OutputFile probe(target);
+}
+
 void add_unfinished(const fs::path& path) {
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);

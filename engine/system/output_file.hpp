@@ -43,6 +43,10 @@ class OutputFile {
   bool direct_ = false;
 };
 
+/// Throws as an OutputFile would where `target` cannot be written: before hours of work rather than after. Leaves nothing
+/// behind; devices and pipes are not opened, since who reads them would take that for the end.
+void check_writable(const std::filesystem::path& target);
+
 /// What a user can do about an errno met while writing; empty where we know nothing better than the reason itself.
 const char* advice_on_writing(int error_number);
 

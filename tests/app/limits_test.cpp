@@ -49,6 +49,10 @@ TEST_F(Limits, OutputsThatCannotBeWritten) {
                               {"--image", folder_.path().string()},
                               {"--save-session", path("none/s.json")}})
     expect_failure(nacre(small_flow + output), 1, {output[1]});
+  // Found out before the data are read, which would fail for another reason.
+  for (const Words& output :
+       {Words{"--image", path("none/a.png")}, {"--out", path("none/a.vtp")}, {"--report", path("none/r.json")}})
+    expect_failure(nacre(small_flow + output + Words{"--color", "pressure"}), 1, {output[1]});
   expect_failure(nacre(small_flow + Words{"--video", path("a.txt")}), 1, {"a.txt", ".mp4"});
   expect_failure(nacre({"sample", "sphere", "--detail", "16", "--out", path("a.xyz")}), 1, {"a.xyz"});
   EXPECT_EQ(names(), Words{"file"});

@@ -56,6 +56,7 @@ TEST(MeshWords, WrongOnesEndWithTwo) {
                                                   {{"--out", "a.vtu", "--surface-only"}, "--surface-only"},
                                                   {{"--surface-only"}, "--out"},
                                                   {{"--particles-out", "a.ply"}, ".vtp"},
+                                                  {{"--image", "a.jpg"}, ".png"},
                                                   {{"--camera", "top"}, "iso"},
                                                   {{"--background", "greenish"}, "#rrggbb"},
                                                   {{"--set", "epsilom=1"}, "did you mean epsilon"},
@@ -67,9 +68,10 @@ TEST(MeshWords, MissingFilesAndFoldersAreNamedBeforeTheWork) {
   const TemporaryFolder folder;
   expect_failure(nacre({"mesh", (folder / "none.nrrd").string(), "--quiet"}), 1, {"none.nrrd"});
   expect_failure(nacre({"mesh", (folder / "none.xyz").string(), "--quiet"}), 1, {"none.xyz"});
-  for (const char* option : {"--out", "--particles-out", "--image", "--report"}) {
-    const std::string file = (folder / "nowhere/a.vtp").string();
-    expect_failure(nacre(small_mesh + Words{option, file}), 1, {"nowhere"});
+  for (const auto& [option, name] : std::vector<std::pair<std::string, std::string>>{
+           {"--out", "a.vtp"}, {"--particles-out", "a.vtp"}, {"--image", "a.png"}, {"--report", "a.json"}}) {
+    const std::string file = (folder / "nowhere" / name).string();
+    expect_failure(nacre(small_mesh + Words{"--materials", "9", option, file}), 1, {"nowhere"});
   }
   EXPECT_EQ(folder.entries(), 0u);
 }
@@ -109,6 +111,13 @@ TEST(MeshWords, TheSourcesPresetGivesWayToWhatIsSaid) {
   const Words scalar = {"mesh", "--sample", "ellipsoid", "--detail", "24"};
   EXPECT_EQ(knobs(scalar)["kernel"], "b-spline");
   EXPECT_EQ(knobs(scalar + Words{"--kernel", "catmull-rom"})["kernel"], "catmull-rom");
+}
+
+TEST(MeshWords, SizesFarAboveTheVolumeAreRefusedAtOnce) {
+  const auto before = std::chrono::steady_clock::now();
+  expect_failure(nacre(small_mesh + Words{"--min-size", "1000", "--max-size", "1000"}), 1,
+                 {"fewer than four", "--max-size"});
+  EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(60)) << "a second, where nobody else works";
 }
 
 TEST(MeshWords, ASummaryForPeopleResultsForPipes) {

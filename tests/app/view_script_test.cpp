@@ -89,6 +89,8 @@ TEST_F(Scripts, OfADurationHaveFramesFromItsStartToItsEnd) {
   EXPECT_TRUE(report["view"]["driver_messages"].empty()) << report["view"].dump(1);
   EXPECT_EQ(report["outputs"].size(), 3u);
   EXPECT_GT(report["memory"]["peak_bytes"], 1 << 20);
+  EXPECT_GE(report["device"]["threads"], 1);
+  EXPECT_FALSE(report["input"].empty());
 }
 
 TEST_F(Scripts, TakePictures) {

@@ -1,4 +1,6 @@
 // Nacre: tests of the words of a command line, exit statuses, and who may write where.
+#include <sstream>
+
 #include "tests/app/program.hpp"
 
 namespace nacre::test {
@@ -14,11 +16,20 @@ TEST(Words, HelpVersionAndKnobs) {
   EXPECT_EQ(version.status, 0);
   EXPECT_EQ(version.out.rfind("nacre ", 0), 0u) << version.out;
 
+  for (const char* command : {"flow", "mesh", "view", "sample", "bench", "info"})
+    EXPECT_EQ(nacre({command, "--version"}).out, version.out) << command;
+
   const Outcome knobs = nacre({"--knobs"});
   EXPECT_EQ(knobs.status, 0);
   for (const char* knob : {"resolution", "refine", "ttl", "steps", "step_cells", "seed", "colormap", "camera"})
     EXPECT_EQ(lines_with(knobs.out, std::string(knob) + " "), 1) << knob;
   EXPECT_TRUE(contains(knobs.out, "16..16384")) << "ranges are printed";
+  const std::size_t defaults = knobs.out.find("default");
+  std::istringstream lines(knobs.out);
+  for (std::string line; std::getline(lines, line);) {
+    ASSERT_GT(line.size(), defaults) << line;
+    EXPECT_EQ(line[defaults - 1], ' ') << "columns are aligned: " << line;
+  }
 }
 
 TEST(Words, HelpOfFlowHasEveryOptionOfTheContract) {
@@ -48,6 +59,10 @@ TEST(Words, WrongOnesEndWithTwo) {
   expect_failure(nacre(small_flow + Words{"--background", "greenish"}), 2, {"#rrggbb"});
   expect_failure(nacre(small_flow + Words{"--time", "2:1"}), 2, {"--time"});
   expect_failure(nacre({"sample", "sphere"}), 2, {"--out"});
+  expect_failure(nacre({"sample", "sphere", "--detail", "-3", "--out", "a.vtp"}), 2, {"-3", "0 to 1048576"});
+  expect_failure(nacre(small_flow + Words{"--image", "a.jpg"}), 2, {"--image", ".png", "a.jpg"});
+  expect_failure(nacre(small_flow + Words{"--image", "/dev/null"}), 2, {"--image", ".png", "/dev/null"});
+  expect_failure(nacre(small_flow + Words{"--out", "a.ply"}), 2, {"--out", ".vtp", "a.ply"});
   EXPECT_EQ(nacre({}).status, 2);
 }
 
@@ -60,6 +75,43 @@ TEST(Words, UnknownNamesGetAListOrAGuess) {
   // What a file holds is not known from the words: these are failures of the work.
   expect_failure(nacre(small_flow + Words{"--vectors", "vlocity"}), 1, {"vlocity", "velocity"});
   expect_failure(nacre(small_flow + Words{"--color", "pressure"}), 1, {"pressure", "velocity"});
+}
+
+TEST(Words, ASampleOfTheOtherKindSaysWhoTakesIt) {
+  expect_failure(nacre({"flow", "--sample", "torso", "--quiet"}), 2, {"'torso' is a volume", "nacre mesh"});
+  expect_failure(nacre({"mesh", "--sample", "torus", "--quiet"}), 2, {"'torus' is a surface", "nacre flow"});
+  expect_failure(nacre({"mesh", "--sample", "trso", "--quiet"}), 2, {"did you mean 'torso'"});
+}
+
+TEST(Words, AFileMayFollowAKnob) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.vtp").string(), report = (folder / "r.json").string();
+  ASSERT_EQ(nacre({"sample", "sphere", "--detail", "16", "--out", file}).status, 0);
+  const Outcome run =
+      nacre({"flow", "--set", "resolution=32", "--set", "steps=1", file, "--quiet", "--report", report});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const nlohmann::json knobs = nlohmann::json::parse(read_all(report))["parameters"];
+  EXPECT_EQ(knobs["resolution"], 32);
+  EXPECT_EQ(knobs["steps"], 1);
+}
+
+TEST(Words, TheLastOfSeveralCounts) {
+  const TemporaryFolder folder;
+  const std::string report = (folder / "r.json").string();
+  const Outcome run = nacre(small_flow + Words{"--steps", "1", "--ttl", "7", "--ttl", "3", "--report", report});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const nlohmann::json knobs = nlohmann::json::parse(read_all(report))["parameters"];
+  EXPECT_EQ(knobs["steps"], 1);
+  EXPECT_EQ(knobs["ttl"], 3);
+}
+
+TEST(Words, WorkWhoseResultIsNotAskedForIsDoneAloud) {
+  Words words = small_flow;
+  std::erase(words, "--quiet");
+  EXPECT_TRUE(contains(nacre(words).err, "nothing will be written"));
+  const TemporaryFolder folder;
+  const Outcome run = nacre(words + Words{"--image", (folder / "a.png").string(), "--size", "64x48"});
+  EXPECT_FALSE(contains(run.err, "nothing will be written")) << run.err;
 }
 
 TEST(Words, NothingIsDoneBeforeTheyAreUnderstood) {

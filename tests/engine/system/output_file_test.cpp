@@ -155,6 +155,20 @@ TEST(OutputFile, FailedStreamWritesAreNoticed) {
   EXPECT_EQ(folder.entries(), 0u);
 }
 
+TEST(OutputFile, WhatCannotBeWrittenIsFoundBefore) {
+  const TemporaryFolder folder;
+  check_writable(folder / "a.txt");
+  EXPECT_EQ(folder.entries(), 0u);
+  { std::ofstream(folder / "old.txt") << "old"; }
+  check_writable(folder / "old.txt");
+  EXPECT_EQ(read_all(folder / "old.txt"), "old");
+  check_writable("/dev/stdout");
+  EXPECT_NE(error_of([&] { check_writable(folder / "none/a.txt"); }).find("create the folder first"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { check_writable(folder.path()); }).find("give the name of a file"), std::string::npos);
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 TEST(OutputFile, UnfinishedFilesCanBeRemoved) {
   const TemporaryFolder folder;
   OutputFile kept(folder / "kept.txt");
