@@ -53,13 +53,19 @@ struct CellPoint {
   /// Edge of the lattice that offsets up to `radius` are rounded to.
   NACRE_HD static float quantum(double radius) { return float(radius * 1.0001 / ((1 << (bits - 1)) - 1)); }
 
-  NACRE_HD static CellPoint pack(const Vec3d& offset, float quantum, std::uint32_t triangle) {
-    std::uint64_t all = 0;
-    for (int axis = 2; axis >= 0; --axis) {
-      const std::int64_t q = std::int64_t(std::floor(offset[axis] / quantum + 0.5));
-      all = all << bits | (std::uint64_t(q) & ((1u << bits) - 1));
-    }
+  /// One axis of an offset as steps of the lattice.
+  NACRE_HD_INLINE static std::int32_t rounded(double offset, float quantum) {
+    return std::int32_t(std::floor(offset / quantum + 0.5));
+  }
+
+  NACRE_HD_INLINE static CellPoint pack(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t triangle) {
+    constexpr std::uint64_t mask = (1u << bits) - 1;
+    const std::uint64_t all = (std::uint64_t(z) & mask) << 2 * bits | (std::uint64_t(y) & mask) << bits | (x & mask);
     return {std::uint32_t(all), std::uint32_t(all >> 32), triangle};
+  }
+
+  NACRE_HD static CellPoint pack(const Vec3d& offset, float quantum, std::uint32_t triangle) {
+    return pack(rounded(offset.x, quantum), rounded(offset.y, quantum), rounded(offset.z, quantum), triangle);
   }
 
   /// Closest point minus the cell's centre.

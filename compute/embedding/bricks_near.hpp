@@ -11,8 +11,7 @@ namespace nacre::detail {
 
 /// Calls visit(Morton code) for the bricks that come within `radius` cells of a cluster, and a few more.
 struct BricksNearCluster {
-  MeshView mesh;
-  const std::uint32_t* order;
+  const Corners* corners;
   const std::uint32_t* start;
   const ClusterBound* bound;
   Int3 bricks;
@@ -22,12 +21,14 @@ struct BricksNearCluster {
   NACRE_HD void operator()(std::int64_t k, Visit&& visit) const {
     const double scale = 1.0 / cells_per_brick, margin = radius * scale;
     auto emit = [&](const Int3& brick) { visit(morton(brick)); };
-    if (start[k + 1] - start[k] == 1) {
-      for_cells_near(mesh.corners(order[start[k]]) * scale, margin, bricks, emit);
+    const double spread = bound[k].radius * scale;
+    // Few bricks are near the ball around a triangle that is smaller than they are, and not near the triangle.
+    if (spread > 1 && start[k + 1] - start[k] == 1) {
+      for_cells_near(corners[start[k]] * scale, margin, bricks, emit);
       return;
     }
     const Vec3d centre = Vec3d(bound[k].centre) * scale;
-    const double reach = bound[k].radius * scale * 1.0001 + margin + 1e-4;
+    const double reach = spread * 1.0001 + margin + 1e-4 + 1.1e-7 * bricks.x;  // the centre is in single precision
     Int3 first, last;
     for (int axis = 0; axis < 3; ++axis) {
       first[axis] = clamp_cell(centre[axis] - reach, bricks[axis]);

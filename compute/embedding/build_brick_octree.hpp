@@ -55,10 +55,9 @@ struct BrickOctree {
 namespace detail {
 
 struct FrameTriangle {
-  MeshView mesh;
-  const std::uint32_t* order;
+  const Corners* corners;
   TriangleFrame* frame;
-  NACRE_HD void operator()(std::int64_t i) const { frame[i] = triangle_frame(mesh.corners(order[i])); }
+  NACRE_HD void operator()(std::int64_t i) const { frame[i] = triangle_frame(corners[i]); }
 };
 
 NACRE_HD_INLINE std::uint32_t cells_of(const CellMask& mask) {
@@ -134,11 +133,13 @@ struct BricksTouched {
   }
 };
 
+/// About how many bricks a cluster touches.
 struct BricksUnder {
-  MeshView mesh;
+  ClusterView clusters;
   int levels;
-  NACRE_HD std::uint64_t operator()(std::int64_t t) const {
-    return columns_under(mesh.corners(std::uint32_t(t)) * (1.0 / BrickOctreeView::width), Int3(1 << levels));
+  NACRE_HD std::uint64_t operator()(std::int64_t k) const {
+    if (clusters.bound[k].radius < BrickOctreeView::width) return 1;
+    return columns_under(clusters.corners[clusters.start[k]] * (1.0 / BrickOctreeView::width), Int3(1 << levels));
   }
 };
 
@@ -155,24 +156,19 @@ class BrickOctreeBuilder {
 
   BrickOctree build() {
     Arena& arena = exec_.arena();
-    require_room();
     {
       Arena::Scope scope(arena);
       const int size = BrickOctreeView::width << tree_.levels;
       const Clusters clusters = make_clusters(exec_, mesh_, triangles_, Int3(size));
       Array<TriangleFrame> frame = arena.temporary<TriangleFrame>(triangles_);
-      exec_.for_each(triangles_, FrameTriangle{mesh_, clusters.order.data(), frame.data()});
+      exec_.for_each(triangles_, FrameTriangle{clusters.corners.data(), frame.data()});
+      const ClusterView view{clusters.order.data(),   clusters.start.data(), clusters.bound.data(),
+                             clusters.corners.data(), frame.data(),          float(size) * 1.1e-7f};
       // A brick's cells lie half a cell inside of it.
-      const BricksNearCluster near{mesh_,
-                                   clusters.order.data(),
-                                   clusters.start.data(),
-                                   clusters.bound.data(),
-                                   Int3(1 << tree_.levels),
-                                   double(BrickOctreeView::width),
-                                   radius_ - 0.499};
+      const BricksNearCluster near{clusters.corners.data(), clusters.start.data(),          clusters.bound.data(),
+                                   Int3(1 << tree_.levels), double(BrickOctreeView::width), radius_ - 0.499};
+      require_room(view, clusters.count);
       const PlaceLists lists = place_lists(exec_, clusters.count, near);
-      const ClusterView view{mesh_,        clusters.order.data(), clusters.start.data(), clusters.bound.data(),
-                             frame.data(), float(size) * 1.1e-7f};
       find_cells(view, lists);
     }
     if (tree_.cells == 0)
@@ -187,9 +183,9 @@ class BrickOctreeBuilder {
   static constexpr std::uint32_t bricks_at_once = 2048;  // 13 MB of points at most
 
   /// Triangles of millions of cells squared would be walked for hours before it shows that they do not fit.
-  void require_room() {
+  void require_room(const ClusterView& clusters, std::uint32_t count) {
     const std::uint64_t bricks =
-        exec_.reduce(triangles_, std::uint64_t(0), BricksUnder{mesh_, tree_.levels}, AddNumbers{});
+        exec_.reduce(count, std::uint64_t(0), BricksUnder{clusters, tree_.levels}, AddNumbers{});
     const std::uint64_t needed = 12 * bricks;  // a pair of brick and cluster
     if (needed > exec_.arena().free_bytes())
       throw Error("the band around the surface does not fit into memory",

@@ -189,8 +189,8 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
   {
     Arena::Scope scope(arena);
     const Clusters clusters = make_clusters(exec, mesh, triangles, bricks * Int3(sub));
-    const detail::BricksNearCluster near{mesh,   clusters.order.data(), clusters.start.data(), clusters.bound.data(),
-                                         bricks, double(sub),           double(radius)};
+    const detail::BricksNearCluster near{
+        clusters.corners.data(), clusters.start.data(), clusters.bound.data(), bricks, double(sub), double(radius)};
     const Array<std::uint64_t> pairs = sorted_pairs(exec, clusters.count, near);
     Array<std::uint32_t> number;
     grid.brick_count = number_places(exec, pairs, number);

@@ -11,13 +11,6 @@
 
 namespace nacre {
 
-/// A triangle in single precision for bounds: centroid and the distance from it to the farthest corner.
-NACRE_HD inline Float4 triangle_bound(const Corners& t) {
-  const Vec3d g = (t.a + t.b + t.c) / 3.0;
-  const double a = length(t.a - g), b = length(t.b - g), c = length(t.c - g);
-  return {float(g.x), float(g.y), float(g.z), float(a > b ? (a > c ? a : c) : (b > c ? b : c)) * 1.000001f};
-}
-
 /// A flat cylinder that holds a cluster: around a point of the surface, `radius` across, `thickness` to either side.
 struct alignas(16) ClusterBound {
   Vec3f centre;
@@ -44,33 +37,39 @@ struct alignas(16) ClusterBound {
 struct Clusters {
   std::uint32_t count = 0;
   Array<std::uint32_t> order;
+  Array<Corners> corners;      ///< of the triangles, in `order`: what is near in space is near in memory
   Array<std::uint32_t> start;  ///< count + 1 entries
   Array<ClusterBound> bound;
 };
 
 namespace detail {
 
+/// Sorts by the cell of the centroid, and sets triangles that stand alone behind the others.
 struct CentroidCell {
   MeshView mesh;
   Int3 dims;
   std::uint64_t* code;
   std::uint32_t* order;
-  NACRE_HD void operator()(std::int64_t t) const {
-    const Float4 b = triangle_bound(mesh.corners(std::uint32_t(t)));
-    code[t] = morton({clamp_cell(b.x, dims.x), clamp_cell(b.y, dims.y), clamp_cell(b.z, dims.z)});
-    order[t] = std::uint32_t(t);
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Corners t = mesh.corners(std::uint32_t(i));
+    const Vec3d g = (t.a + t.b + t.c) / 3.0, a = t.a - g, b = t.b - g, c = t.c - g;
+    const bool small = dot(a, a) <= 1 && dot(b, b) <= 1 && dot(c, c) <= 1;
+    code[i] = morton({clamp_cell(g.x, dims.x), clamp_cell(g.y, dims.y), clamp_cell(g.z, dims.z)}) << 1 | !small;
+    order[i] = std::uint32_t(i);
   }
 };
 
-struct ClusterHead {
+struct GatherCorners {
   MeshView mesh;
-  const std::uint64_t* code;
   const std::uint32_t* order;
+  Corners* corners;
+  NACRE_HD void operator()(std::int64_t i) const { corners[i] = mesh.corners(order[i]); }
+};
+
+struct ClusterHead {
+  const std::uint64_t* code;
   std::uint32_t* head;
-  NACRE_HD bool big(std::uint32_t t) const { return !(triangle_bound(mesh.corners(t)).w <= 1); }
-  NACRE_HD void operator()(std::int64_t i) const {
-    head[i] = i == 0 || code[i] != code[i - 1] || big(order[i]) || big(order[i - 1]);
-  }
+  NACRE_HD void operator()(std::int64_t i) const { head[i] = i == 0 || code[i] != code[i - 1] || (code[i] & 1); }
 };
 
 struct ClusterStart {
@@ -85,28 +84,25 @@ struct ClusterStart {
 };
 
 struct BoundCluster {
-  MeshView mesh;
-  const std::uint32_t* order;
+  const Corners* corners;
   const std::uint32_t* start;
   ClusterBound* bound;
 
   NACRE_HD void operator()(std::int64_t k) const {
-    const Corners t = mesh.corners(order[start[k]]);
-    const Float4 first = triangle_bound(t);
-    ClusterBound b{{first.x, first.y, first.z}, 0, Vec3f(normalized(cross(t.b - t.a, t.c - t.a))), 0};
+    const Corners t = corners[start[k]];
+    ClusterBound b{Vec3f((t.a + t.b + t.c) / 3.0), 0, Vec3f(normalized(cross(t.b - t.a, t.c - t.a))), 0};
     const Vec3d centre(b.centre), normal(b.normal);
-    double radius = 0, thickness = 0;
+    double square = 0, thickness = 0;
     for (std::uint32_t i = start[k]; i < start[k + 1]; ++i) {
-      const Corners c = mesh.corners(order[i]);
+      const Corners c = corners[i];
       const Vec3d d[3] = {c.a - centre, c.b - centre, c.c - centre};
       for (int j = 0; j < 3; ++j) {
-        const double along = std::fabs(dot(d[j], normal));
+        const double along = std::fabs(dot(d[j], normal)), across = dot(d[j], d[j]);
         thickness = along > thickness ? along : thickness;
-        const double across = length(d[j]);
-        radius = across > radius ? across : radius;
+        square = across > square ? across : square;
       }
     }
-    b.radius = float(radius) * 1.000001f;
+    b.radius = float(std::sqrt(square)) * 1.000001f;
     b.thickness = float(thickness) * 1.000001f;
     bound[k] = b;
   }
@@ -120,18 +116,20 @@ Clusters make_clusters(Executor<Backend>& exec, const MeshView& mesh, std::uint3
   Arena& arena = exec.arena();
   Clusters clusters;
   clusters.order = arena.temporary<std::uint32_t>(triangles);
+  clusters.corners = arena.temporary<Corners>(triangles);
   clusters.start = arena.temporary<std::uint32_t>(triangles + 1);
   clusters.bound = arena.temporary<ClusterBound>(triangles);
   Arena::Scope scope(arena);
   Array<std::uint64_t> code = arena.temporary<std::uint64_t>(triangles);
   exec.for_each(triangles, detail::CentroidCell{mesh, dims, code.data(), clusters.order.data()});
   exec.sort_pairs(code.data(), clusters.order.data(), triangles);
+  exec.for_each(triangles, detail::GatherCorners{mesh, clusters.order.data(), clusters.corners.data()});
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(triangles);
-  exec.for_each(triangles, detail::ClusterHead{mesh, code.data(), clusters.order.data(), number.data()});
+  exec.for_each(triangles, detail::ClusterHead{code.data(), number.data()});
   clusters.count = exec.exclusive_scan(number.data(), number.data(), triangles);
   exec.for_each(triangles, detail::ClusterStart{triangles, clusters.count, number.data(), clusters.start.data()});
   exec.for_each(clusters.count,
-                detail::BoundCluster{mesh, clusters.order.data(), clusters.start.data(), clusters.bound.data()});
+                detail::BoundCluster{clusters.corners.data(), clusters.start.data(), clusters.bound.data()});
   return clusters;
 }
 

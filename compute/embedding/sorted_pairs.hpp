@@ -11,16 +11,27 @@ namespace nacre {
 namespace detail {
 
 /// Counts the places of an item where `keys` is null, else writes them: one kernel for both, because a compiler may round
-/// two instantiations of the same geometry differently.
+/// two instantiations of the same geometry differently. An item that has one place only is not looked at twice.
 template <class Enumerate>
 struct EnumerateKeys {
   Enumerate enumerate;
+  std::uint64_t items, pairs;
   std::uint64_t* count;  // later: where the item's keys begin
+  std::uint32_t* first;  // the item's first place
   std::uint64_t* keys;
   NACRE_HD void operator()(std::int64_t i) const {
     std::uint64_t at = keys ? count[i] : 0;
+    if (keys) {
+      const std::uint64_t end = std::uint64_t(i) + 1 < items ? count[i + 1] : pairs;
+      if (end == at) return;
+      keys[at] = std::uint64_t(first[i]) << 32 | std::uint64_t(i);
+      if (end == at + 1) return;
+    }
     enumerate(i, [&](std::uint64_t place) {
-      if (keys) keys[at] = place << 32 | std::uint64_t(i);
+      if (keys)
+        keys[at] = place << 32 | std::uint64_t(i);
+      else if (at == 0)
+        first[i] = std::uint32_t(place);
       ++at;
     });
     if (!keys) count[i] = at;
@@ -66,10 +77,12 @@ template <class Backend, class Enumerate>
 Array<std::uint64_t> sorted_pairs(Executor<Backend>& exec, std::int64_t items, const Enumerate& enumerate) {
   Arena& arena = exec.arena();
   Array<std::uint64_t> start = arena.temporary<std::uint64_t>(items);
-  exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, start.data(), nullptr});
+  Array<std::uint32_t> first = arena.temporary<std::uint32_t>(items);
+  const auto n = std::uint64_t(items);
+  exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, n, 0, start.data(), first.data(), nullptr});
   const std::uint64_t total = exec.exclusive_scan(start.data(), start.data(), items);
   Array<std::uint64_t> keys = arena.temporary<std::uint64_t>(total);
-  exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, start.data(), keys.data()});
+  exec.for_each(items, detail::EnumerateKeys<Enumerate>{enumerate, n, total, start.data(), first.data(), keys.data()});
   exec.sort(keys.data(), total, 32);  // items ascend already
   return keys;
 }

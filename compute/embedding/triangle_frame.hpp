@@ -21,10 +21,9 @@ struct TriangleFrame {
   /// Squares of the distances from the corners of the cube around `centre` with half edge `half`. Returns how far the
   /// distances (not their squares) may be off.
   NACRE_HD_INLINE float distances(const Vec3d& centre, float half, Eight& squared) const {
-    const Vec3f w(centre - origin), us = u * half, vs = v * half, ns = n * half;
-    const Eight x = at_corners(dot(w, u), us.x, us.y, us.z);
-    const Eight y = at_corners(dot(w, v), vs.x, vs.y, vs.z);
-    const Eight z = at_corners(dot(w, n), ns.x, ns.y, ns.z);
+    const Vec3f w(centre - origin);
+    const EightWays ways = ways_to_corners(w, half);
+    const Eight x = dot(ways, u), y = dot(ways, v), z = dot(ways, n);
     const Eight zero = eight(0);
 
     const Eight beside_ab = max(max(zero - x, x - length), zero);

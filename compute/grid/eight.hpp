@@ -69,6 +69,20 @@ NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
   return detail::each_of_eight([&](int k) { return a + (k & 1 ? x : -x) + ((k & 2 ? y : -y) + (k & 4 ? z : -z)); });
 }
 
+/// The ways from a point to the corners of a cube.
+struct EightWays {
+  Vec3f middle;
+  float half;
+};
+NACRE_HD_INLINE EightWays ways_to_corners(const Vec3f& middle, float half) { return {middle, half}; }
+NACRE_HD_INLINE Eight dot(const EightWays& w, const Vec3f& n) {
+  return at_corners(dot(w.middle, n), n.x * w.half, n.y * w.half, n.z * w.half);
+}
+NACRE_HD_INLINE Eight squared(const EightWays& w) {
+  const Vec3f s = w.middle * (2 * w.half);
+  return at_corners(dot(w.middle, w.middle) + 3 * w.half * w.half, s.x, s.y, s.z);
+}
+
 #else
 
 /// On the host they are one SIMD register.
@@ -107,6 +121,17 @@ NACRE_HD_INLINE EightDoubles at_corners(double a, double x, double y, double z) 
   return EightDoubles{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
          (EightDoubles{-1, -1, 1, 1, -1, -1, 1, 1} * y + EightDoubles{-1, -1, -1, -1, 1, 1, 1, 1} * z);
 }
+
+/// The ways from a point to the corners of a cube.
+struct EightWays {
+  Eight x, y, z;
+};
+NACRE_HD_INLINE EightWays ways_to_corners(const Vec3f& middle, float half) {
+  return {Eight{-1, 1, -1, 1, -1, 1, -1, 1} * half + middle.x, Eight{-1, -1, 1, 1, -1, -1, 1, 1} * half + middle.y,
+          Eight{-1, -1, -1, -1, 1, 1, 1, 1} * half + middle.z};
+}
+NACRE_HD_INLINE Eight dot(const EightWays& w, const Vec3f& n) { return w.x * n.x + w.y * n.y + w.z * n.z; }
+NACRE_HD_INLINE Eight squared(const EightWays& w) { return w.x * w.x + w.y * w.y + w.z * w.z; }
 
 #endif
 
