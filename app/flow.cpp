@@ -229,6 +229,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
     report["parameters"] = knob_values(settings);
     report["embedding"] = embedding_report(pipeline->embedding());
     report["flow"] = {{"steps", span.steps}, {"seconds_per_step", median_min_max(seconds)}};
+    if (const auto bytes = pipeline->embedding().flow_bytes) report["flow"]["bytes"] = bytes;
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);

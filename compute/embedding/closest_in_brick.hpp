@@ -129,7 +129,10 @@ struct ClosestInBrick {
   /// Fills the lists of a block's octets; those of a block without a list overflow.
   NACRE_HD void sift_block(Team& team, const Vec3d& centre, int b, Scratch& s) const {
     const auto& block = s.block[b];
-    team.each(8, [&](int o) { s.octet[8 * b + o].count = block.listed() ? 0 : 1 << 20; });
+    team.each(8, [&](int o) {
+      s.octet[8 * b + o].count = block.listed() ? 0 : 1 << 20;
+      s.octet_near[8 * b + o] = 1e15f;
+    });
     if (!block.listed() || block.count == 0) return;
     sift(
         team, s, centre, 1, block.count, [&](int k) { return block.item[k]; },

@@ -25,9 +25,9 @@ template <class View>
 struct FillBandNoise {
   View view;
   std::uint32_t seed;
-  float *value, *ahead, *carried;
+  float *value, *carried;
   NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor&) const {
-    value[s] = ahead[s] = carried[s] = extended_noise(view, place, cell, seed, 0);
+    value[s] = carried[s] = extended_noise(view, place, cell, seed, 0);
   }
 };
 

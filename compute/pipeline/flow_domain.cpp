@@ -140,7 +140,7 @@ double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& paramet
   const double seeds = brick ? surface : cells;
   const double structure =
       brick ? bricks * 340 + lists * 4 : cells * (8 + 5 + (parameters.neighbour_index ? 24 : 0) + 24);
-  return cells * (12 + 4 * (ttl + 1)) + seeds * (8 * ttl + 16) + structure + triangles * 150 + 256e6;
+  return cells * (12 + 4 * (ttl + 1)) + seeds * (8 * ttl + 12) + structure + triangles * 150 + 256e6;
 }
 
 namespace {

@@ -63,6 +63,7 @@ struct EmbeddingInfo {
   std::uint64_t closest_point_cells = 0;
   std::uint64_t bytes = 0;
   std::uint64_t dense_bytes = 0;  ///< the same payload for every texture cell of the box
+  std::uint64_t flow_bytes = 0;   ///< on an octree: values, deposits and vectors of its cells, made by `start`
   double cell_size = 0;           ///< edge of a texture cell, world units
 };
 

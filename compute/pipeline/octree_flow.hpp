@@ -115,6 +115,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   void start(const FlowVectors& vectors) override {
     this->begin_flow(vectors, 1.0);
     Arena& arena = exec_.arena();
+    const std::size_t mark = arena.mark();
     const View view = octree_.view();
     const std::size_t n = view.surface_cells;
     for (int j = 0; j < this->slots(); ++j) slots_[j] = arena.permanent<std::uint32_t>(view.cells);
@@ -123,14 +124,13 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
       sums_[j].fill_bytes(0);
     }
     value_ = arena.permanent<float>(n);
-    ahead_ = arena.permanent<float>(n);
     carried_ = arena.permanent<float>(n);
     shown_ = arena.permanent<float>(n);
     if constexpr (Band::local_contrast) moments_ = arena.permanent<Float4>(view.items());
-    for_each_surface_cell(exec_, view,
-                          FillBandNoise<View>{view, parameters_.seed, value_.data(), ahead_.data(), carried_.data()});
+    info_.flow_bytes = arena.mark() - mark;
+    for_each_surface_cell(exec_, view, FillBandNoise<View>{view, parameters_.seed, value_.data(), carried_.data()});
     this->warm_up();
-    show();
+    show(value_.data(), sums_[0]);
     for (int k = first_; k < 0; ++k) advance(k);
   }
 
@@ -186,59 +186,62 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
       auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
       for_each_surface_cell(exec_, view, particles);
     }
+    Array<std::uint64_t>& done = sums_[this->ring(k)];
+    float* ahead = value_.data();
     {
       auto stage = exec_.stage("extend");
-      Array<std::uint64_t>& done = sums_[this->ring(k)];
-      extend(done, value_, 1, value_);
-      done.fill_bytes(0);
-      // A frame shows the middle of its step, but the particles of the next step start at its end (see GridFlow).
-      extend(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
+      extend(done, 1, value_.data());
+      // A frame shows the middle of its step, but the particles of the next step start at its end (see GridFlow). With
+      // one step to live, no deposits tell what that will be like.
+      if (ttl_ > 1) extend(sums_[this->ring(k + 1)], 0.5f, ahead = floats_in(done));
     }
-    show();
+    show(ahead, done);
   }
 
-  void extend(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
+  void extend(const Array<std::uint64_t>& sums, float share, float* value) {
     const View view = octree_.view();
-    for_each_surface_cell(exec_, view,
-                          NormaliseAndExtend<View>{view, sums.data(), otherwise.data(), share, value.data()});
+    for_each_surface_cell(exec_, view, NormaliseAndExtend<View>{view, sums.data(), value_.data(), share, value});
   }
 
-  /// Contrast for the eye, sharpening and jitter for the next step.
-  void show() {
+  /// Sums that were taken out hold floats, one per surface cell, until the next particles start.
+  static float* floats_in(Array<std::uint64_t>& sums) { return reinterpret_cast<float*>(sums.data()); }
+
+  /// Contrast for the eye, sharpening and jitter of `ahead` for the next step; `done` is cleared for its deposits.
+  void show(const float* ahead, Array<std::uint64_t>& done) {
     auto stage = exec_.stage("filter");
     if constexpr (Band::local_contrast) {
       exec_.for_each_team(octree_.view().items(), BrickMoments{octree_.view(), value_.data(), moments_.data()});
-      equalise(LocalBrickMoments{moments_.data()});
+      equalise(LocalBrickMoments{moments_.data()}, ahead, floats_in(done));
     } else {
-      equalise(NoLocalMoments{});
+      equalise(NoLocalMoments{}, ahead, floats_in(done));
     }
     const View view = octree_.view();
-    for_each_surface_cell(exec_, view,
-                          SharpenBand<View>{view, ahead_.data(), float(parameters_.sharpen), float(parameters_.jitter),
-                                            parameters_.seed, std::uint32_t(++launched_), carried_.data()});
+    for_each_surface_cell(
+        exec_, view,
+        SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter),
+                          parameters_.seed, std::uint32_t(++launched_), carried_.data()});
+    done.fill_bytes(0);
   }
 
   template <class Local>
-  void equalise(const Local& local) {
+  void equalise(const Local& local, const float* ahead, float* detail) {
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);
-    const auto moments_of = [&](const Array<float>& a) {
-      return exec_.reduce(n, Moments{}, MomentsOf{a.data()}, AddMoments{});
-    };
-    const Moments now = moments_of(value_), next = moments_of(ahead_);
+    const auto moments_of = [&](const float* a) { return exec_.reduce(n, Moments{}, MomentsOf{a}, AddMoments{}); };
+    const Moments now = moments_of(value_.data()), next = moments_of(ahead);
     const float deviation = std::max(now.deviation(n), 1e-4f);
     for_each_surface_cell(
         exec_, view,
-        EqualiseBand<View, Local>{view, value_.data(), ahead_.data(), local, now.mean(n), deviation, next.mean(n),
+        EqualiseBand<View, Local>{view, value_.data(), ahead, local, now.mean(n), deviation, next.mean(n),
                                   std::max(next.deviation(n), 1e-4f) / deviation, float(parameters_.equalise),
-                                  float(parameters_.contrast), display(), ahead_.data()});
+                                  float(parameters_.contrast), display(), detail});
   }
 
   typename Band::Octree octree_;
   int levels_ = 0;
   Array<std::uint32_t> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
-  Array<float> carried_, value_, ahead_, shown_;
+  Array<float> carried_, value_, shown_;
   Array<Float4> moments_;
 };
 

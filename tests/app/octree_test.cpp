@@ -72,6 +72,20 @@ TEST_F(OctreeWords, TheNeighbourIndexChangesNothingButTheTime) {
   EXPECT_EQ(content("walk.vtp"), content("index.vtp"));
 }
 
+TEST_F(OctreeWords, MemoryPerCellIsWhatWasPromised) {
+  for (const int ttl : {1, 2}) {
+    const Outcome run =
+        nacre({"flow", "--sample", "delta-wing", "--method", "octree", "--resolution", "512", "--steps", "1", "--quiet",
+               "--ttl", std::to_string(ttl), "--set", "warmup=0", "--report", path("r.json")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const json report = read_json("r.json");
+    const double cells = report["embedding"]["cells"];
+    EXPECT_LE(report["embedding"]["bytes"].get<double>() / cells, 24);
+    EXPECT_LE(report["flow"]["bytes"].get<double>() / cells, 8 + 8 * ttl);
+    EXPECT_GE(report["flow"]["bytes"].get<double>() / cells, 4 + 4 * ttl) << "the vectors alone take that";
+  }
+}
+
 #if !defined(__SANITIZE_ADDRESS__)
 TEST_F(OctreeWords, ABandThatDoesNotFitIsRefusedBeforeTheWork) {
   const Outcome run = nacre_limited("-v 2000000", {"flow", "--sample", "sphere", "--detail", "24", "--method", "octree",

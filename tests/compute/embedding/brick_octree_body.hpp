@@ -89,6 +89,7 @@ void Soups(Executor<Backend>& exec) {
   expect_octree(exec, soup(40, 6, 26, 6, 21), 2, 4.47, "large triangles");
   expect_octree(exec, soup(600, 6, 20, 0.7, 22), 2, 3.5, "small triangles");
   expect_octree(exec, soup(5000, 12, 16, 0.05, 25), 2, 4, "tiny triangles, hundreds in a cell");
+  expect_octree(exec, soup(2500, 8, 17, 0.3, 26), 2, 3, "some in every cell, more than the short lists hold");
   Mesh mixed = soup(300, 6, 20, 0.3, 23);
   mixed.add(soup(10, 6, 20, 7, 24));
   expect_octree(exec, mixed, 2, 4.47, "both");
