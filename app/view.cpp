@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/mesh_run.hpp"
 #include "app/picture_words.hpp"
 #include "app/run.hpp"
 #include "engine/picture/colormap.hpp"
@@ -27,7 +28,7 @@ namespace {
 struct ViewOptions {
   CommonOptions common;
   InputWords input;
-  std::string script, image, record, save_recording, out;
+  std::string script, image, record, save_recording, out, preset;
   int frames = 0;
   bool offscreen = false, live = false, panel = false, no_panel = false;
 };
@@ -37,6 +38,19 @@ struct ViewOptions {
 constexpr const char* welcome_sample = "torus";
 constexpr int welcome_detail = 128;      // reads in a moment
 constexpr int welcome_resolution = 512;  // and moves soon after
+
+bool is_scalar_phantom(const std::string& name) {
+  const std::vector<PhantomInfo> all = phantoms();
+  return std::any_of(all.begin(), all.end(), [&](const PhantomInfo& p) { return p.name == name && !p.labelled; });
+}
+
+/// As `nacre mesh` does, which knows the volume by then: here an iso-value says that it is a scalar one.
+void choose_source_kernel(const CommonOptions& common, const KnobOptions& knobs, Session& session) {
+  if (!is_mesh_input(session)) throw UsageError("--preset source is for volumes: its constants are those of meshing");
+  if (knobs.given("kernel", common.set)) return;
+  const bool scalar = !session.settings.materials.isovalue.empty() || is_scalar_phantom(session.sample);
+  session.settings.mesh.kernel = scalar ? "b-spline" : "catmull-rom";
+}
 
 /// A session is the state that it begins with; a script is played.
 Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
@@ -50,7 +64,9 @@ Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
   const bool own_resolution = !common.session.empty() || knobs.given("resolution", common.set);
   Session session = asked_session(common, words, knobs, "view", [&](Settings& settings) {
     if (!own_resolution) settings.flow.resolution = welcome_resolution;
+    if (options.preset == "source") apply_source_preset(settings);
   });
+  if (options.preset == "source") choose_source_kernel(options.common, knobs, session);
   if (options.script.empty()) return session;
   const Session script = read_session(options.script);
   if (script.events.empty() && script.duration == 0)
@@ -156,11 +172,18 @@ nlohmann::json view_report(const ViewerResult& result, const Session& session) {
   return report;
 }
 
-/// The last picture, the frames, the result, and what the session itself has written.
-std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerResult& result, FrameSink* record) {
+/// The last picture, the frames, the result, and what the session itself has written. `lost_video`: is told why there is
+/// none.
+std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerResult& result, FrameSink* record,
+                                       std::string& lost_video) {
   std::vector<std::string> outputs;
   for (const std::filesystem::path& file : result.pictures) outputs.push_back(file.string());
-  if (record) record->finish(), outputs.push_back(options.record);
+  if (record && lost_video.empty()) try {
+      record->finish();
+      outputs.push_back(options.record);
+    } catch (const Error& error) {
+      lost_video = error.what();
+    }
   if (!options.image.empty()) {
     if (result.image.pixels.empty()) throw Error("no frame was drawn", "", "keep the window open for longer");
     write_png(options.image, result.image);
@@ -196,9 +219,11 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.say = [&](const std::string& line) { say(options.common, line); };
   const ViewerResult result = run_viewer(viewer);
 
-  const std::vector<std::string> outputs = write_outputs(options, result, record.get());
+  std::string lost_video = result.lost_video;
+  const std::vector<std::string> outputs = write_outputs(options, result, record.get(), lost_video);
   write_report(options.common, view_report(result, viewer.session), outputs);
   print_outputs(outputs);
+  if (!lost_video.empty()) throw Error(lost_video);
 }
 
 #else
@@ -225,6 +250,8 @@ void add_view_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--save-recording", options->save_recording,
                       "write what was done, and when, to a session file for --script");
   command->add_option("--image", options->image, "write the last frame as PNG");
+  command->add_option("--preset", options->preset, "source: of a volume, the constants of the dissertation")
+      ->check(CLI::IsMember({"source"}));
   command->add_option("--out", options->out, "write the result at the end, as nacre flow and nacre mesh do");
   command
       ->add_option("--frames-count", options->frames,

@@ -5,13 +5,18 @@
 layout(location = 0) in uvec2 code;  // low and high half; bits x, y, z from the lowest
 uniform float width;                 // of a cube, in the model's units
 
-uint every_third_bit(uvec2 bits, uint axis) {
-  uint found = 0u;
-  for (uint k = 0u; k < 21u; ++k) {
-    uint at = 3u * k + axis;
-    found |= ((at < 32u ? bits.x >> at : bits.y >> (at - 32u)) & 1u) << k;
-  }
-  return found;
+// Bits 0, 3, .. 27 side by side.
+uint ten_bits(uint bits) {
+  bits &= 0x09249249u;
+  bits = (bits | bits >> 2) & 0x030c30c3u;
+  bits = (bits | bits >> 4) & 0x0300f00fu;
+  bits = (bits | bits >> 8) & 0x030000ffu;
+  return (bits | bits >> 16) & 0x3ffu;
+}
+
+uint every_third_bit(uvec2 bits, int axis) {
+  uint middle = bits.x >> 30 | bits.y << 2;
+  return ten_bits(bits.x >> axis) | ten_bits(middle >> axis) << 10 | (bits.y >> (28 + axis) & 1u) << 20;
 }
 #else
 layout(location = 0) in vec3 low;
@@ -22,7 +27,7 @@ out vec3 seen;
 
 void main() {
 #ifdef MORTON
-  vec3 low = vec3(every_third_bit(code, 0u), every_third_bit(code, 1u), every_third_bit(code, 2u)) * width;
+  vec3 low = vec3(every_third_bit(code, 0), every_third_bit(code, 1), every_third_bit(code, 2)) * width;
   vec3 high = low + width;
 #endif
   int edge = gl_VertexID / 2, axis = edge / 4;  // 4 edges along each axis

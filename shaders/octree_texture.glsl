@@ -1,10 +1,21 @@
-// The shown value at a place of the surface, from the brick octree: node, brick, layer, value (BrickOctreeView,
-// compute/embedding/brick_octree.hpp). LEVELS, level_start, fetch_node and fetch_layer are in the prelude.
+// The shown value at a place of the surface, from an octree. LEVELS, the tables and their fetches are in the prelude.
 uniform samplerBuffer shown;
 
 const uint nothing = 0xffffffffu;
 
-// A walk down from the root.
+#ifdef SOURCE_OCTREE
+// A walk from the root to a cell (SourceOctreeView, compute/embedding/source_octree.hpp).
+uint number_at(ivec3 cell) {
+  if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(8 << LEVELS)))) return nothing;
+  uint at = ROOT;
+  for (int shift = LEVELS + 2; shift >= 0 && at != nothing; --shift) {
+    ivec3 bit = cell >> shift & 1;
+    at = fetch_node(8u * at + uint(bit.x | bit.y << 1 | bit.z << 2));
+  }
+  return at;
+}
+#else
+// Node, brick, layer, value (BrickOctreeView, compute/embedding/brick_octree.hpp): a walk down from the root.
 uint brick_at(ivec3 b) {
   if (any(lessThan(b, ivec3(0))) || any(greaterThanEqual(b, ivec3(1 << LEVELS)))) return nothing;
   uint at = 0u;
@@ -31,18 +42,26 @@ uint cell_of(uint brick, ivec3 in_brick) {
   return fetch_layer(layer + 2u) + uint(bitCount(low) + bitCount(high & below));
 }
 
-// Linear among the surface cells around `place` (in texture cells); 1/2 where there is none.
+// The brick of the last cell is remembered.
+ivec3 last = ivec3(-1);
+uint brick = nothing;
+
+uint number_at(ivec3 cell) {
+  ivec3 in_bricks = cell >> 3;
+  if (in_bricks != last) brick = brick_at(in_bricks);
+  last = in_bricks;
+  return brick == nothing ? nothing : cell_of(brick, cell & 7);
+}
+#endif
+
+// Linear among the cells around `place` (in texture cells) that have a value; 1/2 where there is none.
 float shown_at(vec3 place) {
   vec3 corner = floor(place - 0.5);
   vec3 f = place - 0.5 - corner;
-  ivec3 first = ivec3(corner), last = ivec3(-1);
-  uint brick = nothing;
   float sum = 0.0, weight = 0.0;
   for (int k = 0; k < 8; ++k) {
-    ivec3 bit = ivec3(k & 1, k >> 1 & 1, k >> 2), cell = first + bit, in_bricks = cell >> 3;
-    if (in_bricks != last) brick = brick_at(in_bricks);
-    last = in_bricks;
-    uint number = brick == nothing ? nothing : cell_of(brick, cell & 7);
+    ivec3 bit = ivec3(k & 1, k >> 1 & 1, k >> 2);
+    uint number = number_at(ivec3(corner) + bit);
     if (number == nothing) continue;
     vec3 share = mix(1.0 - f, f, bvec3(bit));
     float w = share.x * share.y * share.z;

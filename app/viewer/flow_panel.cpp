@@ -27,6 +27,17 @@ Range range_of(const RangeEdit& edit) { return {edit.ends[0], edit.ends[1]}; }
 
 }  // namespace
 
+void FlowScene::data_panel(Session&) {
+  if (!tree_ || corners_.empty()) return;
+  Vec3d low = corners_.front(), high = low;
+  for (const Vec3d& p : corners_) low = min(low, p), high = max(high, p);
+  const Vec3d size = high - low;
+  ImGui::Separator();
+  text(fmt::format("{} triangles, {} points", tree_->triangles().size(), tree_->points().size()));
+  text(fmt::format("{:.4g} x {:.4g} x {:.4g} in the data's unit", size.x, size.y, size.z));
+  if (data_.time.high > data_.time.low) text(fmt::format("time {:.4g} to {:.4g}", data_.time.low, data_.time.high));
+}
+
 void FlowScene::result_panel(Session& session) {
   if (data_.array.empty()) return text("nothing read yet");
   ImGui::PushID("flow");                            // the rest of the panel has a "play", too

@@ -17,18 +17,20 @@ namespace {
 SurfaceTexture surface_texture(const FlowEmbedded& told) {
   const FlowLookup& l = told.lookup;
   if (l.kind == FlowLookup::Kind::grid) return SparseTexture(sparse_lookup(l), told.rimmed);
-  if (l.kind == FlowLookup::Kind::octree)
-    return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer});
-  return SparseTexture();
+  return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer, l.child});
 }
 
-constexpr const char* not_drawn =
-    "the source's octree is a yardstick: its texture is computed but not drawn; use --octree brick to see it";
+constexpr double least_box = 14;  ///< pixels: boxes that are smaller on the screen would cover it
+constexpr std::array<float, 4> box_colour{0.1f, 0.25f, 0.5f, 0.25f};
 
 }  // namespace
 
 FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
-    : lookup(surface_texture(told)), info(told.info), values(device, told.lookup.values * sizeof(float), GL_R32F) {}
+    : lookup(surface_texture(told)),
+      info(told.info),
+      boxes(told.boxes),
+      number(told.number),
+      values(device, told.lookup.values * sizeof(float), GL_R32F) {}
 
 FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool makes_way)
     : worker_(session, std::move(device), loop, makes_way), settings_(session.settings) {
@@ -102,20 +104,37 @@ Image FlowScene::overlay(int width, int height) {
 
 void FlowScene::advance(double now) {
   while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
+  ask_boxes();
   if (wants_step() && now - last_step_ >= 1.0 / settings_.fps && begin_step(false)) last_step_ = now;
 }
 
-void FlowScene::advance_and_wait(const std::atomic<bool>& stop) {
+bool FlowScene::advance_and_wait(const std::atomic<bool>& stop, double patience) {
   const std::uint64_t before = taken_;
   while (taken_ == before && !stop) {
     if (!failure_.empty()) throw Error(failure_);
-    if (worker_.ready() && !(wants_step() && begin_step(true))) return;
-    std::optional<FlowEvent> event = worker_.wait(stop);
+    const bool boxes_come = ask_boxes();
+    if (worker_.ready() && !(wants_step() && begin_step(true)) && !boxes_come) return true;
+    std::optional<FlowEvent> event = worker_.wait(stop, patience);
     if (event)
       take(*event);
     else if (!worker_.busy() && !worker_.ready())
-      return;  // cancelled
+      return true;  // cancelled
+    else if (patience < endless)
+      return false;
   }
+  return true;
+}
+
+/// Where boxes are wanted, they are written once for an embedding. True while they are on their way.
+bool FlowScene::ask_boxes() {
+  Texture* const texture = written();
+  if (!texture || !settings_.look.boxes || texture->boxes.count() == 0) return false;
+  if (!texture->codes) {
+    const std::size_t bytes = texture->boxes.count() * sizeof(std::uint64_t);
+    texture->codes = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RG32UI);
+    worker_.show_boxes(static_cast<std::uint64_t*>(texture->codes->begin_write(true)), texture->number);
+  }
+  return texture->codes->writing();
 }
 
 bool FlowScene::begin_step(bool wait) {
@@ -179,9 +198,13 @@ void FlowScene::take(FlowArrows& told) {
 }
 
 void FlowScene::take(FlowEmbedded& told) {
-  if (told.lookup.kind == FlowLookup::Kind::none) warnings_.push_back(not_drawn);
   next_ = std::make_unique<Texture>(told, worker_.device());
   failure_.clear();
+}
+
+void FlowScene::take(FlowBoxed& told) {
+  for (Texture* texture : {shown_.get(), next_.get()})
+    if (texture && texture->number == told.embedding) texture->codes->end_write(), texture->boxed = true;
 }
 
 void FlowScene::take(FlowStarted& told) {
@@ -194,7 +217,7 @@ void FlowScene::take(FlowStarted& told) {
 void FlowScene::take(FlowStepped& told) {
   written()->values.end_write();
   if (next_) {
-    if (shown_) copied_ += shown_->values.copied_bytes();
+    if (shown_) copied_ += shown_->copied_bytes();
     shown_ = std::move(next_);
     surface_pass_.set_texture(std::move(shown_->lookup));
   }
@@ -221,7 +244,20 @@ void FlowScene::draw(const View& view) {
   surface_pass_.draw(view, surface_, colours_, shown_ ? &shown_->values.texture() : nullptr);
   if (settings_.look.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.look.arrows) draw_arrows(view);
+  if (settings_.look.boxes && shown_ && shown_->boxed) draw_boxes(view);
   if (shown_) shown_->values.drawn();
+}
+
+/// Those of the finest level that is not too small to be told apart.
+void FlowScene::draw_boxes(const View& view) const {
+  const FlowBoxes& boxes = shown_->boxes;
+  std::size_t level = boxes.level_start.size() - 2;
+  double width = boxes.width;
+  for (; level > 0 && width * view.height / view.camera.height < least_box; --level) width *= 2;
+  const std::uint64_t first = boxes.level_start[level], last = boxes.level_start[level + 1];
+  box_pass_.draw_codes(view, place_grid(boxes.origin, width), shown_->codes->shown(), first, last - first, 1,
+                       box_colour);
+  shown_->codes->drawn();
 }
 
 /// As far as the reference speed goes at length 1.

@@ -32,13 +32,14 @@ class FlowScene : public Scene {
   FlowScene& operator=(const FlowScene&) = delete;
 
   void advance(double now) override;
-  void advance_and_wait(const std::atomic<bool>& stop) override;
+  bool advance_and_wait(const std::atomic<bool>& stop, double patience = endless) override;
   void set_settings(const Settings& settings) override;
   void cancel() override { worker_.cancel(); }
   void resume() override { worker_.resume(); }
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
   std::uint64_t overlay_version() const override { return look_version_ + time_version_; }
+  void data_panel(Session& session) override;
   void result_panel(Session& session) override;
   std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
@@ -54,20 +55,25 @@ class FlowScene : public Scene {
   const std::vector<std::string>& warnings() const override { return warnings_; }
   std::string remark() const override { return shown_ ? shown_->values.remark() : std::string(); }
   int steps() const override { return steps_; }
-  std::uint64_t copied_bytes() const override { return copied_ + (shown_ ? shown_->values.copied_bytes() : 0); }
+  std::uint64_t copied_bytes() const override { return copied_ + (shown_ ? shown_->copied_bytes() : 0); }
   StageTimers timers() const override { return worker_.timers(); }
   std::size_t peak_bytes() const override { return worker_.peak_bytes(); }
   const Device& device() const override { return worker_.device(); }
   void finish() override { worker_.finish(); }
 
  private:
-  /// A texture on the surface: how values are found, and the values.
+  /// A texture on the surface: how values are found, and the values; and the boxes that it lies in, where they are shown.
   struct Texture {
     SurfaceTexture lookup;
     EmbeddingInfo info;
+    FlowBoxes boxes;
+    int number;  ///< of the embedding
     SharedBuffer values;
+    std::unique_ptr<SharedBuffer> codes;  ///< of the boxes, once they have been asked for
+    bool boxed = false;                   ///< they are there
 
     Texture(const FlowEmbedded& told, Device& device);
+    std::uint64_t copied_bytes() const { return values.copied_bytes() + (codes ? codes->copied_bytes() : 0); }
   };
 
   void take(FlowEvent& event);
@@ -75,6 +81,7 @@ class FlowScene : public Scene {
   void take(FlowData& told);
   void take(FlowArrows& told);
   void take(FlowEmbedded& told);
+  void take(FlowBoxed& told);
   void take(FlowStarted& told);
   void take(FlowStepped& told);
   void take(FlowSampled& told) { sampled_ = told; }
@@ -82,11 +89,13 @@ class FlowScene : public Scene {
   void take(FlowFailed& told) { failure_ = std::move(told.what); }
   bool wants_step() const { return settings_.look.play || stale_; }
   bool begin_step(bool wait);
+  bool ask_boxes();
   Texture* written() const { return next_ ? next_.get() : shown_.get(); }
   void show_colours(const std::vector<float>& scalar);
   void find_range();
   FlowCaption caption() const;
   void draw_arrows(const View& view);
+  void draw_boxes(const View& view) const;
   void move_arrows();
   double arrow_spacing() const;
   std::vector<std::string> describe(const TriangleHit& hit);
@@ -101,6 +110,7 @@ class FlowScene : public Scene {
   SurfacePass surface_pass_;
   EdgePass edge_pass_;
   ArrowPass arrow_pass_;
+  BoxPass box_pass_;
   std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
   std::vector<Vec3d> corners_;
   std::shared_ptr<const TriangleTree> tree_;

@@ -104,11 +104,12 @@ void FlowWorker::place_arrows() {
 
 void FlowWorker::embed() {
   has_values_ = false;
+  ++embeddings_;
   pipeline_->parameters = settings_.flow;
   const PreparedSurface& surface = vectors_->surface();
   pipeline_->embed({surface.points, surface.triangles, surface.corner_normals});
   take_timers();
-  FlowEmbedded told{pipeline_->lookup(), {}, pipeline_->embedding()};
+  FlowEmbedded told{pipeline_->lookup(), {}, pipeline_->embedding(), pipeline_->boxes(), embeddings_};
   if (told.lookup.kind == FlowLookup::Kind::grid) told.rimmed = with_rims(sparse_lookup(told.lookup));
   tell(std::move(told));
 }
@@ -155,6 +156,12 @@ void FlowWorker::make_step() {
 
 void FlowWorker::answer_sample(const Vec3d& place) {
   if (has_values_) tell(FlowSampled{place, pipeline_->sample_shown({&place, 1}).front()});
+}
+
+void FlowWorker::write_boxes(std::uint64_t* memory, int embedding) {
+  if (embedding != embeddings_) return;
+  pipeline_->show_boxes(memory);
+  tell(FlowBoxed{embedding});
 }
 
 double FlowWorker::wrapped(double time) const {

@@ -28,8 +28,8 @@ FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loo
 
 FlowWorker::~FlowWorker() { finish(); }
 
-std::optional<FlowEvent> FlowWorker::wait(const std::atomic<bool>& stop) {
-  return wait_while([this] { return working_ || has_work(); }, stop);
+std::optional<FlowEvent> FlowWorker::wait(const std::atomic<bool>& stop, double patience) {
+  return wait_while([this] { return working_ || has_work(); }, stop, patience);
 }
 
 bool FlowWorker::ready() const {
@@ -96,6 +96,14 @@ void FlowWorker::sample(const Vec3d& place) {
   wake_.notify_all();
 }
 
+void FlowWorker::show_boxes(std::uint64_t* memory, int embedding) {
+  {
+    std::scoped_lock lock(mutex_);
+    boxes_ = {memory, embedding};
+  }
+  wake_.notify_all();
+}
+
 void FlowWorker::write(const std::filesystem::path& file) {
   std::promise<void> done;
   {
@@ -147,7 +155,7 @@ std::optional<FlowStage> FlowWorker::next() const {
   return {};
 }
 
-bool FlowWorker::has_work() const { return next() || errand_ || sample_ || step_; }
+bool FlowWorker::has_work() const { return next() || errand_ || sample_ || boxes_ || step_; }
 
 void FlowWorker::run() {
   if (makes_way_) make_way();
@@ -158,12 +166,14 @@ void FlowWorker::run() {
     working_ = true;
     if (const std::optional<FlowStage> stage = next()) {
       perform(*stage, lock);
-    } else if (errand_ || sample_) {
+    } else if (errand_ || sample_ || boxes_) {
       const auto errand = std::exchange(errand_, nullptr);
       const auto place = std::exchange(sample_, {});
+      const auto boxes = std::exchange(boxes_, {});
       lock.unlock();
       if (errand) errand();
       if (place) answer_sample(*place);
+      if (boxes) write_boxes(boxes->first, boxes->second);
       take_timers();
       lock.lock();
     } else {

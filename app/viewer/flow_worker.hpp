@@ -58,6 +58,13 @@ struct FlowEmbedded {
   FlowLookup lookup;
   std::vector<std::uint32_t> rimmed;  ///< of a grid: its texels with_rims
   EmbeddingInfo info;
+  FlowBoxes boxes;
+  int number = 0;  ///< larger than that of all before
+};
+
+/// The boxes of that embedding are in the memory that was given for them.
+struct FlowBoxed {
+  int embedding = 0;
 };
 
 /// The first values can be asked for.
@@ -87,8 +94,8 @@ struct FlowFailed {
   std::string what;
 };
 
-using FlowEvent = std::variant<SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowStarted, FlowStepped, FlowSampled,
-                               FlowInterrupted, FlowFailed>;
+using FlowEvent = std::variant<SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowStarted, FlowStepped,
+                               FlowSampled, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
@@ -107,8 +114,9 @@ class FlowWorker : public Worker<FlowEvent> {
   Device& device() { return *device_; }
   const Device& device() const { return *device_; }
 
-  /// `poll`, but waits for an event. None where the worker has nothing to do. Gives up when `stop` is set.
-  std::optional<FlowEvent> wait(const std::atomic<bool>& stop);
+  /// `poll`, but waits for an event. None where the worker has nothing to do. Gives up when `stop` is set, or after
+  /// `patience` seconds.
+  std::optional<FlowEvent> wait(const std::atomic<bool>& stop, double patience = endless);
 
   /// May `step` be called? Not before FlowStarted, not before the last step's event, and not while knobs are taken over.
   bool ready() const;
@@ -126,6 +134,9 @@ class FlowWorker : public Worker<FlowEvent> {
 
   /// Asks for the shown value at a place of the surface; FlowSampled answers. Only the last one that was asked counts.
   void sample(const Vec3d& place);
+  /// Asks for the boxes of an embedding in `memory` of the device; FlowBoxed answers. Memory for one that has been
+  /// followed by another is not touched.
+  void show_boxes(std::uint64_t* memory, int embedding);
   /// Writes the values as `nacre flow --out` does, after what goes on. Waits. Throws Error.
   void write(const std::filesystem::path& file);
 
@@ -151,6 +162,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void start();
   void make_step();
   void answer_sample(const Vec3d& place);
+  void write_boxes(std::uint64_t* memory, int embedding);
   void take_timers();
   double wrapped(double time) const;
   std::vector<float> scalar(double time);
@@ -169,12 +181,14 @@ class FlowWorker : public Worker<FlowEvent> {
   double shown_time_ = 0;
   bool has_values_ = false;
   float* memory_ = nullptr;  ///< of the step that it makes
+  int embeddings_ = 0;       ///< begun so far
 
   // Guarded by the mutex.
   FlowRerun due_;
   std::optional<FlowStage> doing_;
   std::optional<float*> step_;  ///< is to be made, into this memory
   std::optional<Vec3d> sample_;
+  std::optional<std::pair<std::uint64_t*, int>> boxes_;  ///< where to, and of which embedding
   std::function<void()> errand_;
   bool started_ = false, failed_ = false, cancelled_ = false, working_ = false;
   Settings wanted_;

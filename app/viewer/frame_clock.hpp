@@ -1,11 +1,27 @@
-// Nacre: the last frames' times.
+// Nacre: the machine's time, and the last frames'.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
+#include <thread>
 
 namespace nacre {
+
+/// Seconds on the machine's clock.
+inline double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+inline constexpr double shortest_frame = 1.0 / 60;  ///< seconds, of one that nobody waits for
+
+/// Sleeps until `seconds` after `begin`: a display without vertical synchronisation, or none at all, shall not cost
+/// compute its cores.
+inline void rest(double begin, double seconds) {
+  const double left = seconds - (now() - begin);
+  if (left > 0) std::this_thread::sleep_for(std::chrono::duration<double>(left));
+}
 
 class FrameClock {
  public:

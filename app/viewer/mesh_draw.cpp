@@ -10,6 +10,7 @@
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
 #include "engine/picture/material_colours.hpp"
+#include "engine/scene/ranges.hpp"
 
 namespace nacre {
 namespace {
@@ -112,12 +113,30 @@ void MeshScene::update_slice() {
   worker_.ask_slice(request_);
 }
 
+/// The knob's where that means something, else nearly all of the values.
+std::array<double, 2> MeshScene::volume_range() {
+  const ValueSpread& spread = results_.volume->spread;
+  if (!settings_.look.slice_range.empty()) try {
+      const auto [low, high] = parse_pair(settings_.look.slice_range, ':', "slice_range");
+      if (low < high) return {low, high};
+      warn_once(fmt::format("slice_range {} holds nothing", settings_.look.slice_range));
+    } catch (const Error& error) {
+      warn_once(error.what());
+    }
+  return {spread.low, spread.high};
+}
+
+/// Values of a volume are gray, as scanners show them; fields have the colours that were chosen.
+const Colormap& MeshScene::slice_map() const {
+  return colormap(settings_.look.slice_field == "volume" ? "gray" : settings_.colormap);
+}
+
 void MeshScene::show_volume_slice(int axis, double at) {
   const ViewedVolume& volume = *results_.volume;
   const SlicePlane plane = slice_plane(volume.input, axis, at);
   slice_values_ = volume.input.kind == MeshVolume::Kind::scalar;
-  slice_range_ = {volume.low, volume.high};
-  slice_pass_.set_image(volume_slice(volume, plane, colormap(settings_.colormap)), slice_values_);
+  slice_range_ = volume_range();
+  slice_pass_.set_image(volume_slice(volume, plane, slice_map(), slice_range_[0], slice_range_[1]), slice_values_);
   slice_pass_.set_place(plane.corner, plane.across, plane.up);
 }
 
@@ -224,7 +243,7 @@ Image MeshScene::overlay(int width, int height) {
     const std::array<double, 2> range = by_energy ? energy_range(settings_.mesh) : size_range();
     draw_legend(image, map, range[0], range[1], by_energy ? "energy / ideal" : "size, voxels");
   } else if (slice_axis(settings_.look) >= 0 && slice_values_) {
-    draw_legend(image, map, slice_range_[0], slice_range_[1], settings_.look.slice_field);
+    draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], settings_.look.slice_field);
   }
   return image;
 }

@@ -193,13 +193,14 @@ std::string material_name(const MeshInput& input, std::size_t m) {
 
 void draw_mesh_results(const MeshResults& results, Session& session) {
   if (!results.volume) return;
-  particle_figures(results);
-  if (results.measures) {
-    quality_figures(*results.measures);
-    topology_figures(results.measures->topology);
-  }
+  const bool measured = results.measures && results.mesh;
+  if (!measured) particle_figures(results);
   materials_table(results, session.settings.look);
-  if (results.measures && results.mesh) worst_list(results, session);
+  if (!measured) return;
+  quality_figures(*results.measures);
+  worst_list(results, session);
+  topology_figures(results.measures->topology);
+  particle_figures(results);
 }
 
 }  // namespace nacre

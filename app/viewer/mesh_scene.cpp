@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/viewer/volume_facts.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/mesh_writer.hpp"
 #include "engine/picture/colormap.hpp"
@@ -54,8 +55,13 @@ void MeshScene::set_settings(const Settings& settings) {
   if (a.hidden != b.hidden || a.ghosts != b.ghosts) update_looks();
   if (a.worst != b.worst) update_worst();
   if (a.slice != b.slice || a.slice_at != b.slice_at || a.slice_field != b.slice_field ||
-      before.colormap != settings_.colormap)
+      a.slice_range != b.slice_range || before.colormap != settings_.colormap)
     update_slice();
+}
+
+void MeshScene::settle_knobs(Session& session) {
+  const std::string proposal = std::exchange(proposal_, {});
+  if (!proposal.empty()) session.settings.materials.isovalue = proposal;
 }
 
 void MeshScene::resume() {
@@ -69,19 +75,25 @@ void MeshScene::advance(double) {
   lend(false);
 }
 
-void MeshScene::advance_and_wait(const std::atomic<bool>& stop) {
+void MeshScene::set_lockstep(bool lockstep) {
+  lockstep_ = lockstep;
+  worker_.set_lockstep(lockstep);
+}
+
+bool MeshScene::advance_and_wait(const std::atomic<bool>& stop, double patience) {
   const int before = steps_;
   bool shown = false;
   worker_.grant_turn();
   while (!stop) {
     if (!failure_.empty()) throw Error(failure_);
     lend(true);
-    if (shown && !worker_.slice_comes()) return;
-    std::optional<MeshEvent> event = worker_.wait(stop);
-    if (!event) return;
+    if (shown && !worker_.slice_comes()) return true;
+    std::optional<MeshEvent> event = worker_.wait(stop, patience);
+    if (!event) return shown || !worker_.busy();
     take(*event);
     shown = shown || steps_ > before || std::holds_alternative<MeshTriangulated>(*event);
   }
+  return true;
 }
 
 /// Gives the worker the halves of the buffers that no frame reads.
@@ -252,6 +264,10 @@ SceneProgress MeshScene::progress() const {
   const MeshProgress p = worker_.progress();
   if (p.stage.empty()) return {};
   return {p.iteration > 0 ? fmt::format("{} {}", p.stage, p.iteration) : std::string(p.stage), p.fraction};
+}
+
+void MeshScene::data_panel(Session& session) {
+  if (results_.volume) draw_volume_facts(*results_.volume, session);
 }
 
 void MeshScene::result_panel(Session& session) { draw_mesh_results(results_, session); }

@@ -28,14 +28,17 @@ class MeshScene : public Scene {
   MeshScene& operator=(const MeshScene&) = delete;
 
   void advance(double now) override;
-  void advance_and_wait(const std::atomic<bool>& stop) override;
+  bool advance_and_wait(const std::atomic<bool>& stop, double patience = endless) override;
+  void set_lockstep(bool lockstep) override;
   void set_settings(const Settings& settings) override;
   void cancel() override { worker_.cancel(); }
   void resume() override;
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
   std::uint64_t overlay_version() const override;
+  void data_panel(Session& session) override;
   void result_panel(Session& session) override;
+  void settle_knobs(Session& session) override;
   std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
   std::vector<std::string> result_formats() const override;
@@ -58,6 +61,7 @@ class MeshScene : public Scene {
 
  private:
   void take(MeshEvent& event);
+  void take(IsovalueProposed& told) { proposal_ = std::move(told.isovalue); }
   void take(VolumeRead& told);
   void take(RelaxBegun& told);
   void take(MeshIterated& told);
@@ -74,6 +78,8 @@ class MeshScene : public Scene {
   void update_worst();
   void update_slice();
   void show_volume_slice(int axis, double at);
+  std::array<double, 2> volume_range();
+  const Colormap& slice_map() const;
   std::array<double, 2> slice_range(const std::vector<float>& values, MeshField field);
   void draw_particles(const View& view) const;
   void draw_triangles(const View& view) const;
@@ -85,7 +91,7 @@ class MeshScene : public Scene {
   void describe_hit(Probed& probed, const TriangleHit& hit) const;
 
   MeshWorker worker_;  // before what it writes to, whose device it owns
-  const bool lockstep_;
+  bool lockstep_;
   const std::atomic<bool>* stop_;
   Settings settings_;
   MeshResults results_;
@@ -93,6 +99,7 @@ class MeshScene : public Scene {
   std::vector<Vec3d> corners_;
   std::vector<std::string> warnings_;
   std::string failure_;
+  std::string proposal_;                ///< an iso-value that the session shall take over
   std::optional<std::string> written_;  ///< how the writing that was asked for went
 
   // Particles and boxes, which the worker writes.

@@ -1,4 +1,6 @@
 // Nacre: the mesh pipeline on a thread of its own: what its stages do.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -6,6 +8,7 @@
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
 #include "engine/io/mesh_writer.hpp"
+#include "engine/scene/materials.hpp"
 
 namespace nacre {
 namespace {
@@ -39,18 +42,33 @@ void MeshWorker::choose_materials() {
   MeshVolume volume;
   {
     StageTimers::Scope scope(pipeline_->timers(), "classify");
-    volume = make_materials(*volumes_, !session_.sample.empty(), words, viewed->input);
-    if (volume.kind == MeshVolume::Kind::scalar) {
-      const VolumeStatistics statistics = volume_statistics(volumes_->front());
-      viewed->low = statistics.min;
-      viewed->high = statistics.max;
-    }
+    volume = materials_of(words, viewed->input);
+    if (volume.kind == MeshVolume::Kind::scalar) viewed->spread = spread_of(volumes_->front());
   }
   pipeline_->load(volume);
   viewed->volumes = volumes_;
   viewed->material = std::move(volume.material);
   viewed_ = std::move(viewed);
   tell(VolumeRead{viewed_, viewed_->corners(), pipeline_->voxel_frame()});
+}
+
+/// Who sits before a live view sees something first, and moves the iso-value then; a replay is told exactly.
+MeshVolume MeshWorker::materials_of(MaterialWords words, MeshInput& input) {
+  const bool sample = !session_.sample.empty();
+  std::string proposal;
+  try {
+    return make_materials(*volumes_, sample, words, input);
+  } catch (const MissingIsovalue& missing) {
+    std::scoped_lock lock(mutex_);
+    if (lockstep_) throw;
+    proposal = fmt::format("{:.4g}", missing.proposal());
+    wanted_.materials.isovalue = words.isovalue = proposal;
+  }
+  MeshVolume volume = make_materials(*volumes_, sample, words, input);
+  input.warnings.push_back(fmt::format(
+      "{} is no label map: it was cut at the iso-value {}, which the tab 'data' changes", input.name, proposal));
+  tell(IsovalueProposed{proposal});
+  return volume;
 }
 
 void MeshWorker::build_fields() { pipeline_->build_fields(); }

@@ -36,9 +36,9 @@ MeshWorker::MeshWorker(Session session, std::unique_ptr<Device> device, bool loc
     : session_(std::move(session)),
       device_(std::move(device)),
       pipeline_(make_mesh_pipeline(*device_)),
-      lockstep_(lockstep),
       makes_way_(makes_way),
-      wanted_(session_.settings) {
+      wanted_(session_.settings),
+      lockstep_(lockstep) {
   pipeline_->watch(&interrupt_);
   pipeline_->progress = [this](const MeshProgress& progress) { note_progress(progress); };
   thread_ = std::thread([this] { run(); });
@@ -46,8 +46,16 @@ MeshWorker::MeshWorker(Session session, std::unique_ptr<Device> device, bool loc
 
 MeshWorker::~MeshWorker() { finish(); }
 
-std::optional<MeshEvent> MeshWorker::wait(const std::atomic<bool>& stop) {
-  return wait_while([this] { return at_work_ || due() != Task::none; }, stop);
+std::optional<MeshEvent> MeshWorker::wait(const std::atomic<bool>& stop, double patience) {
+  return wait_while([this] { return at_work_ || due() != Task::none; }, stop, patience);
+}
+
+void MeshWorker::set_lockstep(bool lockstep) {
+  {
+    std::scoped_lock lock(mutex_);
+    lockstep_ = lockstep;
+  }
+  wake_.notify_all();
 }
 
 void MeshWorker::grant_turn(bool all) {

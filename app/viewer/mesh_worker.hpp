@@ -30,6 +30,11 @@ MeshStage mesh_restart(const Settings& before, const Settings& after);
 
 // What the worker tells, in this order; after a change of knobs again from where it has to begin.
 
+/// The volume is no label map, and no iso-value was given: this one was chosen.
+struct IsovalueProposed {
+  std::string isovalue;
+};
+
 /// The volume is read, and its materials are known.
 struct VolumeRead {
   std::shared_ptr<const ViewedVolume> volume;
@@ -84,8 +89,8 @@ struct MeshFailed {
   std::string what;
 };
 
-using MeshEvent = std::variant<VolumeRead, RelaxBegun, MeshIterated, MeshTriangulated, MeshMeasured, SliceFilled,
-                               MeshWritten, MeshFailed>;
+using MeshEvent = std::variant<IsovalueProposed, VolumeRead, RelaxBegun, MeshIterated, MeshTriangulated, MeshMeasured,
+                               SliceFilled, MeshWritten, MeshFailed>;
 
 /// Memory of the device that the renderer does not read, to be filled with particles and boxes.
 struct LentMemory {
@@ -113,9 +118,11 @@ class MeshWorker : public Worker<MeshEvent> {
   Device& device() { return *device_; }
   const Device& device() const { return *device_; }
 
-  /// `poll`, but waits for an event. None where the worker has nothing to do. Gives up when `stop` is set.
-  std::optional<MeshEvent> wait(const std::atomic<bool>& stop);
+  /// `poll`, but waits for an event. None where the worker has nothing to do. Gives up when `stop` is set, or after
+  /// `patience` seconds.
+  std::optional<MeshEvent> wait(const std::atomic<bool>& stop, double patience = endless);
 
+  void set_lockstep(bool lockstep);
   /// In lockstep: one more iteration may be told; `all`: all that follow.
   void grant_turn(bool all = false);
   /// Gives memory for the next iteration that is to be shown. It is filled before the MeshIterated with `shown`, once.
@@ -157,6 +164,7 @@ class MeshWorker : public Worker<MeshEvent> {
   std::optional<std::string> failure_of(const std::function<void()>& work);
   void read();
   void choose_materials();
+  MeshVolume materials_of(MaterialWords words, MeshInput& input);
   void build_fields();
   void relax();
   void triangulate();
@@ -171,7 +179,7 @@ class MeshWorker : public Worker<MeshEvent> {
   Session session_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<MeshPipeline> pipeline_;
-  const bool lockstep_, makes_way_;
+  const bool makes_way_;
 
   // The worker's own.
   std::shared_ptr<const std::vector<Volume>> volumes_;
@@ -186,6 +194,7 @@ class MeshWorker : public Worker<MeshEvent> {
   bool at_work_ = false, cancelled_ = false, failed_ = false;
   bool fields_ = false;   ///< can be asked
   bool unshown_ = false;  ///< the particles have changed since they were shown
+  bool lockstep_;
   int turns_ = 0;
   bool all_turns_ = false;
   int lease_ = 0;

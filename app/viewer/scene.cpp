@@ -1,6 +1,12 @@
-// Nacre: which scene an input belongs to.
+// Nacre: which scene an input belongs to, and what it can be written as.
 #include "app/viewer/scene.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "compute/device/error.hpp"
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/phantoms.hpp"
 
@@ -8,6 +14,13 @@ namespace nacre {
 
 bool is_mesh_input(const SessionInput& input) {
   return input.inputs.empty() ? is_phantom(input.sample) : is_volume_file(input.inputs.front());
+}
+
+void require_format(const Scene& scene, const std::filesystem::path& file) {
+  const std::vector<std::string> formats = scene.result_formats();
+  if (std::find(formats.begin(), formats.end(), file.extension()) == formats.end())
+    throw Error(fmt::format("cannot write {}", file.string()), "its extension says no format of this result",
+                fmt::format("use one of {}", fmt::join(formats, " ")));
 }
 
 }  // namespace nacre

@@ -37,8 +37,11 @@ class Scene {
   /// Takes what the worker has told, and asks for what is due at time `now` (seconds). Never waits.
   virtual void advance(double now) = 0;
   /// The same for replays: waits until there is one more thing to show: a step of the flow, an iteration of the particles.
-  /// Returns at once where the work is done and nothing more will come. Throws Error where a stage fails.
-  virtual void advance_and_wait(const std::atomic<bool>& stop) = 0;
+  /// Returns at once where the work is done and nothing more will come. False where `patience` (seconds) was over
+  /// before that: the same frame is still to be made. Throws Error where a stage fails.
+  virtual bool advance_and_wait(const std::atomic<bool>& stop, double patience) = 0;
+  /// Waits for frames from now on, as SceneOptions::lockstep.
+  virtual void set_lockstep(bool) {}
 
   /// Takes knobs over. What they do not concern goes on; what they do begins again from there.
   virtual void set_settings(const Settings& settings) = 0;
@@ -51,6 +54,10 @@ class Scene {
   virtual Image overlay(int width, int height) = 0;
   virtual std::uint64_t overlay_version() const = 0;
 
+  /// Takes over into the session what the data have decided and the user had left open.
+  virtual void settle_knobs(Session&) {}
+  /// The job's own part of the tab "data": what the data are.
+  virtual void data_panel(Session& session) = 0;
   /// The job's own part of the tab "result", made with Dear ImGui: measures, histogram, worst triangles. May change the
   /// session: knobs of the look, the camera.
   virtual void result_panel(Session& session) = 0;
@@ -92,6 +99,9 @@ struct SceneOptions {
 
 std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options);
 std::unique_ptr<Scene> make_mesh_scene(const Session& session, const SceneOptions& options);
+
+/// Throws Error where the scene cannot write a result of the file's extension.
+void require_format(const Scene& scene, const std::filesystem::path& file);
 
 /// Is the input a volume, to be meshed? Else it is a surface with a flow.
 bool is_mesh_input(const SessionInput& input);

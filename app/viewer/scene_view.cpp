@@ -17,11 +17,11 @@ double radius_of(std::span<const Vec3d> points) {
 
 }  // namespace
 
-View scene_view(const Session& session, std::span<const Vec3d> corners, std::size_t frame, int width, int height) {
+View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height) {
   const Settings& settings = session.settings;
   const Look& look = settings.look;
   View view;
-  view.camera = orbit(session.camera.value_or(Camera()), settings.orbit * double(frame));
+  view.camera = orbit(session.camera.value_or(Camera()), turned);
   view.width = width;
   view.height = height;
   view.light = turned_light(flow_light(view.camera), view.camera, look.light_azimuth, look.light_height);

@@ -9,8 +9,9 @@
 
 namespace nacre {
 
-/// Camera, light and clip plane of frame number `frame`, for a scene with these `corners` (world) on width x height pixels.
-View scene_view(const Session& session, std::span<const Vec3d> corners, std::size_t frame, int width, int height);
+/// Camera (`turned` by so many degrees by the knob `orbit`), light and clip plane, for a scene with these `corners`
+/// (world) on width x height pixels.
+View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height);
 
 /// Behind the scene, encoded.
 std::array<float, 4> background_of(const Settings& settings);

@@ -54,7 +54,9 @@ void timings_tab(const Scene& scene, const UiFacts& facts) {
   text(fmt::format("{:.1f} frames/s, {:.1f} ms drawing", frame > 0 ? 1 / frame : 0, 1e3 * frame));
   const std::array<float, 120> history = facts.clock.milliseconds();
   const float top = std::max(20.0f, *std::max_element(history.begin(), history.end()));
-  ImGui::PlotLines("##frames", history.data(), int(history.size()), 0, nullptr, 0, top,
+  const std::string slowest =
+      fmt::format("the last {}: {:.0f} ms at most", history.size(), *std::max_element(history.begin(), history.end()));
+  ImGui::PlotLines("##frames", history.data(), int(history.size()), 0, slowest.c_str(), 0, top,
                    ImVec2(ImGui::GetContentRegionAvail().x, 3 * ImGui::GetFontSize()));
   stage_table(scene.timers());
   ImGui::Spacing();
@@ -78,7 +80,7 @@ void sample_choice(Session& session) {
   ImGui::EndCombo();
 }
 
-void data_tab(Session& session, const Scene& scene) {
+void data_tab(Session& session, Scene& scene) {
   Settings& settings = session.settings;
   sample_choice(session);
   if (!session.sample.empty()) {
@@ -94,6 +96,7 @@ void data_tab(Session& session, const Scene& scene) {
   } else {
     for (const char* name : {"vectors", "color", "colormap"}) knob_widget(settings, name);
   }
+  scene.data_panel(session);
   for (const std::string& warning : scene.warnings()) ImGui::TextWrapped("! %s", warning.c_str());
 }
 
@@ -104,9 +107,9 @@ void look_tab(Session& session) {
   };
   if (is_mesh_input(session))
     several({"triangles", "edges", "show_particles", "particle_color", "curves", "boxes", "hidden", "ghosts", "worst",
-             "slice", "slice_at", "slice_field"});
+             "slice", "slice_at", "slice_field", "slice_range"});
   else
-    several({"play", "fps", "contrast", "edges", "arrows", "arrow_count", "arrow_length"});
+    several({"play", "fps", "contrast", "edges", "boxes", "arrows", "arrow_count", "arrow_length"});
   if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back"});
   if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
   if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
@@ -209,12 +212,12 @@ void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
   ImGui::End();
 }
 
-void Ui::probe_window(Session& session, Scene& scene, const FreeArea& area) {
+void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) {
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.WantCaptureMouse || !session.camera || !ImGui::IsMousePosValid()) return;
+  if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
   if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return;
   const auto [x, y] = place_in(area, io.MousePos.x, io.MousePos.y);
-  const auto [from, along] = ray_under(*session.camera, x, y, area.aspect());
+  const auto [from, along] = ray_under(camera, x, y, area.aspect());
   const std::optional<Probed> probed = scene.probe(from, along);
   if (!probed) return;
   ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y + area.height) - 8), ImGuiCond_Always, ImVec2(0, 1));
@@ -226,15 +229,32 @@ void Ui::probe_window(Session& session, Scene& scene, const FreeArea& area) {
   ImGui::End();
 }
 
+void Ui::complaint_window(const FreeArea& area) {
+  if (complaint_.empty()) return;
+  const float width = std::min(36 * ImGui::GetFontSize(), 0.9f * float(area.width));
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 0.5f * float(area.width), float(area.y) + ImGui::GetFontSize()),
+                          ImGuiCond_Always, ImVec2(0.5f, 0));
+  ImGui::SetNextWindowSize(ImVec2(width, 0));
+  bool open = true;
+  if (ImGui::Begin("this did not work", &open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse)) {
+    ImGui::TextWrapped("%s", complaint_.c_str());
+    if (ImGui::Button("close")) open = false;
+  }
+  ImGui::End();
+  if (!open) complaint_.clear();
+}
+
 Wishes Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   Wishes wishes;
   use_keys(session, scene, facts, wishes);
+  const FreeArea area = free_area(session.settings.look, facts.width, facts.height);
   if (session.settings.look.panel) {
     menus(session, scene, facts, wishes);
     panel(session, scene, facts);
     status(scene, facts, wishes);
-    probe_window(session, scene, free_area(session.settings.look, facts.width, facts.height));
+    if (session.camera) probe_window(scene, facts.camera, area);
   }
+  complaint_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, wishes);
   help_windows(facts);
   screenshot_window(facts);

@@ -24,6 +24,7 @@ struct UiFacts {
   bool recording = false;  ///< of what the user does
   bool filming = false;    ///< every frame goes to a video
   int width = 0, height = 0;
+  Camera camera;               ///< of what is seen
   std::vector<KeyPress> keys;  ///< since the last frame
 };
 
@@ -48,6 +49,8 @@ class Ui {
 
   /// A line at the bottom for some seconds: something was saved, or did not work.
   void tell(const std::string& line);
+  /// Something went wrong: in a window of its own, panel or not, until that is closed.
+  void complain(const std::string& line) { complaint_ = line; }
 
  private:
   using Then = std::function<void(const std::vector<std::filesystem::path>& files, Session& session, Wishes& wishes)>;
@@ -62,7 +65,8 @@ class Ui {
   void knob_tab(Session& session);
   void status(Scene& scene, const UiFacts& facts, Wishes& wishes);
   void screenshot_window(const UiFacts& facts);
-  void probe_window(Session& session, Scene& scene, const FreeArea& area);
+  void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
+  void complaint_window(const FreeArea& area);
   void help_windows(const UiFacts& facts);
   void ask_open();
   void ask_result(Scene& scene);
@@ -75,7 +79,7 @@ class Ui {
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
-  std::string filter_, told_, drawn_tab_;
+  std::string filter_, told_, complaint_, drawn_tab_;
   double told_until_ = 0;
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 
 #include "engine/picture/material_colours.hpp"
@@ -36,6 +37,45 @@ const Color& mapped(const Colormap& map, double value, double low, double high) 
 }
 
 }  // namespace
+
+ValueSpread spread_of(const Volume& volume) {
+  constexpr std::size_t bins = 8192;  // a CT's values are whole, and some thousands
+  constexpr double beyond = 0.005;    // on either side
+  const VolumeStatistics statistics = volume_statistics(volume);
+  ValueSpread spread;
+  spread.min = spread.low = statistics.min;
+  spread.max = spread.high = statistics.max;
+  const double range = spread.max - spread.min;
+  if (!(range > 0)) return spread;
+  std::vector<std::size_t> count(bins, 0);
+  std::size_t total = 0;
+  std::visit(
+      [&](const auto& values) {
+        for (const auto v : values) {
+          if (!std::isfinite(double(v))) continue;
+          ++count[std::min(bins - 1, std::size_t((double(v) - spread.min) / range * bins))], ++total;
+        }
+      },
+      volume.values);
+  const auto bin_below = [&](double share) {
+    std::size_t sum = 0, bin = 0;
+    while (bin + 1 < bins && double(sum + count[bin]) <= share * double(total)) sum += count[bin++];
+    return bin;
+  };
+  const std::size_t first = bin_below(beyond), last = bin_below(1 - beyond);
+  if (last > first) {
+    spread.low = spread.min + range * double(first) / bins;
+    spread.high = spread.min + range * double(last + 1) / bins;
+  }
+  std::array<double, std::tuple_size_v<decltype(spread.histogram)>> voxels{};
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const double value = spread.min + range * (double(bin) + 0.5) / bins;
+    const double share = (value - spread.low) / (spread.high - spread.low);
+    if (share >= 0 && share < 1) voxels[std::size_t(share * double(voxels.size()))] += double(count[bin]);
+  }
+  for (std::size_t k = 0; k < voxels.size(); ++k) spread.histogram[k] = float(std::sqrt(voxels[k]));
+  return spread;
+}
 
 Vec3d ViewedVolume::to_world(const Vec3d& voxel) const {
   Vec3d p = input.origin;
@@ -111,7 +151,7 @@ SlicePlane slice_plane(const MeshInput& input, int axis, double at) {
 
 int slice_axis(const Look& look) { return look.slice == "x" ? 0 : look.slice == "y" ? 1 : look.slice == "z" ? 2 : -1; }
 
-Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colormap& map) {
+Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colormap& map, double low, double high) {
   Image image(plane.width, plane.height);
   const std::size_t stride[] = {1, std::size_t(v.input.dims.x), std::size_t(v.input.dims.x) * v.input.dims.y};
   std::size_t first = 0;
@@ -126,7 +166,7 @@ Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colorma
     std::visit(
         [&](const auto& values) {
           each([&](std::size_t i) -> const Color& {
-            return std::isnan(double(values[i])) ? outside_colour : mapped(map, double(values[i]), v.low, v.high);
+            return std::isnan(double(values[i])) ? outside_colour : mapped(map, double(values[i]), low, high);
           });
         },
         v.volumes->front().values);

@@ -15,12 +15,21 @@
 
 namespace nacre {
 
+/// How the values of a scalar volume are spread.
+struct ValueSpread {
+  double min = 0, max = 1;               ///< of all
+  double low = 0, high = 1;              ///< nearly all lie between; what is beyond would cost the rest its contrast
+  std::array<float, 96> histogram = {};  ///< from low to high: the root of the number of voxels
+};
+
+ValueSpread spread_of(const Volume& volume);
+
 /// Never changes once it is made: threads share it.
 struct ViewedVolume {
   MeshInput input;
   std::shared_ptr<const std::vector<Volume>> volumes;  ///< as read; a probe tells values of the first one
   std::vector<std::uint16_t> material;                 ///< per voxel
-  double low = 0, high = 1;                            ///< of the values
+  ValueSpread spread;                                  ///< of a scalar volume
 
   /// World coordinates of a place in voxels: (0, 0, 0) is the first voxel's centre.
   Vec3d to_world(const Vec3d& voxel) const;
@@ -50,8 +59,9 @@ SlicePlane slice_plane(const MeshInput& input, int axis, double at);
 /// What the look asks for: 0..2; -1: none.
 int slice_axis(const Look& look);
 
-/// A pixel per voxel: materials in their colours, or the values of a scalar volume by the map. Row 0 is at the corner.
-Image volume_slice(const ViewedVolume& volume, const SlicePlane& plane, const Colormap& map);
+/// A pixel per voxel: materials in their colours, or the values of a scalar volume by the map, which runs from `low` to
+/// `high`. Row 0 is at the corner.
+Image volume_slice(const ViewedVolume& volume, const SlicePlane& plane, const Colormap& map, double low, double high);
 
 /// Values as colours; what is no number is transparent, infinity has the last colour.
 Image colour_values(const std::vector<float>& values, int width, int height, double low, double high,

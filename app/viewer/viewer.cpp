@@ -2,23 +2,23 @@
 // the last frame's is told to the scene, to the recorder, and can be taken back.
 #include "app/viewer/viewer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <thread>
 #include <utility>
 
 #include "app/viewer/camera_control.hpp"
 #include "app/viewer/captions.hpp"
+#include "app/viewer/film.hpp"
 #include "app/viewer/interface.hpp"
+#include "app/viewer/news.hpp"
 #include "app/viewer/recent_files.hpp"
 #include "app/viewer/scene.hpp"
 #include "app/viewer/scene_view.hpp"
+#include "app/viewer/session_clock.hpp"
 #include "app/viewer/ui.hpp"
 #include "app/viewer/undo.hpp"
+#include "app/viewer/worker.hpp"
 #include "compute/device/error.hpp"
 #include "engine/gl/framebuffer.hpp"
 #include "engine/gl/window.hpp"
@@ -29,22 +29,22 @@
 namespace nacre {
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 class Viewer {
  public:
   explicit Viewer(const ViewerOptions& options)
       : options_(options),
         session_(options.session),
         player_(options.session),
-        fps_(session_.settings.fps),
-        started_(now()) {
+        film_(options.video),
+        time_(session_.settings.fps),
+        started_(now()),
+        news_(options.say) {
     session_.events.clear();
     session_.duration = 0;
-    if (options.recorded) recorder_.emplace(session_, fps_);
+    if (options.recorded) recorder_.emplace(session_, time_.fps());
     make_graphics();
     open();
-    check_result_format();
+    if (!options.out.empty()) require_format(*scene_, options.out);
   }
 
   ~Viewer() { drop_graphics(); }
@@ -103,7 +103,7 @@ class Viewer {
   void open() {
     scene_.reset();
     captions_->forget();
-    said_ = 0;
+    news_.forget();
     fitted_ = false;
     // A number of frames is for headless runs to compare with: these do not begin again after the last time.
     const SceneOptions options{options_.open_device, options_.frames == 0, waits(), !waits(), options_.stop};
@@ -121,40 +121,64 @@ class Viewer {
            (window_ && window_->should_close());
   }
 
-  /// Seconds of the session: a frame's share for each that waited for compute, else those that have passed.
-  double clock() const { return double(waited_) / fps_ + passed_; }
-
   void frame() {
     const auto [width, height] = size();
-    if (width <= 0 || height <= 0) return rest(now());  // minimised
-    const double time = clock();
+    if (width <= 0 || height <= 0) return rest(now(), shortest_frame);  // minimised
+    const double time = time_.seconds();
     std::vector<Screenshot> pictures = player_->advance(time - played_since_, session_);
     if (!dropped_.empty()) open_dropped();
     take_changes();
-    if (waits())
-      scene_->advance_and_wait(*options_.stop);
-    else
-      attempt([&] { scene_->advance(now()); });
+    const bool advanced = advance_scene();
+    scene_->settle_knobs(session_);
     if (options_.offscreen && !scene_->failure().empty()) throw Error(scene_->failure());
     const double begin = now();
     if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
     draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
     glFinish();
     const double end = now();
-    if (FrameSink* video = video_ ? video_.get() : options_.video) attempt([&] { video->add(frame_->read()); });
+    if (advanced) add_to_video();
     if (wishes_.screenshot) pictures.push_back(*wishes_.screenshot);
     for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
     if (recorder_) recorder_->note(time - recording_since_, session_, pictures);
     note_times(begin, end);
-    count_time(begin);
+    count_time(begin, advanced);
     obey(wishes_);
     if (window_) window_->swap();
-    tell_news();
+    news_.tell(*scene_);
     if (window_) {
-      window_->set_title(window_title(*scene_, video_ != nullptr));
+      window_->set_title(window_title(*scene_, film_.from_menu()));
       attempt([&] { keep_recording(); });
     }
-    if (!waits()) rest(begin);
+    // Where nothing has to be waited for, it is filmed as fast as it will be shown.
+    rest(begin, film_.from_menu() ? 1.0 / time_.fps() : waits() ? 0 : shortest_frame);
+  }
+
+  /// False: the frame that waits for compute is still to come, and what is drawn until then is for the user alone.
+  bool advance_scene() {
+    const bool filming = film_.from_menu();
+    if (!filming && waits()) return scene_->advance_and_wait(*options_.stop, endless);
+    bool advanced = !filming;
+    attempt([&] {
+      if (filming && scene_->failure().empty())
+        advanced = scene_->advance_and_wait(*options_.stop, 0.05);
+      else
+        scene_->advance(now());
+    });
+    return advanced;
+  }
+
+  /// A video that cannot be written ends; what is seen in a window goes on.
+  void add_to_video() {
+    if (!film_.on()) return;
+    const bool from_menu = film_.from_menu();
+    try {
+      film_.add(frame_->read());
+    } catch (const Error& error) {
+      if (!window_) throw;
+      complain(error.what());
+      if (!from_menu) result_.lost_video = error.what();
+      scene_->set_lockstep(waits());
+    }
   }
 
   void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background) {
@@ -162,7 +186,7 @@ class Viewer {
     frame.clear(background);
     if (!fitted_) return;
     frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
-    const View view = scene_view(session_, scene_->corners(), result_.frame_seconds.size(), area.width, area.height);
+    const View view = scene_view(session_, scene_->corners(), turned_, area.width, area.height);
     scene_->draw(view);
     captions_->draw(*scene_, view, session_.settings);
     frame.bind();
@@ -174,16 +198,17 @@ class Viewer {
     area_ = area;
     fit_new(area.width, area.height);
     draw_scene(*frame_, area, background_of(session_.settings));
-    if (session_.camera) move_camera(*session_.camera, session_.settings.look.turning, area);
+    if (session_.camera) move_by_hand(*session_.camera, area);
     const UiFacts facts{clock_,
                         result_.renderer,
                         recent_.files(),
                         undo_.can_undo(),
                         undo_.can_redo(),
                         recorder_.has_value(),
-                        video_ != nullptr,
+                        film_.from_menu(),
                         width,
                         height,
+                        orbit(session_.camera.value_or(Camera()), turned_),
                         interface_->chords()};
     wishes_ = ui_.draw(session_, *scene_, facts);
     undo_.note(session_, Interface::busy());
@@ -192,6 +217,16 @@ class Viewer {
       frame_->show_in_window();
       glBindFramebuffer(GL_FRAMEBUFFER, 0);
     }
+  }
+
+  /// What the hand takes hold of is what is seen, as far as it has turned.
+  void move_by_hand(Camera& camera, const FreeArea& area) {
+    const Camera seen = orbit(camera, turned_);
+    Camera moved = seen;
+    move_camera(moved, session_.settings.look.turning, area);
+    if (moved == seen) return;
+    camera = moved;
+    turned_ = 0;
   }
 
   void take_picture(const Screenshot& picture) {
@@ -208,12 +243,13 @@ class Viewer {
     result_.pictures.push_back(picture.file);
   }
 
-  void count_time(double frame_begin) {
-    if (waits())
-      ++waited_;
-    else if (last_ > 0)
-      passed_ += frame_begin - last_;
+  /// And turns a camera that orbits: by as much in a second as in a second of a video.
+  void count_time(double frame_begin, bool advanced) {
+    const double passed = last_ > 0 ? frame_begin - last_ : 0;
     last_ = frame_begin;
+    if (!advanced) return;
+    const Settings& settings = session_.settings;
+    turned_ += settings.orbit * (waits() ? time_.add_frame() : time_.add_seconds(passed, settings.fps));
   }
 
   /// In a window an error is a line for the user, who goes on; without one it ends the program.
@@ -223,8 +259,13 @@ class Viewer {
     try {
       action();
     } catch (const Error& error) {
-      ui_.tell(error.what());
+      complain(error.what());
     }
+  }
+
+  void complain(const std::string& line) {
+    ui_.complain(line);
+    news_.complain(line);
   }
 
   void obey(const Wishes& wishes) {
@@ -249,28 +290,26 @@ class Viewer {
   void obey_recording(const Wishes& wishes) {
     if (wishes.record) {
       recorder_.emplace(session_, session_.settings.fps);
-      recording_since_ = clock();
+      recording_since_ = time_.seconds();
     }
     if (wishes.save_recording && recorder_)
       attempt([&] {
         save(*wishes.save_recording, session_text(recorder_->recording()));
         if (!options_.recorded) recorder_.reset();
       });
-    if (wishes.film) attempt([&] { begin_film(*wishes.film); });
-    if (wishes.end_film && video_)
+    if (wishes.film)
       attempt([&] {
-        const std::unique_ptr<FrameSink> video = std::move(video_);
-        video->finish();
-        ui_.tell("saved " + film_.string());
+        film_.begin(*wishes.film, session_.settings.fps);
+        time_.set_fps(session_.settings.fps);
+        scene_->set_lockstep(true);
       });
-  }
-
-  void begin_film(const std::filesystem::path& file) {
-    passed_ = clock();
-    waited_ = 0;
-    fps_ = session_.settings.fps;
-    video_ = make_video(file, fps_);
-    film_ = file;
+    if (wishes.end_film && film_.from_menu()) {
+      attempt([&] {
+        film_.finish();
+        ui_.tell("saved " + film_.file().string());
+      });
+      scene_->set_lockstep(waits());
+    }
   }
 
   void save(const std::filesystem::path& file, const std::string& text) {
@@ -284,7 +323,7 @@ class Viewer {
   void load_session(const std::filesystem::path& file) {
     Session loaded = read_session(file);
     player_.emplace(loaded);
-    played_since_ = clock();
+    played_since_ = time_.seconds();
     loaded.events.clear();
     loaded.duration = 0;
     if (!loaded.camera) fitted_ = false;
@@ -297,20 +336,13 @@ class Viewer {
     return {session_.settings.width, session_.settings.height};
   }
 
-  /// A display without vertical synchronisation, or none at all, shall not cost compute its cores.
-  static void rest(double begin) {
-    constexpr double shortest_frame = 1.0 / 60;
-    const double left = shortest_frame - (now() - begin);
-    if (left > 0) std::this_thread::sleep_for(std::chrono::duration<double>(left));
-  }
-
   /// Per pixel. Software renderers pay for each: there, frames that somebody waits for have one.
   int samples() const {
     const bool software = result_.renderer.find("llvmpipe") != std::string::npos;
     return session_.settings.samples > 1 && (waits() || !software) ? 4 : 1;
   }
 
-  bool waits() const { return (options_.offscreen && !options_.live) || options_.video || video_; }
+  bool waits() const { return (options_.offscreen && !options_.live) || film_.on(); }
 
   /// What has been changed since the last frame: by the user, the script, a file.
   void take_changes() {
@@ -352,26 +384,6 @@ class Viewer {
     clock_.add(end - begin);
   }
 
-  /// Warnings and failures, each once.
-  void tell_news() {
-    const std::vector<std::string>& warnings = scene_->warnings();
-    for (; said_ < warnings.size(); ++said_) options_.say("warning: " + warnings[said_]);
-    if (scene_->failure() != said_failure_) {
-      said_failure_ = scene_->failure();
-      if (!said_failure_.empty()) options_.say(said_failure_);
-    }
-    const std::string remark = scene_->remark();
-    if (!remark.empty() && !std::exchange(said_remark_, true)) options_.say(remark);
-  }
-
-  void check_result_format() const {
-    if (options_.out.empty()) return;
-    const std::vector<std::string> formats = scene_->result_formats();
-    if (std::find(formats.begin(), formats.end(), options_.out.extension()) == formats.end())
-      throw Error(fmt::format("cannot write {}", options_.out.string()), "its extension says no format of this result",
-                  fmt::format("use one of {}", fmt::join(formats, " ")));
-  }
-
   /// A crash or a power cut costs the last seconds of a recording. Long ones are written less often.
   void keep_recording() {
     const double begin = now();
@@ -387,7 +399,6 @@ class Viewer {
   }
 
   void finish() {
-    if (video_) video_->finish();
     if (options_.picture && frame_) result_.image = frame_->read();
     if (!options_.out.empty()) scene_->write_result(options_.out);
     scene_->finish();
@@ -399,20 +410,19 @@ class Viewer {
     result_.threads = scene_->device().threads();
     result_.backend = scene_->device().backend();
     result_.driver_messages = context_->messages();
+    film_.finish();
   }
 
   const ViewerOptions& options_;
   Session session_, told_;
   std::optional<SessionPlayer> player_;
   std::optional<SessionRecorder> recorder_;
-  std::size_t kept_events_ = 0;       ///< of the recorder, written so far
-  double keep_after_ = 0;             ///< on the machine's clock
-  std::unique_ptr<FrameSink> video_;  ///< begun in the menu
-  std::filesystem::path film_;
-  int fps_;                                        ///< of frames that wait, whatever becomes of the knob meanwhile
+  std::size_t kept_events_ = 0;  ///< of the recorder, written so far
+  double keep_after_ = 0;        ///< on the machine's clock
+  Film film_;
+  SessionClock time_;
   double started_, last_ = 0;                      ///< on the machine's clock
-  double passed_ = 0;                              ///< seconds of frames that did not wait
-  long waited_ = 0;                                ///< frames that did
+  double turned_ = 0;                              ///< degrees, of a camera that orbits
   double played_since_ = 0, recording_since_ = 0;  ///< on the session's clock
   std::unique_ptr<Context> context_;
   Window* window_ = nullptr;  ///< the context, where it is one
@@ -426,10 +436,9 @@ class Viewer {
   Wishes wishes_;
   FreeArea area_;
   FrameClock clock_;
-  bool fitted_ = false, quit_ = false, said_remark_ = false;
+  bool fitted_ = false, quit_ = false;
   int counted_ = 0;
-  std::size_t said_ = 0;
-  std::string said_failure_;
+  News news_;
   std::vector<std::filesystem::path> dropped_;
   ViewerResult result_;
 };

@@ -48,6 +48,7 @@ struct ViewerResult {
   int threads = 0;
   Image image;
   std::vector<std::filesystem::path> pictures;  ///< written for events
+  std::string lost_video;                       ///< why the video of a window could not be written; empty: it could
 };
 
 /// Runs until it is closed. Throws Error where there is no display, no OpenGL 4.5, or (offscreen) a stage fails;

@@ -1,6 +1,7 @@
 // Nacre: what the workers of flow and mesh share: a thread, and the events that it tells to another.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -11,6 +12,9 @@
 #include <utility>
 
 namespace nacre {
+
+/// Seconds that nobody waits for.
+inline constexpr double endless = 1e9;
 
 /// A base class. Whoever derives from it starts `thread_` last, lets it run until `ends_`, and calls `finish` in its
 /// destructor.
@@ -46,11 +50,15 @@ class Worker {
   Worker() = default;
   ~Worker() = default;
 
-  /// `poll`, but waits for an event while `comes()` says, with the mutex held, that there will be one.
+  /// `poll`, but waits for an event while `comes()` says, with the mutex held, that there will be one, for at most
+  /// `patience` seconds.
   template <class Comes>
-  std::optional<Event> wait_while(const Comes& comes, const std::atomic<bool>& stop) {
+  std::optional<Event> wait_while(const Comes& comes, const std::atomic<bool>& stop, double patience) {
+    using Seconds = std::chrono::duration<double>;
+    const auto begin = std::chrono::steady_clock::now();
+    const auto left = [&] { return patience - Seconds(std::chrono::steady_clock::now() - begin).count(); };
     std::unique_lock lock(mutex_);
-    while (events_.empty() && comes() && !stop) told_.wait_for(lock, std::chrono::milliseconds(100));
+    while (events_.empty() && comes() && !stop && left() > 0) told_.wait_for(lock, Seconds(std::min(0.1, left())));
     lock.unlock();
     return poll();
   }

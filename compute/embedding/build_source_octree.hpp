@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "compute/device/executor.hpp"
 #include "compute/embedding/source_cells.hpp"
@@ -21,6 +22,7 @@ struct SourceOctree {
   Array<CellPoint> point;
   Array<std::uint32_t> touched;
   Array<SourceNode> node;
+  std::vector<std::uint32_t> height_start;  ///< on the host: first node of each height, and how many there are
   Array<std::uint32_t> neighbour;
 
   SourceOctreeView view() const {
@@ -107,8 +109,10 @@ void build_source_nodes(Executor<Backend>& exec, SourceOctree& tree) {
         count, AddToNode{count, nodes, first, code.data(), number.data(), tree.node.data() + total, node_code.data()});
     code = node_code;
     first = std::uint32_t(total);
+    tree.height_start.push_back(first);
     total += nodes;
   }
+  tree.height_start.push_back(std::uint32_t(total));
 }
 
 }  // namespace detail

@@ -28,6 +28,8 @@ class FlowMethod {
   virtual std::vector<float> sample_shown(std::span<const Vec3d> points) = 0;
   virtual const EmbeddingInfo& embedding() const = 0;
   virtual FlowLookup lookup() const = 0;
+  virtual FlowBoxes boxes() const = 0;
+  virtual void show_boxes(std::uint64_t* memory) = 0;
 };
 
 /// The shared part on a backend. A derived class builds its embedding in `embed` (after `begin_embedding`), its arrays

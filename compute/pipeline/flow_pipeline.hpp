@@ -82,14 +82,14 @@ struct FlowValues {
 /// looks values up by itself.
 struct FlowLookup {
   enum class Kind {
-    none,  ///< the source's octree: a yardstick, which nobody draws from
-    grid,  ///< RefinedGridView says how
-    octree
+    grid,    ///< RefinedGridView says how
+    octree,  ///< BrickOctreeView
+    source   ///< SourceOctreeView
   };
-  Kind kind = Kind::none;
+  Kind kind = Kind::grid;
   std::uint64_t values = 0;  ///< how many are shown
   Vec3d origin{};            ///< world
-  double cell_size = 1;      ///< of the grid: of a closest-point cell; of the octree: of a texture cell; world units
+  double cell_size = 1;      ///< of the grid: of a closest-point cell; of an octree: of a texture cell; world units
 
   // The grid.
   Int3 bricks{};
@@ -97,10 +97,23 @@ struct FlowLookup {
   std::vector<std::uint32_t> brick_index, block, texel;
 
   // The octree over bricks of 8^3 texture cells.
-  int levels = 0;                          ///< of inner nodes; 8 << levels cells per axis
+  int levels = 0;                          ///< of inner nodes; 8 << levels cells per axis, of either octree
   std::vector<std::uint32_t> node;         ///< per inner node: first child, and 8 bits for the children there are
   std::vector<std::uint32_t> level_start;  ///< first node of each level
   std::vector<std::uint32_t> layer;        ///< per brick and z: 64 bits for surface cells (8 y + x), the first's number
+
+  // The source's octree, whose leaves are cells.
+  std::vector<std::uint32_t> child;  ///< 8 per node, the root last: numbers of nodes, of cells in the lowest; all ones
+};
+
+/// The boxes that the embedding consists of: the nodes of an octree, the bricks of a grid. They are cubes, level after
+/// level from the largest, those of a level half as wide as those of the one before.
+struct FlowBoxes {
+  Vec3d origin{};                          ///< of the first cube, world
+  double width = 0;                        ///< edge of the smallest, world units
+  std::vector<std::uint64_t> level_start;  ///< number of the first of each level, and how many there are
+
+  std::uint64_t count() const { return level_start.empty() ? 0 : level_start.back(); }
 };
 
 struct RenderOptions {
@@ -134,6 +147,9 @@ class FlowPipeline {
   /// pipeline's own array, as after `start`.
   virtual void show_into(float* memory) = 0;
   virtual FlowLookup lookup() const = 0;
+  virtual FlowBoxes boxes() const = 0;
+  /// Writes one Morton code per box, among cubes of its size, to `memory` of the device.
+  virtual void show_boxes(std::uint64_t* memory) = 0;
   virtual FlowValues values() const = 0;
   /// RGBA bytes, row 0 at the top (stage render).
   virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;

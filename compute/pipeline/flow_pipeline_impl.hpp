@@ -32,6 +32,8 @@ class FlowPipelineOf final : public FlowPipeline {
   std::vector<float> sample_shown(std::span<const Vec3d> points) override { return method().sample_shown(points); }
   const EmbeddingInfo& embedding() const override { return method().embedding(); }
   FlowLookup lookup() const override { return method().lookup(); }
+  FlowBoxes boxes() const override { return method().boxes(); }
+  void show_boxes(std::uint64_t* memory) override { method().show_boxes(memory); }
   StageTimers& timers() override { return exec_.timers(); }
   std::size_t peak_bytes() const override { return exec_.arena().peak_bytes(); }
   void watch(const std::atomic<bool>* stop) override { exec_.watch(stop); }

@@ -7,6 +7,7 @@
 
 #include "compute/embedding/build_closest_point_grid.hpp"
 #include "compute/embedding/build_refined_grid.hpp"
+#include "compute/embedding/tree_boxes.hpp"
 #include "compute/flow/advect.hpp"
 #include "compute/flow/filter.hpp"
 #include "compute/flow/velocity.hpp"
@@ -81,6 +82,8 @@ class GridFlow final : public FlowMethodOn<Backend> {
   FlowValues values() const override;
   std::vector<float> sample_shown(std::span<const Vec3d> points) override;
   FlowLookup lookup() const override;
+  FlowBoxes boxes() const override { return {domain_.origin, coarse_.sub * domain_.cell_size, box_levels(coarse_)}; }
+  void show_boxes(std::uint64_t* memory) override { write_boxes(exec_, coarse_, memory); }
 
  private:
   using Base = FlowMethodOn<Backend>;

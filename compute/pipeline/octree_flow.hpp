@@ -7,6 +7,7 @@
 
 #include "compute/embedding/build_brick_octree.hpp"
 #include "compute/embedding/build_source_octree.hpp"
+#include "compute/embedding/tree_boxes.hpp"
 #include "compute/flow/band_advect.hpp"
 #include "compute/flow/band_filter.hpp"
 #include "compute/flow/band_velocity.hpp"
@@ -22,7 +23,8 @@ namespace nacre {
 struct BrickBand {
   using Octree = BrickOctree;
   static constexpr const char* name = "brick octree";
-  static constexpr bool from_centres = false, local_contrast = true, drawn = true;
+  static constexpr bool from_centres = false, local_contrast = true;
+  static constexpr int smallest_box = 8;  ///< texture cells
   static std::uint64_t touched(const Octree& tree) { return tree.surface_cells; }
 
   template <class Backend>
@@ -36,7 +38,8 @@ struct BrickBand {
 struct SourceBand {
   using Octree = SourceOctree;
   static constexpr const char* name = "source octree";
-  static constexpr bool from_centres = true, local_contrast = false, drawn = false;
+  static constexpr bool from_centres = true, local_contrast = false;
+  static constexpr int smallest_box = 2;
   static std::uint64_t touched(const Octree& tree) { return tree.touched_cells; }
 
   template <class Backend>
@@ -65,7 +68,6 @@ NACRE_HD inline bool is_touched(const SourceOctreeView& view, CellIndex cell) { 
 /// What a renderer needs of the tree.
 inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
   lookup.kind = FlowLookup::Kind::octree;
-  lookup.levels = tree.levels;
   for (const OctreeNode& node : tree.nodes.node.download()) {
     lookup.node.push_back(node.first);
     lookup.node.push_back(node.children);
@@ -80,6 +82,14 @@ inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
       lookup.layer.push_back(std::uint32_t(mask.word[z] >> 32));
       lookup.layer.push_back(std::uint32_t(mask.first + mask.before[z]));
     }
+}
+
+inline void fill_lookup(const SourceOctree& tree, FlowLookup& lookup) {
+  lookup.kind = FlowLookup::Kind::source;
+  const std::vector<SourceNode> nodes = tree.node.download();
+  if (8 * nodes.size() > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower --resolution");
+  lookup.child.reserve(8 * nodes.size());
+  for (const SourceNode& node : nodes) lookup.child.insert(lookup.child.end(), node.child, node.child + 8);
 }
 
 /// What an output needs of each cell that has a value.
@@ -144,6 +154,10 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   std::vector<std::uint8_t> render(const RenderOptions& options) override;
   std::vector<float> sample_shown(std::span<const Vec3d> points) override;
   FlowLookup lookup() const override;
+  FlowBoxes boxes() const override {
+    return {domain_.origin, Band::smallest_box * domain_.cell_size, box_levels(octree_)};
+  }
+  void show_boxes(std::uint64_t* memory) override { write_boxes(exec_, octree_, memory); }
 
  private:
   using Base = FlowMethodOn<Backend>;
@@ -262,7 +276,8 @@ FlowLookup OctreeFlow<Backend, Band>::lookup() const {
   lookup.values = octree_.view().surface_cells;
   lookup.origin = domain_.origin;
   lookup.cell_size = domain_.cell_size;
-  if constexpr (Band::drawn) detail::fill_lookup(octree_, lookup);
+  lookup.levels = levels_;
+  detail::fill_lookup(octree_, lookup);
   return lookup;
 }
 

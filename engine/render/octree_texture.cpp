@@ -1,4 +1,4 @@
-// Nacre: the brick octree of a flow on the graphics device.
+// Nacre: an octree of a flow on the graphics device.
 #include "engine/render/octree_texture.hpp"
 
 #include <fmt/format.h>
@@ -7,9 +7,10 @@
 namespace nacre {
 
 OctreeTexture::OctreeTexture(const OctreeLookup& lookup, std::size_t page)
-    : node_(lookup.node, page),
-      layer_(lookup.layer, page),
+    : node_(lookup.child.empty() ? lookup.node : lookup.child, page),
+      layer_(lookup.child.empty() ? PagedArray(lookup.layer, page) : PagedArray()),
       level_start_(lookup.level_start.begin(), lookup.level_start.end()),
+      source_nodes_(lookup.child.size() / 8),
       levels_(lookup.levels),
       origin_(lookup.origin),
       cell_size_(lookup.cell_size) {
@@ -17,11 +18,13 @@ OctreeTexture::OctreeTexture(const OctreeLookup& lookup, std::size_t page)
 }
 
 std::string OctreeTexture::prelude() const {
+  const std::string tree =
+      fmt::format("#define TEXTURED\n#define OCTREE\n#define LEVELS {}\n", levels_) + node_.source("node");
+  if (source_nodes_ > 0) return tree + fmt::format("#define SOURCE_OCTREE\n#define ROOT {}u\n", source_nodes_ - 1);
   std::vector<std::string> starts;
   for (const std::uint32_t start : level_start_) starts.push_back(fmt::format("{}u", start));
-  return fmt::format("#define TEXTURED\n#define OCTREE\n#define LEVELS {}\nconst uint level_start[] = uint[]({});\n",
-                     levels_, fmt::join(starts, ", ")) +
-         node_.source("node") + layer_.source("layer");
+  return tree + fmt::format("const uint level_start[] = uint[]({});\n", fmt::join(starts, ", ")) +
+         layer_.source("layer");
 }
 
 int OctreeTexture::bind(const Program& program, const BufferTexture& shown, int unit) const {

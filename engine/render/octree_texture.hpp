@@ -1,4 +1,4 @@
-// Nacre: the brick octree of a flow on the graphics device: from a place of the surface to its shown value.
+// Nacre: an octree of a flow on the graphics device: from a place of the surface to its shown value.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,13 @@
 
 namespace nacre {
 
-/// The arrays of FlowLookup that describe an octree.
+/// The arrays of FlowLookup that describe an octree: those of bricks, or `child` alone of the source's.
 struct OctreeLookup {
   int levels = 0;
   Vec3d origin{};        ///< world
   double cell_size = 1;  ///< of a texture cell, world units
   std::span<const std::uint32_t> node, level_start, layer;
+  std::span<const std::uint32_t> child = {};
 };
 
 /// Immutable: made once per embedding. The calls are those of SparseTexture.
@@ -25,7 +26,7 @@ class OctreeTexture {
   /// Throws Error where the memory is not there. `page`: as for PagedArray.
   explicit OctreeTexture(const OctreeLookup& lookup, std::size_t page = 0);
 
-  explicit operator bool() const { return layer_.pages() > 0; }
+  explicit operator bool() const { return node_.pages() > 0; }
   /// GLSL that shaders/octree_texture.glsl builds on.
   std::string prelude() const;
   int bind(const Program& program, const BufferTexture& shown, int unit) const;
@@ -36,6 +37,7 @@ class OctreeTexture {
  private:
   PagedArray node_, layer_;
   std::vector<std::uint32_t> level_start_;
+  std::size_t source_nodes_ = 0;  ///< of the source's octree; 0: it is one of bricks
   int levels_ = 0;
   Vec3d origin_{};
   double cell_size_ = 1;

@@ -49,9 +49,9 @@ bool looks_like_labels(const Volume& volume, const Notes& notes) {
 
 [[noreturn]] void fail_without_isovalue(const Volume& volume) {
   const VolumeStatistics statistics = volume_statistics(volume);
-  throw Error(fmt::format("{} needs an iso-value", volume.name),
-              fmt::format("its values, {:.6g} to {:.6g}, are no labels", statistics.min, statistics.max),
-              fmt::format("give --isovalue V, for example {:.6g}", otsu_threshold(volume)));
+  throw MissingIsovalue(volume.name,
+                        fmt::format("its values, {:.6g} to {:.6g}, are no labels", statistics.min, statistics.max),
+                        otsu_threshold(volume));
 }
 
 void check_inside(const MeshVolume& volume, const std::string& name) {
@@ -134,6 +134,11 @@ double otsu_threshold(const Volume& volume) {
   }
   return statistics.min + (cut + 1) * width;
 }
+
+MissingIsovalue::MissingIsovalue(const std::string& name, const std::string& why, double proposal)
+    : Error(fmt::format("{} needs an iso-value", name), why,
+            fmt::format("give --isovalue V, for example {:.6g}", proposal)),
+      proposal_(proposal) {}
 
 MeshVolume make_mesh_volume(std::span<const Volume> volumes, const MaterialOptions& options,
                             std::vector<std::string>* warnings) {

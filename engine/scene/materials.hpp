@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/device/error.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
 #include "engine/scene/volume.hpp"
 
@@ -46,6 +47,16 @@ struct MaterialOptions {
 /// indicators on different grids.
 MeshVolume make_mesh_volume(std::span<const Volume> volumes, const MaterialOptions& options,
                             std::vector<std::string>* warnings = nullptr);
+
+/// A volume is no label map, and nobody said where to cut it.
+class MissingIsovalue : public Error {
+ public:
+  MissingIsovalue(const std::string& name, const std::string& why, double proposal);
+  double proposal() const { return proposal_; }  ///< by `otsu_threshold`
+
+ private:
+  double proposal_;
+};
 
 /// The iso-value that splits the values best into two groups (Otsu: largest variance between them), from a histogram
 /// of 256 bins.

@@ -27,7 +27,7 @@ struct Look {
   double arrow_length = 1;                  ///< of the reference speed, in mean distances between arrows
   bool triangles = true, particles = true;  ///< mesh
   bool curves = true;                       ///< mesh: junctions
-  bool boxes = false;                       ///< mesh: those of the tree
+  bool boxes = false;                       ///< those of the tree, or grid
   std::string particle_color = "energy";    ///< energy, size
   std::string hidden, ghosts;               ///< L[,L...]: labels of materials
   int worst = 0;                            ///< mesh: so many of the worst triangles stand out
@@ -37,6 +37,7 @@ struct Look {
   std::string slice = "none";               ///< x, y, z: a plane of the volume
   double slice_at = 0.5;
   std::string slice_field = "volume";          ///< volume, material, distance, size
+  std::string slice_range;                     ///< LO:HI of a volume's values; empty: nearly all of them
   double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
   double ambient = 0.3;                        ///< share of the light that comes from everywhere
   std::string turning = "turntable";           ///< turntable, trackball

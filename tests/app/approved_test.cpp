@@ -28,6 +28,8 @@ const std::vector<Approved> all = {
     of_flow("flow", {}),
     of_flow("flow_octree", {"--method", "octree", "--background", "#203040"}),
     of_flow("flow_arrows", {"--set", "arrows=true", "--set", "arrow_count=400", "--color", "none"}),
+    of_flow("flow_boxes", {"--method", "octree", "--set", "boxes=true", "--color", "none"}),
+    of_flow("flow_source", {"--method", "octree", "--octree", "source", "--set", "resolution=96"}),
     of_flow("flow_clip", {"--set", "clip=x", "--set", "edges=true", "--set", "light_azimuth=60"}),
     of_flow("flow_data", tab("data")),
     of_flow("flow_knobs", tab("knobs")),

@@ -185,19 +185,60 @@ TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
   EXPECT_GT(probed->place.y, camera.target.y);
 }
 
-TEST_F(FlowInView, SourceTreesAreComputedButNotDrawn) {
+TEST_F(FlowInView, SourceTreesAreDrawnToo) {
   Session session = small_session();
   session.settings.flow.method = "octree";
-  session.settings.flow.octree = "source";
   open(session);
   advance();
-  EXPECT_EQ(scene_->steps(), 1);
-  ASSERT_FALSE(scene_->warnings().empty());
-  EXPECT_NE(scene_->warnings().back().find("not drawn"), std::string::npos);
-  picture();
-  change([](Settings& s) { s.flow.octree = "brick"; });
+  const Image brick = picture();
+  change([](Settings& s) { s.flow.octree = "source"; });
   advance();
   EXPECT_EQ(scene_->steps(), 1);
+  EXPECT_TRUE(scene_->warnings().empty());
+  const Image source = picture();
+  EXPECT_NE(source.pixels, brick.pixels);  // other particles
+  advance();
+  EXPECT_NE(picture().pixels, source.pixels);  // it flows
+}
+
+TEST_F(FlowInView, BoxesAreWrittenOnceAndNotCopied) {
+  Session session = small_session();
+  session.settings.look.play = false;
+  open(session);
+  for (const char* method : {"grid", "octree"}) {
+    change([&](Settings& s) { s.flow.method = method, s.look.boxes = false; });
+    advance();
+    const Image plain = picture();
+    change([](Settings& s) { s.look.boxes = true; });
+    advance();
+    EXPECT_EQ(scene_->steps(), 1);  // it stands still all the same
+    const Image boxed = picture();
+    EXPECT_NE(boxed.pixels, plain.pixels) << method;
+    advance();
+    EXPECT_EQ(picture().pixels, boxed.pixels) << method;
+    change([](Settings& s) { s.look.boxes = false; });
+    advance();
+    EXPECT_EQ(picture().pixels, plain.pixels) << method;
+  }
+  EXPECT_EQ(scene_->copied_bytes(), 0u);
+}
+
+TEST_F(FlowInView, BoxesBelongToTheEmbeddingThatIsShown) {
+  Session session = small_session();
+  session.settings.look.boxes = true;
+  open(session);
+  for (const char* octree : {"brick", "source", "brick"})
+    for (const int resolution : {48, 32, 64}) {
+      change([&](Settings& s) { s.flow.method = "octree", s.flow.octree = octree, s.flow.resolution = resolution; });
+      scene_->advance(0);  // asks again while it is being built
+      advance();
+      EXPECT_EQ(scene_->steps(), 1);
+      const Image boxed = picture();
+      change([](Settings& s) { s.look.boxes = false; });
+      EXPECT_NE(picture().pixels, boxed.pixels) << octree << resolution;
+      change([](Settings& s) { s.look.boxes = true; });
+    }
+  EXPECT_EQ(scene_->copied_bytes(), 0u);
 }
 
 TEST_F(FlowInView, FailuresAreThrownAndOtherKnobsMendThem) {

@@ -17,10 +17,11 @@ namespace {
 
 class MeshInView : public test::Offscreen {
  protected:
-  void open(bool lockstep) {
+  void open(bool lockstep, int iterations = 20) {
     session_.sample = "two-spheres";
     session_.detail = 20;
-    session_.settings.mesh.iterations = 20;
+    session_.settings.mesh.iterations = iterations;
+    if (iterations > 20) session_.settings.mesh.stagnation = 0;
     session_.settings.mesh.mend = 0;
     SceneOptions options;
     options.open_device = [] { return make_cpu_device(2); };
@@ -86,6 +87,31 @@ TEST_F(MeshInView, EachCallIsOneIteration) {
   EXPECT_GT(drawn(), 1500);
   EXPECT_EQ(scene_->copied_bytes(), 0u);
   EXPECT_EQ(scene_->failure(), "");
+}
+
+TEST_F(MeshInView, AFilmThatBeginsInTheMiddleGoesOnInLockstep) {
+  open(false, 200);
+  while (scene_->steps() < 3) scene_->advance(0);
+  scene_->set_lockstep(true);
+  advance();  // what had been told before
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  advance();
+  const int begun = scene_->steps();
+  for (int k = 1; k <= 10; ++k) {
+    advance();
+    std::this_thread::sleep_for(std::chrono::milliseconds(k % 2 ? 20 : 0));  // which it does not use to run ahead
+    EXPECT_EQ(scene_->steps(), begun + k);
+  }
+  int waits = 0;
+  while (!scene_->settled() && waits < 100000) waits += !scene_->advance_and_wait(stop_, 1e-4);
+  EXPECT_TRUE(scene_->settled());
+  EXPECT_GT(waits, 0);  // an impatient call comes back without a frame
+  change([](Settings& s) { s.mesh.theta *= 0.9; });
+  advance();
+  scene_->set_lockstep(false);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!scene_->settled() && std::chrono::steady_clock::now() < end) scene_->advance(0);
+  EXPECT_TRUE(scene_->settled());
 }
 
 TEST_F(MeshInView, ChangesInTheMiddleAreTakenOver) {

@@ -88,6 +88,34 @@ TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
   }
 }
 
+TEST_F(ViewMesh, TheSourcesPresetIsThatOfTheHeadlessCommand) {
+  for (const char* sample : {"two-spheres", "ellipsoid"}) {  // labels, and a scalar
+    const Words alike = {"--set",    "resolution=100", "--sample", sample, "--detail", "20",
+                         "--preset", "source",         "--theta",  "0.8",  "--quiet",  "--save-session"};
+    ASSERT_EQ(nacre(Words{"mesh"} + alike + Words{path("m.json")}).status, 0);
+    const Outcome run = nacre(Words{"view", "--offscreen", "--frames-count", "1"} + alike + Words{path("v.json")});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(read_json("v.json"), read_json("m.json")) << sample;
+  }
+  const Outcome run = nacre({"view", "--offscreen", "--frames-count", "1", "--preset", "source", "--sample", "sphere"});
+  EXPECT_EQ(run.status, 2);
+  EXPECT_TRUE(contains(run.err, "volume")) << run.err;
+}
+
+TEST_F(ViewMesh, AVolumeWithoutAnIsovalueIsCutInALiveViewAndRefusedInAReplay) {
+  ASSERT_EQ(nacre({"sample", "ellipsoid", "--detail", "24", "--out", path("e.nrrd")}).status, 0);
+  const Words words = {"view", "--offscreen", path("e.nrrd"), "--size", "200x150", "--image", path("x.png")};
+  const Outcome replay = nacre(words + Words{"--frames-count", "1"});
+  EXPECT_EQ(replay.status, 1);
+  EXPECT_TRUE(contains(replay.err, "needs an iso-value")) << replay.err;
+  const Outcome live = nacre(words + Words{"--live", "--frames-count", "3", "--save-recording", path("done.json")});
+  ASSERT_EQ(live.status, 0) << live.err;
+  EXPECT_TRUE(contains(live.err, "iso-value 0.")) << live.err;
+  const nlohmann::json events = read_json("done.json")["events"];
+  ASSERT_FALSE(events.empty());
+  EXPECT_TRUE(contains(events[0]["knobs"]["isovalue"].get<std::string>(), "0.")) << events.dump(1);
+}
+
 TEST_F(ViewMesh, LooksChangeWhatIsSeenAndNothingElse) {
   const Image plain = picture(0);
   const double all = covered(plain);

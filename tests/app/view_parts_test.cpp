@@ -7,6 +7,7 @@
 
 #include "app/viewer/camera_control.hpp"
 #include "app/viewer/recent_files.hpp"
+#include "app/viewer/session_clock.hpp"
 #include "app/viewer/undo.hpp"
 #include "tests/app/program.hpp"
 
@@ -116,6 +117,30 @@ TEST(RecentFiles, AFolderThatCannotBeWrittenIsNoMatter) {
   RecentFiles recent(fs::path("/proc/nowhere/recent"));
   recent.add("/etc/hostname");
   EXPECT_EQ(recent.files().size(), 1u);
+}
+
+TEST(SessionClock, AVideoRunsOnFromWhereTheWindowWas) {
+  SessionClock clock(10);
+  clock.add_seconds(0.7, 25);
+  clock.set_fps(5);
+  EXPECT_DOUBLE_EQ(clock.seconds(), 0.7);
+  clock.add_frame();
+  clock.add_frame();
+  EXPECT_DOUBLE_EQ(clock.seconds(), 1.1);
+}
+
+/// What an orbit turns by.
+TEST(SessionClock, FramesOfAVideoPassAsFastInAWindowWhateverItsRate) {
+  for (const double frame : {0.005, 0.04, 0.5}) {
+    SessionClock clock(25);
+    double frames = 0;
+    while (clock.seconds() < 2 - 1e-9) frames += clock.add_seconds(frame, 25);
+    EXPECT_NEAR(frames, 50, 1e-6) << frame;
+  }
+  SessionClock clock(25);
+  double frames = 0;
+  while (clock.seconds() < 2 - 1e-9) frames += clock.add_frame();
+  EXPECT_EQ(frames, 50);
 }
 
 TEST(FreeArea, PlacesRunFromTheLeftLowerCorner) {

@@ -283,14 +283,15 @@ TEST_F(Scripts, AnInputThatFailsInTheMiddleEndsTheRunWithItsName) {
   EXPECT_EQ(read_json(folder / "done.json")["events"].size(), 0u);
 }
 
-/// The window under Xvfb. Its display is numbered by the process: of two runs that begin at once, -a alone can give both
-/// the same.
-Outcome window(const Words& words) {
+/// The window under Xvfb, begun by a shell in which `first` has been done. Its display is numbered by the process: of two
+/// runs that begin at once, -a alone can give both the same.
+Outcome window(const Words& words, const std::string& first = ":") {
   const fs::path xvfb = find_program("xvfb-run");
-  return xvfb.empty() ? Outcome{77, "", "there is no xvfb-run"}
-                      : run(xvfb, Words{"-a", "-n", std::to_string(100 + getpid() % 20000), "-s",
-                                        "-screen 0 1280x1024x24", NACRE_PROGRAM, "view", "--quiet"} +
-                                      words);
+  return xvfb.empty()
+             ? Outcome{77, "", "there is no xvfb-run"}
+             : run(xvfb, Words{"-a", "-n", std::to_string(100 + getpid() % 20000), "-s", "-screen 0 1280x1024x24",
+                               "/bin/bash", "-c", first + "; exec \"$0\" view --quiet \"$@\"", NACRE_PROGRAM} +
+                             words);
 }
 
 TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
@@ -307,6 +308,35 @@ TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
             0);
   EXPECT_EQ(names("window").size(), 11u);
   EXPECT_EQ(content("window.json"), content("offscreen.json"));
+}
+
+TEST_F(Scripts, AWindowOutlivesTheFolderThatItRecordsInto) {
+  const std::string frames = path("frames"), fourth = "'" + frames + "/frame_0003.png'";
+  const std::string move = "(for i in {1..600}; do [ -e " + fourth + " ] && break; sleep 0.05; done; mv '" + frames +
+                           "' '" + path("gone") + "') & :";
+  const Outcome shown = window({"--script", script(nullptr, 60), "--record", frames, "--frames-count", "80",
+                                "--save-recording", path("done.json"), "--report", path("view.json")},
+                               move);
+  if (shown.status == 77) GTEST_SKIP() << shown.err;
+  EXPECT_NE(shown.status, 0);
+  EXPECT_TRUE(contains(shown.err, "cannot write " + frames + "/frame_")) << shown.err;
+  EXPECT_EQ(shown.err.find("cannot write"), shown.err.rfind("cannot write")) << shown.err;  // said once
+  EXPECT_GE(read_json(folder / "view.json")["view"]["frames"], 80);                         // it went on
+  EXPECT_EQ(read_json(folder / "done.json")["sample"], "sphere");                           // and nothing is lost
+}
+
+TEST_F(Scripts, AWindowOutlivesADiskThatIsFull) {
+  if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg";
+  const Outcome shown = window({"--script", script(nullptr, 60), "--record", path("v.mkv"), "--frames-count", "100",
+                                "--save-recording", path("done.json"), "--report", path("view.json")},
+                               "ulimit -f 12");  // KiB of any file
+  if (shown.status == 77) GTEST_SKIP() << shown.err;
+  EXPECT_NE(shown.status, 0);
+  EXPECT_TRUE(contains(shown.err, "cannot write the video")) << shown.err;
+  EXPECT_EQ(shown.err.find("cannot write"), shown.err.rfind("cannot write")) << shown.err;  // said once
+  EXPECT_GE(read_json(folder / "view.json")["view"]["frames"], 100);
+  EXPECT_EQ(read_json(folder / "done.json")["sample"], "sphere");
+  for (const auto& file : fs::directory_iterator(folder / "")) EXPECT_NE(file.path().extension(), ".mkv") << file;
 }
 
 TEST_F(Scripts, ASessionGivesTheSameValuesHeadlessOffscreenAndInAWindow) {

@@ -19,9 +19,10 @@ struct FlowScene {
   std::unique_ptr<SharedBuffer> shown;
 
   explicit FlowScene(const std::string& sample, int detail, int resolution, int refine = 4,
-                     const std::string& method = "grid") {
+                     const std::string& method = "grid", const std::string& octree = "brick") {
     surface = prepare(make_sample(sample, detail).load(0));
     pipeline->parameters.method = method;
+    pipeline->parameters.octree = octree;
     pipeline->parameters.resolution = resolution;
     pipeline->parameters.refine = refine;
     pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
@@ -31,7 +32,7 @@ struct FlowScene {
       std::copy(field.begin(), field.end(), out.begin());
     };
     pipeline->start(vectors);
-    shown = std::make_unique<SharedBuffer>(*device, pipeline->embedding().surface_cells * sizeof(float), GL_R32F);
+    shown = std::make_unique<SharedBuffer>(*device, pipeline->lookup().values * sizeof(float), GL_R32F);
     step();
   }
 
@@ -43,8 +44,8 @@ struct FlowScene {
 
   SurfaceTexture texture(std::size_t page = 0) const {
     const FlowLookup l = pipeline->lookup();
-    if (l.kind == FlowLookup::Kind::octree)
-      return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer}, page);
+    if (l.kind != FlowLookup::Kind::grid)
+      return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer, l.child}, page);
     const SparseLookup lookup{l.bricks, l.subcells, l.refine, l.origin, l.cell_size, l.brick_index, l.block, l.texel};
     return SparseTexture(lookup, with_rims(lookup), page);
   }

@@ -174,6 +174,20 @@ TEST_F(Render, OctreesLookAsRaysSeeThem) {
   }
 }
 
+TEST_F(Render, TheSourcesOctreeLooksAsRaysSeeIt) {
+  test::FlowScene scene("sphere", 24, 64, 4, "octree", "source");
+  const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
+  const TwoPictures two(scene, camera, heights(scene));
+  two.keep("source_octree");
+  const Difference d = compare(two.opengl, two.rays);
+  EXPECT_GT(d.covered, 0.3);
+  EXPECT_LT(d.mean, 0.5);
+  EXPECT_LT(d.far_off, 0.005);
+  const std::size_t page = std::bit_ceil(scene.pipeline->lookup().child.size()) / 4;
+  const TwoPictures paged(scene, camera, heights(scene), page);
+  EXPECT_EQ(two.opengl.pixels, paged.opengl.pixels);
+}
+
 TEST_F(Render, OctreesLieOnPagesToo) {
   test::FlowScene scene("torus", 32, 128, 4, "octree");
   const Camera camera = fit_camera("+x", scene.surface.points, TwoPictures::width, TwoPictures::height);

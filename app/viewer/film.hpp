@@ -1,0 +1,53 @@
+// Nacre: the video that frames of the viewer go to: the command line's, or one that was begun in the menu.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "engine/picture/video.hpp"
+
+namespace nacre {
+
+class Film {
+ public:
+  /// `given`: the command line's, which finishes it; may be null.
+  explicit Film(FrameSink* given) : given_(given) {}
+
+  bool on() const { return own_ || given_; }
+  bool from_menu() const { return own_ != nullptr; }
+  const std::filesystem::path& file() const { return file_; }
+
+  /// Throws Error as `make_video` does.
+  void begin(const std::filesystem::path& file, int fps) {
+    own_ = make_video(file, fps);
+    file_ = file;
+  }
+  /// Throws Error where the frame cannot be written; such a video is over.
+  void add(const Image& frame) {
+    FrameSink* const sink = own_ ? own_.get() : given_;
+    try {
+      sink->add(frame);
+    } catch (...) {
+      drop();
+      throw;
+    }
+  }
+  /// Ends the menu's, if it is on. Throws Error where the file cannot be made whole.
+  void finish() {
+    if (const std::unique_ptr<FrameSink> ended = std::move(own_)) ended->finish();
+  }
+
+ private:
+  void drop() {
+    if (own_)
+      own_.reset();
+    else
+      given_ = nullptr;
+  }
+
+  FrameSink* given_;
+  std::unique_ptr<FrameSink> own_;
+  std::filesystem::path file_;
+};
+
+}  // namespace nacre

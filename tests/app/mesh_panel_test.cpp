@@ -1,0 +1,139 @@
+// Nacre: the buttons of the tab "result" of a mesh, each clicked where it is found. No OpenGL here.
+#if NACRE_HAS_VIEWER
+
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <map>
+#include <memory>
+#include <set>
+
+#include "app/viewer/mesh_results.hpp"
+
+namespace nacre {
+namespace {
+
+/// Two triangles between three materials, with all figures that the panel shows.
+MeshResults small_results() {
+  MeshResults results;
+  auto volume = std::make_shared<ViewedVolume>();
+  volume->input.labels = {0, 4, 7};
+  volume->input.names = {"", "liver", ""};
+  volume->input.voxels = {50, 20, 30};
+  auto mesh = std::make_shared<SurfaceMesh>();
+  mesh->points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {10, 0, 0}, {13, 0, 0}, {10, 3, 0}};
+  mesh->triangles = {{0, 1, 2}, {3, 4, 5}};
+  mesh->materials = {{0, 1}, {1, 2}};
+  auto measures = std::make_shared<MeshMeasures>();
+  measures->topology.materials.resize(3);
+  measures->worst = {{0.11, 1}, {0.42, 0}};
+  results.volume = volume;
+  results.mesh = mesh;
+  results.measures = measures;
+  return results;
+}
+
+class MeshPanel : public testing::Test {
+ protected:
+  static constexpr int width = 420, height = 900;
+
+  void SetUp() override {
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.DisplaySize = ImVec2(width, height);
+    io.IniFilename = nullptr;
+    unsigned char* pixels;
+    int across, down;
+    io.Fonts->GetTexDataAsRGBA32(&pixels, &across, &down);
+    session_.camera = start_;
+    frame(-1, -1, false);
+    frame(-1, -1, false);  // sizes are known from the second one on
+  }
+
+  void TearDown() override { ImGui::DestroyContext(); }
+
+  /// Draws the panel with the mouse there; true where it is over something.
+  bool frame(float x, float y, bool down) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.DeltaTime = 0.4f;  // no click is a double click
+    io.MousePos = ImVec2(x, y);
+    io.MouseDown[0] = down;
+    ImGui::NewFrame();
+    ImGui::SetNextWindowPos(ImVec2(0, 0));
+    ImGui::SetNextWindowSize(ImVec2(width, height));
+    ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
+    draw_mesh_results(results_, session_);
+    ImGui::End();
+    const bool over = ImGui::IsAnyItemHovered();
+    ImGui::EndFrame();
+    return over;
+  }
+
+  void click(float x, float y) {
+    frame(x, y, false);
+    frame(x, y, true);
+    frame(x, y, false);
+  }
+
+  /// Clicks everything that the mouse can be over, each from the same session, and notes what comes of it.
+  void click_everything() {
+    const Session before = session_;
+    for (int y = 4; y < height; y += 8)
+      for (int x = 4; x < width; x += 8) {
+        if (!frame(float(x), float(y), false)) continue;
+        click(float(x), float(y));
+        const Look& look = session_.settings.look;
+        hidden_.insert(look.hidden);
+        ghosts_.insert(look.ghosts);
+        if (*session_.camera != *before.camera) cameras_[session_.camera->target.x] = *session_.camera;
+        if (!session_change(before, session_)) click(float(x), float(y));  // a header that has been closed
+        session_ = before;
+      }
+  }
+
+  const Camera start_{{0, 0, 20}, {0, 0, 0}, {0, 1, 0}, 10, false};
+  MeshResults results_ = small_results();
+  Session session_;
+  std::set<std::string> hidden_, ghosts_;
+  std::map<double, Camera> cameras_;  ///< by what they look at
+};
+
+TEST_F(MeshPanel, MaterialsAreHiddenGhostedAndShownAlone) {
+  click_everything();
+  EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7"}));  // "only" hides the other one
+  EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4", "7"}));
+  hidden_.clear(), ghosts_.clear();
+  session_.settings.look.hidden = "4";
+  session_.settings.look.ghosts = "7";
+  click_everything();
+  EXPECT_EQ(hidden_, (std::set<std::string>{"4", "", "4,7", "7"}));  // show, hide the other, only the first
+  EXPECT_EQ(ghosts_, (std::set<std::string>{"7", "", "7,4"}));
+}
+
+TEST_F(MeshPanel, AClickOnOneOfTheWorstLooksAtIt) {
+  click_everything();
+  ASSERT_EQ(cameras_.size(), 2u);
+  for (const WorstTriangle& worst : results_.measures->worst) {
+    const Triangle& t = results_.mesh->triangles[worst.triangle];
+    const std::vector<Vec3d>& p = results_.mesh->points;
+    const Vec3d middle = (p[t.a] + p[t.b] + p[t.c]) / 3.0;
+    ASSERT_TRUE(cameras_.contains(middle.x));
+    const Camera& camera = cameras_[middle.x];
+    EXPECT_NEAR(length(camera.target - middle), 0, 1e-12);
+    EXPECT_LT(dot(camera.forward(), Vec3d(0, 0, 1)), -0.9);  // from in front of it
+    EXPECT_LE(camera.height, start_.height);
+  }
+  EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7"}));
+}
+
+TEST_F(MeshPanel, FlatViewsAreTurnedTowardsTheTriangle) {
+  session_.camera->eye = {20, 0, 0};  // along its plane
+  click_everything();
+  ASSERT_EQ(cameras_.size(), 2u);
+  for (const auto& [x, camera] : cameras_) EXPECT_GT(std::abs(camera.forward().z), 0.3) << x;
+}
+
+}  // namespace
+}  // namespace nacre
+
+#endif

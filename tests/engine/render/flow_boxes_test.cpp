@@ -1,0 +1,90 @@
+// Nacre: the boxes of an embedding, as the pipeline writes them for a renderer.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "compute/grid/morton.hpp"
+#include "tests/engine/gl/offscreen.hpp"
+#include "tests/engine/render/flow_scene.hpp"
+
+namespace nacre {
+namespace {
+
+class Boxes : public test::Offscreen {
+ protected:
+  void open(const std::string& method, const std::string& octree) {
+    scene_.emplace("torus", 32, 96, 4, method, octree);
+    boxes_ = scene_->pipeline->boxes();
+    codes_.assign(boxes_.count() + 1, 77);  // one more, which stays
+    scene_->pipeline->show_boxes(codes_.data());
+    ASSERT_GE(boxes_.level_start.size(), 2u);
+    ASSERT_GT(boxes_.width, 0);
+  }
+
+  void TearDown() override {
+    scene_.reset();  // before the context
+    test::Offscreen::TearDown();
+  }
+
+  std::size_t levels() const { return boxes_.level_start.size() - 1; }
+  std::vector<std::uint64_t> level(std::size_t l) const {
+    return {codes_.begin() + long(boxes_.level_start[l]), codes_.begin() + long(boxes_.level_start[l + 1])};
+  }
+
+  /// Every place of the surface is in a box of the finest level.
+  void expect_cover() {
+    const std::vector<std::uint64_t> finest = level(levels() - 1);
+    const std::set<std::uint64_t> known(finest.begin(), finest.end());
+    EXPECT_EQ(known.size(), finest.size());
+    EXPECT_EQ(codes_.back(), 77u);
+    std::size_t outside = 0;
+    for (const Vec3d& p : scene_->surface.points) {
+      const Vec3d at = (p - boxes_.origin) / boxes_.width;
+      outside += !known.contains(morton({int(std::floor(at.x)), int(std::floor(at.y)), int(std::floor(at.z))}));
+    }
+    EXPECT_EQ(outside, 0u);
+  }
+
+  /// The boxes of a level are those around the next one's, in order.
+  void expect_tree() {
+    EXPECT_EQ(level(0), std::vector<std::uint64_t>{0});
+    for (std::size_t l = 0; l + 1 < levels(); ++l) {
+      std::vector<std::uint64_t> around = level(l + 1);
+      for (std::uint64_t& code : around) code >>= 3;
+      EXPECT_TRUE(std::is_sorted(around.begin(), around.end())) << l;
+      around.erase(std::unique(around.begin(), around.end()), around.end());
+      EXPECT_EQ(level(l), around) << l;
+    }
+  }
+
+  std::optional<test::FlowScene> scene_;
+  FlowBoxes boxes_;
+  std::vector<std::uint64_t> codes_;
+};
+
+TEST_F(Boxes, OfTheBrickOctreeAreItsNodesAndBricks) {
+  open("octree", "brick");
+  EXPECT_EQ(levels(), 5u);  // 8 << 4 cells per axis
+  EXPECT_DOUBLE_EQ(boxes_.width, 8 * scene_->pipeline->embedding().cell_size);
+  expect_cover();
+  expect_tree();
+}
+
+TEST_F(Boxes, OfTheSourcesOctreeAreItsNodes) {
+  open("octree", "source");
+  EXPECT_EQ(levels(), 7u);
+  EXPECT_DOUBLE_EQ(boxes_.width, 2 * scene_->pipeline->embedding().cell_size);
+  expect_cover();
+  expect_tree();
+}
+
+TEST_F(Boxes, OfTheGridAreItsBricks) {
+  open("grid", "brick");
+  EXPECT_EQ(levels(), 1u);
+  EXPECT_DOUBLE_EQ(boxes_.width, 16 * scene_->pipeline->embedding().cell_size);  // subcells x refine
+  expect_cover();
+}
+
+}  // namespace
+}  // namespace nacre
