@@ -113,10 +113,6 @@ NACRE_HD_INLINE unsigned at_most(Eight a, Eight b) {
 #endif
 }
 /// `a`, to which go `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
-NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
-  return Eight{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
-         (Eight{-1, -1, 1, 1, -1, -1, 1, 1} * y + Eight{-1, -1, -1, -1, 1, 1, 1, 1} * z);
-}
 NACRE_HD_INLINE EightDoubles at_corners(double a, double x, double y, double z) {
   return EightDoubles{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
          (EightDoubles{-1, -1, 1, 1, -1, -1, 1, 1} * y + EightDoubles{-1, -1, -1, -1, 1, 1, 1, 1} * z);
