@@ -152,7 +152,7 @@ BenchTable bench_neighbour_index(Bench& bench) {
                    {"source: Quadro K6000; simulation of a train", "source's octree, radius 5"},
                    {}};
   add_small(bench, table);
-  for (int resolution = bench.small ? 64 : 512; resolution <= (bench.small ? 256 : 2048); resolution *= 2) {
+  for (int resolution = bench.small ? 128 : 512; resolution <= (bench.small ? 512 : 2048); resolution *= 2) {
     const FlowJob with = octree_job(bench, "train", resolution, true),
                   without = octree_job(bench, "train", resolution, false);
     flow_row(bench, table, fmt::format("train {}", resolution), {with, without}, [&](BenchRow& row) {

@@ -122,14 +122,35 @@ struct JudgeParticle {
     const float bias = uniform_random(rule.seed, std::uint32_t(i), round) * (energy[i] - ideal) / ideal;
     const float chance = uniform_random(rule.seed ^ 0x9e3779b9u, std::uint32_t(i), round);
     const bool less = energy[i] > ideal && chance < -demand, more = energy[i] < ideal && chance < demand;
-    const bool few = tree.node[group].mass() <= 24;  // an island needs them all
     if (less || bias > rule.delete_above - 1 || energy[i] > rule.certain_above * ideal)
-      deletion[i] = few ? 0 : energy[i];
+      deletion[i] = on_island(group, at) ? 0 : energy[i];
     else if (rule.may_add && (more || bias < rule.add_below - 1))
       split(i, group, at, d, more ? 4.0f : order == 1 ? 2.5f : 1.6f);
   }
 
  private:
+  /// Is the particle on a body hardly larger than h? That needs all that it has: on a sheet, 18 others are within 2 h.
+  NACRE_HD bool on_island(std::uint32_t group, const Float4& at) const {
+    constexpr float needed = 12, around = 2;
+    if (tree.node[group].mass() <= 2 * needed) return true;
+    if (order != 2) return false;
+    const Vec3f p(at.x, at.y, at.z);
+    const float reach = around * at.w;
+    float count = 0;
+    const auto add = [&](const Float4& q, float mass) {
+      const Vec3f d = Vec3f(q.x, q.y, q.z) - p;
+      count += dot(d, d) < reach * reach ? mass : 0.0f;
+    };
+    for (std::uint32_t k = related.start[group]; k < related.start[group + 1] && count <= needed; ++k)
+      tree.walk(
+          related.related[k], p, p, 2 * reach,
+          [&](std::uint32_t first, std::uint32_t last) {
+            for (std::uint32_t q = first; q < last; ++q) add(tree.place[q], 1);
+          },
+          [&](const TreeNode& node) { add(node.centre, node.mass()); });
+    return count <= needed;
+  }
+
   /// `crowded`: the most energy that the new particle may have where it is put, in units of the ideal. In a gap of 1.6 h on a
   /// curve it has 2.5 of it; among particles that are evenly a little too far apart there is no place with less than that.
   NACRE_HD void split(std::int64_t i, std::uint32_t group, const Float4& at, const Float4& d, float crowded) const {

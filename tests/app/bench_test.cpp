@@ -108,7 +108,7 @@ TEST_F(BenchTest, OnlyRunsOfOneKindAreCompared) {
 
 TEST_F(BenchTest, BadWordsAndFilesAreFoundBeforeTheWork) {
   expect_failure(nacre({"bench", "7.1"}), 2, {"7.1", "6.2"});
-  expect_failure(nacre(small_bench + Words{"--json", path("none/bench.json")}), 1, {"bench.json", "no folder"});
+  expect_failure(nacre(small_bench + Words{"--json", path("none/bench.json")}), 1, {"bench.json", "create the folder"});
   expect_failure(nacre(small_bench + Words{"--against", path("none.json")}), 1, {"none.json"});
   for (const char* text : {"", "{", "[]", "{}", R"({"small":true,"device":{"backend":"cpu","threads":1},"tables":[1]})",
                            R"({"small":true,"device":{"backend":"cpu","threads":1},"tables":[{"name":"3.1","rows":[
