@@ -30,7 +30,7 @@ struct ClusterView {
   float rounding;              // how far a point of the domain may be off in single precision
 
   /// Asks for a triangle that will be looked at soon.
-  NACRE_HD_INLINE void fetch(std::uint32_t j) const {
+  NACRE_HD_INLINE void fetch([[maybe_unused]] std::uint32_t j) const {
 #if !defined(__CUDACC__)
     __builtin_prefetch(frame + j);
     __builtin_prefetch(corners + j);
