@@ -389,7 +389,7 @@ class Viewer {
     const double begin = now();
     if (!recorder_ || !options_.recorded || recorder_->events() == kept_events_ || begin < keep_after_) return;
     kept_events_ = recorder_->events();
-    keep_after_ = begin + 1;
+    keep_after_ = begin + 1;  // also where it cannot be written
     options_.recorded(recorder_->recording());
     keep_after_ = now() + std::max(1.0, 50 * (now() - begin));
   }

@@ -66,7 +66,7 @@ FieldRecipe MeshPipelineOf<Backend>::field_recipe() const {
 /// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels tell: a plane of
 /// particles max_size apart is the least that there can be. What the fields say is looked at again in `make_solver`.
 template <class Backend>
-void MeshPipelineOf<Backend>::require_room() const {
+void MeshPipelineOf<Backend>::require_room() {
   const double h = std::max(parameters.min_size, parameters.max_size);
   if (parameters.particles == 0) require_room_for(least_area_ * 1.1547 / (h * h), "the boundaries ask for at least ");
 }

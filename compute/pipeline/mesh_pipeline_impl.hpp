@@ -61,11 +61,11 @@ class MeshPipelineOf : public MeshPipeline {
     relaxed_.reset();
   }
   FieldRecipe field_recipe() const;
-  void require_room() const;
+  void require_room();
   void build_stage(FieldStage which);
   void relate_interfaces();
   void describe_fields();
-  double require_room_for(double particles, const std::string& why) const;
+  double require_room_for(double particles, const std::string& why);
   void make_solver();
   void add_points();
   void seed_order(int order);

@@ -43,8 +43,8 @@ PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
 /// How many particles the solver shall have room for. Throws Error where the memory is too small for that; `why` goes
 /// before their number.
 template <class Backend>
-double MeshPipelineOf<Backend>::require_room_for(double particles, const std::string& why) const {
-  const std::size_t free = const_cast<Executor<Backend>&>(exec_).arena().free_bytes();
+double MeshPipelineOf<Backend>::require_room_for(double particles, const std::string& why) {
+  const std::size_t free = exec_.arena().free_bytes();
   // Crowded places relax to fewer, holes fill: half as many again has always been enough.
   const double capacity = 1.6 * particles + 20000;
   const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);

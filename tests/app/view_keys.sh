@@ -5,12 +5,9 @@ set -euo pipefail
 source "$(dirname "$0")/window.sh"
 on_display 640x480 xdotool
 program=$1 recording=$2 report=$3 picture=$4
-XDG_STATE_HOME=$(mktemp -d)
-export XDG_STATE_HOME
 
 open_window "$program" --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet \
   --save-recording "$recording" --report "$report" --image "$picture"
-trap 'kill $viewer $display 2>/dev/null || true; rm -rf "$XDG_STATE_HOME"' EXIT
 xdotool mousemove 540 240
 press() {
   xdotool "$@"

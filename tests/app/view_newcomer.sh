@@ -7,7 +7,6 @@ source "$(dirname "$0")/window.sh"
 on_display 800x600 xdotool ffmpeg
 program=$1 flow=$2 labels=$3
 cd "$4"
-export XDG_STATE_HOME=$PWD/state
 
 pace=0.4 # seconds that a user takes from one action to the next
 actions=0

@@ -1,5 +1,4 @@
 // Nacre: scripts, recordings and videos of the viewer, as other people's scripts run them.
-#include <unistd.h>
 
 #include <algorithm>
 
@@ -283,17 +282,6 @@ TEST_F(Scripts, AnInputThatFailsInTheMiddleEndsTheRunWithItsName) {
   EXPECT_EQ(read_json(folder / "done.json")["events"].size(), 0u);
 }
 
-/// The window under Xvfb, begun by a shell in which `first` has been done. Its display is numbered by the process: of two
-/// runs that begin at once, -a alone can give both the same.
-Outcome window(const Words& words, const std::string& first = ":") {
-  const fs::path xvfb = find_program("xvfb-run");
-  return xvfb.empty()
-             ? Outcome{77, "", "there is no xvfb-run"}
-             : run(xvfb, Words{"-a", "-n", std::to_string(100 + getpid() % 20000), "-s", "-screen 0 1280x1024x24",
-                               "/bin/bash", "-c", first + "; exec \"$0\" view --quiet \"$@\"", NACRE_PROGRAM} +
-                             words);
-}
-
 TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
   json with_camera = json::array();
   with_camera.push_back({{"time", 0}, {"camera", camera(0, -9, 0, 3)}});
@@ -301,7 +289,7 @@ TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
   with_camera.push_back({{"time", 0.5}, {"knobs", {{"ttl", 2}}}});
   const std::string file = script(with_camera, 1);
   const Words words = {"--script", file, "--frames-count", "11"};
-  const Outcome shown = window(words + Words{"--record", path("window"), "--save-recording", path("window.json")});
+  const Outcome shown = in_window(words + Words{"--record", path("window"), "--save-recording", path("window.json")});
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   ASSERT_EQ(shown.status, 0) << shown.err;
   ASSERT_EQ(nacre(Words{"view", "--offscreen", "--quiet", "--save-recording", path("offscreen.json")} + words).status,
@@ -314,9 +302,9 @@ TEST_F(Scripts, AWindowOutlivesTheFolderThatItRecordsInto) {
   const std::string frames = path("frames"), fourth = "'" + frames + "/frame_0003.png'";
   const std::string move = "(for i in {1..600}; do [ -e " + fourth + " ] && break; sleep 0.05; done; mv '" + frames +
                            "' '" + path("gone") + "') & :";
-  const Outcome shown = window({"--script", script(nullptr, 60), "--record", frames, "--frames-count", "80",
-                                "--save-recording", path("done.json"), "--report", path("view.json")},
-                               move);
+  const Outcome shown = in_window({"--script", script(nullptr, 60), "--record", frames, "--frames-count", "80",
+                                   "--save-recording", path("done.json"), "--report", path("view.json")},
+                                  move);
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   EXPECT_NE(shown.status, 0);
   EXPECT_TRUE(contains(shown.err, "cannot write " + frames + "/frame_")) << shown.err;
@@ -327,9 +315,9 @@ TEST_F(Scripts, AWindowOutlivesTheFolderThatItRecordsInto) {
 
 TEST_F(Scripts, AWindowOutlivesADiskThatIsFull) {
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg";
-  const Outcome shown = window({"--script", script(nullptr, 60), "--record", path("v.mkv"), "--frames-count", "100",
-                                "--save-recording", path("done.json"), "--report", path("view.json")},
-                               "ulimit -f 12");  // KiB of any file
+  const Outcome shown = in_window({"--script", script(nullptr, 60), "--record", path("v.mkv"), "--frames-count", "100",
+                                   "--save-recording", path("done.json"), "--report", path("view.json")},
+                                  "ulimit -f 12");  // KiB of any file
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   EXPECT_NE(shown.status, 0);
   EXPECT_TRUE(contains(shown.err, "cannot write the video")) << shown.err;
@@ -347,7 +335,7 @@ TEST_F(Scripts, ASessionGivesTheSameValuesHeadlessOffscreenAndInAWindow) {
   ASSERT_EQ(offscreen.status, 0) << offscreen.err;
   EXPECT_EQ(content("flow.vtp"), content("view.vtp"));
   const Outcome shown =
-      window(session + Words{"--record", path("frames"), "--frames-count", "4", "--out", path("window.vtp")});
+      in_window(session + Words{"--record", path("frames"), "--frames-count", "4", "--out", path("window.vtp")});
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   ASSERT_EQ(shown.status, 0) << shown.err;
   EXPECT_EQ(content("flow.vtp"), content("window.vtp"));

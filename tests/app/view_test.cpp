@@ -166,7 +166,8 @@ TEST_F(View, WithoutADisplayAWindowIsAnError) {
 TEST_F(View, WindowUnderXvfb) {
   const fs::path png = folder / "window.png", json = folder / "window.json";
   const Outcome outcome =
-      run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_window.sh", NACRE_PROGRAM, png.string(), json.string()});
+      in_window({"--sample", "sphere", "--detail", "24", "--resolution", "64", "--size", "400x300", "--no-panel",
+                 "--frames-count", "40", "--image", png.string(), "--report", json.string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json view = read_json(json).at("view");

@@ -13,9 +13,16 @@ on_display() {
   done
   exec {numbers}< <(exec Xvfb -displayfd 1 -screen 0 "${screen}x24" 2>/dev/null)
   display=$!
-  trap 'kill $display' EXIT
+  state=$(mktemp -d)  # recent files are the user's own
+  export XDG_STATE_HOME=$state
+  trap clean_up EXIT
   read -r number <&"$numbers"
   export DISPLAY=:$number
+}
+
+clean_up() {
+  kill ${viewer:-} "$display" 2>/dev/null || true
+  rm -rf "$state"
 }
 
 # open_window PROGRAM WORDS...: starts it with them and focuses its window once that shows something; sets `viewer` to its
@@ -23,7 +30,6 @@ on_display() {
 open_window() {
   "$1" view "${@:2}" &
   viewer=$!
-  trap 'kill $viewer $display 2>/dev/null || true' EXIT
   until_true "the window" titled ' - Nacre$'
   xdotool windowfocus "$(xdotool search --name 'Nacre$' | head -1)"
 }

@@ -46,6 +46,13 @@ class Boxes : public test::Offscreen {
     EXPECT_EQ(outside, 0u);
   }
 
+  /// `cells`: of the texture, along the edge of a smallest box.
+  void expect_boxes(std::size_t levels_wanted, int cells) {
+    EXPECT_EQ(levels(), levels_wanted);
+    EXPECT_DOUBLE_EQ(boxes_.width, cells * scene_->pipeline->embedding().cell_size);
+    expect_cover();
+  }
+
   /// The boxes of a level are those around the next one's, in order.
   void expect_tree() {
     EXPECT_EQ(level(0), std::vector<std::uint64_t>{0});
@@ -65,25 +72,19 @@ class Boxes : public test::Offscreen {
 
 TEST_F(Boxes, OfTheBrickOctreeAreItsNodesAndBricks) {
   open("octree", "brick");
-  EXPECT_EQ(levels(), 5u);  // 8 << 4 cells per axis
-  EXPECT_DOUBLE_EQ(boxes_.width, 8 * scene_->pipeline->embedding().cell_size);
-  expect_cover();
+  expect_boxes(5, 8);  // 8 << 4 cells per axis
   expect_tree();
 }
 
 TEST_F(Boxes, OfTheSourcesOctreeAreItsNodes) {
   open("octree", "source");
-  EXPECT_EQ(levels(), 7u);
-  EXPECT_DOUBLE_EQ(boxes_.width, 2 * scene_->pipeline->embedding().cell_size);
-  expect_cover();
+  expect_boxes(7, 2);
   expect_tree();
 }
 
 TEST_F(Boxes, OfTheGridAreItsBricks) {
   open("grid", "brick");
-  EXPECT_EQ(levels(), 1u);
-  EXPECT_DOUBLE_EQ(boxes_.width, 16 * scene_->pipeline->embedding().cell_size);  // subcells x refine
-  expect_cover();
+  expect_boxes(1, 16);  // subcells x refine
 }
 
 }  // namespace

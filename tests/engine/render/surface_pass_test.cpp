@@ -103,15 +103,20 @@ std::vector<float> heights(const test::FlowScene& scene) {
   return scalar;
 }
 
+/// `far_off`: along the outline a pixel's middle may be on one side or the other.
+void expect_alike(const TwoPictures& two, double covered, double mean, double far_off) {
+  const Difference d = compare(two.opengl, two.rays);
+  EXPECT_GT(d.covered, covered);
+  EXPECT_LT(d.mean, mean);
+  EXPECT_LT(d.far_off, far_off);
+}
+
 TEST_F(Render, SurfaceLooksAsRaysSeeIt) {
   test::FlowScene scene("sphere", 24, 128);
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
   const TwoPictures two(scene, camera, heights(scene));
   two.keep("sphere");
-  const Difference d = compare(two.opengl, two.rays);
-  EXPECT_GT(d.covered, 0.3);
-  EXPECT_LT(d.mean, 0.5);
-  EXPECT_LT(d.far_off, 0.005);  // the outline, where a pixel's middle is on one side or the other
+  expect_alike(two, 0.3, 0.5, 0.005);
 }
 
 TEST_F(Render, OrthographicCamerasAgreeToo) {
@@ -120,10 +125,7 @@ TEST_F(Render, OrthographicCamerasAgreeToo) {
   camera.orthographic = true;
   const TwoPictures two(scene, camera, {});
   two.keep("torus_orthographic");
-  const Difference d = compare(two.opengl, two.rays);
-  EXPECT_GT(d.covered, 0.2);
-  EXPECT_LT(d.mean, 0.5);
-  EXPECT_LT(d.far_off, 0.01);
+  expect_alike(two, 0.2, 0.5, 0.01);
 }
 
 TEST_F(Render, TextureIsSharpFromNearby) {
@@ -136,20 +138,14 @@ TEST_F(Render, TextureIsSharpFromNearby) {
   camera.height *= 0.05;
   const TwoPictures two(scene, camera, {});
   two.keep("near");
-  const Difference d = compare(two.opengl, two.rays);
-  EXPECT_GT(d.covered, 0.9);
-  EXPECT_LT(d.mean, 1);
-  EXPECT_LT(d.far_off, 0.01);
+  expect_alike(two, 0.9, 1, 0.01);
 }
 
 TEST_F(Render, OddDivisorsAgreeToo) {
   test::FlowScene scene("sphere", 24, 96, 3);
   const Camera camera = fit_camera("-y", scene.surface.points, TwoPictures::width, TwoPictures::height);
   const TwoPictures two(scene, camera, {});
-  const Difference d = compare(two.opengl, two.rays);
-  EXPECT_GT(d.covered, 0.3);
-  EXPECT_LT(d.mean, 0.5);
-  EXPECT_LT(d.far_off, 0.005);
+  expect_alike(two, 0.3, 0.5, 0.005);
 }
 
 TEST_F(Render, ArraysOnSeveralPagesLookTheSame) {
@@ -167,10 +163,7 @@ TEST_F(Render, OctreesLookAsRaysSeeThem) {
     const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
     const TwoPictures two(scene, camera, heights(scene));
     two.keep("octree");
-    const Difference d = compare(two.opengl, two.rays);
-    EXPECT_GT(d.covered, 0.3);
-    EXPECT_LT(d.mean, 0.5);
-    EXPECT_LT(d.far_off, 0.005);
+    expect_alike(two, 0.3, 0.5, 0.005);
   }
 }
 
@@ -179,10 +172,7 @@ TEST_F(Render, TheSourcesOctreeLooksAsRaysSeeIt) {
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
   const TwoPictures two(scene, camera, heights(scene));
   two.keep("source_octree");
-  const Difference d = compare(two.opengl, two.rays);
-  EXPECT_GT(d.covered, 0.3);
-  EXPECT_LT(d.mean, 0.5);
-  EXPECT_LT(d.far_off, 0.005);
+  expect_alike(two, 0.3, 0.5, 0.005);
   const std::size_t page = std::bit_ceil(scene.pipeline->lookup().child.size()) / 4;
   const TwoPictures paged(scene, camera, heights(scene), page);
   EXPECT_EQ(two.opengl.pixels, paged.opengl.pixels);
