@@ -35,6 +35,7 @@ using CellBase =
 using Structure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase, CGAL::Parallel_tag>;
 using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, Structure>;
 using LockGrid = Triangulation::Lock_data_structure;
+using Vertex = Triangulation::Vertex_handle;
 
 #ifdef __SANITIZE_THREAD__
 constexpr bool may_thread = false;  // false alarms within oneTBB
@@ -44,6 +45,7 @@ constexpr bool may_thread = true;
 
 constexpr std::size_t few_points = 4096;  // locks cost more than they gain
 constexpr int lock_cells = 50;            // per axis
+constexpr std::size_t dear_removal = 50;  // taking a point out costs less than this many insertions on all threads
 
 void check_points(std::span<const Vec3d> points) {
   const std::string what = "the particles cannot be triangulated";
@@ -74,24 +76,26 @@ std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& poi
   return order;
 }
 
-/// Puts points into a triangulation, one after the other or on many threads.
+/// Puts the points from number `first` on into a triangulation, one after the other or, where it has locks, on many
+/// threads. `vertices` gets the vertex of each.
 class Insertion {
  public:
-  Insertion(Triangulation& triangulation, std::span<const Vec3d> points, bool threaded, const std::atomic<bool>* stop)
-      : triangulation_(triangulation), stop_(stop) {
-    points_.reserve(points.size());
-    for (const Vec3d& p : points) points_.emplace_back(p.x, p.y, p.z);
-    order_ = insertion_order(points_, threaded);
+  Insertion(Triangulation& triangulation, std::span<const Vec3d> points, std::size_t first,
+            std::vector<Vertex>& vertices, const std::atomic<bool>* stop)
+      : triangulation_(triangulation), first_(first), vertices_(vertices), stop_(stop) {
+    points_.reserve(points.size() - first);
+    for (const Vec3d& p : points.subspan(first)) points_.emplace_back(p.x, p.y, p.z);
+    order_ = insertion_order(points_, triangulation.is_parallel());
   }
 
   void run() {
-    Triangulation::Vertex_handle hint;
+    Vertex hint;
     std::size_t begin = 0;
     const std::size_t alone = triangulation_.is_parallel() ? 100 : order_.size();
     for (; begin < order_.size() && (begin < alone || triangulation_.dimension() < 3) && !stopped(); ++begin)
       insert(order_[begin], hint, nullptr);
     if (begin < order_.size() && !stopped()) {
-      tbb::enumerable_thread_specific<Triangulation::Vertex_handle> hints(hint);
+      tbb::enumerable_thread_specific<Vertex> hints(hint);
       tbb::parallel_for(tbb::blocked_range<std::size_t>(begin, order_.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end() && !stopped(); ++i)
           insert_locked(order_[i], hints.local());
@@ -103,16 +107,14 @@ class Insertion {
  private:
   bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
 
-  bool insert(std::size_t point, Triangulation::Vertex_handle& hint, bool* could_lock) {
-    const auto vertex = triangulation_.insert(points_[point], hint, could_lock);
+  bool insert(std::size_t point, Vertex& hint, bool* could_lock) {
+    const Vertex vertex = triangulation_.insert(points_[point], hint, could_lock);
     if (could_lock && !*could_lock) return false;
-    if (vertex == Triangulation::Vertex_handle()) return true;
-    hint = vertex;
-    hint->info() = std::uint32_t(point);
+    vertices_[first_ + point] = hint = vertex;
     return true;
   }
 
-  void insert_locked(std::size_t point, Triangulation::Vertex_handle& hint) {
+  void insert_locked(std::size_t point, Vertex& hint) {
     for (bool done = false; !done;) {
       bool could_lock = false;
       if (triangulation_.try_lock_vertex(hint) && triangulation_.try_lock_point(points_[point]))
@@ -123,23 +125,12 @@ class Insertion {
   }
 
   Triangulation& triangulation_;
+  std::size_t first_;
+  std::vector<Vertex>& vertices_;
   const std::atomic<bool>* stop_;
   std::vector<Kernel::Point_3> points_;
   std::vector<std::size_t> order_;
 };
-
-/// Per point the first one at its place, which stands for all of them; which one CGAL kept depends on threads.
-std::vector<std::uint32_t> first_of_equals(std::span<const Vec3d> points) {
-  std::vector<std::uint32_t> order(points.size()), first(points.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    const Vec3d &p = points[i], &q = points[j];
-    return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z != q.z ? p.z < q.z : i < j;
-  });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
-  return first;
-}
 
 using Cell = std::array<std::uint32_t, 4>;
 using Neighbours = std::array<std::int32_t, 4>;
@@ -161,7 +152,7 @@ void bring_into_order(Cell& cell, Neighbours& neighbours) {
 }
 
 /// Copies the finite cells as the triangulation happens to hold them.
-DelaunayCells copy_cells(const Triangulation& triangulation, const std::vector<std::uint32_t>& first) {
+DelaunayCells copy_cells(const Triangulation& triangulation) {
   std::vector<Triangulation::Cell_handle> handles;
   handles.reserve(triangulation.number_of_cells());
   for (auto cell = triangulation.all_cells_begin(); cell != triangulation.all_cells_end(); ++cell) {
@@ -174,8 +165,7 @@ DelaunayCells copy_cells(const Triangulation& triangulation, const std::vector<s
   cells.neighbours.resize(handles.size());
   tbb::parallel_for(std::size_t(0), handles.size(), [&](std::size_t i) {
     for (int k = 0; k < 4; ++k) {
-      const std::uint32_t vertex = handles[i]->vertex(k)->info();
-      cells.vertices[i][k] = first.empty() ? vertex : first[vertex];
+      cells.vertices[i][k] = handles[i]->vertex(k)->info();
       cells.neighbours[i][k] = handles[i]->neighbor(k)->info();
     }
     bring_into_order(cells.vertices[i], cells.neighbours[i]);
@@ -224,29 +214,66 @@ DelaunayCells sorted(const DelaunayCells& raw, std::span<const Vec3d> points) {
   return cells;
 }
 
-DelaunayCells triangulate(std::span<const Vec3d> points, bool threaded, const std::atomic<bool>* stop) {
-  std::unique_ptr<LockGrid> locks;
-  if (threaded) locks = std::make_unique<LockGrid>(box_of(points), lock_cells);
-  DelaunayCells raw;
-  {
-    Triangulation triangulation{Kernel(), locks.get()};
-    Insertion(triangulation, points, threaded, stop).run();
+}  // namespace
+
+/// What is kept from one call to the next.
+struct Delaunay::Held {
+  Triangulation triangulation;
+  std::vector<Vec3d> points;
+  std::vector<Vertex> vertices;  ///< per point
+
+  /// Takes out the points that are not at the front of `now`, in their order; how many are. None, where building anew
+  /// costs less: then all of this is as new.
+  std::size_t keep(std::span<const Vec3d> now) {
+    constexpr std::uint32_t unused = ~0u;
+    std::vector<Vertex> gone;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (kept < now.size() && now[kept] == points[i])
+        vertices[kept++] = vertices[i];
+      else
+        gone.push_back(vertices[i]);
+    if (gone.size() > now.size() / dear_removal) {
+      triangulation.clear();
+      return 0;
+    }
+    for (const Vertex vertex : gone) vertex->info() = unused;
+    for (std::size_t i = 0; i < kept; ++i) vertices[i]->info() = 0;
+    for (const Vertex vertex : gone)  // points that coincide share one
+      if (std::exchange(vertex->info(), 0) == unused) triangulation.remove(vertex);
+    return kept;
+  }
+
+  void triangulate(std::span<const Vec3d> now, bool threaded, const std::atomic<bool>* stop) {
+    const std::size_t kept = keep(now);
+    std::unique_ptr<LockGrid> locks;
+    if (threaded && now.size() - kept > few_points) locks = std::make_unique<LockGrid>(box_of(now), lock_cells);
+    points.assign(now.begin(), now.end());
+    vertices.resize(now.size());
+    triangulation.set_lock_data_structure(locks.get());
+    Insertion(triangulation, now, kept, vertices, stop).run();
+    triangulation.set_lock_data_structure(nullptr);
+    for (std::size_t i = now.size(); i-- > 0;)
+      vertices[i]->info() = std::uint32_t(i);  // the first of those that coincide
     if (triangulation.dimension() < 3)
       throw Error("the particles cannot be triangulated", "they all lie in one plane",
                   "check that the volume holds a body with a thickness");
-    const bool coincide = triangulation.number_of_vertices() < points.size();
-    raw = copy_cells(triangulation, coincide ? first_of_equals(points) : std::vector<std::uint32_t>());
   }
-  return sorted(raw, points);
-}
+};
 
-}  // namespace
+Delaunay::Delaunay(int threads) : threads_(threads) {}
+Delaunay::~Delaunay() = default;
 
-DelaunayCells delaunay(std::span<const Vec3d> points, int threads, const std::atomic<bool>* stop) {
+DelaunayCells Delaunay::cells(std::span<const Vec3d> points, const std::atomic<bool>* stop) {
   check_points(points);
-  tbb::task_arena arena(threads > 0 ? threads : tbb::this_task_arena::max_concurrency());
-  const bool threaded = may_thread && arena.max_concurrency() > 1 && points.size() > few_points;
-  return arena.execute([&] { return triangulate(points, threaded, stop); });
+  tbb::task_arena arena(threads_ > 0 ? threads_ : tbb::this_task_arena::max_concurrency());
+  return arena.execute([&] {
+    std::unique_ptr<Held> held = held_ ? std::move(held_) : std::make_unique<Held>();  // lost where this throws
+    held->triangulate(points, may_thread && arena.max_concurrency() > 1, stop);
+    const DelaunayCells raw = copy_cells(held->triangulation);
+    held_ = std::move(held);
+    return sorted(raw, points);
+  });
 }
 
 }  // namespace nacre

@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,30 @@ struct DelaunayCells {
   std::vector<Vec3d> circumcentres;  ///< finite; see circumcentre_reach for cells next to flat
 };
 
-/// Delaunay triangulation on `threads` threads (0: all of the arena that it is called in; 1 under the thread
-/// sanitizer). Of points that coincide the first is used. Throws Error where there are fewer than four points, all lie
-/// in one plane or one is not finite, and Interrupted soon after `*stop` is set.
-DelaunayCells delaunay(std::span<const Vec3d> points, int threads = 0, const std::atomic<bool>* stop = nullptr);
+/// A Delaunay triangulation that follows its points: where few have gone or come since the last call, only their
+/// neighbourhoods are made anew. What it gives depends on the points alone.
+class Delaunay {
+ public:
+  /// On `threads` threads (0: all of the arena that it is called in; 1 under the thread sanitizer).
+  explicit Delaunay(int threads = 0);
+  ~Delaunay();
+  Delaunay(const Delaunay&) = delete;
+  Delaunay& operator=(const Delaunay&) = delete;
+
+  /// The cells of `points`; of those that coincide the first is used. Points of the last call are known again where
+  /// they stand in the same order before all new ones. Throws Error where there are fewer than four points, all lie in
+  /// one plane or one is not finite, and Interrupted soon after `*stop` is set.
+  DelaunayCells cells(std::span<const Vec3d> points, const std::atomic<bool>* stop = nullptr);
+
+ private:
+  struct Held;
+  int threads_;
+  std::unique_ptr<Held> held_;
+};
+
+/// The cells of points that are triangulated once.
+inline DelaunayCells delaunay(std::span<const Vec3d> points, int threads = 0, const std::atomic<bool>* stop = nullptr) {
+  return Delaunay(threads).cells(points, stop);
+}
 
 }  // namespace nacre

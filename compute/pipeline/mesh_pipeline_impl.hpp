@@ -74,7 +74,7 @@ class MeshPipelineOf : public MeshPipeline {
   void relax_by_turns(int order, double from, double to);
   void note_iteration(int order, double energy, std::int64_t movers);
   void measure_energy();
-  void polish();
+  void polish(std::int64_t first = 0);
   double mend_fraction(int round) const { return 0.86 + 0.08 * round / (parameters.mend + further_rounds); }
   void begin_unmended();
   bool mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles, std::span<const std::uint32_t> point_of,
@@ -82,7 +82,7 @@ class MeshPipelineOf : public MeshPipeline {
   void close_up(int round);
   HostParticles download_particles() const;
   void upload_particles(const HostParticles& particles);
-  void change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
+  std::int64_t change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
   FieldGround field_ground() const { return {bricks_.view(), junction_.data(), size_.view()}; }
   EmbeddedGround embedded_ground() const { return {grid_.view(), field_ground()}; }
@@ -120,6 +120,7 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
   if (!solver_) throw Error("no particles");
   begin_unmended();
   SurfaceMesh mesh;
+  Delaunay delaunay(exec_.device().threads());
   for (int round = 0;; ++round) {
     tell("triangulate", mend_fraction(round));
     const MeshParticles particles = this->particles();
@@ -127,7 +128,7 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
     LabelRepair repair;
     {
       auto stage = exec_.stage("triangulate");
-      const DelaunayCells cells = delaunay(particles.points, exec_.device().threads(), stop_);
+      const DelaunayCells cells = delaunay.cells(particles.points, stop_);
       std::vector<std::uint16_t> label = material_at(cells.circumcentres);
       repair = repair_labels(particles.points, cells, label);
       mesh = extract_interfaces(particles.points, cells, label, &point_of);

@@ -121,15 +121,18 @@ void MeshPipelineOf<Backend>::measure_energy() {
   info_.final_energy = solver_->forces(exec_, related, 2, 0, solver_->movers(exec_, related, 2));
 }
 
-/// Brings all particles onto the fields; those that have strayed from their interface are taken out.
+/// Brings the particles from number `first` on onto the fields; those that have strayed from their interface are taken
+/// out.
 template <class Backend>
-void MeshPipelineOf<Backend>::polish() {
+void MeshPipelineOf<Backend>::polish(std::int64_t first) {
   const ParticleSet& set = solver_->particles();
+  const std::int64_t count = set.count - first;
   Arena::Scope scope(exec_.arena());
-  Array<std::uint8_t> lost = exec_.arena().template temporary<std::uint8_t>(set.count);
-  exec_.for_each(set.count, detail::PolishParticle{bricks_.view(), junction_.data(), set.interface.data(),
-                                                   set.place.data(), set.direction.data(), lost.data()});
-  const std::vector<std::uint8_t> gone = lost.download();
+  Array<std::uint8_t> lost = exec_.arena().template temporary<std::uint8_t>(count);
+  exec_.for_each(count, detail::PolishParticle{bricks_.view(), junction_.data(), set.interface.data() + first,
+                                               set.place.data() + first, set.direction.data() + first, lost.data()});
+  std::vector<std::uint8_t> gone = lost.download();
+  gone.insert(gone.begin(), std::size_t(first), 0);
   if (std::find(gone.begin(), gone.end(), 1) != gone.end()) change_particles(gone, {});
 }
 
@@ -152,10 +155,10 @@ void MeshPipelineOf<Backend>::upload_particles(const HostParticles& particles) {
   solver_->velocity().upload(std::vector<Float4>(n, Float4{0, 0, 0, 0}));
 }
 
-/// Takes particles out and puts new ones in; all then rest.
+/// Takes particles out and puts new ones in, behind those that stay; all then rest. How many stay.
 template <class Backend>
-void MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gone,
-                                               std::span<const MeshDefects::NewPoint> born) {
+std::int64_t MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gone,
+                                                       std::span<const MeshDefects::NewPoint> born) {
   HostParticles all = download_particles();
   auto& [place, direction, interface] = all;
   std::size_t kept = 0;
@@ -171,6 +174,7 @@ void MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gon
     interface.push_back(std::uint32_t(k - junctions_.begin()));
   }
   upload_particles(all);
+  return std::int64_t(kept);
 }
 
 /// Puts the seeds of an order behind the particles of lower ones, which stay where they are from now on.
@@ -302,8 +306,7 @@ bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const Mes
     if (defects.remove.empty() && defects.insert.empty()) return false;
     std::vector<std::uint8_t> gone(particles.points.size(), 0);
     for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
-    change_particles(gone, defects.insert);
-    polish();  // also brings new points onto their interfaces
+    polish(change_particles(gone, defects.insert));  // the others lie on the fields
   }
   if (round < 2) close_up(round);  // later, moving all would spoil others
   return true;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/circumcentre.hpp"
@@ -92,21 +93,57 @@ TEST(Delaunay, SpheresAreEmptyAndNeighboursAgree) {
   EXPECT_LT(total, 1);
 }
 
-TEST(Delaunay, ThreadsAndDoublesChangeNothing) {
+/// 8,000 at random, 512 on a lattice, full of ties, and 1,000 of them a second time.
+std::vector<Vec3d> awkward_points() {
   std::vector<Vec3d> points = random_points(8000);
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j)
-      for (int k = 0; k < 8; ++k) points.push_back({2 + i / 8., j / 8., k / 8.});  // full of ties
-  for (int i = 0; i < 1000; ++i) points.push_back(points[std::size_t(i) * 7]);     // twice
+      for (int k = 0; k < 8; ++k) points.push_back({2 + i / 8., j / 8., k / 8.});
+  for (int i = 0; i < 1000; ++i) points.push_back(points[std::size_t(i) * 7 + 1000]);
+  return points;
+}
+
+void expect_same(const DelaunayCells& a, const DelaunayCells& b, const std::string& what) {
+  EXPECT_TRUE(a.vertices == b.vertices) << what;
+  EXPECT_TRUE(a.neighbours == b.neighbours) << what;
+  EXPECT_TRUE(a.circumcentres == b.circumcentres) << what;
+}
+
+TEST(Delaunay, ThreadsAndDoublesChangeNothing) {
+  const std::vector<Vec3d> points = awkward_points();
   const DelaunayCells one = delaunay(points, 1);
-  for (const int threads : {2, 0}) {
-    const DelaunayCells more = delaunay(points, threads);
-    EXPECT_TRUE(one.vertices == more.vertices) << threads;
-    EXPECT_TRUE(one.neighbours == more.neighbours) << threads;
-    EXPECT_TRUE(one.circumcentres == more.circumcentres) << threads;
-  }
+  for (const int threads : {2, 0}) expect_same(one, delaunay(points, threads), std::to_string(threads));
   for (const auto& cell : one.vertices)
     for (const std::uint32_t v : cell) ASSERT_LT(v, 8000u + 8 * 8 * 8);
+}
+
+TEST(Delaunay, FollowsPointsThatGoAndCome) {
+  std::vector<Vec3d> points = awkward_points();
+  Delaunay followed(2);
+  expect_same(followed.cells(points), delaunay(points), "at first");
+  expect_same(followed.cells(points), delaunay(points), "unchanged");
+  const auto take_out = [&](std::size_t first, std::size_t step, std::size_t count) {
+    for (std::size_t k = count; k-- > 0;) points.erase(points.begin() + std::ptrdiff_t(first + k * step));
+  };
+  take_out(8000, 5, 100);  // of the lattice
+  expect_same(followed.cells(points), delaunay(points), "without some of the lattice");
+  take_out(1000, 7, 20);  // one of two that coincide
+  expect_same(followed.cells(points), delaunay(points), "without some doubles");
+  points.push_back(points[2000]);
+  for (const Vec3d& p : random_points(50, 2)) points.push_back(p);
+  take_out(0, 3, 10);
+  expect_same(followed.cells(points), delaunay(points), "some gone, some new");
+  for (const Vec3d& p : random_points(9000, 3)) points.push_back(p * 2.0);
+  expect_same(followed.cells(points), delaunay(points), "twice as many, on threads");
+  for (std::size_t i = 0; i < points.size(); i += 2) points[i] += Vec3d(0.01);
+  expect_same(followed.cells(points), delaunay(points), "many moved");
+  const std::atomic<bool> stop = true;
+  points.push_back({5, 5, 5});
+  EXPECT_THROW(followed.cells(points, &stop), Interrupted);
+  expect_same(followed.cells(points), delaunay(points), "after an interruption");
+  const std::vector<Vec3d> three = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_THROW(followed.cells(three), Error);
+  expect_same(followed.cells(points), delaunay(points), "after an error");
 }
 
 TEST(Delaunay, RefusesWhatHasNoCells) {
