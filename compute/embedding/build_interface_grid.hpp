@@ -23,15 +23,15 @@ struct InterfaceGrid {
   int crowded_points = 0;  ///< of the points, those where more than four materials meet
   std::int64_t bricks = 0;
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
-  Array<Float4> offset, direction;
+  Array<EmbeddedCell> cell;
+  float size_unit = 1;
 
   InterfaceGridView view() const {
-    return {coarse, cells_per_voxel, brick_start.data(), brick_interface.data(), offset.data(), direction.data()};
+    return {coarse, cells_per_voxel, brick_start.data(), brick_interface.data(), cell.data(), size_unit};
   }
   std::int64_t cells() const { return bricks * 64; }
   std::int64_t bytes() const {
-    return std::int64_t(brick_start.bytes() + brick_interface.bytes() + brick_coarse.bytes() + offset.bytes() +
-                        direction.bytes());
+    return std::int64_t(brick_start.bytes() + brick_interface.bytes() + brick_coarse.bytes() + cell.bytes());
   }
 };
 
@@ -140,8 +140,8 @@ struct EmbedInterface {
   float cells_per_voxel;
   const std::uint32_t* brick_coarse;
   const std::uint32_t* brick_interface;
-  Float4* offset;
-  Float4* direction;
+  EmbeddedCell* cell;
+  float size_unit;
   std::uint8_t* found;  ///< per cell: whether the projection arrived
 
   NACRE_HD Vec3f centre(std::int64_t i) const {
@@ -152,10 +152,9 @@ struct EmbedInterface {
   }
 
   NACRE_HD void operator()(std::int64_t i) const {
-    const Vec3f cell = centre(i), p = cell / cells_per_voxel;
+    const Vec3f middle = centre(i), p = middle / cells_per_voxel;
     const Junction j = junction[brick_interface[i / 64]];
-    offset[i] = {0, 0, 0, -4};
-    direction[i] = {0, 0, 0, 0};
+    cell[i] = EmbeddedCell({0, 0, 0, -4}, {0, 0, 0, 0}, size_unit);
     found[i] = 0;
     JunctionPoint at;
     if (!field.inside(p, 3) || !first_guess(j, p, at)) return;
@@ -170,9 +169,10 @@ struct EmbedInterface {
         break;
       at = better;
     }
-    const Vec3f o = at.p * cells_per_voxel - cell;
-    offset[i] = {o.x, o.y, o.z, std::fmax(junction_margin(field, j, at.p, at.steepness), -4.0f)};
-    direction[i] = {at.direction.x, at.direction.y, at.direction.z, size(at.p)};
+    const Vec3f o = at.p * cells_per_voxel - middle;
+    const float margin = std::fmax(junction_margin(field, j, at.p, at.steepness), -4.0f);
+    cell[i] =
+        EmbeddedCell({o.x, o.y, o.z, margin}, {at.direction.x, at.direction.y, at.direction.z, size(at.p)}, size_unit);
     found[i] = 1;
   }
 
@@ -219,13 +219,14 @@ struct BorrowClosestPoint {
       if (b == none) continue;
       const std::uint32_t at = b * 64 + ((c.z & 3) * 4 + (c.y & 3)) * 4 + (c.x & 3);
       if (!embed.found[at]) continue;
-      const Float4 o = embed.offset[at];
+      const Float4 o = store(load(embed.cell[at]));
       const Vec3f from_here = cell_centre(c) + Vec3f(o.x, o.y, o.z) - centre;
       if (dot(from_here, from_here) < least) least = dot(from_here, from_here), best = at, best_offset = from_here;
     }
     if (best == none) return;
-    embed.direction[i] = embed.direction[best];
-    embed.offset[i] = {best_offset.x, best_offset.y, best_offset.z, embed.offset[best].w};
+    const float margin = store(load(embed.cell[best])).w;
+    embed.cell[i] =
+        EmbeddedCell({best_offset.x, best_offset.y, best_offset.z, margin}, grid.direction(best), embed.size_unit);
   }
 };
 
@@ -276,8 +277,8 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
       total, detail::UniqueBricks{keys.data(), number.data(), grid.brick_interface.data(), grid.brick_coarse.data()});
   exec.for_each(coarse + 1,
                 detail::FirstBrick{grid.brick_coarse.data(), std::uint32_t(grid.bricks), grid.brick_start.data()});
-  grid.offset = arena.permanent<Float4>(grid.cells());
-  grid.direction = arena.permanent<Float4>(grid.cells());
+  grid.cell = arena.permanent<EmbeddedCell>(grid.cells());
+  grid.size_unit = 1.1f * size.largest / 65535;  // beside the interface it may be larger
   Array<std::uint8_t> found = arena.temporary<std::uint8_t>(grid.cells());
   const detail::EmbedInterface embed{b.view(),
                                      distance.view(),
@@ -287,8 +288,8 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
                                      grid.cells_per_voxel,
                                      grid.brick_coarse.data(),
                                      grid.brick_interface.data(),
-                                     grid.offset.data(),
-                                     grid.direction.data(),
+                                     grid.cell.data(),
+                                     grid.size_unit,
                                      found.data()};
   exec.for_each(grid.cells(), embed);
   exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});

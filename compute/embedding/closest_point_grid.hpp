@@ -170,9 +170,15 @@ struct LinearCells {
   }
 
   NACRE_HD_INLINE Lanes interpolate(const Float4* values) const {
-    const Lanes a = load(values[at[0]]), b = load(values[at[2]]), c = load(values[at[4]]), d = load(values[at[6]]);
-    const Lanes e = a + (load(values[at[1]]) - a) * f.x, g = b + (load(values[at[3]]) - b) * f.x;
-    const Lanes h = c + (load(values[at[5]]) - c) * f.x, i = d + (load(values[at[7]]) - d) * f.x;
+    return interpolate([&](std::uint32_t k) { return load(values[k]); });
+  }
+
+  /// Of the values `value(address)`.
+  template <class At>
+  NACRE_HD_INLINE Lanes interpolate(const At& value) const {
+    const Lanes a = value(at[0]), b = value(at[2]), c = value(at[4]), d = value(at[6]);
+    const Lanes e = a + (value(at[1]) - a) * f.x, g = b + (value(at[3]) - b) * f.x;
+    const Lanes h = c + (value(at[5]) - c) * f.x, i = d + (value(at[7]) - d) * f.x;
     const Lanes low = e + (g - e) * f.y, high = h + (i - h) * f.y;
     return low + (high - low) * f.z;
   }
@@ -218,8 +224,8 @@ NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil,
     for (int c = 0; c < 4; ++c) {
       const int hz = c >= stencil.split[2];
       const std::uint32_t line = ((stencil.local[2] + c - hz * sub) * sub + y) * sub;
-      const Float4* lower = grid.offset + stencil.base[hz][hy][0] + line;
-      const Float4* upper = grid.offset + stencil.base[hz][hy][1] + line;
+      const auto* lower = grid.offset + stencil.base[hz][hy][0] + line;
+      const auto* upper = grid.offset + stencil.base[hz][hy][1] + line;
       const Row nodes =
           row(lower[column[0]], (1 < stencil.split[0] ? lower : upper)[column[1]],
               (2 < stencil.split[0] ? lower : upper)[column[2]], (3 < stencil.split[0] ? lower : upper)[column[3]]);

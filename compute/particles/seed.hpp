@@ -25,7 +25,7 @@ struct SeedCells {
   NACRE_HD float share(std::int64_t i) const {
     const std::uint32_t interface = grid.brick_interface[i / 64];
     if (order[interface] != wanted) return 0;
-    const Float4 o = grid.offset[i], d = grid.direction[i];
+    const Float4 o = store(load(grid.cell[i])), d = grid.direction(i);
     if (!(o.w >= 0) || !(d.w > 0)) return 0;
     const Vec3f r(o.x, o.y, o.z);
     const float cell = 1 / grid.cells_per_voxel;
@@ -98,7 +98,7 @@ struct WriteSeeds {
   NACRE_HD void operator()(std::int64_t i) const {
     if (flag[i] == 0) return;
     const std::int64_t to = first + count[i], at = cell[i];
-    const Float4 o = cells.grid.offset[at], d = cells.grid.direction[at];
+    const Float4 o = store(load(cells.grid.cell[at])), d = cells.grid.direction(at);
     const Vec3f p = (cell_centre(cells.cell(at)) + Vec3f(o.x, o.y, o.z)) / cells.grid.cells_per_voxel;
     place[to] = {p.x, p.y, p.z, d.w};
     direction[to] = {d.x, d.y, d.z, 0};
