@@ -170,7 +170,7 @@ struct EmbedInterface {
       at = better;
     }
     const Vec3f o = at.p * cells_per_voxel - middle;
-    const float margin = std::fmax(junction_margin(field, j, at.p, at.steepness), -4.0f);
+    const float margin = max(junction_margin(field, j, at.p, at.steepness), -4.0f);
     cell[i] =
         EmbeddedCell({o.x, o.y, o.z, margin}, {at.direction.x, at.direction.y, at.direction.z, size(at.p)}, size_unit);
     found[i] = 1;
@@ -178,14 +178,18 @@ struct EmbedInterface {
 
  private:
   /// Steps end here: what is left then is less than WENO makes of such cells.
-  NACRE_HD float last_step() const { return 0.04f / std::fmin(cells_per_voxel, 1.0f); }
+  NACRE_HD float last_step() const { return 0.04f / min(cells_per_voxel, 1.0f); }
+
+  /// How far Newton's steps can lead, and the distance of known points from each other.
+  NACRE_HD float farthest() const { return min(5 / cells_per_voxel, 10 * 0.5f) + 0.35f; }
 
   /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
   /// also for a surface farther away than the stencils around its points reach, two cells along each axis.
   NACRE_HD bool first_guess(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
     float away = 0;
-    const std::uint32_t q = j.order() == 2 ? distance.closest(p, away) : none;
-    if (q == none || !(distance.point[q].surface == j))
+    const std::uint32_t q = distance.closest(p, away);
+    if ((q == none ? distance.reach : away) > farthest()) return false;
+    if (j.order() != 2 || q == none || !(distance.point[q].surface == j))
       return project(field, j, p, 5 / cells_per_voxel, at, last_step());
     const Float4 n = distance.point[q].normal;
     const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;

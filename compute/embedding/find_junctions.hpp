@@ -122,7 +122,7 @@ struct SearchCoarseCell {
     int kept = 0;
     for (int m = 0; m < count; ++m) {  // only those within reach of the one that is here
       const float behind = first.value - f[m].value;
-      if (behind > 1.6f * cell * std::fmax(length(first.gradient - f[m].gradient), 1e-6f)) continue;
+      if (behind > 1.6f * cell * max(length(first.gradient - f[m].gradient), 1e-6f)) continue;
       f[kept] = f[m];
       material[kept++] = material[m];
     }

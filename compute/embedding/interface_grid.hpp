@@ -22,11 +22,11 @@ struct alignas(16) EmbeddedCell {
       : offset{rounded(o.x / offset_unit), rounded(o.y / offset_unit), rounded(o.z / offset_unit)},
         margin(rounded(o.w / margin_unit)),
         direction{rounded(d.x / direction_unit), rounded(d.y / direction_unit), rounded(d.z / direction_unit)},
-        size(std::uint16_t(std::fmin(d.w / size_unit + 0.5f, 65535.0f))) {}
+        size(std::uint16_t(min(d.w / size_unit + 0.5f, 65535.0f))) {}
 
  private:
   NACRE_HD static std::int16_t rounded(float x) {
-    return std::int16_t(std::fmin(std::fmax(std::floor(x + 0.5f), -32767.0f), 32767.0f));
+    return std::int16_t(min(max(std::floor(x + 0.5f), -32767.0f), 32767.0f));
   }
 };
 

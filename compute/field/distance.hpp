@@ -177,7 +177,7 @@ struct FindInterfacePoints {
       const std::uint32_t m = field.brick_material[k];
       if (m == own) continue;
       const FieldSample s = stencil.sample(field, m);
-      const float d = (mine.value - s.value) / std::fmax(length(mine.gradient - s.gradient), 1e-6f);
+      const float d = (mine.value - s.value) / max(length(mine.gradient - s.gradient), 1e-6f);
       if (d < least) least = d, other = m;
     }
     if (other == none) return;

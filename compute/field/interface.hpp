@@ -109,10 +109,10 @@ NACRE_HD inline float junction_margin(const MaterialBricksView& field, const Jun
   if (last - first <= std::uint32_t(count)) return 4;
   const CubicStencil stencil(field, p);
   float own = stencil.value(field, junction.material(0));
-  for (int m = 1; m < count; ++m) own = std::fmin(own, stencil.value(field, junction.material(m)));
+  for (int m = 1; m < count; ++m) own = min(own, stencil.value(field, junction.material(m)));
   float other = own - 4 * steepness;
   for (std::uint32_t k = first; k < last; ++k)
-    if (!junction.has(field.brick_material[k])) other = std::fmax(other, stencil.value(field, field.brick_material[k]));
+    if (!junction.has(field.brick_material[k])) other = max(other, stencil.value(field, field.brick_material[k]));
   return (own - other) / steepness;
 }
 

@@ -20,12 +20,12 @@ struct SizingRule {
 
   /// h where the medial ball has this radius and the sharpest bend that one.
   NACRE_HD float size(float feature, float bend) const {
-    const float bound = curvature ? std::fmin(feature, bend) : feature;
-    const float wanted = std::fmin(std::fmax(epsilon * bound, min_size), max_size);
-    return std::fmin(wanted, std::fmax(resolve * feature, smallest));
+    const float bound = curvature ? min(feature, bend) : feature;
+    const float wanted = min(max(epsilon * bound, min_size), max_size);
+    return min(wanted, max(resolve * feature, smallest));
   }
   /// Radius from which on a medial ball makes no difference.
-  float reach() const { return max_size / (min_size < max_size ? std::fmin(epsilon, resolve) : resolve); }
+  float reach() const { return max_size / (min_size < max_size ? min(epsilon, resolve) : resolve); }
   bool operator==(const SizingRule&) const = default;
 };
 
@@ -94,7 +94,7 @@ struct SizeAtInterface {
       return;
     }
     const Vec3f p{q.place.x, q.place.y, q.place.z}, n{q.normal.x, q.normal.y, q.normal.z};
-    at_point[i] = rule.size(std::fmin(radius(p, n), radius(p, -n)), 1 / std::fmax(q.normal.w, 1e-3f));
+    at_point[i] = rule.size(min(radius(p, n), radius(p, -n)), 1 / max(q.normal.w, 1e-3f));
   }
 };
 
@@ -111,9 +111,8 @@ struct SpreadSize {
       return;
     }
     const Float4 at = distance.point[q].place;
-    h[i] = std::fmin(
-        rule.max_size,
-        at_point[q] + rule.delta * length(Vec3f(at.x, at.y, at.z) - distance.lattice.centre(distance.lattice.cell(i))));
+    h[i] = min(rule.max_size, at_point[q] + rule.delta * length(Vec3f(at.x, at.y, at.z) -
+                                                                distance.lattice.centre(distance.lattice.cell(i))));
   }
 };
 
@@ -134,7 +133,7 @@ struct LimitSlope {
     for (int axis = 0; axis < 3; ++axis) {
       float a = 3e38f;
       if (v[axis] > 0) a = from[i - stride[axis]];
-      if (v[axis] + 1 < lattice.cells[axis]) a = std::fmin(a, from[i + stride[axis]]);
+      if (v[axis] + 1 < lattice.cells[axis]) a = min(a, from[i + stride[axis]]);
       if (a >= own) continue;
       int place = count++;
       for (; place > 0 && low[place - 1] > a; --place) low[place] = low[place - 1], step[place] = step[place - 1];
@@ -154,7 +153,7 @@ struct LimitSlope {
       best = x;
       if (k + 1 < count && x <= low[k + 1]) break;
     }
-    to[i] = std::fmin(own, best);
+    to[i] = min(own, best);
     if (best < own - 1e-3f) relaxed_store(changed, 1);
   }
 };

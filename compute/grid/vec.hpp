@@ -69,6 +69,10 @@ NACRE_HD Vec3<T> normalized(const Vec3<T>& a) {
   return n > T(0) ? a / n : Vec3<T>{};
 }
 
+/// The lesser and the greater of two numbers, in one instruction; std::fmin minds NaN and is a call of the C library.
+NACRE_HD_INLINE constexpr float min(float a, float b) { return b < a ? b : a; }
+NACRE_HD_INLINE constexpr float max(float a, float b) { return a < b ? b : a; }
+
 template <class T>
 NACRE_HD_INLINE constexpr Vec3<T> min(const Vec3<T>& a, const Vec3<T>& b) {
   return {a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y, a.z < b.z ? a.z : b.z};

@@ -14,6 +14,8 @@ namespace {
 constexpr std::size_t small_body = 24, tiny_body = 12;  // points
 constexpr double too_close = 0.25;                      // of a new point to old ones, in sizes
 constexpr double long_edge = 1.3;                       // in sizes
+constexpr double flat_angle = 115;                      // degrees
+constexpr double in_front = 0.8, crowd = 0.45;          // in sizes: a new point before a rim, and from all others
 
 /// A point that a bad triangle wants to be rid of.
 struct Wish {
@@ -27,10 +29,16 @@ std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
   return {mesh.points[c.a], mesh.points[c.b], mesh.points[c.c]};
 }
 
+/// The corner that lies flat between the two others, or -1.
+int flat_corner(const std::array<double, 3>& angles) {
+  const int widest = int(std::max_element(angles.begin(), angles.end()) - angles.begin());
+  return angles[widest] > flat_angle ? widest : -1;
+}
+
 /// The point whose removal mends a bad triangle, or `none`; `few`: bodies of no more points keep it. One that all but
 /// coincides with another is of no use to any body.
 std::uint32_t culprit(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
-                      std::span<const float> size, const std::array<double, 3>& angles, std::size_t& few) {
+                      std::span<const float> size, int flat, const DefectRule& rule, std::size_t& few) {
   const Triangle& c = mesh.triangles[t];
   const auto p = corners(mesh, t);
   int shortest = 0;
@@ -43,8 +51,13 @@ std::uint32_t culprit(const SurfaceMesh& mesh, std::size_t t, std::span<const st
   const double share = least / std::min(size[a], size[b]);
   few = share < 0.2 ? 0 : share < 0.5 ? tiny_body : small_body;
   if (share < 0.5) return order[a] != order[b] ? (order[a] > order[b] ? a : b) : std::max(a, b);
-  const int widest = int(std::max_element(angles.begin(), angles.end()) - angles.begin());
-  return angles[widest] > 115 && order[c[widest]] == 2 ? c[widest] : none;
+  if (flat < 0) return none;
+  if (order[c[flat]] == 2) return c[flat];
+  if (rule.fills) return none;
+  const int next = (flat + 1) % 3, last = (flat + 2) % 3;
+  const bool next_is_nearer = length(p[next] - p[flat]) < length(p[last] - p[flat]);
+  const std::uint32_t nearer = c[next_is_nearer ? next : last], other = c[next_is_nearer ? last : next];
+  return order[nearer] == 2 ? nearer : order[other] == 2 ? other : none;
 }
 
 /// Has the closed surface of one of the point's materials no more than `few` points, so that it needs them all?
@@ -124,12 +137,34 @@ void fill_in(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<co
   }
 }
 
+/// A rim's point lies flat between two on the surface: they have a gap of two sizes before it, room for a new one.
+void fill_before_rim(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const float> size,
+                     std::uint32_t t, int flat, MeshDefects& defects) {
+  const Triangle& c = mesh.triangles[t];
+  const auto p = corners(mesh, t);
+  const Vec3d across = (p[(flat + 1) % 3] + p[(flat + 2) % 3]) / 2.0 - p[flat];
+  const Vec3d place = p[flat] + normalized(across) * (in_front * double(size[c[flat]]));
+  if (!is_finite(place)) return;
+  for (int k = 0; k < 3; ++k)
+    for (const std::uint32_t corner : facets_at.corners(c[k]))
+      for (int j = 0; j < 3; ++j) {
+        const std::uint32_t q = mesh.triangles[corner / 3][j];
+        if (length(mesh.points[q] - place) < crowd * size[q]) return;
+      }
+  defects.insert.push_back({place, mesh.materials[t]});
+}
+
 }  // namespace
 
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule) {
   MeshDefects defects;
+  struct Cap {
+    std::uint32_t triangle;
+    int flat;
+  };
   std::vector<Wish> wishes;
+  std::vector<Cap> caps;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto p = corners(mesh, t);
     const double ratio = radius_ratio(p[0], p[1], p[2]);
@@ -141,13 +176,18 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
     if (ratio >= (near ? rule.near : rule.ratio) && least >= rule.angle) continue;
     ++defects.bad_triangles;
     std::size_t few = small_body;
-    const std::uint32_t point = culprit(mesh, t, order, size, angles, few);
-    if (point != none) wishes.push_back({ratio, point, std::uint32_t(t), few});
+    const int flat = flat_corner(angles);
+    const std::uint32_t point = culprit(mesh, t, order, size, flat, rule, few);
+    if (point != none)
+      wishes.push_back({ratio, point, std::uint32_t(t), few});
+    else if (flat >= 0 && rule.fills)
+      caps.push_back({std::uint32_t(t), flat});
   }
-  if (wishes.empty() && touching.empty()) return defects;
+  if (wishes.empty() && touching.empty() && caps.empty()) return defects;
   const VertexTable facets_at(mesh.triangles, mesh.points.size());
   choose(mesh, facets_at, order, size, wishes, defects);
   fill_in(mesh, facets_at, size, touching, defects);
+  for (const Cap& cap : caps) fill_before_rim(mesh, facets_at, size, cap.triangle, cap.flat, defects);
   return defects;
 }
 

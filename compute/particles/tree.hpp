@@ -24,7 +24,7 @@ struct TreeNode {
   Float4 normal{};             ///< mean of the normals (not unit)
 
   NACRE_HD float mass() const { return float(last - first); }
-  NACRE_HD float size() const { return std::fmax(high.x - low.x, std::fmax(high.y - low.y, high.z - low.z)); }
+  NACRE_HD float size() const { return max(high.x - low.x, max(high.y - low.y, high.z - low.z)); }
 };
 
 /// Squared distance between two boxes.
@@ -186,7 +186,7 @@ struct SummariseNodes {
         centre += p;
         normal += Vec3f(direction[k].x, direction[k].y, direction[k].z);
         h += place[k].w;
-        largest = std::fmax(largest, place[k].w);
+        largest = max(largest, place[k].w);
       }
     } else {
       for (std::uint32_t k = n.child; k < n.child + n.children; ++k) {
@@ -196,7 +196,7 @@ struct SummariseNodes {
         centre += Vec3f(c.centre.x, c.centre.y, c.centre.z) * m;
         normal += Vec3f(c.normal.x, c.normal.y, c.normal.z) * m;
         h += c.centre.w * m;
-        largest = std::fmax(largest, c.largest);
+        largest = max(largest, c.largest);
       }
     }
     const float inverse = 1 / n.mass();

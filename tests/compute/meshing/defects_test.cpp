@@ -79,6 +79,48 @@ TEST(Defects, OneThatLiesFlatBetweenItsNeighboursGoes) {
   EXPECT_EQ(std::count(others.begin(), others.end(), t.c), 0) << "curves keep theirs";
 }
 
+TEST(Defects, TheLastResortAtARimIsToTakeANeighbour) {
+  int told_apart = 0;
+  for (std::size_t k = 0; k < 20; ++k) {
+    Ball ball(test::points_on_sphere(400, 1));
+    const Triangle t = ball.mesh.triangles[100 + k];
+    const Vec3d a = ball.mesh.points[t.a], b = ball.mesh.points[t.b], middle = (a + b) / 2.0;
+    Vec3d& top = ball.mesh.points[t.c];
+    top = middle + 0.1 * (top - middle);
+    for (float& s : ball.size) s = float(0.6 * length(b - a));
+    ball.order[t.c] = 1;
+    const std::uint32_t nearer = length(a - top) < length(b - top) ? t.a : t.b;
+    const auto goes = [&](std::uint32_t point, bool fills) {
+      const Points gone = ball.defects({0, 0.2, 0.2, fills}).remove;
+      return std::count(gone.begin(), gone.end(), point) > 0;
+    };
+    EXPECT_FALSE(goes(t.c, false));
+    if (goes(nearer, true)) continue;  // another triangle wants to be rid of it
+    ++told_apart;
+    EXPECT_TRUE(goes(nearer, false)) << k;
+    ball.order[t.a] = ball.order[t.b] = 1;
+    EXPECT_FALSE(goes(nearer, false)) << "curves keep theirs";
+  }
+  EXPECT_GT(told_apart, 3);
+}
+
+TEST(Defects, BeforeAFlatCornerOnARimIsRoomForOneMore) {
+  // A flat patch: a rim from left to right, and behind its middle an edge across, twice as long as all others.
+  Ball ball(test::points_on_sphere(400, 1));
+  ball.mesh.points = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {-0.9, 0.15, 0}, {1, 0.15, 0}, {0, 1.6, 0}};
+  ball.mesh.triangles = {{0, 1, 3}, {1, 4, 3}, {1, 2, 4}, {3, 4, 5}};
+  ball.mesh.materials.assign(4, {1, 2});
+  ball.order = {1, 1, 1, 2, 2, 2};
+  ball.size.assign(6, 1);
+  const MeshDefects d = ball.defects({0, 0.3, 0.3});
+  ASSERT_EQ(d.insert.size(), 1u);
+  EXPECT_LT(length(d.insert[0].place - Vec3d(0, 0.8, 0)), 0.3);
+  EXPECT_EQ(d.insert[0].materials, (std::array<std::uint16_t, 2>{1, 2}));
+  EXPECT_EQ(std::count(d.remove.begin(), d.remove.end(), 1u), 0);
+  ball.mesh.points[5].y = 0.9;
+  EXPECT_TRUE(ball.defects({0, 0.3, 0.3}).insert.empty()) << "somebody is there";
+}
+
 TEST(Defects, SmallBodiesKeepAllOfTheirs) {
   for (const int count : {11, 12}) {
     Ball ball(with_a_twin(count));
