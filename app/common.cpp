@@ -2,16 +2,21 @@
 #include "app/common.hpp"
 
 #include <fmt/format.h>
+#include <semaphore.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <system_error>
+#include <thread>
 
 #include "compute/device/error.hpp"
 #include "engine/scene/knobs.hpp"
+#include "engine/system/child_process.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
@@ -19,25 +24,65 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 
+/// How often Ctrl-C was pressed (or its like came), the last signal, and whom the second one wakes.
+std::atomic<int> presses{0}, last_signal{0};
+std::atomic<bool> someone_waits{false};
+sem_t second_press;
+
 void on_interrupt(int signal) {
-  if (interrupted.exchange(true)) _exit(128 + signal);
+  const int before = presses.fetch_add(1);
+  last_signal = signal;
+  interrupted = true;
+  if (before == 1 && someone_waits)
+    sem_post(&second_press);
+  else if (before > 0)
+    _exit(128 + signal);
 }
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+/// A thread's life: files cannot be removed in a signal handler, which may have stopped whoever holds their list.
+void leave_on_second_press() {
+  while (sem_wait(&second_press) != 0) {
+  }
+  kill_child_processes();
+  leave_without_unfinished_files(128 + last_signal);
+}
+
+/// The thread takes no signals itself: they shall wake who waits for a pipe or a child.
+void wait_for_second_press() {
+  sem_init(&second_press, 0, 0);
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  try {
+    std::thread(leave_on_second_press).detach();
+    someone_waits = true;
+  } catch (const std::system_error&) {  // no thread to be had: a second press leaves at once, and leaves files
+  }
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
 
 }  // namespace
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_common_options(CLI::App& command, CommonOptions& options, const CommonWords& words) {
   command.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command.add_option("--threads", options.threads, "worker threads (0: all)")->check(CLI::Range(0, 4096));
-  command.add_option("--report", options.report, "write a JSON report to this file");
-  command.add_option("--session", options.session, "take inputs, knobs and camera from a session file");
-  command.add_option("--save-session", options.save_session, "write inputs and knobs to a session file");
+  command.add_option(words.report_names, options.report, words.report_help);
+  command.add_option("--session", options.session, words.session_help);
   command.add_option("--set", options.set, "KNOB=VALUE, any knob by name")
       ->expected(1)  // and no more: a FILE may follow
       ->allow_extra_args(false)
       ->take_all();
-  command.add_flag("--quiet", options.quiet, "say nothing but errors");
+  command.add_flag("--quiet", options.quiet, "say nothing but results and errors");
+}
+
+void add_save_session(CLI::App& command, CommonOptions& options) {
+  command.add_option("--save-session", options.save_session, "write inputs and knobs to a session file");
+}
+
+void limit_threads(int threads) {
+  static std::unique_ptr<tbb::global_control> limit;
+  if (threads > 0 && threads < tbb::info::default_concurrency())
+    limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
 }
 
 KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
@@ -78,6 +123,7 @@ bool KnobOptions::given(const std::string& name, const std::vector<std::string>&
 const std::atomic<bool>& interrupt_flag() { return interrupted; }
 
 void catch_interrupts() {
+  wait_for_second_press();
   struct sigaction action {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
@@ -115,6 +161,17 @@ void Progress::update(std::string_view what, double fraction) {
 void Progress::clear() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
   drawn_ = false;
+}
+
+StatusLine::StatusLine(bool quiet, const std::string& text) {
+  if (quiet) return;
+  drawn_ = isatty(STDERR_FILENO);
+  fmt::print(stderr, "{}{}", text, drawn_ ? " ..." : "\n");
+  std::fflush(stderr);
+}
+
+StatusLine::~StatusLine() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/clock.hpp"
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
 #include "compute/device/stage_timers.hpp"
@@ -43,7 +44,17 @@ auto checked_words(const Action& action) {
   }
 }
 
-void add_common_options(CLI::App& command, CommonOptions& options);
+/// Names and help where a command has its own.
+struct CommonWords {
+  std::string report_names = "--report", report_help = "write a JSON report to this file";
+  std::string session_help = "take inputs, knobs and camera from a session file";
+};
+void add_common_options(CLI::App& command, CommonOptions& options, const CommonWords& words = {});
+/// For commands whose inputs and knobs make a session.
+void add_save_session(CLI::App& command, CommonOptions& options);
+
+/// `threads` is the most that work at once anywhere in the program, from here on; 0: as many as the machine has.
+void limit_threads(int threads);
 
 /// Remembers what the knob options of a command line say, to be applied over a session's values.
 class KnobOptions {
@@ -59,7 +70,7 @@ class KnobOptions {
   std::vector<std::pair<std::string, std::unique_ptr<std::string>>> values_;
 };
 
-/// Set by Ctrl-C. A second Ctrl-C leaves at once.
+/// Set by Ctrl-C (SIGINT, SIGTERM or SIGHUP). A second one removes what is half written and leaves; a third leaves at once.
 const std::atomic<bool>& interrupt_flag();
 void catch_interrupts();
 
@@ -80,6 +91,18 @@ class Progress {
   bool drawn_ = false;
   double started_;
   double last_ = -1;
+};
+
+/// Says on stderr what is being done: on a terminal a line that is gone with this, else a line that stays.
+class StatusLine {
+ public:
+  StatusLine(bool quiet, const std::string& text);
+  ~StatusLine();
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+ private:
+  bool drawn_ = false;
 };
 
 /// "nacre", "command", "device", "stages", "memory".

@@ -47,6 +47,8 @@ void check_words(const FlowOptions& options, const Settings& settings) {
     if (!settings.color_range.empty()) color_words(settings);
   });
   check_picture_words(settings);
+  check_picture_size(settings.width, settings.height, !options.image.empty() || !options.frames.empty(),
+                     !options.video.empty());
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", ".vtp");
   check_output(options.common.report, "--report", "");
@@ -158,6 +160,86 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
           {"cell_size", e.cell_size}};
 }
 
+/// Where every frame goes; null where it was not asked for.
+struct Films {
+  std::unique_ptr<FrameSink> frames, video;
+
+  bool any() const { return frames || video; }
+  void add(const Image& image) {
+    if (frames) frames->add(image);
+    if (video) video->add(image);
+  }
+};
+
+Films open_films(const FlowOptions& options, int fps, Progress& progress) {
+  Films films;
+  const auto tell = [&](const std::string& line) {
+    progress.clear();
+    say(options.common, line);
+  };
+  if (!options.frames.empty()) films.frames = make_frame_folder(options.frames, tell);
+  if (!options.video.empty()) films.video = make_video(options.video, fps);
+  return films;
+}
+
+FlowVectors flow_vectors(VectorsInTime& input, const FlowSpan& span) {
+  FlowVectors vectors;
+  vectors.at = [&input](double t, std::span<Vec3f> out) { input.vectors(t, out); };
+  vectors.start = span.start;
+  vectors.end = span.end;
+  vectors.reference_speed = input.statistics().percentile_98 > 0 ? input.statistics().percentile_98 : 1;
+  return vectors;
+}
+
+/// Returns how long each took, seconds.
+std::vector<double> take_steps(FlowPipeline& pipeline, int steps, Painter& painter, Films& films, Progress& progress) {
+  std::vector<double> seconds;
+  for (int k = 0; k < steps; ++k) {
+    const double before = now();
+    pipeline.step();
+    seconds.push_back(now() - before);
+    if (films.any()) {
+      const Image image = painter.paint(k);
+      StageTimers::Scope scope(pipeline.timers(), "write");
+      films.add(image);
+    }
+    progress.update("step", double(k + 1) / steps);
+    if (interrupt_flag()) throw Interrupted();
+  }
+  return seconds;
+}
+
+/// Returns the files.
+std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, int steps, Painter& painter,
+                                       Films& films) {
+  std::vector<std::string> outputs;
+  Image image;
+  if (!options.image.empty()) image = painter.paint(std::max(0, steps - 1));
+  StageTimers::Scope scope(pipeline.timers(), "write");
+  if (!options.image.empty()) write_png(options.image, image), outputs.push_back(options.image);
+  if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
+  if (films.video) films.video->finish(), outputs.push_back(options.video);
+  if (!options.out.empty()) write_flow_values(pipeline, options.out, pipeline.time()), outputs.push_back(options.out);
+  return outputs;
+}
+
+/// The report's own part.
+void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const FlowVectors& vectors,
+                     const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds) {
+  report["input"] = {{"name", input.series().name},
+                     {"vectors", input.array()},
+                     {"points", input.surface().points.size()},
+                     {"triangles", input.surface().triangles.size()},
+                     {"time", {vectors.start, vectors.end}},
+                     {"reference_speed", vectors.reference_speed},
+                     {"normal_share", input.statistics().normal_share},
+                     {"zero_share", input.statistics().zero_share}};
+  report["parameters"] = knob_values(settings);
+  report["embedding"] = embedding_report(embedding);
+  report["flow"] = {{"steps", seconds.size()}, {"seconds_per_step", median_min_max(seconds)}};
+  if (embedding.flow_bytes) report["flow"]["bytes"] = embedding.flow_bytes;
+}
+
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const Session session = make_session(options, knob_options);
   const Settings& settings = session.settings;
@@ -171,65 +253,21 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
   Painter painter(*pipeline, input, session, span.frame_time);  // complains about camera and colours before the work
-  std::unique_ptr<FrameSink> frames, video;
-  if (!options.frames.empty()) frames = make_frame_folder(options.frames);
-  if (!options.video.empty()) video = make_video(options.video, settings.fps);
-
   Progress progress(options.common.quiet);
+  Films films = open_films(options, settings.fps, progress);
+
   progress.update("embed", 0);
   pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
-  FlowVectors vectors;
-  vectors.at = [&](double t, std::span<Vec3f> out) { input.vectors(t, out); };
-  vectors.start = span.start;
-  vectors.end = span.end;
-  vectors.reference_speed = input.statistics().percentile_98 > 0 ? input.statistics().percentile_98 : 1;
+  const FlowVectors vectors = flow_vectors(input, span);
   pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
   pipeline->start(vectors);
-  std::vector<double> seconds;
-  for (int k = 0; k < span.steps; ++k) {
-    const auto before = std::chrono::steady_clock::now();
-    pipeline->step();
-    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
-    if (frames || video) {
-      const Image image = painter.paint(k);
-      StageTimers::Scope scope(pipeline->timers(), "write");
-      if (frames) frames->add(image);
-      if (video) video->add(image);
-    }
-    progress.update("step", double(k + 1) / span.steps);
-    if (interrupt_flag()) throw Interrupted();
-  }
-
-  std::vector<std::string> outputs;
-  const auto wrote = [&](const std::string& file) { outputs.push_back(file); };
-  if (!options.image.empty()) {
-    const Image image = painter.paint(std::max(0, span.steps - 1));
-    StageTimers::Scope scope(pipeline->timers(), "write");
-    write_png(options.image, image);
-    wrote(options.image);
-  }
-  {
-    StageTimers::Scope scope(pipeline->timers(), "write");
-    if (frames) frames->finish(), wrote(options.frames);
-    if (video) video->finish(), wrote(options.video);
-    if (!options.out.empty()) write_flow_values(*pipeline, options.out, pipeline->time()), wrote(options.out);
-  }
+  const std::vector<double> seconds = take_steps(*pipeline, span.steps, painter, films, progress);
+  const std::vector<std::string> outputs = write_outputs(options, *pipeline, span.steps, painter, films);
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    report["input"] = {{"name", input.series().name},
-                       {"vectors", input.array()},
-                       {"points", surface.points.size()},
-                       {"triangles", surface.triangles.size()},
-                       {"time", {span.start, span.end}},
-                       {"reference_speed", vectors.reference_speed},
-                       {"normal_share", input.statistics().normal_share},
-                       {"zero_share", input.statistics().zero_share}};
-    report["parameters"] = knob_values(settings);
-    report["embedding"] = embedding_report(pipeline->embedding());
-    report["flow"] = {{"steps", span.steps}, {"seconds_per_step", median_min_max(seconds)}};
-    if (const auto bytes = pipeline->embedding().flow_bytes) report["flow"]["bytes"] = bytes;
+    add_flow_report(report, input, vectors, settings, pipeline->embedding(), seconds);
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);
@@ -249,6 +287,7 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_flag("--no-legend", options->no_legend, "no colour legend and axes");
   command->add_flag("--no-time", options->no_time, "no time stamp");
   add_common_options(*command, options->common);
+  add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "flow");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_flow(*options, *knob_options); }; });

@@ -4,13 +4,19 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
-#include "app/common.hpp"
+#include "app/run.hpp"
 #include "engine/io/reader.hpp"
 
 namespace nacre {
 namespace {
 
 constexpr std::size_t shown_labels = 64;
+
+struct InfoOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  bool json = false;
+};
 
 nlohmann::json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
@@ -95,25 +101,54 @@ void print(const FileInfo& info) {
   for (const std::string& warning : info.warnings) fmt::print("  warning: {}\n", warning);
 }
 
+/// Those of the words, else of the session.
+std::vector<std::string> asked_files(const InfoOptions& options) {
+  std::vector<std::string> files = options.files;
+  if (files.empty() && !options.common.session.empty())
+    for (const std::filesystem::path& file : read_session(options.common.session).inputs)
+      files.push_back(file.string());
+  if (files.empty()) throw UsageError("no input: give a FILE; see nacre info --help");
+  return files;
+}
+
+/// Knobs turn nothing here, but shall be knobs, since all commands may be given the same words.
+void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
+  Settings settings;
+  knob_options.apply(settings, options.common.set);
+  check_output(options.common.report, "--report", "");
+  limit_threads(options.common.threads);
+  StageTimers timers;
+  nlohmann::json files = nlohmann::json::array();
+  for (const std::string& file : asked_files(options)) {
+    FileInfo info;
+    {
+      StageTimers::Scope scope(timers, "read");
+      info = describe(file);
+    }
+    files.push_back(as_json(info));
+    if (options.json)
+      fmt::print("{}\n", files.back().dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    else
+      print(info);
+  }
+  if (options.common.report.empty()) return;
+  nlohmann::json report = report_frame("info", *make_cpu_device(options.common.threads), timers, 0);
+  report["input"] = {{"files", std::move(files)}};
+  write_report(options.common, std::move(report), {});
+}
+
 }  // namespace
 
 void add_info_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("info", "what is in a file: kind, size, arrays, time steps, labels");
-  auto files = std::make_shared<std::vector<std::string>>();
-  auto json = std::make_shared<bool>(false);
-  command->add_option("FILE", *files, "files to look at")->required();
-  command->add_flag("--json", *json, "as JSON");
-  command->callback([&run, files, json] {
-    run = [files, json] {
-      for (const std::string& file : *files) {
-        const FileInfo info = describe(file);
-        if (*json)
-          fmt::print("{}\n", as_json(info).dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
-        else
-          print(info);
-      }
-    };
-  });
+  auto options = std::make_shared<InfoOptions>();
+  command->add_option("FILE", options->files, "files to look at");
+  command->add_flag("--json", options->json, "as JSON");
+  add_common_options(*command, options->common,
+                     {"--report", "write the same as JSON to this file", "look at the files of a session file"});
+  auto knob_options = std::make_shared<KnobOptions>(*command, "info");
+  command->callback(
+      [&run, options, knob_options] { run = [options, knob_options] { run_info(*options, *knob_options); }; });
 }
 
 }  // namespace nacre

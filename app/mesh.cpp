@@ -1,8 +1,6 @@
 // Nacre: `nacre mesh`: from a volume to a conformal mesh.
 #include <fmt/format.h>
 
-#include <chrono>
-
 #include "app/commands.hpp"
 #include "app/mesh_run.hpp"
 #include "app/picture_words.hpp"
@@ -26,6 +24,11 @@ void apply_source_preset(Settings& settings) {
   m.by_density = false;
 }
 
+void check_particle_sizes(const MeshParameters& mesh) {
+  if (mesh.min_size > mesh.max_size)
+    throw UsageError(fmt::format("--min-size {:g} is larger than --max-size {:g}", mesh.min_size, mesh.max_size));
+}
+
 namespace {
 
 Session make_session(const MeshOptions& options, const KnobOptions& knobs) {
@@ -44,10 +47,9 @@ void check_words(const MeshOptions& options, const Session& session) {
     if (!session.sample.empty() && !is_phantom(session.sample)) make_phantom(session.sample);  // throws the list
     parse_material_words(settings.materials);
   });
-  if (settings.mesh.min_size > settings.mesh.max_size)
-    throw UsageError(
-        fmt::format("--min-size {:g} is larger than --max-size {:g}", settings.mesh.min_size, settings.mesh.max_size));
+  check_particle_sizes(settings.mesh);
   check_picture_words(settings);
+  check_picture_size(settings.width, settings.height, !options.image.empty(), false);
   check_mesh_outputs(options);
 }
 
@@ -131,7 +133,7 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
 }
 
 void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
-  const auto started = std::chrono::steady_clock::now();
+  const double started = now();
   Session session = make_session(options, knob_options);
   check_words(options, session);
   const std::unique_ptr<Device> device = open_device(options.common);
@@ -151,7 +153,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   const std::vector<std::string> outputs =
       write_mesh_outputs(options, session, input, result, *pipeline, pipeline->timers());
   bar.clear();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  const double seconds = now() - started;
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("mesh", *device, pipeline->timers(), pipeline->peak_bytes());
     add_mesh_report(report, input, session.settings, pipeline->info(), result);
@@ -185,6 +187,7 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run) {
   command->add_flag("--keep-on-interrupt", options->keep_on_interrupt,
                     "Ctrl-C ends the particles early; the mesh is made of what there is");
   add_common_options(*command, options->common);
+  add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "mesh");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_mesh(*options, *knob_options); }; });

@@ -59,6 +59,7 @@ json fields_json(const MeshInfo& info) {
 
 json particles_json(const MeshInfo& info, bool interrupted) {
   return {{"seeded", info.seeded},
+          {"seeded_on_surfaces", info.seeded_on_surfaces},
           {"final", info.final},
           {"on_points", info.points_final},
           {"on_curves", info.curves_final},

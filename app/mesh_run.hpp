@@ -35,6 +35,9 @@ struct MeshResult {
 /// catmull-rom.
 void apply_source_preset(Settings& settings);
 
+/// Throws UsageError where the smallest distance of particles is above the largest.
+void check_particle_sizes(const MeshParameters& mesh);
+
 /// The report's own part: input, parameters, embedding, fields, particles, mesh, tetrahedra.
 void add_mesh_report(nlohmann::json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
                      const MeshResult& result);

@@ -9,6 +9,8 @@
 
 #include "app/common.hpp"
 #include "compute/device/error.hpp"
+#include "engine/picture/png.hpp"
+#include "engine/picture/video.hpp"
 #include "engine/scene/camera_json.hpp"
 
 namespace nacre {
@@ -30,6 +32,13 @@ void check_picture_words(const Settings& settings) {
     if (!is_camera_file(settings)) fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
   });
   if (settings.background != "transparent") parse_color(settings.background);
+}
+
+void check_picture_size(int width, int height, bool png, bool video) {
+  checked_words([&] {
+    if (png) check_png_size(width, height);
+    if (video) check_video_size(width, height);
+  });
 }
 
 Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {

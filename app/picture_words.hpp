@@ -16,6 +16,9 @@ std::array<float, 3> parse_color(const std::string& text);
 /// Throws UsageError where `camera` or `background` mean nothing; a camera file is not looked into.
 void check_picture_words(const Settings& settings);
 
+/// Throws UsageError where a picture as PNG (also a frame in a folder) or a video of that size cannot be written.
+void check_picture_size(int width, int height, bool png, bool video);
+
 /// The camera of the settings: a view that sees all `corners`, or what its JSON file says. Throws Error.
 Camera read_camera(const Settings& settings, std::span<const Vec3d> corners);
 

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
-#include "app/common.hpp"
+#include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/nrrd_writer.hpp"
 #include "engine/io/surface_writer.hpp"
@@ -11,6 +11,23 @@
 
 namespace nacre {
 namespace {
+
+using Files = std::vector<std::string>;
+
+struct SampleWords {
+  CommonOptions common;
+  std::string name, out;
+  int detail = 0;
+};
+
+nlohmann::json samples_json() {
+  nlohmann::json list = nlohmann::json::array();
+  for (const SampleInfo& sample : samples())
+    list.push_back({{"name", sample.name}, {"kind", "surface"}, {"help", sample.help}});
+  for (const PhantomInfo& phantom : phantoms())
+    list.push_back({{"name", phantom.name}, {"kind", "volume"}, {"help", phantom.help}});
+  return list;
+}
 
 void list_samples() {
   fmt::print("surfaces with a flow, for nacre flow:\n");
@@ -21,42 +38,80 @@ void list_samples() {
                phantom.dims.z);
 }
 
-void write_surface_sample(const std::string& name, int detail, const std::filesystem::path& out) {
+/// Returns what to say of it.
+std::string write_surface_sample(const std::string& name, int detail, const std::filesystem::path& out) {
   const SurfaceSeries series = checked_words([&] { return make_sample(name, detail); });
-  if (out.extension() == ".pvd") {
-    const auto files = write_series(out, series);
-    fmt::print("{} ({} steps)\n", out.string(), files.size() - 1);
-  } else {
+  if (out.extension() != ".pvd") {
     write_surface(out, series.load(0), series.times[0]);
-    fmt::print("{}\n", out.string());
+    return out.string();
   }
+  const auto files = write_series(out, series);
+  return fmt::format("{} ({} steps)", out.string(), files.size() - 1);
+}
+
+/// What the words ask for: a sample by its name, else that of the session.
+SampleWords asked_sample(SampleWords words) {
+  if (!words.name.empty() || words.common.session.empty()) return words;
+  const Session session = read_session(words.common.session);
+  if (session.sample.empty()) throw UsageError(words.common.session + " has no sample; its input is a file");
+  words.name = session.sample;
+  if (words.detail == 0) words.detail = session.detail;
+  return words;
+}
+
+std::string write_sample(const SampleWords& words) {
+  if (!is_phantom(words.name)) return write_surface_sample(words.name, words.detail, words.out);
+  write_nrrd(words.out, checked_words([&] { return make_phantom(words.name, words.detail, &interrupt_flag()); }));
+  return words.out;
+}
+
+void report_on(const SampleWords& words, const StageTimers& timers) {
+  if (words.common.report.empty()) return;
+  nlohmann::json report = report_frame("sample", *make_cpu_device(words.common.threads), timers, 0);
+  if (words.name.empty())
+    report["samples"] = samples_json();
+  else
+    report["input"] = {{"sample", words.name}, {"detail", words.detail}};
+  write_report(words.common, std::move(report), words.name.empty() ? Files() : Files{words.out});
+}
+
+/// Knobs turn nothing here (samples know no chance), but shall be knobs, since all commands may be given the same words.
+void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
+  Settings settings;
+  knob_options.apply(settings, given.common.set);
+  check_output(given.common.report, "--report", "");
+  limit_threads(given.common.threads);
+  const SampleWords words = asked_sample(given);
+  if (words.name.empty() != words.out.empty())
+    throw UsageError(words.name.empty() ? "which one? `nacre sample` lists them" : "where to? add --out FILE");
+  StageTimers timers;
+  std::string result;
+  if (words.name.empty()) {
+    list_samples();
+  } else {
+    StageTimers::Scope scope(timers, "write");
+    result = write_sample(words);
+  }
+  report_on(words, timers);
+  if (!result.empty()) fmt::print("{}\n", result);
 }
 
 }  // namespace
 
 void add_sample_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("sample", "list the built-in data sets, or write one to a file");
-  struct Words {
-    std::string name, out;
-    int detail = 0;
-  };
-  auto words = std::make_shared<Words>();
+  auto words = std::make_shared<SampleWords>();
   command->add_option("NAME", words->name, "which one");
   command->add_option("--out", words->out,
                       "a surface: .pvd (all time steps), or .vtp .ply .obj .stl .off (the first); a volume: .nrrd");
   command
       ->add_option("--detail", words->detail, "triangle edges, or voxels, along the longest side (0: the sample's own)")
       ->check(CLI::Range(0, 1 << 20));
-  command->callback([&run, words] {
-    run = [words] {
-      if (words->name.empty()) return list_samples();
-      if (words->out.empty()) throw UsageError("where to? add --out FILE");
-      if (!is_phantom(words->name)) return write_surface_sample(words->name, words->detail, words->out);
-      write_nrrd(words->out,
-                 checked_words([&] { return make_phantom(words->name, words->detail, &interrupt_flag()); }));
-      fmt::print("{}\n", words->out);
-    };
-  });
+  add_common_options(*command, words->common,
+                     {"--report", "write a JSON report to this file", "write the sample of a session file"});
+  auto knob_options = std::make_shared<KnobOptions>(*command, "sample");
+  command->callback(
+      [&run, words, knob_options] { run = [words, knob_options] { run_sample(*words, *knob_options); }; });
 }
 
 }  // namespace nacre

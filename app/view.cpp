@@ -105,6 +105,7 @@ void check_names(const Session& session) {
     if (!session.sample.empty() && !names(samples(), session.sample) && !names(phantoms(), session.sample))
       throw Error(fmt::format("no sample '{}'", session.sample), "", "`nacre sample` lists them");
   });
+  check_particle_sizes(session.settings.mesh);
   check_picture_words(session.settings);
 }
 
@@ -114,6 +115,9 @@ void check_all_names(Session session) {
   for (const SessionEvent& event : session.events) try {
       apply_event(event, session);
       check_names(session);
+      if (const auto& picture = event.screenshot)
+        check_picture_size(session.settings.width * picture->scale, session.settings.height * picture->scale, true,
+                           false);
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("the event at {:g} s: {}", event.time, error.what()));
     }
@@ -125,12 +129,21 @@ bool begins_with_panel(const ViewOptions& options, const Look& look) {
   return !options.script.empty() ? look.panel : !options.offscreen;
 }
 
-/// A file by its extension, else a folder of pictures.
-std::unique_ptr<FrameSink> make_record(const std::string& name, int fps) {
-  if (name.empty()) return nullptr;
-  const std::filesystem::path path = name;
-  if (path.extension().empty() || std::filesystem::is_directory(path)) return make_frame_folder(path);
-  return make_video(path, fps);
+/// --record: a file by its extension, else a folder of pictures.
+bool is_frame_folder(const std::filesystem::path& record) {
+  return !record.empty() && (record.extension().empty() || std::filesystem::is_directory(record));
+}
+
+std::unique_ptr<FrameSink> make_record(const ViewOptions& options, int fps) {
+  if (options.record.empty()) return nullptr;
+  if (!is_frame_folder(options.record)) return make_video(options.record, fps);
+  return make_frame_folder(options.record, [&](const std::string& line) { say(options.common, line); });
+}
+
+/// Of the pictures and the film.
+void check_view_size(const ViewOptions& options, const Settings& settings) {
+  const bool folder = is_frame_folder(options.record), video = !options.record.empty() && !folder;
+  check_picture_size(settings.width, settings.height, folder || !options.image.empty(), video);
 }
 
 nlohmann::json frame_report(const ViewerResult& result) {
@@ -200,6 +213,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.session = view_session(options, knobs);
   const Settings& settings = viewer.session.settings;
   check_all_names(viewer.session);
+  check_view_size(options, settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
   viewer.open_device = [&] { return open_device(options.common); };
   viewer.offscreen = options.offscreen;
@@ -209,7 +223,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   const bool by_steps = options.offscreen && options.script.empty() && options.frames == 0 && flow;
   viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
   viewer.picture = !options.image.empty();
-  const std::unique_ptr<FrameSink> record = make_record(options.record, settings.fps);
+  const std::unique_ptr<FrameSink> record = make_record(options, settings.fps);
   viewer.video = record.get();
   viewer.out = options.out;
   if (!options.save_recording.empty())
@@ -261,6 +275,7 @@ void add_view_command(CLI::App& program, std::function<void()>& run) {
   command->add_flag("--panel", options->panel, "offscreen: draw the panel, too");
   command->add_flag("--no-panel", options->no_panel, "begin without the panel");
   add_common_options(*command, options->common);
+  add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "view");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_view(*options, *knob_options); }; });

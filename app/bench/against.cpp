@@ -24,8 +24,12 @@ const json* find_named(const json& list, const std::string& name) {
 std::string made_how(const json& report) {
   const json& device = report.at("device");
   const int threads = device.at("threads").get<int>();
-  return fmt::format("{} on {}, {} thread{}", report.at("small").get<bool>() ? "--small" : "the whole",
-                     device.at("backend").get<std::string>(), threads, threads == 1 ? "" : "s");
+  std::string how = fmt::format("{} on {}, {} thread{}", report.at("small").get<bool>() ? "--small" : "the whole",
+                                device.at("backend").get<std::string>(), threads, threads == 1 ? "" : "s");
+  if (report.contains("set"))
+    for (const auto& [knob, value] : report.at("set").items())
+      how += fmt::format(", {} {}", knob, value.get<std::string>());
+  return how;
 }
 
 void compare_rows(const std::string& table, const json& now, const json& last, Comparison& result) {

@@ -24,7 +24,7 @@ Comparison compare_runs(const nlohmann::json& now, const nlohmann::json& last);
 /// Reads what --json wrote. Throws Error where the file is no such thing.
 nlohmann::json read_bench(const std::filesystem::path& file);
 
-/// Throws Error where `last` was made in a way that makes ratios incomparable: size, backend, number of threads.
+/// Throws Error where `last` was made in a way that makes ratios incomparable: size, backend, number of threads, knobs.
 void require_comparable(const nlohmann::json& now, const nlohmann::json& last, const std::string& file);
 
 }  // namespace nacre

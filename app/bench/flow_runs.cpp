@@ -2,7 +2,6 @@
 #include "app/bench/flow_runs.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <vector>
 
 #include "app/common.hpp"
@@ -17,10 +16,22 @@ namespace {
 /// Steps of a run: as many as fit into this time, seconds, but one at least and five at most.
 constexpr double long_enough = 3;
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double median(std::vector<double> seconds) {
+  std::nth_element(seconds.begin(), seconds.begin() + std::ptrdiff_t(seconds.size() / 2), seconds.end());
+  return seconds[seconds.size() / 2];
+}
 
-FlowParameters parameters_of(const FlowJob& job) {
-  FlowParameters parameters;
+}  // namespace
+
+/// Nacre's own, as the user has turned them.
+FlowParameters FlowRuns::turned() const {
+  Settings settings;
+  if (turn) turn(settings);
+  return settings.flow;
+}
+
+FlowParameters FlowRuns::parameters(const FlowJob& job) const {
+  FlowParameters parameters = turned();
   parameters.method = job.method;
   parameters.octree = job.octree;
   parameters.neighbour_index = job.neighbour_index;
@@ -31,13 +42,6 @@ FlowParameters parameters_of(const FlowJob& job) {
   parameters.warmup = 1;
   return parameters;
 }
-
-double median(std::vector<double> seconds) {
-  std::nth_element(seconds.begin(), seconds.begin() + std::ptrdiff_t(seconds.size() / 2), seconds.end());
-  return seconds[seconds.size() / 2];
-}
-
-}  // namespace
 
 VectorsInTime& FlowRuns::sample(const FlowJob& job) {
   if (sample_ && job.sample == sample_name_ && job.detail == sample_detail_) return *sample_;
@@ -73,14 +77,13 @@ FlowVectors FlowRuns::vectors(const FlowJob& job) {
 std::unique_ptr<FlowPipeline> FlowRuns::pipeline(const FlowJob& job) const {
   std::unique_ptr<FlowPipeline> made = make_flow_pipeline(device_);
   made->watch(&interrupt_flag());
-  made->parameters = parameters_of(job);
+  made->parameters = parameters(job);
   return made;
 }
 
 double FlowRuns::estimate(const FlowJob& job) {
-  const FlowParameters parameters = parameters_of(job);
-  return job.method == "grid" ? estimate_flow_bytes(mesh(job), parameters)
-                              : estimate_octree_bytes(mesh(job), parameters);
+  return job.method == "grid" ? estimate_flow_bytes(mesh(job), parameters(job))
+                              : estimate_octree_bytes(mesh(job), parameters(job));
 }
 
 int FlowRuns::largest_resolution(FlowJob job) {
@@ -90,9 +93,9 @@ int FlowRuns::largest_resolution(FlowJob job) {
     try {
       FlowDomain domain;
       if (job.method == "grid")
-        make_domain(surface, parameters_of(job));
+        make_domain(surface, parameters(job));
       else
-        make_octree_domain(surface, parameters_of(job), domain);
+        make_octree_domain(surface, parameters(job), domain);
     } catch (const Error&) {  // beyond the keys
       return false;
     }
@@ -157,8 +160,8 @@ double FlowRuns::embed_and_step(const FlowJob& job, bool anew, int times) {
 Image FlowRuns::picture(const FlowJob& job, int steps, int width, int height) {
   VectorsInTime& all = sample(job);
   const std::unique_ptr<FlowPipeline> flow = pipeline(job);
-  flow->parameters.ttl = FlowParameters().ttl;
-  flow->parameters.warmup = FlowParameters().warmup;
+  flow->parameters.ttl = turned().ttl;
+  flow->parameters.warmup = turned().warmup;
   flow->embed(mesh(job));
   flow->start(vectors(job));
   for (int k = 0; k < steps; ++k) flow->step();

@@ -1,6 +1,7 @@
 // Nacre: runs of the flow pipeline on built-in surfaces.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/picture/image.hpp"
+#include "engine/scene/settings.hpp"
 #include "engine/scene/vectors_in_time.hpp"
 
 namespace nacre {
@@ -41,7 +43,8 @@ class FlowRuns {
  public:
   explicit FlowRuns(Device& device) : device_(device) {}
 
-  int repeats = 1;  ///< of short embeddings; the fastest counts
+  int repeats = 1;                      ///< of short embeddings; the fastest counts
+  std::function<void(Settings&)> turn;  ///< the user's knobs; what a job says comes over them
 
   /// Bytes that the run will need, and those that there are.
   double estimate(const FlowJob& job);
@@ -61,6 +64,8 @@ class FlowRuns {
   Image picture(const FlowJob& job, int steps, int width, int height);
 
  private:
+  FlowParameters turned() const;
+  FlowParameters parameters(const FlowJob& job) const;
   VectorsInTime& sample(const FlowJob& job);
   FlowMesh mesh(const FlowJob& job);
   FlowVectors vectors(const FlowJob& job);

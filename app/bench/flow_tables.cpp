@@ -15,28 +15,19 @@ constexpr double mebibyte = 1 << 20;
 /// The source's octrees hold the cells up to 5 from the surface.
 constexpr double source_radius = 5;
 
-std::string sample_text(Bench& bench, const FlowJob& job) {
-  return fmt::format("sample {}, {} triangles", job.sample, bench.flows.triangles(job));
-}
-
-void add_small(const Bench& bench, BenchTable& table) {
-  if (bench.small) table.differs.push_back("--small: coarser than the source's runs; compare ratios only");
-}
-
 /// A row of one flow run or several, left out where one does not fit the memory.
 void flow_row(Bench& bench, BenchTable& table, const std::string& name, const std::vector<FlowJob>& jobs,
               const std::function<void(BenchRow&)>& fill) {
-  const std::string input = sample_text(bench, jobs[0]);
-  for (const FlowJob& job : jobs) {
-    const double needed = bench.flows.estimate(job);
-    if (needed <= bench.flows.available()) continue;
-    return bench.leave_out(table, name, input,
-                           fmt::format("needs about {:.1f} GiB of memory, {:.1f} are free", needed / mebibyte / 1024,
-                                       bench.flows.available() / mebibyte / 1024));
-  }
-  bench.row(table, name, input, [&] {
+  constexpr double gibibyte = 1024 * mebibyte;
+  bench.row(table, name, "sample " + jobs[0].sample, [&](BenchRow& row) {
+    row.input += fmt::format(", {} triangles", bench.flows.triangles(jobs[0]));
+    const double available = bench.flows.available();
+    for (const FlowJob& job : jobs)
+      if (const double needed = bench.flows.estimate(job); needed > available)
+        throw Error(
+            fmt::format("needs about {:.1f} GiB of memory, {:.1f} are free", needed / gibibyte, available / gibibyte));
     for (const FlowJob& job : jobs) bench.flows.run(job);
-    fill(table.add_row(name, input));
+    fill(row);
   });
 }
 
@@ -94,13 +85,11 @@ void octree_row(Bench& bench, BenchTable& table, const std::string& sample, int 
 
 }  // namespace
 
-BenchTable bench_grid_flow(Bench& bench) {
-  BenchTable table{"5.1",
-                   "Flow on the closest-point grid, ttl 2",
-                   {"source: GeForce GTX 780; simulations of a train, the F6 airliner and a combustion cylinder; under "
-                    "1 GB of memory"},
-                   {}};
-  add_small(bench, table);
+void bench_grid_flow(Bench& bench) {
+  BenchTable& table =
+      bench.begin("5.1", "Flow on the closest-point grid, ttl 2",
+                  {"source: GeForce GTX 780; simulations of a train, the F6 airliner and a combustion cylinder; under "
+                   "1 GB of memory"});
   struct Case {
     const char *row, *sample;
     int resolution, refine;
@@ -126,32 +115,24 @@ BenchTable bench_grid_flow(Bench& bench) {
       table.add(row, "embed and refine / step", ratio(run.embed + run.refine, run.step));
     });
   }
-  return table;
 }
 
-BenchTable bench_octree_flow(Bench& bench) {
-  BenchTable table{
-      "6.1",
-      "Flow on the sparse octree, ttl 2, without neighbour index",
+void bench_octree_flow(Bench& bench) {
+  BenchTable& table = bench.begin(
+      "6.1", "Flow on the sparse octree, ttl 2, without neighbour index",
       {"source: Quadro K6000, the octree built on one thread of a Xeon 5170; simulations of a train, the F6 "
        "airliner and a vortex over a delta wing",
-       "voxels, build and step: the source's octree, radius 5; bricks: Nacre's own, which needs 2.24"},
-      {}};
-  add_small(bench, table);
+       "voxels, build and step: the source's octree, radius 5; bricks: Nacre's own, which needs 2.24"});
   for (const char* sample : {"train", "aircraft", "delta-wing"}) {
     const int coarsest = bench.small ? 64 : 512;
     const int finest = bench.small ? 256 : std::string(sample) == "delta-wing" ? 8192 : 4096;
     for (int resolution = coarsest; resolution <= finest; resolution *= 2) octree_row(bench, table, sample, resolution);
   }
-  return table;
 }
 
-BenchTable bench_neighbour_index(Bench& bench) {
-  BenchTable table{"6.2",
-                   "Flow on the sparse octree with neighbour index, ttl 2",
-                   {"source: Quadro K6000; simulation of a train", "source's octree, radius 5"},
-                   {}};
-  add_small(bench, table);
+void bench_neighbour_index(Bench& bench) {
+  BenchTable& table = bench.begin("6.2", "Flow on the sparse octree with neighbour index, ttl 2",
+                                  {"source: Quadro K6000; simulation of a train", "source's octree, radius 5"});
   for (int resolution = bench.small ? 128 : 512; resolution <= (bench.small ? 512 : 2048); resolution *= 2) {
     const FlowJob with = octree_job(bench, "train", resolution, true),
                   without = octree_job(bench, "train", resolution, false);
@@ -168,7 +149,6 @@ BenchTable bench_neighbour_index(Bench& bench) {
                 source_with ? ratio(source_without->value, source_with->value) : std::nullopt);
     });
   }
-  return table;
 }
 
 }  // namespace nacre

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 
 #include "app/bench/bench.hpp"
@@ -12,8 +11,6 @@
 
 namespace nacre {
 namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// A turn that copies every neighbourhood and then does nothing with it.
 struct LeaveAlone {
@@ -65,33 +62,29 @@ GatherSeconds measure(const MeshParticles& particles, int threads) {
 
 }  // namespace
 
-BenchTable bench_gathering(Bench& bench) {
-  BenchTable table{"gathering",
-                   "Copying neighbourhoods, of a red-black turn (sec. 3.3.3)",
-                   {"source: Tesla C2070; \"less than 4%\" of the run-time", "a turn: relax, over its iterations"},
-                   {}};
+void bench_gathering(Bench& bench) {
+  BenchTable& table =
+      bench.begin("gathering", "Copying neighbourhoods, of a red-black turn (sec. 3.3.3)",
+                  {"source: Tesla C2070; \"less than 4%\" of the run-time", "a turn: relax, over its iterations"});
   MeshJob job;
   job.sample = "ribcage";
   job.detail = bench.small ? 56 : 0;
-  if (bench.device.backend() != "cpu") {
-    bench.leave_out(table, "ribcage", "phantom ribcage", "measured on the CPU only; use --device cpu");
-    return table;
-  }
-  bench.row(table, "ribcage", "phantom ribcage", [&] {
+  if (bench.device.backend() != "cpu")
+    return bench.leave_out(table, "ribcage", "phantom ribcage", "measured on the CPU only; use --device cpu");
+  bench.row(table, "ribcage", "phantom ribcage", [&](BenchRow& row) {
     const MeshSolve solve{"redblack", 0, true};
     const MeshRun run = bench.meshes.run(job, solve);
     const MeshParticles particles = bench.meshes.particles(job, solve);
     bench.meshes.release();
     const GatherSeconds seconds = measure(particles, bench.device.threads());
     const double turn = run.relax / std::max(1, run.iterations);
-    BenchRow& row = table.add_row("ribcage", fmt::format("phantom ribcage, {} particles", particles.points.size()));
+    row.input += fmt::format(", {} particles", particles.points.size());
     table.add(row, "a turn, ms", 1000 * turn);
     table.add(row, "binning, ms", 1000 * seconds.binning);
     table.add(row, "copying, ms", 1000 * seconds.copying);
     table.add(row, "binning, % of a turn", ratio(100 * seconds.binning, turn));
     table.add(row, "copying, % of a turn", ratio(100 * seconds.copying, turn));
   });
-  return table;
 }
 
 }  // namespace nacre

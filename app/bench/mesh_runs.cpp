@@ -24,22 +24,29 @@ MeshVolume make_volume(const MeshJob& job) {
   return make_mesh_volume(std::span(&volume, 1), options);
 }
 
-/// The source's constants, and 50 iterations for all: its energy threshold would let the solvers stop after different
-/// amounts of work.
-MeshParameters source_parameters(MeshVolume::Kind kind) {
-  Settings settings;
-  apply_source_preset(settings);
-  settings.mesh.kernel = kind == MeshVolume::Kind::scalar ? "b-spline" : "catmull-rom";
-  settings.mesh.iterations = bench_iterations;
-  settings.mesh.stagnation = 0;
-  return settings.mesh;
-}
-
 }  // namespace
 
 void MeshRuns::release() {
   pipeline_.reset();
   volume_.reset();
+}
+
+/// Nacre's own; or the source's constants, and 50 iterations for all: its energy threshold would let the solvers stop after
+/// different amounts of work.
+MeshParameters MeshRuns::parameters(const MeshJob& job, bool own_settings) const {
+  Settings settings;
+  MeshParameters& mesh = settings.mesh;
+  if (!own_settings) {
+    apply_source_preset(settings);
+    mesh.kernel = volume_->kind == MeshVolume::Kind::scalar ? "b-spline" : "catmull-rom";
+    mesh.iterations = bench_iterations;
+    mesh.stagnation = 0;
+  }
+  if (turn) turn(settings);
+  mesh.epsilon = job.epsilon;
+  mesh.delta = job.delta;
+  mesh.min_size = job.min_size;
+  return mesh;
 }
 
 /// Makes the fields of `job`, unless they are those that are there.
@@ -53,11 +60,7 @@ void MeshRuns::open(const MeshJob& job, bool own_settings) {
   if (interrupt_flag()) throw Interrupted();
   pipeline_ = make_mesh_pipeline(device_);
   pipeline_->watch(&interrupt_flag());
-  if (!own_settings) pipeline_->parameters = source_parameters(volume_->kind);
-  MeshParameters& parameters = pipeline_->parameters;
-  parameters.epsilon = job.epsilon;
-  parameters.delta = job.delta;
-  parameters.min_size = job.min_size;
+  pipeline_->parameters = parameters(job, own_settings);
   try {
     pipeline_->load(*volume_);
     pipeline_->build_fields();

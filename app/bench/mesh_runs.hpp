@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "compute/pipeline/mesh_pipeline.hpp"
+#include "engine/scene/settings.hpp"
 
 namespace nacre {
 
@@ -27,7 +29,7 @@ struct MeshJob {
 /// How particles move.
 struct MeshSolve {
   std::string solver;    ///< tree, redblack, serial; "own": the tree with Nacre's own settings, mending included
-  int particles = 0;     ///< seed this many and add none; 0: as the sizing field says
+  int particles = 0;     ///< seed this many on surfaces and add none; 0: as the sizing field says
   bool quality = false;  ///< triangulate, and measure the triangles
 
   bool operator<(const MeshSolve& o) const {
@@ -61,6 +63,8 @@ class MeshRuns {
 
   /// Short runs are repeated up to this often, and the fastest counts.
   int repeats = 1;
+  /// The user's knobs, over the source's constants and Nacre's own; what a job or a solve says comes over them.
+  std::function<void(Settings&)> turn;
 
   /// Throws Error where the memory does not do, and Interrupted.
   const MeshFields& fields(const MeshJob& job);
@@ -72,6 +76,7 @@ class MeshRuns {
 
  private:
   void open(const MeshJob& job, bool own_settings);
+  MeshParameters parameters(const MeshJob& job, bool own_settings) const;
   void place(const MeshSolve& solve);
   MeshRun run_once(const MeshSolve& solve);
 

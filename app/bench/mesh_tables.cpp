@@ -42,17 +42,12 @@ std::string same_work() {
                      bench_iterations);
 }
 
-BenchTable make_table(const Bench& bench, const char* name, const char* title, const char* source,
-                      std::vector<std::string> more = {}) {
-  BenchTable table{name, title, {std::string("source: ") + source}, {}};
-  for (std::string& line : more) table.differs.push_back(std::move(line));
-  if (bench.small) table.differs.push_back("--small: coarser volumes than the source's; compare ratios only");
-  return table;
-}
-
-constexpr const char* hardware_3 = "one thread of a Xeon X5650 (serial), a Tesla C2070 (red-black); scans, 268x129x177";
+constexpr const char* hardware_3 =
+    "source: one thread of a Xeon X5650 (serial), a Tesla C2070 (red-black); scans, 268x129x177";
 constexpr const char* hardware_4 =
-    "one thread of a Xeon X5550 (serial), a Tesla K20 (red-black, tree); pig 136x136x136, head 199x250x249";
+    "source: one thread of a Xeon X5550 (serial), a Tesla K20 (red-black, tree); pig 136x136x136, head 199x250x249";
+
+constexpr const char* own_settings = "own settings: nacre mesh as it comes: the tree to its end, bad triangles mended";
 
 std::string particle_cost(const Solver& s) { return fmt::format("{}: us per particle and iteration", s.name); }
 
@@ -79,18 +74,6 @@ std::array<MeshRun, 3> run_solvers(Bench& bench, const MeshJob& job, int particl
   return runs;
 }
 
-template <std::size_t n>
-BenchTable solver_table(Bench& bench, BenchTable table, const std::array<Case, n>& cases) {
-  for (const Case& c : cases)
-    bench.row(table, c.row, c.sample, [&] {
-      const MeshJob job = job_of(bench, c);
-      const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
-      BenchRow& row = table.add_row(c.row, input_text(job, bench.meshes.fields(job)));
-      add_solvers(table, row, runs);
-    });
-  return table;
-}
-
 /// The source's figures per particle: its seconds over its final counts (Table 4.2 over Table 4.1).
 void add_source_costs(BenchRow& row) {
   const auto cost = [&](const char* solver) {
@@ -105,6 +88,18 @@ void add_source_costs(BenchRow& row) {
   }
 }
 
+template <std::size_t n>
+void solver_rows(Bench& bench, BenchTable& table, const std::array<Case, n>& cases) {
+  for (const Case& c : cases)
+    bench.row(table, c.row, c.sample, [&](BenchRow& row) {
+      const MeshJob job = job_of(bench, c);
+      const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
+      row.input = input_text(job, bench.meshes.fields(job));
+      add_solvers(table, row, runs);
+      if (table.name == "4.2") add_source_costs(row);
+    });
+}
+
 void add_quality(BenchTable& table, BenchRow& row, const char* name, const MeshRun& run, bool counts) {
   if (counts) {
     table.add(row, fmt::format("{}: seeds", name), double(run.seeded));
@@ -116,100 +111,90 @@ void add_quality(BenchTable& table, BenchRow& row, const char* name, const MeshR
 
 /// Radius ratios of the three solvers and of the program's own settings.
 template <std::size_t n>
-BenchTable quality_table(Bench& bench, BenchTable table, const std::array<Case, n>& cases, bool counts) {
+void quality_rows(Bench& bench, BenchTable& table, const std::array<Case, n>& cases, bool counts) {
   for (const Case& c : cases)
-    bench.row(table, c.row, c.sample, [&] {
+    bench.row(table, c.row, c.sample, [&](BenchRow& row) {
       const MeshJob job = job_of(bench, c);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
       const MeshRun own = bench.meshes.run(job, {"own", 0, true});
-      BenchRow& row = table.add_row(c.row, input_text(job, bench.meshes.fields(job)));
+      row.input = input_text(job, bench.meshes.fields(job));
       for (std::size_t k = 0; k < solvers.size(); ++k) add_quality(table, row, solvers[k].name, runs[k], counts);
       add_quality(table, row, "own settings", own, counts);
     });
-  return table;
 }
 
 }  // namespace
 
-BenchTable bench_quality(Bench& bench) {
-  return quality_table(
-      bench,
-      make_table(bench, "3.1", "Radius ratio (2 r_in / r_circ) of the triangles", hardware_3,
-                 {same_work(), "own settings: nacre mesh as it comes: the tree to its end, bad triangles mended"}),
-      scalar_cases, false);
+void bench_quality(Bench& bench) {
+  BenchTable& table =
+      bench.begin("3.1", "Radius ratio (2 r_in / r_circ) of the triangles", {hardware_3, same_work(), own_settings});
+  quality_rows(bench, table, scalar_cases, false);
 }
 
-BenchTable bench_solvers(Bench& bench) {
-  return solver_table(bench, make_table(bench, "3.2", "Time to place the particles", hardware_3, {same_work()}),
-                      scalar_cases);
+void bench_solvers(Bench& bench) {
+  BenchTable& table = bench.begin("3.2", "Time to place the particles", {hardware_3, same_work()});
+  solver_rows(bench, table, scalar_cases);
 }
 
-BenchTable bench_synthetic(Bench& bench) {
-  BenchTable table =
-      make_table(bench, "3.3", "Time for a given number of seeds (ribcage; none are added)", hardware_3, {same_work()});
+void bench_synthetic(Bench& bench) {
+  BenchTable& table =
+      bench.begin("3.3", "Time for a given number of seeds (ribcage; none are added)", {hardware_3, same_work()});
   MeshJob job = job_of(bench, scalar_cases[2]);
   constexpr int own_detail = 268;
   const double share = bench.small ? double(job.detail) * job.detail / (own_detail * own_detail) : 1;
   for (int seeds = 60000; seeds <= 300000; seeds += bench.small ? 120000 : 30000)
-    bench.row(table, std::to_string(seeds), job.sample, [&] {
+    bench.row(table, std::to_string(seeds), job.sample, [&](BenchRow& row) {
       const int asked = int(seeds * share);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, asked, false);
-      BenchRow& row = table.add_row(std::to_string(seeds), input_text(job, bench.meshes.fields(job)));
+      row.input = input_text(job, bench.meshes.fields(job));
       table.add(row, "seeds", asked);
       add_solvers(table, row, runs);
     });
-  return table;
 }
 
-BenchTable bench_sizing(Bench& bench) {
-  BenchTable table = make_table(
-      bench, "3.4", "Time for sizing fields of epsilon, delta (ribcage)", hardware_3,
-      {same_work(), "sizes from 0.75 to 1 voxel, so that counts grow about as the source's do",
+void bench_sizing(Bench& bench) {
+  BenchTable& table = bench.begin(
+      "3.4", "Time for sizing fields of epsilon, delta (ribcage)",
+      {hardware_3, same_work(), "sizes from 0.75 to 1 voxel, so that counts grow about as the source's do",
        "our limiter is exact: it has no number of iterations, and the source's row of 7 has no counterpart"});
   constexpr std::array<std::array<double, 2>, 6> rows{
       {{8, 2}, {2, 1}, {0.5, 0.5}, {0.25, 0.25}, {0.125, 0.125}, {0.01, 0.01}}};
   for (std::size_t k = 0; k < rows.size(); k += bench.small ? 4 : 1) {
     const std::string name = fmt::format("{:g}, {:g}", rows[k][0], rows[k][1]);
-    bench.row(table, name, scalar_cases[2].sample, [&] {
+    bench.row(table, name, scalar_cases[2].sample, [&](BenchRow& row) {
       MeshJob job = job_of(bench, scalar_cases[2]);
       job.epsilon = rows[k][0];
       job.delta = rows[k][1];
       job.min_size = 0.75;
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, false);
-      BenchRow& row = table.add_row(name, input_text(job, bench.meshes.fields(job)));
+      row.input = input_text(job, bench.meshes.fields(job));
       add_solvers(table, row, runs);
     });
   }
-  return table;
 }
 
-BenchTable bench_material_quality(Bench& bench) {
-  return quality_table(
-      bench,
-      make_table(bench, "4.1", "Particles, and radius ratio (2 r_in / r_circ) of the triangles", hardware_4,
-                 {same_work(), "own settings: nacre mesh as it comes: the tree to its end, bad triangles mended"}),
-      material_cases, true);
+void bench_material_quality(Bench& bench) {
+  BenchTable& table = bench.begin("4.1", "Particles, and radius ratio (2 r_in / r_circ) of the triangles",
+                                  {hardware_4, same_work(), own_settings});
+  quality_rows(bench, table, material_cases, true);
 }
 
-BenchTable bench_material_solvers(Bench& bench) {
-  BenchTable table = solver_table(
-      bench, make_table(bench, "4.2", "Time to place the particles of several materials", hardware_4, {same_work()}),
-      material_cases);
-  for (BenchRow& row : table.rows) add_source_costs(row);
-  return table;
+void bench_material_solvers(Bench& bench) {
+  BenchTable& table = bench.begin("4.2", "Time to place the particles of several materials", {hardware_4, same_work()});
+  solver_rows(bench, table, material_cases);
 }
 
-BenchTable bench_material_stages(Bench& bench) {
-  BenchTable table = make_table(
-      bench, "4.3", "Time of the stages before and after the particles", hardware_4,
-      {"the source's distance volume and sizing field are BioMesh3D's, on one thread of its CPU",
+void bench_material_stages(Bench& bench) {
+  BenchTable& table = bench.begin(
+      "4.3", "Time of the stages before and after the particles",
+      {hardware_4, "the source's distance volume and sizing field are BioMesh3D's, on one thread of its CPU",
        "total: distance volume, sizing field and extract, as the source adds them; extract: of the tree's particles"});
   for (const Case& c : material_cases)
-    bench.row(table, c.row, c.sample, [&] {
+    bench.row(table, c.row, c.sample, [&](BenchRow& row) {
       const MeshJob job = job_of(bench, c);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
       const MeshFields& fields = bench.meshes.fields(job);
-      BenchRow& row = table.add_row(c.row, input_text(job, fields));
+      row.input = input_text(job, fields);
       table.add(row, "distance volume, s", fields.distance);
       table.add(row, "sizing field, s", fields.sizing);
       table.add(row, "closest point, s", fields.embed);
@@ -219,7 +204,6 @@ BenchTable bench_material_stages(Bench& bench) {
         table.add(row, fmt::format("particles, {}, s", solvers[k].name), runs[k].seconds, Better::neither,
                   find_source_figure("4.2", c.row, fmt::format("{}: s", solvers[k].name))->value);
     });
-  return table;
 }
 
 }  // namespace nacre

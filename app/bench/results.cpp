@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cctype>
 #include <cmath>
 
@@ -21,6 +20,14 @@ std::string number(std::optional<double> value) {
 
 const char* better_word(Better better) { return better == Better::higher ? "higher" : "lower"; }
 
+/// One line. The longest names are "delta-wing, finest" and "red-black: us per particle and iteration".
+std::string columns(const std::string& name, const std::string& quantity, const std::string& source,
+                    const std::string& ours, const std::string& differs) {
+  std::string line = fmt::format("{:<18}  {:<40}  {:>10}  {:>10}  {}", name, quantity, source, ours, differs);
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + '\n';
+}
+
 }  // namespace
 
 std::optional<double> BenchRow::ours(const std::string& quantity) const {
@@ -29,14 +36,9 @@ std::optional<double> BenchRow::ours(const std::string& quantity) const {
   return {};
 }
 
-BenchRow& BenchTable::add_row(std::string row, std::string input) {
-  rows.push_back({std::move(row), std::move(input), {}, {}});
-  return rows.back();
-}
-
 void BenchTable::leave_out(std::string row, std::string input, std::string why) {
-  BenchRow& added = add_row(std::move(row), std::move(input));
-  added.left_out = std::move(why);
+  rows.push_back({std::move(row), std::move(input), {}, std::move(why)});
+  BenchRow& added = rows.back();
   for (const SourceFigure& figure : source_figures())
     if (figure.table == name && figure.row == added.name)
       added.values.push_back(
@@ -60,33 +62,23 @@ std::optional<double> ratio(std::optional<double> a, std::optional<double> b) {
   return *a / *b;
 }
 
-std::string table_text(const BenchTable& table) {
+std::string table_head(const BenchTable& table) {
   const bool side = !std::isdigit(static_cast<unsigned char>(table.name.front()));
   std::string text = fmt::format("{} {}  {}\n", side ? "Side result:" : "Table", table.name, table.title);
   for (const std::string& line : table.differs) text += fmt::format("  {}\n", line);
-  std::size_t name_width = 3, quantity_width = 8;
-  for (const BenchRow& row : table.rows) {
-    name_width = std::max(name_width, row.name.size());
-    for (const BenchValue& value : row.values) quantity_width = std::max(quantity_width, value.quantity.size());
+  return text + columns("row", "quantity", "source", "ours", "what differs");
+}
+
+std::string row_text(const BenchRow& row) {
+  std::string name = row.name, differs = row.left_out.empty() ? row.input : row.input + "; left out: " + row.left_out;
+  if (row.values.empty()) return columns(name, "", "", "", differs);
+  std::string text;
+  for (const BenchValue& value : row.values) {
+    if (!value.note.empty()) differs += (differs.empty() ? "" : "; ") + ("source: " + value.note);
+    text += columns(name, value.quantity, number(value.source), number(value.ours), differs);
+    name.clear(), differs.clear();
   }
-  const auto line = [&](const std::string& name, const std::string& quantity, const std::string& source,
-                        const std::string& ours, const std::string& differs) {
-    std::string one = fmt::format("{:<{}}  {:<{}}  {:>10}  {:>10}  {}", name, name_width, quantity, quantity_width,
-                                  source, ours, differs);
-    one.erase(one.find_last_not_of(' ') + 1);
-    text += one + '\n';
-  };
-  line("row", "quantity", "source", "ours", "what differs");
-  for (const BenchRow& row : table.rows) {
-    std::string name = row.name, differs = row.left_out.empty() ? row.input : row.input + "; left out: " + row.left_out;
-    if (row.values.empty()) line(name, "", "", "", differs);
-    for (const BenchValue& value : row.values) {
-      if (!value.note.empty()) differs += (differs.empty() ? "" : "; ") + ("source: " + value.note);
-      line(name, value.quantity, number(value.source), number(value.ours), differs);
-      name.clear(), differs.clear();
-    }
-  }
-  return text + '\n';
+  return text;
 }
 
 nlohmann::json table_json(const BenchTable& table) {
@@ -103,7 +95,11 @@ nlohmann::json table_json(const BenchTable& table) {
     rows.push_back({{"name", row.name}, {"input", row.input}, {"values", values}});
     if (!row.left_out.empty()) rows.back()["left_out"] = row.left_out;
   }
-  return {{"name", table.name}, {"title", table.title}, {"differs", table.differs}, {"rows", rows}};
+  return {{"name", table.name},
+          {"title", table.title},
+          {"differs", table.differs},
+          {"rows", rows},
+          {"seconds", table.seconds}};
 }
 
 }  // namespace nacre

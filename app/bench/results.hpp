@@ -32,8 +32,8 @@ struct BenchTable {
   std::string title;                 ///< what is measured
   std::vector<std::string> differs;  ///< what differs from the source beside the hardware
   std::vector<BenchRow> rows;
+  double seconds = 0;  ///< that it took
 
-  BenchRow& add_row(std::string row, std::string input);
   /// A row without figures of ours: what the source has for it, and why there are none.
   void leave_out(std::string row, std::string input, std::string why);
   /// Adds a quantity to `row`, beside the source's figure of that name, or `source` where that is given.
@@ -44,12 +44,15 @@ struct BenchTable {
 /// a / b; nothing where one of them is missing or b is not positive.
 std::optional<double> ratio(std::optional<double> a, std::optional<double> b);
 
-/// The table for people. Its first line begins "Table 3.1" (or "Side result: arena"); then one line per quantity: row,
-/// quantity, the source's figure, ours, what differs.
-std::string table_text(const BenchTable& table);
+/// The table for people: what stands above its rows. The first line begins "Table 3.1" (or "Side result: arena"), the last
+/// names the columns.
+std::string table_head(const BenchTable& table);
+/// One line per quantity: row, quantity, the source's figure, ours, what differs. Columns are as wide for all rows of all
+/// tables, so that a row can be printed before the next one is known.
+std::string row_text(const BenchRow& row);
 
 /// The same for programs: {name, title, differs, rows: [{name, input, left_out?, values: {quantity: {source?, ours?,
-/// better?, note?}}}]}; a figure that is missing is not there.
+/// better?, note?}}}], seconds}; a figure that is missing is not there.
 nlohmann::json table_json(const BenchTable& table);
 
 }  // namespace nacre

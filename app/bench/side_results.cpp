@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 
 #include "app/bench/bench.hpp"
 #include "compute/device/arena.hpp"
@@ -14,8 +13,6 @@
 
 namespace nacre {
 namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Arrays of one turn of a solver, bytes per particle.
 constexpr std::array<std::size_t, 12> turn_arrays{4, 4, 4, 4, 4, 4, 4, 4, 4, 8, 8, 16};
@@ -44,7 +41,7 @@ void arena_turns(Bench& bench, BenchTable& table) {
   std::size_t total = 0;
   for (const std::size_t each : turn_arrays) total += each * particles;
   const std::string input = fmt::format("{} arrays, {} MiB in all, each written once", turn_arrays.size(), total >> 20);
-  bench.row(table, "arrays of a turn", input, [&] {
+  bench.row(table, "arrays of a turn", input, [&](BenchRow& row) {
     Device& device = bench.device;
     Arena arena(device, total + (1 << 20));
     const std::size_t start = arena.mark();
@@ -54,7 +51,6 @@ void arena_turns(Bench& bench, BenchTable& table) {
     const double anew = turn_seconds(
         device, particles, [&](std::size_t bytes) { return device.allocate(bytes); },
         [&](void* array, std::size_t bytes) { device.deallocate(array, bytes); });
-    BenchRow& row = table.add_row("arrays of a turn", input);
     table.add(row, "arena, ms", 1000 * kept);
     table.add(row, "made on the fly, ms", 1000 * anew);
     table.add(row, "on the fly / arena", ratio(anew, kept), Better::higher);
@@ -101,36 +97,31 @@ constexpr std::array<const char*, 3> method_names{"grid", "octree, bricks", "oct
 
 }  // namespace
 
-BenchTable bench_arena(Bench& bench) {
-  BenchTable table{"arena",
-                   "Memory kept in an arena against memory made on the fly (sec. 5.3)",
-                   {"source: GeForce GTX 780; \"can more than double the runtime\", of UFLIC on the grid"},
-                   {}};
+void bench_arena(Bench& bench) {
+  BenchTable& table =
+      bench.begin("arena", "Memory kept in an arena against memory made on the fly (sec. 5.3)",
+                  {"source: GeForce GTX 780; \"can more than double the runtime\", of UFLIC on the grid"});
   arena_turns(bench, table);
   FlowJob job = train(bench.small ? 256 : 1024);
   if (bench.small) job.detail = small_flow_detail;
   const std::string input = fmt::format("sample train, {} cells: embed, start, one step", job.resolution);
-  bench.row(table, "embedding", input, [&] {
+  bench.row(table, "embedding", input, [&](BenchRow& row) {
     const double kept = bench.flows.embed_and_step(job, false, 3), anew = bench.flows.embed_and_step(job, true, 3);
-    BenchRow& row = table.add_row("embedding", input);
     table.add(row, "arena kept, s", kept);
     table.add(row, "arena made anew, s", anew);
     table.add(row, "made anew / kept", ratio(anew, kept));
   });
-  return table;
 }
 
-BenchTable bench_grid_octree(Bench& bench) {
-  BenchTable table{
-      "grid-octree",
-      "Grid against octree: build, and the finest resolution that the estimates allow (sec. 6.3.2)",
+void bench_grid_octree(Bench& bench) {
+  BenchTable& table = bench.begin(
+      "grid-octree", "Grid against octree: build, and the finest resolution that the estimates allow (sec. 6.3.2)",
       {"source: grid on a GTX 780 (0.03 s at 2048, closest points 512x58x69), octree on a K6000 (1.12 s at "
-       "512); there the grid ends at 1024"},
-      {}};
+       "512); there the grid ends at 1024"});
   for (const int resolution : {512, 1024, 2048}) {
     if (bench.small && resolution > 512) break;
     const std::string name = fmt::format("train {}", resolution);
-    bench.row(table, name, "sample train", [&] {
+    bench.row(table, name, "sample train, radii as each needs them", [&](BenchRow& row) {
       const std::array<FlowJob, 3> jobs = three_methods(bench, "train", resolution);
       std::array<double, 3> build{}, step{};
       for (std::size_t k = 0; k < jobs.size(); ++k) {
@@ -138,7 +129,6 @@ BenchTable bench_grid_octree(Bench& bench) {
         build[k] = run.embed + run.refine;
         step[k] = run.step;
       }
-      BenchRow& row = table.add_row(name, "sample train, radii as each needs them");
       for (std::size_t k = 0; k < jobs.size(); ++k) {
         table.add(row, fmt::format("{}: build, s", method_names[k]), build[k]);
         table.add(row, fmt::format("{}: step, s", method_names[k]), step[k]);
@@ -149,34 +139,29 @@ BenchTable bench_grid_octree(Bench& bench) {
   }
   for (const char* sample : {"train", "delta-wing"}) {
     const std::string name = fmt::format("{}, finest", sample);
-    bench.row(table, name, "estimates", [&] {
+    bench.row(table, name, "estimates", [&](BenchRow& row) {
       const std::array<FlowJob, 3> jobs = three_methods(bench, sample, 64);
       std::array<double, 3> finest{};
       for (std::size_t k = 0; k < jobs.size(); ++k) finest[k] = bench.flows.largest_resolution(jobs[k]);
-      BenchRow& row = table.add_row(
-          name, fmt::format("estimates, within 1%, for {:.1f} GiB of memory", bench.flows.available() / (1 << 30)));
+      row.input += fmt::format(", within 1%, for {:.1f} GiB of memory", bench.flows.available() / (1 << 30));
       for (std::size_t k = 0; k < jobs.size(); ++k)
         table.add(row, fmt::format("{}: cells per axis", method_names[k]), finest[k]);
     });
   }
-  return table;
 }
 
-BenchTable bench_methods(Bench& bench) {
-  BenchTable table{"methods",
-                   "Grid and octrees side by side, as pictures (sec. 6.3.1)",
-                   {"source: Figs. 6.5 and 6.6, octree 1024^3; ours go to the folder of --plots"},
-                   {}};
+void bench_methods(Bench& bench) {
+  BenchTable& table = bench.begin("methods", "Grid and octrees side by side, as pictures (sec. 6.3.1)",
+                                  {"source: Figs. 6.5 and 6.6, octree 1024^3; ours go to the folder of --plots"});
   const int resolution = bench.small ? 256 : 1024;
   for (const char* sample : {"train", "aircraft"}) {
     const std::string input = fmt::format("sample {}, {} cells per axis, ttl 4", sample, resolution);
     if (bench.plots.empty()) {
-      table.leave_out(sample, input, "no --plots DIR");
+      bench.leave_out(table, sample, input, "no --plots DIR");
       continue;
     }
-    bench.row(table, sample, input, [&] {
+    bench.row(table, sample, input, [&](BenchRow& row) {
       std::vector<std::pair<std::string, Image>> pictures;
-      BenchRow row{sample, input, {}, {}};
       const std::array<FlowJob, 3> jobs = three_methods(bench, sample, resolution);
       for (std::size_t k = 0; k < jobs.size(); ++k) {
         const double before = now();
@@ -186,10 +171,8 @@ BenchTable bench_methods(Bench& bench) {
       const std::filesystem::path file = bench.plots / fmt::format("methods-{}.png", sample);
       write_png(file, side_by_side(pictures));
       bench.outputs.push_back(file.string());
-      table.rows.push_back(std::move(row));
     });
   }
-  return table;
 }
 
 }  // namespace nacre

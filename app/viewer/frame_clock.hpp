@@ -1,4 +1,4 @@
-// Nacre: the machine's time, and the last frames'.
+// Nacre: the time of the last frames.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,9 @@
 #include <cstddef>
 #include <thread>
 
-namespace nacre {
+#include "app/clock.hpp"
 
-/// Seconds on the machine's clock.
-inline double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+namespace nacre {
 
 inline constexpr double shortest_frame = 1.0 / 60;  ///< seconds, of one that nobody waits for
 

@@ -91,6 +91,13 @@ std::string default_text(const Knob& knob) {
   return "";
 }
 
+/// The smallest and the largest distance of particles do not pass each other: the one that is turned ends at the other.
+void keep_sizes_in_order(Settings& settings, const std::string& turned) {
+  double &smallest = settings.mesh.min_size, &largest = settings.mesh.max_size;
+  if (turned == "min_size") smallest = std::min(smallest, largest);
+  if (turned == "max_size") largest = std::max(smallest, largest);
+}
+
 void show(Settings& settings, const Knob& knob) {
   ImGui::PushID(knob.name.c_str());
   const std::string usual = default_text(knob);
@@ -103,6 +110,7 @@ void show(Settings& settings, const Knob& knob) {
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("%s\n%s", knob.help.c_str(), changed ? ("right click: " + usual + " again").c_str() : "");
   if (changed && ImGui::IsItemClicked(1)) set_knob(settings, knob.name, usual);
+  keep_sizes_in_order(settings, knob.name);
   ImGui::PopID();
 }
 

@@ -7,7 +7,7 @@
 
 namespace nacre {
 
-/// One knob by its name, with its unit and help. Numbers are clamped to their range; sliders and text take effect when
+/// One knob by its name, with its unit and help. Numbers are clamped to their range, min_size and max_size to each other; sliders and text take effect when
 /// they are let go.
 void knob_widget(Settings& settings, const std::string& name);
 

@@ -41,7 +41,7 @@ struct MeshParameters {
   bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the source's rule
   int control_every = 10;              ///< iterations between two controls of the population
   int mend = 3;                        ///< rounds of mending bad triangles after the first triangulation, at most
-  int particles = 0;                   ///< seed this many and add none (sec. 3.4.3); 0: as the sizing field says
+  int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };
 
@@ -85,6 +85,7 @@ struct MeshInfo {
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
   double final_energy = 0;          ///< mean on surfaces, measured alike for all solvers: by the tree, with theta 0
+  std::int64_t seeded_on_surfaces = 0;                                  ///< of `seeded`; the others are on curves
 };
 
 /// Where the particles are, world coordinates.

@@ -53,7 +53,7 @@ double MeshPipelineOf<Backend>::require_room_for(double particles, const std::st
                 why + std::to_string(std::int64_t(particles)) + ", which take " +
                     std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " + std::to_string(free >> 20) +
                     " MiB are free",
-                "raise --max-size and --min-size, or --epsilon");
+                parameters.particles > 0 ? "lower --particles" : "raise --max-size and --min-size, or --epsilon");
   return capacity;
 }
 
@@ -61,8 +61,12 @@ template <class Backend>
 void MeshPipelineOf<Backend>::make_solver() {
   drop_particles();
   exec_.arena().rewind(mark_[field_stages]);
-  const double capacity = require_room_for(parameters.particles > 0 ? parameters.particles : info_.expected_particles,
-                                           "the sizing field asks for about ");
+  double expected = info_.expected_particles;
+  if (parameters.particles > 0)  // of the surfaces; junctions have theirs as ever
+    expected = parameters.particles + info_.points + expected_particles(exec_, grid_, order_.data(), 1);
+  const double capacity =
+      require_room_for(expected, parameters.particles > 0 ? "--particles asks, with the junctions, for "
+                                                          : "the sizing field asks for about ");
   solver_ = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
                                          float(frame_.extent()));
   solver_->particles().count = 0;
@@ -93,7 +97,7 @@ void MeshPipelineOf<Backend>::relax() {
   info_.count.clear();
   info_.seconds.clear();
   info_.iterations = 0;
-  info_.seeded = 0;
+  info_.seeded = info_.seeded_on_surfaces = 0;
   add_points();
   int order = 1;
   try {
@@ -186,7 +190,9 @@ void MeshPipelineOf<Backend>::seed_order(int order) {
   double scale = 1;
   if (order == 2 && parameters.particles > 0)
     scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
-  info_.seeded += seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
+  const std::int64_t seeds = seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
+  info_.seeded += seeds;
+  if (order == 2) info_.seeded_on_surfaces = seeds;
 }
 
 /// Seeds the particles of an order and moves them by the solver that was asked for.

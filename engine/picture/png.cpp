@@ -1,6 +1,8 @@
 // Nacre: images as PNG files.
 #include "engine/picture/png.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
@@ -69,13 +71,17 @@ bool can_hold(std::size_t bytes, int width, int height) {
 
 }  // namespace
 
+void check_png_size(int width, int height) {
+  constexpr std::int64_t most = std::numeric_limits<int>::max() / 2 / 4;
+  if (std::int64_t(width) * height > most)
+    throw Error(fmt::format("a picture of {} x {} pixels is too large for a PNG file", width, height),
+                fmt::format("it may have {} pixels in all", most), "choose a smaller size");
+}
+
 std::vector<std::uint8_t> encode_png(const Image& image) {
   assert(image.width > 0 && image.height > 0);
   assert(image.pixels.size() == std::size_t(image.width) * std::size_t(image.height) * 4);
-  if (image.pixels.size() > std::size_t(std::numeric_limits<int>::max() / 2))
-    throw Error("the picture of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                    " pixels is too large for a PNG file",
-                {}, "choose a smaller size");
+  check_png_size(image.width, image.height);
   const int channels = is_opaque(image) ? 3 : 4;
   const std::vector<std::uint8_t> rgb = channels == 3 ? opaque_pixels(image) : std::vector<std::uint8_t>();
   int size = 0;

@@ -9,8 +9,11 @@
 
 namespace nacre {
 
+/// Throws Error where a picture of so many pixels is too large for the PNG encoder, which counts bytes in 31 bits.
+void check_png_size(int width, int height);
+
 /// The bytes of a PNG file: RGB where every pixel is opaque, else RGBA. The image has at least one pixel. Throws Error
-/// where it is too large for a PNG encoder (2 GiB of pixels).
+/// as `check_png_size` does.
 std::vector<std::uint8_t> encode_png(const Image& image);
 
 /// Writes beside `file`, then renames, so that there is a whole picture or none. Throws Error (with the file's name and

@@ -7,7 +7,10 @@
 #include <cassert>
 #include <cctype>
 #include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +27,17 @@ namespace {
 
 using Words = std::vector<std::string>;
 
+std::string frame_name(long number) { return fmt::format("frame_{:04}.png", number); }
+
+bool is_frame_name(const std::string& name) {
+  long number = -1;
+  return std::sscanf(name.c_str(), "frame_%9ld", &number) == 1 && number >= 0 && name == frame_name(number);
+}
+
 class FrameFolder : public FrameSink {
  public:
-  explicit FrameFolder(fs::path folder) : folder_(std::move(folder)) {
+  FrameFolder(fs::path folder, std::function<void(const std::string&)> say)
+      : folder_(std::move(folder)), say_(std::move(say)) {
     std::error_code failed;
     fs::create_directories(folder_, failed);
     if (!fs::is_directory(folder_))
@@ -35,7 +46,8 @@ class FrameFolder : public FrameSink {
   }
 
   void write(const Image& frame) override {
-    write_png(folder_ / fmt::format("frame_{:04}.png", count_), frame);
+    if (count_ == 0) remove_earlier_frames();
+    write_png(folder_ / frame_name(count_), frame);
     ++count_;
   }
 
@@ -44,7 +56,21 @@ class FrameFolder : public FrameSink {
   }
 
  private:
+  void remove_earlier_frames() const {
+    std::error_code ignored;  // what stays is overwritten, or the frame to come says what is wrong with the folder
+    std::vector<fs::path> earlier;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
+      if (is_frame_name(entry.path().filename().string()) && entry.is_regular_file(ignored))
+        earlier.push_back(entry.path());
+    std::size_t removed = 0;
+    for (const fs::path& file : earlier) removed += fs::remove(file, ignored);
+    if (removed > 0 && say_)
+      say_(fmt::format("removed {} frame{} of an earlier run from {}", removed, removed == 1 ? "" : "s",
+                       folder_.string()));
+  }
+
   fs::path folder_;
+  std::function<void(const std::string&)> say_;
   int count_ = 0;
 };
 
@@ -157,7 +183,17 @@ void FrameSink::add(const Image& frame) {
   write(fits ? frame : on_canvas(frame, width_, height_));
 }
 
-std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder) { return std::make_unique<FrameFolder>(folder); }
+void check_video_size(int width, int height) {
+  // What libavutil calls a picture size that is invalid: bytes of a padded picture, counted in 31 bits.
+  constexpr std::int64_t most = std::numeric_limits<int>::max(), padding = 128, bytes = 8;
+  if (bytes * (width + width % 2 + padding) * (height + height % 2 + padding) >= most)
+    throw Error(fmt::format("frames of {} x {} pixels are too large for a video", width, height),
+                fmt::format("ffmpeg takes about {} million pixels", most / bytes / 1000000), "choose a smaller size");
+}
+
+std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder, std::function<void(const std::string&)> say) {
+  return std::make_unique<FrameFolder>(folder, std::move(say));
+}
 
 std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps) { return std::make_unique<Video>(file, fps); }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <string>
 
 #include "engine/picture/image.hpp"
 
@@ -28,9 +30,14 @@ class FrameSink {
   int width_ = 0, height_ = 0;
 };
 
-/// frame_0000.png, frame_0001.png and so on in `folder`, which is made if missing. Frames of an earlier run are
-/// overwritten; each file is whole at any time. Throws Error where the folder cannot be made.
-std::unique_ptr<FrameSink> make_frame_folder(const std::filesystem::path& folder);
+/// Throws Error where ffmpeg would refuse frames of so many pixels.
+void check_video_size(int width, int height);
+
+/// frame_0000.png, frame_0001.png and so on in `folder`, which is made if missing. Each file is whole at any time. With the
+/// first frame those of an earlier run go (files with just such names, no others), so that a film made of the folder is of
+/// one run, however that ends; `say` is told how many. Throws Error where the folder cannot be made.
+std::unique_ptr<FrameSink> make_frame_folder(const std::filesystem::path& folder,
+                                             std::function<void(const std::string&)> say = {});
 
 /// A video by the program ffmpeg, `fps` frames a second: .mp4, .mov and .mkv (H.264), .webm (VP9) or .gif by the name's
 /// extension. Odd sizes gain one column or row. Written beside `file`, renamed by `finish`. Throws Error where the

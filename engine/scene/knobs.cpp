@@ -74,9 +74,10 @@ bool Knob::concerns(const std::string& command) const {
   const auto in = [&](std::initializer_list<const char*> groups) {
     return std::find(groups.begin(), groups.end(), group) != groups.end();
   };
-  if (in({"general", "picture"}) || command == "view") return true;
-  if (in({"view"})) return false;
-  return (command == "mesh") == in({"materials", "fields", "sizing", "particles", "cells"});
+  if (in({"general"}) || command == "view") return true;
+  if (in({"picture"})) return command == "flow" || command == "mesh";
+  if (in({"materials", "fields", "sizing", "particles", "cells"})) return command == "mesh";
+  return command == "flow" && !in({"view"});
 }
 
 std::string Knob::text() const {

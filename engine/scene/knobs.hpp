@@ -26,7 +26,7 @@ struct Knob {
 
   std::string option() const;                       ///< "--step-cells"
   std::string text() const;                         ///< the value as on the command line
-  bool concerns(const std::string& command) const;  ///< "flow", "mesh" or "view"
+  bool concerns(const std::string& command) const;  ///< the general ones concern all
 };
 
 /// The table, bound to `settings`, which must outlive it.

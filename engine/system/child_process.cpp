@@ -14,6 +14,8 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <mutex>
+#include <set>
 #include <sstream>
 #include <system_error>
 
@@ -119,6 +121,17 @@ struct Guard {
   }
 };
 
+/// Children that read what we send. None is here that may have been reaped: its number could be another's by now.
+struct Running {
+  std::mutex mutex;
+  std::set<pid_t> processes;
+};
+
+Running& running() {
+  static Running* instance = new Running;  // never destroyed: children may die while statics do
+  return *instance;
+}
+
 struct Sink {
   int* end;
   std::string* text;
@@ -192,7 +205,11 @@ ChildProcess::ChildProcess(const fs::path& program, const std::vector<std::strin
   input_ = ends[0];
   if (!failed) failed = spawn(program, arguments, {ends[1], -1, complaints_}, Group::own, process_);
   close_and_forget(ends[1]);
-  if (!failed) return;
+  if (!failed) {
+    const std::lock_guard lock(running().mutex);
+    running().processes.insert(process_);
+    return;
+  }
   close_and_forget(input_);
   close_and_forget(complaints_);
   fail(program, failed);
@@ -219,6 +236,10 @@ bool ChildProcess::send(const void* bytes, std::size_t size) {
 bool ChildProcess::wait() {
   close_and_forget(input_);
   if (process_ <= 0) return false;
+  {
+    const std::lock_guard lock(running().mutex);
+    running().processes.erase(process_);
+  }
   const int status = reap(process_);
   process_ = -1;
   return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
@@ -229,6 +250,12 @@ std::string ChildProcess::first_complaint() const {
   const ssize_t size = ::pread(complaints_, text, sizeof text, 0);
   std::string line(text, size > 0 ? std::size_t(size) : 0);
   return line.substr(0, line.find_first_of("\r\n"));
+}
+
+void kill_child_processes() noexcept try {
+  const std::lock_guard lock(running().mutex);
+  for (const pid_t process : running().processes) ::kill(process, SIGKILL);
+} catch (...) {  // on the way out: nothing better can be done
 }
 
 }  // namespace nacre

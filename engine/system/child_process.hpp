@@ -54,4 +54,7 @@ class ChildProcess {
   int complaints_ = -1;  ///< a file in memory: a pipe that nobody reads could fill up and stop the program
 };
 
+/// Kills every ChildProcess whose input is still open, for a program that leaves without unwinding.
+void kill_child_processes() noexcept;
+
 }  // namespace nacre

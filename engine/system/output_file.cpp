@@ -24,7 +24,14 @@ constexpr std::size_t buffer_bytes = std::size_t(1) << 18;
 
 struct Registry {
   std::mutex mutex;
-  std::set<fs::path> paths;
+  std::set<fs::path> paths;  ///< absolute
+
+  /// The caller holds the mutex.
+  void remove_all() {
+    std::error_code ignored;
+    for (const fs::path& path : paths) fs::remove_all(path, ignored);
+    paths.clear();
+  }
 };
 
 Registry& registry() {
@@ -47,6 +54,21 @@ fs::path follow_links(const fs::path& target) {
   for (int i = 0; i < longest_chain && fs::is_symlink(fs::symlink_status(file, error)); ++i)
     file = file.parent_path() / fs::read_symlink(file, error);
   return file;
+}
+
+fs::path absolute_name(const fs::path& path) {
+  std::error_code error;
+  fs::path all = fs::absolute(path, error);
+  return error ? path : all;
+}
+
+/// A new file that is on the list from its first moment. Returns what `open` does.
+int open_listed(const fs::path& file) {
+  const fs::path name = absolute_name(file);
+  const std::lock_guard lock(registry().mutex);
+  const int handle = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (handle >= 0) registry().paths.insert(name);
+  return handle;
 }
 
 std::string reason(int error_number) {
@@ -91,7 +113,7 @@ OutputFile::OutputFile(fs::path target, Devices devices)
   } else {
     do {
       temporary_ = fresh_name_beside(destination_);
-      handle = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      handle = open_listed(temporary_);
     } while (handle < 0 && errno == EEXIST);
   }
   if (handle < 0) fail(errno);
@@ -99,16 +121,19 @@ OutputFile::OutputFile(fs::path target, Devices devices)
   if (!stream_) {
     const int error_number = errno;
     ::close(handle);
-    if (!direct_) ::unlink(temporary_.c_str());
+    remove_temporary();
     fail(error_number);
   }
   std::setvbuf(stream_, nullptr, _IOFBF, buffer_bytes);
-  if (!direct_) add_unfinished(temporary_);
 }
 
 OutputFile::~OutputFile() {
   if (!stream_) return;
   std::fclose(stream_);
+  remove_temporary();
+}
+
+void OutputFile::remove_temporary() const {
   if (direct_) return;
   ::unlink(temporary_.c_str());
   drop_unfinished(temporary_);
@@ -151,26 +176,32 @@ void check_writable(const fs::path& target) {
 }
 
 void add_unfinished(const fs::path& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
+  const fs::path name = absolute_name(path);
   const std::lock_guard lock(registry().mutex);
-  registry().paths.insert(error ? path : absolute);
+  registry().paths.insert(name);
 }
 
 void drop_unfinished(const fs::path& path) noexcept try {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
+  const fs::path name = absolute_name(path);
   const std::lock_guard lock(registry().mutex);
-  registry().paths.erase(error ? path : absolute);
+  registry().paths.erase(name);
 } catch (...) {  // out of memory: a name too many on the list does no harm
 }
 
 void remove_unfinished_files() noexcept try {
   const std::lock_guard lock(registry().mutex);
-  std::error_code error;
-  for (const fs::path& path : registry().paths) fs::remove_all(path, error);
-  registry().paths.clear();
+  registry().remove_all();
 } catch (...) {  // on the way out: nothing better can be done
+}
+
+void leave_without_unfinished_files(int status) noexcept {
+  try {
+    const std::lock_guard lock(registry().mutex);
+    registry().remove_all();
+    ::_exit(status);  // while nobody can begin another one
+  } catch (...) {
+    ::_exit(status);
+  }
 }
 
 }  // namespace nacre

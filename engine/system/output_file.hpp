@@ -35,6 +35,7 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail(int error_number) const;
+  void remove_temporary() const;
 
   std::filesystem::path target_;
   std::filesystem::path destination_;  // the target with links followed
@@ -56,5 +57,9 @@ void drop_unfinished(const std::filesystem::path& path) noexcept;
 
 /// Removes the temporaries of all files not committed, for a program that leaves without unwinding.
 void remove_unfinished_files() noexcept;
+
+/// The same, and ends the program while other threads may still be at work; none of them begins a file any more. Not for a
+/// signal handler.
+[[noreturn]] void leave_without_unfinished_files(int status) noexcept;
 
 }  // namespace nacre

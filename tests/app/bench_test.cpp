@@ -70,6 +70,62 @@ TEST_F(BenchTest, ATableStandsBesideTheSourcesFigures) {
   EXPECT_TRUE(contains(plot, ">tree, ours<") && contains(plot, ">serial, source<"));
 }
 
+TEST_F(BenchTest, RowsAreThereWhenTheyAreMeasuredAndOutliveCtrlC) {
+  // Stopped when the first row has come; what follows takes seconds.
+  const std::string script =
+      R"(cd "$0"; "$@" >out & for k in {1..2000}; do grep -q 'on the fly / arena' out && break;
+                                sleep 0.05; done; kill -INT $!; wait $!)";
+  const Outcome run = test::run("/bin/bash", Words{"-c", script, folder_.path().string(), NACRE_PROGRAM} + small_bench +
+                                                 Words{"arena", "grid-octree", "--json", path("bench.json")});
+  EXPECT_EQ(run.status, 130) << run.err;
+  const std::string out = content("out");
+  EXPECT_EQ(lines_with(out, "arrays of a turn  "), 1) << out;
+  EXPECT_EQ(lines_with(out, path("bench.json")), 1) << out;
+  const json report = read_json("bench.json");
+  EXPECT_EQ(report["ended_early"], "interrupted");
+  const json& table = report["tables"][0];
+  EXPECT_EQ(table["name"], "arena");
+  EXPECT_EQ(table["rows"].size(), 1u + lines_with(out, "embedding  "));
+  EXPECT_GT(table["rows"][0]["values"]["arena, ms"]["ours"].get<double>(), 0);
+  EXPECT_GT(table["seconds"].get<double>(), 0);
+  EXPECT_EQ(names(), (Words{"bench.json", "out"}));
+}
+
+TEST_F(BenchTest, NothingMeasuredReplacesNothing) {
+  write("bench.json", "an older one");
+  const Outcome run = test::run("/usr/bin/timeout", Words{"--preserve-status", "-s", "INT", "0.5", NACRE_PROGRAM} +
+                                                        small_bench + Words{"3.2", "--json", path("bench.json")});
+  EXPECT_EQ(run.status, 130) << run.err;
+  EXPECT_EQ(content("bench.json"), "an older one");
+}
+
+TEST_F(BenchTest, ColumnsAreAsWideInEveryTable) {
+  const Outcome run = nacre(small_bench + Words{"arena", "methods"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto gap = [](int n) { return std::string(std::size_t(n), ' '); };
+  EXPECT_EQ(lines_with(run.out, "row" + gap(17) + "quantity" + gap(38) + "source" + gap(8) + "ours  what differs"), 2)
+      << run.out;
+  EXPECT_EQ(lines_with(run.out, "arrays of a turn    arena, ms" + gap(42) + "-"), 1) << run.out;
+  EXPECT_EQ(lines_with(run.out, "train" + gap(81) + "sample train"), 1) << run.out;
+}
+
+TEST_F(BenchTest, KnobsTurnWhatTheTableDoesNotSet) {
+  const auto particles = [&](const Words& more) {
+    const Outcome run = nacre(small_bench + Words{"3.4", "--set", "iterations=1", "--json", path("a.json")} + more);
+    EXPECT_EQ(run.status, 0) << run.err;
+    const json row = read_json("a.json")["tables"][0]["rows"][0];
+    return row["values"]["tree: particles"]["ours"].get<int>();
+  };
+  const int usual = particles({});
+  EXPECT_LT(particles({"--set", "max_size=3", "--seed", "7"}), 0.7 * usual);
+  const json report = read_json("a.json");
+  EXPECT_EQ(report["set"], (json{{"iterations", "1"}, {"max_size", "3"}, {"seed", "7"}}));
+  write("session.json", R"({"nacre": "session 1", "knobs": {"max_size": 3}})");
+  EXPECT_LT(particles({"--session", path("session.json")}), 0.7 * usual);
+  const Outcome compared = nacre(small_bench + Words{"3.4", "--against", path("a.json")});
+  expect_failure(compared, 1, {"iterations 1", "max_size 3"});
+}
+
 TEST_F(BenchTest, FlowTablesGrow) {
   const Outcome run = nacre(small_bench + Words{"6.2", "--json", path("bench.json")});
   ASSERT_EQ(run.status, 0) << run.err;

@@ -111,6 +111,16 @@ TEST_P(CtrlC, StopsWithinTwoSecondsAndLeavesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(After, CtrlC, ::testing::Values(0.3, 1.5, 4.0));
 
+TEST_F(CtrlC, ASecondOneLeavesNothingEither) {
+  // Both come before the work looks up; two of one kind might be delivered as one.
+  const std::string script = R"("$0" "$@" & sleep 2; kill -INT $!; kill -TERM $!; wait $!)";
+  for (int k = 0; k < 3; ++k) {
+    const Outcome stopped = run("/bin/bash", Words{"-c", script, NACRE_PROGRAM} + long_run());
+    EXPECT_TRUE(stopped.status == 130 || stopped.status == 143) << stopped.status << stopped.err;
+    EXPECT_EQ(names(), Words{});
+  }
+}
+
 TEST_F(CtrlC, FramesWrittenSoFarAreWhole) {
   const Stopped stopped = interrupt({"flow", "--sample", "sphere", "--detail", "24", "--resolution", "64", "--steps",
                                      "100000", "--size", "96x72", "--quiet", "--frames", path("f")},

@@ -6,6 +6,8 @@
 namespace nacre::test {
 namespace {
 
+const std::vector<std::string> all_commands = {"flow", "mesh", "view", "sample", "bench", "info"};
+
 TEST(Words, HelpVersionAndKnobs) {
   const Outcome help = nacre({"--help"});
   EXPECT_EQ(help.status, 0);
@@ -16,8 +18,7 @@ TEST(Words, HelpVersionAndKnobs) {
   EXPECT_EQ(version.status, 0);
   EXPECT_EQ(version.out.rfind("nacre ", 0), 0u) << version.out;
 
-  for (const char* command : {"flow", "mesh", "view", "sample", "bench", "info"})
-    EXPECT_EQ(nacre({command, "--version"}).out, version.out) << command;
+  for (const std::string& command : all_commands) EXPECT_EQ(nacre({command, "--version"}).out, version.out) << command;
 
   const Outcome knobs = nacre({"--knobs"});
   EXPECT_EQ(knobs.status, 0);
@@ -41,6 +42,61 @@ TEST(Words, HelpOfFlowHasEveryOptionOfTheContract) {
         "--frames",  "--video",      "--no-legend", "--no-time",    "--out",    "--sample", "--device",
         "--threads", "--seed",       "--report",    "--quiet",      "--set",    "--session"})
     EXPECT_TRUE(contains(help.out, option)) << option;
+}
+
+TEST(Words, CommonOptionsAreThoseOfEveryCommand) {
+  for (const std::string& command : all_commands) {
+    const Outcome help = nacre({command, "--help"});
+    EXPECT_EQ(help.status, 0);
+    for (const char* option :
+         {"--device", "--threads", "--seed", "--report", "--quiet", "--set", "--session", "--version", "--help"})
+      EXPECT_TRUE(contains(help.out, std::string(option) + " ") || contains(help.out, std::string(option) + ","))
+          << command << " " << option;
+    if (command == "view") continue;  // which a build may lack
+    expect_failure(nacre({command, "--set", "rsolution=3"}), 2, {"did you mean resolution"});
+    expect_failure(nacre({command, "--seed", "-1"}), 2, {"--seed"});
+  }
+}
+
+TEST(Words, CommonOptionsOfSampleAndInfo) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.vtp").string(), session = (folder / "s.json").string();
+  const auto report = [&](const char* name) { return (folder / name).string(); };
+  const Words common = {"--device", "cpu", "--threads", "1", "--seed", "3", "--quiet", "--set", "ttl=3"};
+  std::ofstream(session) << R"({"nacre": "session 1", "sample": "sphere", "detail": 16})";
+  const Outcome written =
+      nacre(Words{"sample", "--session", session, "--out", file, "--report", report("a.json")} + common);
+  ASSERT_EQ(written.status, 0) << written.err;
+  EXPECT_EQ(written.out, file + "\n");
+  EXPECT_EQ(written.err, "");
+  const nlohmann::json sample = nlohmann::json::parse(read_all(report("a.json")));
+  EXPECT_EQ(sample["command"], "sample");
+  EXPECT_EQ(sample["input"], (nlohmann::json{{"sample", "sphere"}, {"detail", 16}}));
+  EXPECT_EQ(sample["outputs"], nlohmann::json({file}));
+  EXPECT_EQ(sample["device"]["threads"], 1);
+
+  std::ofstream(session) << R"({"nacre": "session 1", "inputs": ["a.vtp"]})";
+  const Outcome looked = nacre(Words{"info", "--session", session, "--report", report("b.json")} + common);
+  ASSERT_EQ(looked.status, 0) << looked.err;
+  EXPECT_EQ(looked.out, nacre({"info", file}).out);
+  const nlohmann::json info = nlohmann::json::parse(read_all(report("b.json")));
+  EXPECT_EQ(info["command"], "info");
+  EXPECT_EQ(info["input"]["files"][0], nlohmann::json::parse(nacre({"info", "--json", file}).out));
+  EXPECT_EQ(info["stages"][0]["name"], "read");
+
+  expect_failure(nacre({"sample", "--session", session, "--out", file}), 2, {"has no sample"});
+  expect_failure(nacre({"sample", "--out", file}), 2, {"which one"});
+}
+
+TEST(Words, PicturesThatNoFileCanHoldAreRefusedBeforeTheWork) {
+  const TemporaryFolder folder;
+  const Words large = {"--size", "16384x16384"};
+  const std::string picture = (folder / "a.png").string(), limit = "268435455 pixels";
+  for (const char* option : {"--image", "--frames"})
+    expect_failure(nacre(small_flow + large + Words{option, picture}), 2, {limit});
+  expect_failure(nacre(small_flow + large + Words{"--video", (folder / "a.mp4").string()}), 2, {"268 million pixels"});
+  expect_failure(nacre({"mesh", "--sample", "two-spheres", "--size", "16384x16384", "--image", picture}), 2, {limit});
+  EXPECT_EQ(folder.entries(), 0u);
 }
 
 TEST(Words, WrongOnesEndWithTwo) {

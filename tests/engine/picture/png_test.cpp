@@ -68,6 +68,11 @@ TEST(Png, FollowsALinkAndKeepsTheUmask) {
   EXPECT_EQ(fs::status(folder / "real.png").permissions(), fs::perms(0640));
 }
 
+TEST(Png, SizesThatTheEncoderCannotCountAreRefused) {
+  EXPECT_NO_THROW(check_png_size(16384, 16383));
+  EXPECT_TRUE(has(error_of([] { check_png_size(16384, 16384); }), "it may have 268435455 pixels in all"));
+}
+
 TEST(Png, UnwritablePlaces) {
   TemporaryFolder folder;
   write_bytes(folder / "file", {1});

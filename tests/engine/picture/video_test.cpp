@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "compute/device/error.hpp"
 #include "engine/picture/png.hpp"
@@ -18,7 +21,14 @@ namespace nacre {
 namespace fs = std::filesystem;
 namespace {
 
+using Words = std::vector<std::string>;
+
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+std::string content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
 
 std::string output_of(const std::string& command) {
   std::FILE* pipe = popen(command.c_str(), "r");
@@ -78,6 +88,23 @@ TEST(FrameFolder, WritesNumberedPicturesAndOverwritesOldOnes) {
   EXPECT_FALSE(fs::exists(folder / "deep/run/frame_0003.png"));
 }
 
+TEST(FrameFolder, FramesOfAnEarlierLongerRunGoWithTheFirstNewOne) {
+  TemporaryFolder folder;
+  const Words others = {"frame_3.png", "frame_00003.png", "frame_-001.png", "my_frame_0003.png", "frame_0003.jpg"};
+  for (const std::string& name : others) std::ofstream(folder / name) << "mine";
+  fs::create_directory(folder / "frame_0009.png");
+  for (int k = 0; k < 6; ++k) std::ofstream(folder / ("frame_000" + std::to_string(k) + ".png")) << "old";
+  std::ofstream(folder / "frame_12345.png") << "old";
+  Words said;
+  const auto frames = make_frame_folder(folder.path(), [&](const std::string& line) { said.push_back(line); });
+  EXPECT_EQ(folder.entries(), 13) << "a run that fails before its first frame takes none away";
+  for (unsigned i = 0; i < 2; ++i) frames->add(noise_image(8, 6, i + 1));
+  EXPECT_EQ(said, Words{"removed 7 frames of an earlier run from " + folder.path().string()});
+  EXPECT_EQ(folder.entries(), 8);
+  EXPECT_EQ(read_png(folder / "frame_0001.png").width, 8);
+  for (const std::string& name : others) EXPECT_EQ(content(folder / name), "mine") << name;
+}
+
 TEST(FrameFolder, NamesWhatIsWrong) {
   TemporaryFolder folder;
   std::ofstream(folder / "file") << "x";
@@ -94,6 +121,11 @@ TEST(FrameFolder, FullDiskLeavesWholeFramesOnly) {
   EXPECT_THROW(for (unsigned i = 0; i < 20; ++i) frames->add(noise_image(150, 150, i + 1)), Error);
   EXPECT_GT(folder.entries(), 1);
   for (const auto& entry : fs::directory_iterator(folder.path())) EXPECT_EQ(read_png(entry.path()).width, 150);
+}
+
+TEST(Video, SizesThatFfmpegRefusesAreKnownBefore) {
+  EXPECT_NO_THROW(check_video_size(16384, 16000));
+  EXPECT_THROW(check_video_size(16384, 16384), Error);  // "Picture size 16384x16384 is invalid", of ffmpeg 5.1
 }
 
 class VideoTest : public testing::Test {

@@ -181,5 +181,18 @@ TEST(OutputFile, UnfinishedFilesCanBeRemoved) {
   EXPECT_TRUE(std::filesystem::exists(folder / "kept.txt"));
 }
 
+TEST(OutputFileDeathTest, LeavingRemovesWhatOthersAreWriting) {
+  const TemporaryFolder folder;
+  EXPECT_EXIT(
+      {
+        OutputFile whole(folder / "whole.txt");
+        OutputFile lost(folder / "lost.txt");
+        whole.commit();
+        leave_without_unfinished_files(7);
+      },
+      ::testing::ExitedWithCode(7), "");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
 }  // namespace
 }  // namespace nacre

@@ -1,0 +1,192 @@
+// Nacre: `nacre bench`: the source's tables on this machine: its words, its report, its verdict.
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "app/bench/against.hpp"
+#include "app/bench/bench.hpp"
+#include "app/bench/figures.hpp"
+#include "app/commands.hpp"
+#include "app/run.hpp"
+#include "engine/scene/knobs.hpp"
+
+namespace nacre {
+namespace {
+
+using nlohmann::json;
+
+struct BenchOptions {
+  CommonOptions common;
+  std::vector<std::string> tables;
+  bool small = false;
+  std::string plots, against;
+};
+
+/// Knobs that are not as they come, by name.
+using TurnedKnobs = std::map<std::string, std::string>;
+
+bool asked_for(const BenchOptions& options, const std::string& name) {
+  return options.tables.empty() ||
+         std::find(options.tables.begin(), options.tables.end(), name) != options.tables.end();
+}
+
+void check_words(const BenchOptions& options) {
+  for (const std::string& name : options.tables) {
+    const auto& parts = bench_parts();
+    if (std::any_of(parts.begin(), parts.end(), [&](const BenchPart& part) { return part.name == name; })) continue;
+    std::string known;
+    for (const BenchPart& part : parts) known += (known.empty() ? "" : " ") + part.name;
+    throw UsageError(fmt::format("there is no table '{}'; choose from {}", name, known));
+  }
+}
+
+/// What is found out before the hours of work rather than after.
+void check_outputs(const BenchOptions& options) {
+  check_output(options.common.report, "--json", "");
+  if (options.plots.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(options.plots, error);
+  if (!std::filesystem::is_directory(options.plots))
+    throw Error("cannot make the folder " + options.plots, error.message(), "give another --plots");
+}
+
+/// Of the session, --seed and --set. Input and camera of a session have no meaning here.
+TurnedKnobs turned_knobs(const BenchOptions& options, const KnobOptions& knob_options) {
+  Settings usual, settings;
+  if (!options.common.session.empty()) settings = read_session(options.common.session).settings;
+  knob_options.apply(settings, options.common.set);
+  TurnedKnobs turned;
+  const std::vector<Knob> before = knobs(usual), after = knobs(settings);
+  for (std::size_t k = 0; k < after.size(); ++k)
+    if (after[k].text() != before[k].text()) turned[after[k].name] = after[k].text();
+  return turned;
+}
+
+std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))); }
+
+json make_report(const BenchOptions& options, const Device& device, const TurnedKnobs& turned) {
+  json report = report_frame("bench", device, StageTimers(), 0);
+  report.erase("stages");  // every table has its own
+  report["small"] = options.small;
+  report["date"] = today();
+  if (!turned.empty()) report["set"] = turned;
+  report["tables"] = json::array();
+  return report;
+}
+
+void print_head(const BenchOptions& options, const Device& device, const TurnedKnobs& turned) {
+  std::string words = options.small ? ", --small" : "";
+  for (const auto& [name, value] : turned) words += fmt::format(", {} {}", name, value);
+  fmt::print("nacre {} on {} ({}), {} thread{}, {}{}\n\n", version, device.name(), device.backend(), device.threads(),
+             device.threads() == 1 ? "" : "s", today(), words);
+}
+
+void write_figures(Bench& bench, const json& report) {
+  for (const auto& [name, text] : bench_figures(report)) {
+    const std::filesystem::path file = bench.plots / name;
+    write_text(file, text);
+    bench.outputs.push_back(file.string());
+  }
+}
+
+/// Figures and JSON of the rows that there are.
+void write_results(const BenchOptions& options, Bench& bench, const json& report) {
+  if (!options.plots.empty()) write_figures(bench, report);
+  if (!options.common.report.empty()) bench.outputs.push_back(options.common.report);
+  write_report(options.common, report, bench.outputs);
+  print_outputs(bench.outputs);
+}
+
+/// Runs the tables. What is measured by then stays, also where one of them ends the command: `why` goes into the report.
+void measure(const BenchOptions& options, Bench& bench, json& report) {
+  const auto add_tables = [&] {
+    for (const BenchTable& table : bench.tables()) report["tables"].push_back(table_json(table));
+  };
+  const auto keep = [&](const std::string& why) {
+    add_tables();
+    report["ended_early"] = why;
+    const auto has_rows = [](const BenchTable& table) { return !table.rows.empty(); };
+    if (std::none_of(bench.tables().begin(), bench.tables().end(), has_rows)) return;
+    try {
+      write_results(options, bench, report);
+    } catch (const std::exception& error) {  // beside the first reason, which ends the command
+      warn(options.common, error.what());
+    }
+  };
+  try {
+    for (const BenchPart& part : bench_parts()) {
+      if (!asked_for(options, part.name)) continue;
+      part.run(bench);
+      bench.end();
+    }
+  } catch (const std::exception& error) {
+    keep(error.what());
+    throw;
+  }
+  add_tables();
+  write_results(options, bench, report);
+}
+
+void judge(const BenchOptions& options, const json& now, const json& last) {
+  const Comparison result = compare_runs(now, last);
+  for (const std::string& one : result.missing) warn(options.common, "not compared, this run has no figure: " + one);
+  if (!result.losses.empty()) {
+    std::string text;
+    for (const std::string& loss : result.losses) text += (text.empty() ? "" : "; ") + loss;
+    throw Error(fmt::format("{} of {} ratios lost more than {:.0f}% against {}: {}", result.losses.size(),
+                            result.compared, 100 * tolerated_loss, options.against, text));
+  }
+  if (result.compared == 0)
+    throw Error("nothing to compare with " + options.against, "no table and row is in both runs");
+  fmt::print("{} ratios compared with {}: none lost more than {:.0f}%\n", result.compared, options.against,
+             100 * tolerated_loss);
+}
+
+json read_last(const BenchOptions& options) {
+  if (options.against.empty()) return {};
+  json last = read_bench(options.against);
+  if (last.contains("ended_early"))
+    warn(options.common, options.against + " is of a run that ended early: only the rows that it has are compared");
+  return last;
+}
+
+void run_bench(const BenchOptions& options, const KnobOptions& knob_options) {
+  check_words(options);
+  const TurnedKnobs turned = turned_knobs(options, knob_options);
+  check_outputs(options);
+  const json last = read_last(options);
+  const std::unique_ptr<Device> device = open_device(options.common);
+  json report = make_report(options, *device, turned);
+  if (!last.is_null()) require_comparable(report, last, options.against);
+  Bench bench(*device, options.common, options.small);
+  bench.plots = options.plots;
+  bench.meshes.turn = bench.flows.turn = [&](Settings& settings) {
+    for (const auto& [name, value] : turned) set_knob(settings, name, value);
+  };
+  print_head(options, *device, turned);
+  measure(options, bench, report);
+  if (!last.is_null()) judge(options, report, last);
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& program, std::function<void()>& run) {
+  CLI::App* command = program.add_subcommand("bench", "the source's tables, on this machine");
+  auto options = std::make_shared<BenchOptions>();
+  command->add_option("TABLE", options->tables,
+                      "3.1 3.2 3.3 3.4 4.1 4.2 4.3 5.1 6.1 6.2 gathering arena grid-octree methods (all)");
+  command->add_flag("--small", options->small, "smaller data: two minutes on two cores");
+  command->add_option("--plots", options->plots, "write the source's plots (SVG) and pictures (PNG) into a folder");
+  command->add_option("--against", options->against,
+                      "JSON of an earlier run: fail where a ratio between methods has lost 30%");
+  add_common_options(*command, options->common,
+                     {"--json,--report", "write the figures as JSON, also of a run that was interrupted",
+                      "take knobs from a session file; what a table sets itself stays"});
+  auto knob_options = std::make_shared<KnobOptions>(*command, "bench");
+  command->callback(
+      [&run, options, knob_options] { run = [options, knob_options] { run_bench(*options, *knob_options); }; });
+}
+
+}  // namespace nacre

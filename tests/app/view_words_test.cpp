@@ -1,0 +1,36 @@
+// Nacre: words of `nacre view` that are refused before anything is drawn, as those of flow and mesh are.
+#include "tests/app/view_program.hpp"
+
+namespace nacre::test {
+namespace {
+
+class ViewWords : public ViewTest {
+ protected:
+  const Words start_ = {"view", "--offscreen", "--quiet"};
+  std::string path(const std::string& name) const { return (folder / name).string(); }
+};
+
+TEST_F(ViewWords, SizesOfParticlesAreInOrder) {
+  const Words mesh = start_ + Words{"--sample", "two-spheres", "--frames-count", "1"};
+  const std::string complaint = "--min-size 3 is larger than --max-size 2";
+  expect_failure(nacre(mesh + Words{"--min-size", "3", "--max-size", "2"}), 2, {complaint});
+  std::ofstream(path("s.json")) << R"({"nacre": "session 1", "sample": "two-spheres", "knobs": {"max_size": 2},
+                                       "events": [{"time": 1, "knobs": {"min_size": 3}}]})";
+  expect_failure(nacre(start_ + Words{"--script", path("s.json")}), 2, {"the event at 1 s", complaint});
+}
+
+TEST_F(ViewWords, PicturesThatNoFileCanHold) {
+  const Words flow = start_ + Words{"--sample", "sphere"}, large = {"--size", "16384x16384"};
+  const std::string limit = "268435455 pixels";
+  expect_failure(nacre(flow + large + Words{"--image", path("a.png")}), 2, {limit});
+  expect_failure(nacre(flow + large + Words{"--record", path("frames")}), 2, {limit});
+  expect_failure(nacre(flow + large + Words{"--record", path("a.mp4")}), 2, {"268 million pixels"});
+  std::ofstream(path("s.json"))
+      << R"({"nacre": "session 1", "sample": "sphere", "knobs": {"width": 8192, "height": 8192},
+                                       "events": [{"time": 1, "screenshot": {"file": "a.png", "scale": 2}}]})";
+  expect_failure(nacre(start_ + Words{"--script", path("s.json")}), 2, {"the event at 1 s", limit});
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+}  // namespace
+}  // namespace nacre::test
