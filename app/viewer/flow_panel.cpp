@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "app/viewer/flow_scene.hpp"
+#include "app/viewer/words.hpp"
 
 namespace nacre {
 namespace {
-
-void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
 
 std::string words_of(const Range& range) { return fmt::format("{:.6g}:{:.6g}", range.low, range.high); }
 
