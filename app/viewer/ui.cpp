@@ -231,7 +231,7 @@ void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) 
   const auto [from, along] = ray_under(camera, x, y, area.aspect());
   const std::optional<Probed> probed = scene.probe(from, along);
   if (!probed) return;
-  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y + area.height) - 8), ImGuiCond_Always, ImVec2(0, 1));
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y) + 8));  // the time stands in the corner below
   ImGui::SetNextWindowBgAlpha(0.7f);
   const auto quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
