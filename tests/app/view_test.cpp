@@ -207,7 +207,8 @@ TEST_F(View, KeysAndMouseInTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
-/// The panel as a window draws it with this fault, without the line that tells how fast; empty where there is no Xvfb.
+/// The panel as a window draws it with this fault, without the lines that tell steps and times; empty where there is no
+/// Xvfb.
 Image panel_in_window(const std::string& fault, const fs::path& png, const Words& more) {
   const Words words = {"--sample", "sphere",   "--detail",       "24", "--resolution", "64",        "--size", "800x600",
                        "--set",    "tab=look", "--frames-count", "30", "--image",      png.string()};
@@ -215,8 +216,9 @@ Image panel_in_window(const std::string& fault, const fs::path& png, const Words
   if (outcome.status == 77) return {};
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   const Image whole = read_png(png);
-  Image panel(400, 450);
-  for (int y = 0; y < panel.height; ++y) std::memcpy(panel.at(0, y), whole.at(0, y + 90), 4 * std::size_t(panel.width));
+  Image panel(400, 400);
+  for (int y = 0; y < panel.height; ++y)
+    std::memcpy(panel.at(0, y), whole.at(0, y + 130), 4 * std::size_t(panel.width));
   return panel;
 }
 
