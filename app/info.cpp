@@ -20,9 +20,16 @@ struct InfoOptions {
 
 nlohmann::json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
+/// Empty where the file does not say.
+std::string name_of(const VolumeInfo& volume, std::int64_t label) {
+  const auto found = volume.label_names.find(label);
+  return found == volume.label_names.end() ? "" : found->second;
+}
+
 nlohmann::json as_json(const VolumeInfo& volume) {
   nlohmann::json labels = nlohmann::json::array();
-  for (const auto& [label, voxels] : volume.labels) labels.push_back({{"label", label}, {"voxels", voxels}});
+  for (const auto& [label, voxels] : volume.labels)
+    labels.push_back({{"label", label}, {"voxels", voxels}, {"name", name_of(volume, label)}});
   nlohmann::json axes = nlohmann::json::array();
   for (const Vec3d& axis : volume.axes) axes.push_back(vector_json(axis));
   return {{"dimensions", {volume.dims.x, volume.dims.y, volume.dims.z}},
@@ -79,8 +86,11 @@ void print(const VolumeInfo& volume) {
   fmt::print("\n");
   if (volume.labels.empty()) return;
   fmt::print("  {} different values\n", volume.labels.size());
-  for (std::size_t i = 0; i < std::min(shown_labels, volume.labels.size()); ++i)
-    fmt::print("  {:>12} {:>12} voxels\n", volume.labels[i].first, volume.labels[i].second);
+  for (std::size_t i = 0; i < std::min(shown_labels, volume.labels.size()); ++i) {
+    const auto& [label, voxels] = volume.labels[i];
+    const std::string name = name_of(volume, label);
+    fmt::print("  {:>12} {:>12} voxels{}{}\n", label, voxels, name.empty() ? "" : "  ", name);
+  }
   if (volume.labels.size() > shown_labels) fmt::print("  ... and {} more\n", volume.labels.size() - shown_labels);
 }
 

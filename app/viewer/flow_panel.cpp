@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "app/viewer/flow_scene.hpp"
+#include "app/viewer/words.hpp"
 
 namespace nacre {
 namespace {
-
-void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
 
 std::string words_of(const Range& range) { return fmt::format("{:.6g}:{:.6g}", range.low, range.high); }
 
@@ -33,7 +32,8 @@ void FlowScene::data_panel(Session&) {
   for (const Vec3d& p : corners_) low = min(low, p), high = max(high, p);
   const Vec3d size = high - low;
   ImGui::Separator();
-  text(fmt::format("{} triangles, {} points", tree_->triangles().size(), tree_->points().size()));
+  text(fmt::format("{} triangles, {} points", grouped((long long)tree_->triangles().size()),
+                   grouped((long long)tree_->points().size())));
   text(fmt::format("{:.4g} x {:.4g} x {:.4g} in the data's unit", size.x, size.y, size.z));
   if (data_.time.high > data_.time.low) text(fmt::format("time {:.4g} to {:.4g}", data_.time.low, data_.time.high));
 }
@@ -87,7 +87,7 @@ void FlowScene::show_embedding() const {
   const EmbeddingInfo& e = shown_->info;
   ImGui::Separator();
   text(fmt::format("{} of {} x {} x {}", e.kind, e.dimensions.x, e.dimensions.y, e.dimensions.z));
-  text(fmt::format("{} cells, {} on the surface", e.cells, e.surface_cells));
+  text(fmt::format("{} cells, {} on the surface", grouped((long long)e.cells), grouped((long long)e.surface_cells)));
   text(fmt::format("{:.1f} bytes a cell, {:.2f}% sparse", double(e.bytes) / double(std::max<std::uint64_t>(1, e.cells)),
                    100 * (1 - double(e.bytes) / std::max(1.0, double(e.dense_bytes)))));
   if (step_seconds_.empty()) return;

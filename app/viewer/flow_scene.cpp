@@ -66,6 +66,16 @@ void FlowScene::set_settings(const Settings& settings) {
 
 void FlowScene::write_result(const std::filesystem::path& file) { worker_.write(file); }
 
+/// Values at the points of a surface are written within a step's time.
+void FlowScene::begin_write(const std::filesystem::path& file) {
+  written_ = "";
+  try {
+    worker_.write(file);
+  } catch (const Error& error) {
+    written_ = error.what();
+  }
+}
+
 bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy(); }
 std::string FlowScene::title() const { return name_.empty() ? "" : name_ + ": " + data_.array; }
 

@@ -43,6 +43,8 @@ class FlowScene : public Scene {
   void result_panel(Session& session) override;
   std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
+  void begin_write(const std::filesystem::path& file) override;
+  std::optional<std::string> take_written() override { return std::exchange(written_, {}); }
   std::vector<std::string> result_formats() const override { return {".vtp"}; }
 
   const std::vector<Vec3d>& corners() const override { return corners_; }
@@ -122,6 +124,7 @@ class FlowScene : public Scene {
   Range range_{0, 1};  ///< of the colour map
   std::vector<std::string> warnings_;
   std::string name_, failure_;
+  std::optional<std::string> written_;  ///< how the writing that was asked for went
   std::optional<FlowSampled> sampled_;
   std::optional<Vec3d> asked_;  ///< of the worker: the texture's value there, after that step
   std::uint64_t asked_step_ = 0;

@@ -43,6 +43,7 @@ void Interface::dress(const Look& look) {
   style.WindowRounding = style.FrameRounding = style.PopupRounding = style.GrabRounding = 3;
   style.WindowBorderSize = 0;
   style.Colors[ImGuiCol_WindowBg].w = 0.9f;
+  style.Colors[ImGuiCol_PopupBg].w = 1;  // dialogs lie over panels, whose words would show through
   style.ScaleAllSizes(scale);
   if (size != size_) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
@@ -84,13 +85,15 @@ void Interface::take_input() {
 void Interface::begin(int width, int height, double seconds, const Look& look) {
   ImGui_ImplOpenGL3_NewFrame();
   dress(look);
+  ImGuiIO& io = ImGui::GetIO();
   if (window_) {
     ImGui_ImplGlfw_NewFrame();
     take_input();
   } else {
-    ImGui::GetIO().DisplaySize = ImVec2(float(width), float(height));
-    ImGui::GetIO().DeltaTime = float(std::max(seconds, 1e-4));
+    io.DeltaTime = float(std::max(seconds, 1e-4));
   }
+  io.DisplaySize = ImVec2(float(width), float(height));  // all is in pixels, whatever the desktop's units are
+  io.DisplayFramebufferScale = ImVec2(1, 1);
   ImGui::NewFrame();
 }
 

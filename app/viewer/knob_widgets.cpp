@@ -10,6 +10,7 @@
 #include <map>
 #include <variant>
 
+#include "app/viewer/words.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/scene/knobs.hpp"
 
@@ -98,17 +99,27 @@ void keep_sizes_in_order(Settings& settings, const std::string& turned) {
   if (turned == "max_size") largest = std::max(smallest, largest);
 }
 
+void explain(const std::string& help, bool changed, const std::string& usual) {
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
+  text(help);
+  if (changed) text(usual.empty() ? "right click: empty again" : "right click: " + usual + " again");
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
 void show(Settings& settings, const Knob& knob) {
   ImGui::PushID(knob.name.c_str());
   const std::string usual = default_text(knob);
   const bool changed = knob.text() != usual;
+  ImGui::BeginGroup();  // the field and its name are one thing to the mouse
   ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
   value_widget(knob);
   ImGui::SameLine();
   const std::string label = (changed ? "* " : "") + knob.name + (knob.unit.empty() ? "" : " [" + knob.unit + "]");
   ImGui::TextUnformatted(label.c_str());
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("%s\n%s", knob.help.c_str(), changed ? ("right click: " + usual + " again").c_str() : "");
+  ImGui::EndGroup();
+  if (ImGui::IsItemHovered() && !ImGui::IsAnyItemActive()) explain(knob.help, changed, usual);
   if (changed && ImGui::IsItemClicked(1)) set_knob(settings, knob.name, usual);
   keep_sizes_in_order(settings, knob.name);
   ImGui::PopID();

@@ -91,18 +91,23 @@ void MeshScene::update_worst() {
   worst_ = Buffer::of<Segment>(outlines);
 }
 
+/// The knob's; before there is anything else to see, the middle of the volume.
+std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
+  const int axis = slice_axis(settings_.look);
+  if (axis >= 0) return VolumePlane{axis, settings_.look.slice_at};
+  if (!complete()) return VolumePlane{2, 0.5};
+  return {};
+}
+
 /// Values of the volume are made here and now. Fields are the worker's: until it answers, the volume stands in for them.
-/// Before there is anything else to see, the middle of the volume is shown.
 void MeshScene::update_slice() {
   if (!results_.volume) return;
   const int axis = slice_axis(settings_.look);
   if (axis < 0 || settings_.look.slice_field == "volume") {
     worker_.drop_slice();
     slice_of_field_ = false;
-    if (axis >= 0)
-      show_volume_slice(axis, settings_.look.slice_at);
-    else if (!complete())
-      show_volume_slice(2, 0.5);
+    if (const std::optional<VolumePlane> plane = shown_plane())
+      show_volume_slice(plane->axis, plane->at);
     else
       slice_pass_.set_image({}, false);
     return;
@@ -180,7 +185,7 @@ void MeshScene::draw(const View& frame) {
   view.light =
       turned_light(mesh_light(view.camera), view.camera, settings_.look.light_azimuth, settings_.look.light_height);
   const bool begun = complete();
-  if (!begun || slice_axis(settings_.look) >= 0) slice_pass_.draw(view);
+  if (shown_plane()) slice_pass_.draw(view);
   if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
   if (particles_drawn()) draw_particles(view);
   if (triangles_drawn()) draw_triangles(view);

@@ -70,8 +70,8 @@ std::optional<Probed> MeshScene::probe(const Vec3d& from, const Vec3d& along) {
   const ViewedVolume& volume = *results_.volume;
   const std::optional<TriangleHit> hit = first_seen(from, along);
   std::optional<double> slice;
-  if (const int axis = slice_axis(settings_.look); axis >= 0)
-    slice = distance_to(slice_plane(volume.input, axis, settings_.look.slice_at), from, along);
+  if (const std::optional<VolumePlane> plane = shown_plane())
+    slice = distance_to(slice_plane(volume.input, plane->axis, plane->at), from, along);
   if (!hit && !slice) return {};
   const bool on_slice = slice && (!hit || *slice < hit->distance);
   Probed probed;

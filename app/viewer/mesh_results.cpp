@@ -1,18 +1,14 @@
 // Nacre: the tab "result" of a mesh.
 #include "app/viewer/mesh_results.hpp"
 
-#include <fmt/format.h>
-#include <imgui.h>
-
 #include <algorithm>
 #include <sstream>
 
-#include "engine/picture/material_colours.hpp"
+#include "app/viewer/material_list.hpp"
+#include "app/viewer/words.hpp"
 
 namespace nacre {
 namespace {
-
-void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
 
 void row(const char* name, const std::string& value) {
   ImGui::TableNextColumn();
@@ -28,87 +24,27 @@ void figures(const char* id, const Rows& rows) {
   ImGui::EndTable();
 }
 
-void plot(const char* id, const char* name, const std::vector<float>& values) {
+void plot(const char* id, const std::string& label, const std::vector<float>& values) {
   if (values.empty()) return;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  const std::string label = fmt::format("{} {:.5g}", name, values.back());
   ImGui::PlotLines(id, values.data(), int(values.size()), 0, label.c_str(), *low, *high,
                    ImVec2(ImGui::GetContentRegionAvail().x, 60));
-}
-
-std::string words_of(const std::vector<std::int64_t>& labels) { return fmt::format("{}", fmt::join(labels, ",")); }
-
-/// Adds a label to a list of words, or takes it out.
-void toggle(std::string& words, std::int64_t label) {
-  std::vector<std::int64_t> labels = labels_of(words);
-  const auto found = std::find(labels.begin(), labels.end(), label);
-  if (found != labels.end())
-    labels.erase(found);
-  else
-    labels.push_back(label);
-  words = words_of(labels);
-}
-
-bool holds(const std::string& words, std::int64_t label) {
-  const std::vector<std::int64_t> labels = labels_of(words);
-  return std::find(labels.begin(), labels.end(), label) != labels.end();
-}
-
-void show_only(Look& look, const std::vector<std::int64_t>& labels, std::size_t only) {
-  std::vector<std::int64_t> hidden;
-  for (std::size_t m = 1; m < labels.size(); ++m)
-    if (m != only) hidden.push_back(labels[m]);
-  look.hidden = words_of(hidden);
-  look.ghosts.clear();
-}
-
-void material_row(const MeshResults& results, Look& look, std::size_t m) {
-  const MeshInput& input = results.volume->input;
-  const std::int64_t label = input.labels[m];
-  const Color c = material_colour(int(m));
-  ImGui::PushID(int(m));
-  ImGui::TableNextColumn();
-  ImGui::ColorButton("##colour", ImVec4(c[0], c[1], c[2], 1), ImGuiColorEditFlags_NoTooltip, ImVec2(14, 14));
-  ImGui::SameLine();
-  text(material_name(input, m));
-  ImGui::TableNextColumn();
-  if (results.measures && m < results.measures->topology.materials.size()) {
-    const MaterialTopology& t = results.measures->topology.materials[m];
-    text(fmt::format("{:.4g} {}", t.volume, t.facets == 0 ? "lost" : t.closed ? "closed" : "open"));
-  } else {
-    text(fmt::format("{} voxels", input.voxels[m]));
-  }
-  ImGui::TableNextColumn();
-  if (ImGui::SmallButton(holds(look.hidden, label) ? "show" : "hide")) toggle(look.hidden, label);
-  ImGui::SameLine();
-  if (ImGui::SmallButton(holds(look.ghosts, label) ? "solid" : "ghost")) toggle(look.ghosts, label);
-  ImGui::SameLine();
-  if (ImGui::SmallButton("only")) show_only(look, input.labels, m);
-  ImGui::PopID();
-}
-
-void materials_table(const MeshResults& results, Look& look) {
-  if (!ImGui::CollapsingHeader("materials", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  if (ImGui::SmallButton("show all")) look.hidden.clear(), look.ghosts.clear();
-  if (!ImGui::BeginTable("materials", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
-  for (const char* head : {"label", "volume", ""}) ImGui::TableSetupColumn(head);
-  ImGui::TableHeadersRow();
-  for (std::size_t m = 1; m < results.volume->input.labels.size(); ++m) material_row(results, look, m);
-  ImGui::EndTable();
 }
 
 void particle_figures(const MeshResults& results) {
   if (!ImGui::CollapsingHeader("particles", ImGuiTreeNodeFlags_DefaultOpen)) return;
   const MeshInfo& info = results.info;
+  if (info.expected_particles <= 0) return text("none yet: the sizing field comes first");
   figures("particles", [&] {
-    row("expected", fmt::format("{:.0f}", info.expected_particles));
-    row("on points, curves", fmt::format("{}, {}", results.counts.points, results.counts.curves));
-    row("on surfaces", fmt::format("{}", results.counts.surfaces));
+    row("expected", grouped((long long)info.expected_particles));
+    row("on points, curves", fmt::format("{}, {}", grouped(results.counts.points), grouped(results.counts.curves)));
+    row("on surfaces", grouped(results.counts.surfaces));
     row("sizes, voxels", fmt::format("{:.3g} to {:.3g}", info.smallest_size, info.largest_size));
     if (info.final_energy > 0) row("mean energy", fmt::format("{:.4f}", info.final_energy));
   });
-  plot("##energy", "energy", results.energy);
-  plot("##count", "particles", results.particles);
+  if (results.energy.empty()) return;
+  plot("##energy", fmt::format("energy {:.4f}", results.energy.back()), results.energy);
+  plot("##count", grouped((long long)results.particles.back()) + " particles", results.particles);
 }
 
 void quality_figures(const MeshMeasures& measures) {
@@ -131,7 +67,7 @@ void quality_figures(const MeshMeasures& measures) {
 void topology_figures(const TopologyReport& t) {
   if (!ImGui::CollapsingHeader("topology", ImGuiTreeNodeFlags_DefaultOpen)) return;
   figures("topology", [&] {
-    row("vertices, triangles", fmt::format("{}, {}", t.vertices, t.triangles));
+    row("vertices, triangles", fmt::format("{}, {}", grouped((long long)t.vertices), grouped((long long)t.triangles)));
     row("components", fmt::format("{}", t.components));
     row("boundary edges", fmt::format("{}", t.boundary_edges));
     row("non-manifold edges", fmt::format("{}", t.nonmanifold_edges));
@@ -185,17 +121,11 @@ std::vector<std::int64_t> labels_of(const std::string& words) {
   return labels;
 }
 
-std::string material_name(const MeshInput& input, std::size_t m) {
-  if (m == 0) return "outside";
-  const bool named = m < input.names.size() && !input.names[m].empty();
-  return named ? fmt::format("{} {}", input.labels[m], input.names[m]) : fmt::format("{}", input.labels[m]);
-}
-
-void draw_mesh_results(const MeshResults& results, Session& session) {
+void draw_mesh_results(const MeshResults& results, MaterialList& materials, Session& session) {
   if (!results.volume) return;
   const bool measured = results.measures && results.mesh;
   if (!measured) particle_figures(results);
-  materials_table(results, session.settings.look);
+  materials.draw(results, session.settings.look);
   if (!measured) return;
   quality_figures(*results.measures);
   worst_list(results, session);

@@ -23,10 +23,9 @@ struct MeshResults {
 /// Labels in a list of words "L[,L...]"; what is no number is skipped.
 std::vector<std::int64_t> labels_of(const std::string& words);
 
-/// Material `number` by name and label, for people.
-std::string material_name(const MeshInput& input, std::size_t number);
+class MaterialList;
 
 /// Draws it with Dear ImGui. Buttons change the session: hidden, ghosts, camera.
-void draw_mesh_results(const MeshResults& results, Session& session);
+void draw_mesh_results(const MeshResults& results, MaterialList& materials, Session& session);
 
 }  // namespace nacre

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "app/viewer/volume_facts.hpp"
+#include "app/viewer/words.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/mesh_writer.hpp"
 #include "engine/picture/colormap.hpp"
@@ -227,9 +228,8 @@ void MeshScene::warn_once(const std::string& warning) {
 }
 
 void MeshScene::write_result(const std::filesystem::path& file) {
-  written_.reset();
+  begin_write(file);
   worker_.grant_turn(true);
-  worker_.write(file);
   static const std::atomic<bool> never{false};
   const std::atomic<bool>& stop = stop_ ? *stop_ : never;
   while (!written_) {
@@ -241,7 +241,18 @@ void MeshScene::write_result(const std::filesystem::path& file) {
     }
     if (event) take(*event);
   }
-  if (!written_->empty()) throw Error(failure_.empty() ? *written_ : failure_);
+  if (const std::string why = *take_written(); !why.empty()) throw Error(why);
+}
+
+void MeshScene::begin_write(const std::filesystem::path& file) {
+  written_.reset();
+  worker_.write(file);
+}
+
+std::optional<std::string> MeshScene::take_written() {
+  std::optional<std::string> told = std::exchange(written_, {});
+  if (told && !told->empty() && !failure_.empty()) told = failure_;  // which is why there is no mesh
+  return told;
 }
 
 std::vector<std::string> MeshScene::result_formats() const {
@@ -255,9 +266,11 @@ std::string MeshScene::title() const { return results_.volume ? results_.volume-
 
 std::string MeshScene::state() const {
   if (results_.mesh && !stale_)
-    return fmt::format("{} triangles of {} particles", results_.mesh->triangles.size(), results_.info.final);
+    return fmt::format("{} triangles of {} particles", grouped((long long)results_.mesh->triangles.size()),
+                       grouped(results_.info.final));
   if (results_.energy.empty()) return "";
-  return fmt::format("{:.0f} particles, energy {:.4f}", results_.particles.back(), results_.energy.back());
+  return fmt::format("{} particles, energy {:.4f}", grouped((long long)results_.particles.back()),
+                     results_.energy.back());
 }
 
 SceneProgress MeshScene::progress() const {
@@ -270,7 +283,7 @@ void MeshScene::data_panel(Session& session) {
   if (results_.volume) draw_volume_facts(*results_.volume, session);
 }
 
-void MeshScene::result_panel(Session& session) { draw_mesh_results(results_, session); }
+void MeshScene::result_panel(Session& session) { draw_mesh_results(results_, materials_, session); }
 
 std::unique_ptr<Scene> make_mesh_scene(const Session& session, const SceneOptions& options) {
   return std::make_unique<MeshScene>(session, options);

@@ -5,8 +5,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "app/viewer/material_list.hpp"
 #include "app/viewer/mesh_results.hpp"
 #include "app/viewer/mesh_worker.hpp"
 #include "app/viewer/scene.hpp"
@@ -41,6 +43,8 @@ class MeshScene : public Scene {
   void settle_knobs(Session& session) override;
   std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
+  void begin_write(const std::filesystem::path& file) override;
+  std::optional<std::string> take_written() override;
   std::vector<std::string> result_formats() const override;
 
   const std::vector<Vec3d>& corners() const override { return corners_; }
@@ -77,6 +81,11 @@ class MeshScene : public Scene {
   void update_edges();
   void update_worst();
   void update_slice();
+  struct VolumePlane {
+    int axis;
+    double at;
+  };
+  std::optional<VolumePlane> shown_plane() const;
   void show_volume_slice(int axis, double at);
   std::array<double, 2> volume_range();
   const Colormap& slice_map() const;
@@ -95,6 +104,7 @@ class MeshScene : public Scene {
   const std::atomic<bool>* stop_;
   Settings settings_;
   MeshResults results_;
+  MaterialList materials_;
   TriangleTree rays_;
   std::vector<Vec3d> corners_;
   std::vector<std::string> warnings_;

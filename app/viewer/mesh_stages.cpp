@@ -151,8 +151,9 @@ void MeshWorker::write_result() {
     complete = next_ == MeshStage::done;
     max_cell = wanted_.max_cell;
     progress_ = {"write", -1, 0, 0, 0};
+    writing_ = true;
   }
-  MeshWritten told{complete ? "interrupted" : "there is no mesh yet; let it be made first"};
+  MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; let it be made first"};
   const auto write = [&] {
     const std::vector<std::int64_t>& labels = viewed_->input.labels;
     if (has_cells(file)) {
@@ -173,7 +174,7 @@ void MeshWorker::write_result() {
     if (const std::optional<std::string> failure = failure_of(write)) told.failure = *failure;
   {
     std::scoped_lock lock(mutex_);
-    all_turns_ = false;
+    all_turns_ = writing_ = false;
   }
   tell(std::move(told));
 }

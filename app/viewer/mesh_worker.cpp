@@ -163,7 +163,7 @@ std::size_t MeshWorker::peak_bytes() const {
 MeshProgress MeshWorker::progress() const {
   std::scoped_lock lock(mutex_);
   const bool more = next_ != MeshStage::done && !cancelled_ && !failed_;  // also between two stages
-  if (doing_ == MeshStage::done && !more) return {};
+  if (doing_ == MeshStage::done && !more && !writing_) return {};
   return progress_.stage.empty() ? MeshProgress{"start", -1, 0, 0, 0} : progress_;
 }
 

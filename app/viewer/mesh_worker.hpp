@@ -202,6 +202,7 @@ class MeshWorker : public Worker<MeshEvent> {
   std::optional<SliceRequest> slice_;
   bool slice_filled_ = false;
   std::optional<std::filesystem::path> file_;
+  bool writing_ = false;
   StageTimers timers_;
   MeshProgress progress_;
   std::size_t peak_bytes_ = 0;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,10 @@ class Scene {
 
   /// Writes the result as the headless command would, in the format of the extension. Waits for the worker. Throws Error.
   virtual void write_result(const std::filesystem::path& file) = 0;
+  /// The same without waiting where that may take long. `take_written` then tells once how it went: an empty line, or what
+  /// did not work.
+  virtual void begin_write(const std::filesystem::path& file) = 0;
+  virtual std::optional<std::string> take_written() = 0;
   /// Extensions that `write_result` takes, e.g. ".vtp".
   virtual std::vector<std::string> result_formats() const = 0;
 

@@ -11,14 +11,13 @@
 
 #include "app/viewer/camera_control.hpp"
 #include "app/viewer/knob_widgets.hpp"
+#include "app/viewer/words.hpp"
 #include "engine/render/camera_motion.hpp"
 #include "engine/scene/phantoms.hpp"
 #include "engine/scene/samples.hpp"
 
 namespace nacre {
 namespace {
-
-void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
 
 /// Pixels that the parts take.
 struct Layout {
@@ -28,6 +27,12 @@ struct Layout {
 Layout layout(int width) {
   const float row = ImGui::GetFontSize() + 2 * ImGui::GetStyle().FramePadding.y;
   return {row, 1.6f * row, std::floor(std::min(27 * ImGui::GetFontSize(), 0.6f * float(width)))};
+}
+
+/// "12 s", "3:05 min"
+std::string lasting(double seconds) {
+  const int whole = int(seconds);
+  return whole < 100 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
 }
 
 const char* job_of(const Session& session) { return is_mesh_input(session) ? "mesh" : "flow"; }
@@ -196,16 +201,22 @@ void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
       else
         text(progress.stage + " ...");
       ImGui::SameLine();
+      if (work_began_ < 0) work_began_ = ImGui::GetTime();
+      text(lasting(ImGui::GetTime() - work_began_));
+      ImGui::SameLine();
     } else if (!scene.complete() || !scene.failure().empty()) {
       if (ImGui::Button("compute")) wishes.resume = true;
       ImGui::SameLine();
     }
+    if (progress.stage.empty()) work_began_ = -1;
     const double frame = facts.clock.mean_seconds();
     text(fmt::format("{:.0f} ms a frame   {:.0f} MiB", 1e3 * frame, double(scene.peak_bytes()) / (1 << 20)));
     ImGui::SameLine();
     if (facts.recording) text("   recording");
     ImGui::SameLine();
     if (facts.filming) text("   filming: frames wait for compute");
+    ImGui::SameLine();
+    if (!facts.saving.empty()) text("   saving " + facts.saving);
     ImGui::SameLine();
     if (ImGui::GetTime() < told_until_) text("   " + told_);
   }
@@ -220,7 +231,7 @@ void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) 
   const auto [from, along] = ray_under(camera, x, y, area.aspect());
   const std::optional<Probed> probed = scene.probe(from, along);
   if (!probed) return;
-  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y + area.height) - 8), ImGuiCond_Always, ImVec2(0, 1));
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y) + 8));  // the time stands in the corner below
   ImGui::SetNextWindowBgAlpha(0.7f);
   const auto quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;

@@ -23,6 +23,7 @@ struct UiFacts {
   bool can_undo = false, can_redo = false;
   bool recording = false;  ///< of what the user does
   bool filming = false;    ///< every frame goes to a video
+  std::string saving;      ///< a file that is being written; empty: none
   int width = 0, height = 0;
   Camera camera;               ///< of what is seen
   std::vector<KeyPress> keys;  ///< since the last frame
@@ -80,7 +81,7 @@ class Ui {
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
   std::string filter_, told_, complaint_, drawn_tab_;
-  double told_until_ = 0;
+  double told_until_ = 0, work_began_ = -1;  ///< on Dear ImGui's clock; -1: no work goes on
 };
 
 }  // namespace nacre

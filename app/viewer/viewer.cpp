@@ -11,8 +11,10 @@
 #include "app/viewer/captions.hpp"
 #include "app/viewer/film.hpp"
 #include "app/viewer/interface.hpp"
+#include "app/viewer/kept_recording.hpp"
 #include "app/viewer/news.hpp"
 #include "app/viewer/recent_files.hpp"
+#include "app/viewer/saving.hpp"
 #include "app/viewer/scene.hpp"
 #include "app/viewer/scene_view.hpp"
 #include "app/viewer/session_clock.hpp"
@@ -23,7 +25,6 @@
 #include "engine/gl/framebuffer.hpp"
 #include "engine/gl/window.hpp"
 #include "engine/picture/png.hpp"
-#include "engine/scene/recording.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
@@ -35,13 +36,14 @@ class Viewer {
       : options_(options),
         session_(options.session),
         player_(options.session),
+        recording_(options.recorded),
         film_(options.video),
         time_(session_.settings.fps),
         started_(now()),
         news_(options.say) {
     session_.events.clear();
     session_.duration = 0;
-    if (options.recorded) recorder_.emplace(session_, time_.fps());
+    if (recording_.has_file()) recording_.begin(session_, time_.fps(), 0);
     make_graphics();
     open();
     if (!options.out.empty()) require_format(*scene_, options.out);
@@ -58,10 +60,10 @@ class Viewer {
         if (context_->lost()) begin_again();
       }
     } catch (...) {
-      tell_recording();
+      recording_.write();
       throw;
     }
-    tell_recording();
+    recording_.write();
     finish();
     return std::move(result_);
   }
@@ -101,6 +103,7 @@ class Viewer {
   }
 
   void open() {
+    if (const std::string lost = saving_.drop(); !lost.empty()) complain(lost);
     scene_.reset();
     captions_->forget();
     news_.forget();
@@ -117,8 +120,9 @@ class Viewer {
     // A replay without an end of its own ends with the mesh.
     const bool settled =
         waits() && !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene_->settled();
-    return quit_ || settled || (!window_ && player_->ended()) || (options_.frames > 0 && counted_ >= options_.frames) ||
-           (window_ && window_->should_close());
+    const bool leaves = quit_ || (window_ && window_->should_close());
+    return (leaves && !saving_.on()) || settled || (!window_ && player_->ended()) ||
+           (options_.frames > 0 && counted_ >= options_.frames);
   }
 
   void frame() {
@@ -139,15 +143,16 @@ class Viewer {
     if (advanced) add_to_video();
     if (wishes_.screenshot) pictures.push_back(*wishes_.screenshot);
     for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
-    if (recorder_) recorder_->note(time - recording_since_, session_, pictures);
+    recording_.note(time, session_, pictures);
     note_times(begin, end);
     count_time(begin, advanced);
     obey(wishes_);
+    tell_saved();
     if (window_) window_->swap();
     news_.tell(*scene_);
     if (window_) {
       window_->set_title(window_title(*scene_, film_.from_menu()));
-      attempt([&] { keep_recording(); });
+      attempt([&] { recording_.keep(); });
     }
     // Where nothing has to be waited for, it is filmed as fast as it will be shown.
     rest(begin, film_.from_menu() ? 1.0 / time_.fps() : waits() ? 0 : shortest_frame);
@@ -204,8 +209,9 @@ class Viewer {
                         recent_.files(),
                         undo_.can_undo(),
                         undo_.can_redo(),
-                        recorder_.has_value(),
+                        recording_.on(),
                         film_.from_menu(),
+                        saving_.name(),
                         width,
                         height,
                         orbit(session_.camera.value_or(Camera()), turned_),
@@ -279,23 +285,25 @@ class Viewer {
       look_from(*session_.camera, wishes.look_from, scene_->corners(), area_.width, area_.height);
     if (wishes.load_session) attempt([&] { load_session(*wishes.load_session); });
     if (wishes.save_session) attempt([&] { save(*wishes.save_session, session_text(session_)); });
-    if (wishes.save_result)
-      attempt([&] {
-        scene_->write_result(*wishes.save_result);
-        ui_.tell("saved " + wishes.save_result->string());
-      });
+    if (wishes.save_result) attempt([&] { saving_.begin(*scene_, *wishes.save_result); });
     obey_recording(wishes);
   }
 
+  void tell_saved() {
+    const std::optional<Saving::Outcome> saved = saving_.poll(*scene_);
+    if (!saved) return;
+    if (saved->failure.empty())
+      ui_.tell("saved " + saved->file.string());
+    else
+      complain(saved->file.string() + " was not saved: " + saved->failure);
+  }
+
   void obey_recording(const Wishes& wishes) {
-    if (wishes.record) {
-      recorder_.emplace(session_, session_.settings.fps);
-      recording_since_ = time_.seconds();
-    }
-    if (wishes.save_recording && recorder_)
+    if (wishes.record) recording_.begin(session_, session_.settings.fps, time_.seconds());
+    if (wishes.save_recording && recording_.on())
       attempt([&] {
-        save(*wishes.save_recording, session_text(recorder_->recording()));
-        if (!options_.recorded) recorder_.reset();
+        save(*wishes.save_recording, session_text(recording_.recording()));
+        recording_.end();
       });
     if (wishes.film)
       attempt([&] {
@@ -384,20 +392,6 @@ class Viewer {
     clock_.add(end - begin);
   }
 
-  /// A crash or a power cut costs the last seconds of a recording. Long ones are written less often.
-  void keep_recording() {
-    const double begin = now();
-    if (!recorder_ || !options_.recorded || recorder_->events() == kept_events_ || begin < keep_after_) return;
-    kept_events_ = recorder_->events();
-    keep_after_ = begin + 1;  // also where it cannot be written
-    options_.recorded(recorder_->recording());
-    keep_after_ = now() + std::max(1.0, 50 * (now() - begin));
-  }
-
-  void tell_recording() {
-    if (recorder_ && options_.recorded) options_.recorded(recorder_->recording());
-  }
-
   void finish() {
     if (options_.picture && frame_) result_.image = frame_->read();
     if (!options_.out.empty()) scene_->write_result(options_.out);
@@ -416,14 +410,13 @@ class Viewer {
   const ViewerOptions& options_;
   Session session_, told_;
   std::optional<SessionPlayer> player_;
-  std::optional<SessionRecorder> recorder_;
-  std::size_t kept_events_ = 0;  ///< of the recorder, written so far
-  double keep_after_ = 0;        ///< on the machine's clock
+  KeptRecording recording_;
   Film film_;
+  Saving saving_;
   SessionClock time_;
-  double started_, last_ = 0;                      ///< on the machine's clock
-  double turned_ = 0;                              ///< degrees, of a camera that orbits
-  double played_since_ = 0, recording_since_ = 0;  ///< on the session's clock
+  double started_, last_ = 0;  ///< on the machine's clock
+  double turned_ = 0;          ///< degrees, of a camera that orbits
+  double played_since_ = 0;    ///< on the session's clock
   std::unique_ptr<Context> context_;
   Window* window_ = nullptr;  ///< the context, where it is one
   std::optional<Interface> interface_;

@@ -53,9 +53,11 @@ void draw_volume_facts(const ViewedVolume& volume, Session& session) {
   const Volume& first = volume.volumes->front();
   const Vec3d size = Vec3d(input.dims) * input.spacing;
   ImGui::Separator();
-  line(fmt::format("{} x {} x {} voxels of {}, each {:.4g} x {:.4g} x {:.4g}", input.dims.x, input.dims.y, input.dims.z,
-                   value_type_name(first.values), input.spacing.x, input.spacing.y, input.spacing.z));
-  line(fmt::format("{:.4g} x {:.4g} x {:.4g} in the data's unit", size.x, size.y, size.z));
+  line(fmt::format("{} x {} x {} voxels of {}", input.dims.x, input.dims.y, input.dims.z,
+                   value_type_name(first.values)));
+  line(fmt::format("{:.4g} x {:.4g} x {:.4g} each, in the data's unit", input.spacing.x, input.spacing.y,
+                   input.spacing.z));
+  line(fmt::format("{:.4g} x {:.4g} x {:.4g} in all", size.x, size.y, size.z));
   if (!first.space.empty()) line("x, y, z point to " + first.space);
   if (input.kind != MeshVolume::Kind::scalar) return line(fmt::format("{} materials", input.labels.size() - 1));
   const ValueSpread& spread = volume.spread;

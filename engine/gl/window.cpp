@@ -4,9 +4,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-#include <algorithm>
-
 #include "engine/gl/errors.hpp"
+#include "engine/system/faults.hpp"
 
 namespace nacre {
 namespace {
@@ -85,6 +84,7 @@ void Window::make_current() { glfwMakeContextCurrent(window_); }
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 
 void Window::poll() {
+  if (fault_due("other-screen")) density_ = 3 - density_;
   const auto [width, height] = pixels();
   if (width > 0 && height > 0 && !glfwGetWindowAttrib(window_, GLFW_ICONIFIED))
     glfwPollEvents();
@@ -106,10 +106,29 @@ std::array<int, 2> Window::pixels() const {
   return size;
 }
 
+/// No number, or a senseless one, comes from screens that do not know how large they are.
 float Window::scale() const {
   float x = 1, y = 1;
   glfwGetWindowContentScale(window_, &x, &y);
-  return std::max(x, 0.25f);
+  x *= float(density_);
+  return x >= 0.25f && x <= 16 ? x : 1;
+}
+
+/// Windows and the mouse are measured in a desktop's units: pixels on X11 and Windows, larger ones elsewhere.
+std::array<double, 2> Window::pixels_per_unit() const {
+  int width = 0, height = 0;
+  glfwGetWindowSize(window_, &width, &height);
+  const auto [across, down] = pixels();
+  if (width <= 0 || height <= 0 || across <= 0 || down <= 0) return {1, 1};
+  return {density_ * double(across) / width, density_ * double(down) / height};
+}
+
+InputFrame Window::next_input() {
+  InputFrame frame = input_.next_frame();
+  if (frame.x == mouse_outside) return frame;
+  const auto [x, y] = pixels_per_unit();
+  frame.x *= x, frame.y *= y;
+  return frame;
 }
 
 }  // namespace nacre

@@ -31,21 +31,24 @@ class Window : public Context {
   void swap();
   void set_title(const std::string& title);
 
+  // Both may be others in the next frame: a window can be moved to another screen.
   std::array<int, 2> pixels() const;  ///< of its framebuffer; (0, 0) while minimised
-  float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI)
+  float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI); 0.25 to 16
 
-  /// What the user did, as a frame shall see it; to be asked for once in each.
-  InputFrame next_input() { return input_.next_frame(); }
+  /// What the user did, as a frame shall see it; to be asked for once in each. The mouse's place is in pixels.
+  InputFrame next_input();
 
   /// Called in `poll` with the files that were dropped on the window.
   std::function<void(const std::vector<std::filesystem::path>& files)> on_drop;
 
  private:
   void listen();
+  std::array<double, 2> pixels_per_unit() const;
 
   GLFWwindow* window_ = nullptr;
   std::string title_;
   InputQueue input_;
+  int density_ = 1;  ///< 2: acts as on a screen of twice the density; for tests
 };
 
 }  // namespace nacre

@@ -128,7 +128,8 @@ void add_volume(FileInfo& info, const Volume& volume, const std::string& format)
                  volume.space,
                  value_type_name(volume.values),
                  volume_statistics(volume),
-                 {}};
+                 {},
+                 volume.label_names};
   if (auto labels = count_labels(volume, most_labels)) info.volume->labels = std::move(*labels);
 }
 

@@ -14,6 +14,7 @@
 
 #include "engine/io/byte_order.hpp"
 #include "engine/io/file_bytes.hpp"
+#include "engine/io/label_names.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
 
@@ -193,6 +194,20 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
     volume.warnings.push_back("It has neither sform nor qform: its axes are those of the world.");
 }
 
+/// Of the first extension that names labels.
+LabelNames label_names_of(const nifti_image& image) {
+  constexpr int head = 8;  // its size and its code come before its words
+  for (int i = 0; i < image.num_ext; ++i) {
+    const nifti1_extension& extension = image.ext_list[i];
+    const bool known =
+        extension.ecode == NIFTI_ECODE_CARET || extension.ecode == NIFTI_ECODE_IGNORE;  // TotalSegmentator's
+    if (!known || !extension.edata || extension.esize <= head) continue;
+    LabelNames names = names_of_label_table({extension.edata, std::size_t(extension.esize - head)});
+    if (!names.empty()) return names;
+  }
+  return {};
+}
+
 /// value * slope + intercept, where the file has a slope.
 template <class T>
 void set_values(Volume& volume, std::vector<T> values, double slope, double intercept) {
@@ -226,6 +241,7 @@ Volume read_nifti(const fs::path& path) {
   });
   const Image image = read_header(header);
   set_orientation(volume, *image, raw, path);
+  volume.label_names = label_names_of(*image);
   with_datatype(raw.type, path, [&](auto zero) {
     using T = decltype(zero);
     const fs::path data = image_path(*image, header);

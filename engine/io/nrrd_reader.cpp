@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/io/file_bytes.hpp"
+#include "engine/io/label_names.hpp"
 #include "engine/io/nrrd_header.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
@@ -170,6 +171,11 @@ Volume read_nrrd(const fs::path& path) {
   for (int i = 0; i < 3; ++i) dims[i] = std::int64_t(std::min<std::size_t>(header->axis[axes[i]].size, INT64_MAX));
   set_dims(volume, dims, bytes_per_voxel, path);
   set_orientation(volume, *header, axes, path);
+  volume.label_names = names_of_segments([&](const std::string& key) -> std::optional<std::string> {
+    const std::unique_ptr<char, Delete> value(nrrdKeyValueGet(header.get(), key.c_str()));
+    if (!value) return {};
+    return value.get();
+  });
   check_stored(storage.bytes, volume.voxels() * bytes_per_voxel, ratio_of(encoding, bytes_per_voxel), path);
 
   const auto nrrd = load(path, false);

@@ -33,6 +33,7 @@ struct VolumeInfo {
   std::string type;   ///< "uint8", ..., "float", "double"
   VolumeStatistics statistics;
   std::vector<LabelCount> labels;  ///< its different values, if they are integral and at most `most_labels`
+  LabelNames label_names;          ///< where the file has any
 };
 inline constexpr std::size_t most_labels = 65535;
 

@@ -7,8 +7,12 @@
 namespace nacre {
 
 Color material_colour(int material) {
-  const float hue = 0.6f + 2.3999632f * float(material), chroma = 0.11f;
-  Color rgb = linear_from_oklab({0.74f, chroma * std::cos(hue), chroma * std::sin(hue)});
+  constexpr int hues = 7;  // that the eye tells apart; then they come again, darker or lighter
+  constexpr std::array<float, 4> lightness{0.74f, 0.57f, 0.84f, 0.46f}, chroma{0.11f, 0.12f, 0.08f, 0.1f};
+  const int round = std::max(0, material - 1) / hues;
+  const std::size_t level = std::size_t(round) % lightness.size();
+  const float hue = 0.6f + 2.3999632f * float(material) + 0.2f * float(round);
+  Color rgb = linear_from_oklab({lightness[level], chroma[level] * std::cos(hue), chroma[level] * std::sin(hue)});
   for (float& c : rgb) c = srgb_from_linear(std::clamp(c, 0.0f, 1.0f));
   return rgb;
 }

@@ -8,7 +8,7 @@
 
 namespace nacre {
 
-/// A colour of its own for each material: hues a golden angle apart, of one lightness. Encoded sRGB.
+/// A colour of its own for each material: hues a golden angle apart, seven to a lightness. Encoded sRGB.
 Color material_colour(int material);
 
 /// Facets to the outside have their material's colour, those between two materials a lighter mixture.

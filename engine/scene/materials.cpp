@@ -17,6 +17,8 @@ using Mode = MaterialOptions::Mode;
 
 constexpr std::size_t most_automatic_labels = 256;
 constexpr std::size_t many_labels = 100;
+constexpr std::size_t few_labels = 32;  // as many values are labels, however they lie
+constexpr double least_alike = 0.6;  // of neighbours in a label map; of real ones 0.77 and more, of images 0.5 and less
 
 void check_options(std::span<const Volume> volumes, const MaterialOptions& options) {
   const bool scalar = options.mode == Mode::isovalue || !options.isovalues.empty() || options.threshold;
@@ -36,10 +38,30 @@ void check_options(std::span<const Volume> volumes, const MaterialOptions& optio
   if (options.min_component < 0) throw Error(what, "a component cannot have fewer than 0 voxels", "give 0 or more");
 }
 
+/// Share of neighbours along x with the same value, of those that are not both `usual`. Labels lie in patches; an image's
+/// values change from voxel to voxel.
+double share_alike(const Volume& volume, double usual) {
+  std::size_t alike = 0, all = 0;
+  std::visit(
+      [&](const auto& values) {
+        const std::size_t row = std::size_t(volume.dims.x);
+        for (std::size_t i = 1; i < values.size(); ++i) {
+          if (i % row == 0 || (double(values[i]) == usual && double(values[i - 1]) == usual)) continue;
+          ++all;
+          alike += values[i] == values[i - 1];
+        }
+      },
+      volume.values);
+  return all > 0 ? double(alike) / double(all) : 1;
+}
+
 /// A single volume without iso-value or threshold: labels where it looks like that.
 bool looks_like_labels(const Volume& volume, const Notes& notes) {
   const auto labels = count_labels(volume, most_automatic_labels);
   if (!labels) return false;
+  const auto most = std::max_element(labels->begin(), labels->end(),
+                                     [](const LabelCount& a, const LabelCount& b) { return a.second < b.second; });
+  if (labels->size() > few_labels && share_alike(volume, double(most->first)) < least_alike) return false;
   if (labels->size() > many_labels)
     notes.add(fmt::format(
         "{} has {} different values, taken for labels; if it is an image, give --isovalue (for example {:.6g}).",
@@ -49,9 +71,9 @@ bool looks_like_labels(const Volume& volume, const Notes& notes) {
 
 [[noreturn]] void fail_without_isovalue(const Volume& volume) {
   const VolumeStatistics statistics = volume_statistics(volume);
-  throw MissingIsovalue(volume.name,
-                        fmt::format("its values, {:.6g} to {:.6g}, are no labels", statistics.min, statistics.max),
-                        otsu_threshold(volume));
+  throw MissingIsovalue(
+      volume.name, fmt::format("its values, {:.6g} to {:.6g}, are no labels", statistics.min, statistics.max),
+      otsu_threshold(volume), statistics.integral ? "; where they are labels after all, --labels" : "");
 }
 
 void check_inside(const MeshVolume& volume, const std::string& name) {
@@ -135,9 +157,10 @@ double otsu_threshold(const Volume& volume) {
   return statistics.min + (cut + 1) * width;
 }
 
-MissingIsovalue::MissingIsovalue(const std::string& name, const std::string& why, double proposal)
+MissingIsovalue::MissingIsovalue(const std::string& name, const std::string& why, double proposal,
+                                 const std::string& otherwise)
     : Error(fmt::format("{} needs an iso-value", name), why,
-            fmt::format("give --isovalue V, for example {:.6g}", proposal)),
+            fmt::format("give --isovalue V, for example {:.6g}{}", proposal, otherwise)),
       proposal_(proposal) {}
 
 MeshVolume make_mesh_volume(std::span<const Volume> volumes, const MaterialOptions& options,

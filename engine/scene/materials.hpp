@@ -51,7 +51,7 @@ MeshVolume make_mesh_volume(std::span<const Volume> volumes, const MaterialOptio
 /// A volume is no label map, and nobody said where to cut it.
 class MissingIsovalue : public Error {
  public:
-  MissingIsovalue(const std::string& name, const std::string& why, double proposal);
+  MissingIsovalue(const std::string& name, const std::string& why, double proposal, const std::string& otherwise);
   double proposal() const { return proposal_; }  ///< by `otsu_threshold`
 
  private:

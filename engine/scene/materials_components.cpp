@@ -142,7 +142,7 @@ void remove_vanished(MeshVolume& volume, const std::set<std::uint16_t>& before, 
     if (volume.kind == MeshVolume::Kind::scalar || there[m] || !before.count(std::uint16_t(m))) {
       number[m] = next;
       volume.labels[next] = volume.labels[m];
-      if (!volume.names.empty()) volume.names[next] = std::move(volume.names[m]);
+      if (!volume.names.empty() && next != m) volume.names[next] = std::move(volume.names[m]);
       if (volume.kind == MeshVolume::Kind::indicators && next != m) volume.values[next] = std::move(volume.values[m]);
       ++next;
     }

@@ -55,6 +55,17 @@ std::vector<std::uint16_t> materials_of(const std::vector<T>& values,
   return result;
 }
 
+/// Per material; nothing where the file names none of them.
+std::vector<std::string> names_of(const std::vector<std::int64_t>& labels, const LabelNames& given) {
+  std::vector<std::string> names(labels.size());
+  bool any = false;
+  for (std::size_t m = 1; m < labels.size(); ++m)
+    if (const auto found = given.find(labels[m]); found != given.end()) names[m] = found->second, any = true;
+  if (!any) return {};
+  names[0] = "outside";
+  return names;
+}
+
 }  // namespace
 
 LabelPlan::LabelPlan(const std::vector<std::int64_t>& present, const MaterialOptions& options, const std::string& name)
@@ -117,6 +128,7 @@ MeshVolume from_labels(const Volume& volume, const MaterialOptions& options, con
   for (const std::int64_t label : present) of[label] = plan.material(label);
   MeshVolume result = on_grid_of(volume, MeshVolume::Kind::labels);
   result.labels = plan.labels();
+  result.names = names_of(result.labels, volume.label_names);
   result.material = std::visit([&](const auto& values) { return materials_of(values, of); }, volume.values);
   return result;
 }

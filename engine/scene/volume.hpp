@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,6 +21,9 @@ using VolumeValues =
                  std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
                  std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>, std::vector<double>>;
 
+/// What labels are called; those that are not in it have no name.
+using LabelNames = std::map<std::int64_t, std::string>;
+
 /// A volume as its file has it, nothing flipped or resampled. Voxel (i, j, k) has its centre in the world at
 /// origin + sum over a of axes[a] * (index[a] * spacing[a]). What the world's axes point to is the file's business:
 /// right, anterior, superior (RAS) in NIfTI; what `space` says in NRRD; left, posterior, superior where MetaImage
@@ -32,6 +36,7 @@ struct Volume {
   Vec3d origin{};          ///< of voxel (0, 0, 0)'s centre
   std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};  ///< unit, orthogonal
   VolumeValues values;
+  LabelNames label_names;             ///< where the file says what its values stand for
   std::vector<std::string> warnings;  ///< what was assumed on opening, each a full sentence
 
   std::size_t voxels() const { return std::size_t(dims.x) * std::size_t(dims.y) * std::size_t(dims.z); }

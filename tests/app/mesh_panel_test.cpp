@@ -8,7 +8,10 @@
 #include <memory>
 #include <set>
 
+#include "app/viewer/material_list.hpp"
 #include "app/viewer/mesh_results.hpp"
+#include "app/viewer/words.hpp"
+#include "engine/picture/material_colours.hpp"
 
 namespace nacre {
 namespace {
@@ -62,7 +65,7 @@ class MeshPanel : public testing::Test {
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-    draw_mesh_results(results_, session_);
+    draw_mesh_results(results_, materials_, session_);
     ImGui::End();
     const bool over = ImGui::IsAnyItemHovered();
     ImGui::EndFrame();
@@ -93,6 +96,7 @@ class MeshPanel : public testing::Test {
 
   const Camera start_{{0, 0, 20}, {0, 0, 0}, {0, 1, 0}, 10, false};
   MeshResults results_ = small_results();
+  MaterialList materials_;
   Session session_;
   std::set<std::string> hidden_, ghosts_;
   std::map<double, Camera> cameras_;  ///< by what they look at
@@ -100,14 +104,14 @@ class MeshPanel : public testing::Test {
 
 TEST_F(MeshPanel, MaterialsAreHiddenGhostedAndShownAlone) {
   click_everything();
-  EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7"}));  // "only" hides the other one
-  EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4", "7"}));
+  EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7", "4,7"}));  // "only" hides the other one
+  EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4", "7", "4,7"}));
   hidden_.clear(), ghosts_.clear();
   session_.settings.look.hidden = "4";
   session_.settings.look.ghosts = "7";
   click_everything();
   EXPECT_EQ(hidden_, (std::set<std::string>{"4", "", "4,7", "7"}));  // show, hide the other, only the first
-  EXPECT_EQ(ghosts_, (std::set<std::string>{"7", "", "7,4"}));
+  EXPECT_EQ(ghosts_, (std::set<std::string>{"7", "", "4,7"}));
 }
 
 TEST_F(MeshPanel, AClickOnOneOfTheWorstLooksAtIt) {
@@ -123,7 +127,60 @@ TEST_F(MeshPanel, AClickOnOneOfTheWorstLooksAtIt) {
     EXPECT_LT(dot(camera.forward(), Vec3d(0, 0, 1)), -0.9);  // from in front of it
     EXPECT_LE(camera.height, start_.height);
   }
-  EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7"}));
+  EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7", "4,7"}));
+}
+
+/// As a CT's labels are: more than can be seen at once.
+MeshResults many_materials() {
+  MeshResults results;
+  auto volume = std::make_shared<ViewedVolume>();
+  for (std::int64_t label = 0; label <= 62; ++label) {
+    volume->input.labels.push_back(label);
+    volume->input.names.push_back(label % 20 == 5 ? fmt::format("Vertebra {}", label) : "organ");
+    volume->input.voxels.push_back(std::size_t(1000 + (label * 37) % 62));
+  }
+  results.volume = volume;
+  return results;
+}
+
+TEST_F(MeshPanel, OfManyMaterialsThoseThatAreFoundAreHiddenAtOnce) {
+  results_ = many_materials();
+  frame(-1, -1, false);
+  click_everything();
+  EXPECT_FALSE(hidden_.contains("5,25,45"));
+  float field = 4;  // to find one in
+  for (; field < height; field += 8) {
+    frame(30, field, false);
+    if (ImGui::GetMouseCursor() == ImGuiMouseCursor_TextInput) break;
+  }
+  ASSERT_LT(field, height);
+  click(30, field);
+  for (const char letter : std::string("vERT")) {
+    ImGui::GetIO().AddInputCharacter(unsigned(letter));
+    frame(-1, -1, false);
+  }
+  hidden_.clear(), ghosts_.clear();
+  click_everything();
+  EXPECT_TRUE(hidden_.contains("5,25,45"));
+  EXPECT_TRUE(ghosts_.contains("5,25,45"));
+}
+
+TEST(MaterialColours, SixtyDiffer) {
+  double nearest = 1;
+  for (int a = 1; a <= 62; ++a)
+    for (int b = 1; b < a; ++b) {
+      const Color p = material_colour(a), q = material_colour(b);
+      nearest = std::min(nearest, double(std::abs(p[0] - q[0]) + std::abs(p[1] - q[1]) + std::abs(p[2] - q[2])));
+    }
+  EXPECT_GT(nearest, 0.04);  // ten shades of a screen's 256, over its three colours
+}
+
+TEST(Words, LongNumbersAreGrouped) {
+  EXPECT_EQ(grouped(0), "0");
+  EXPECT_EQ(grouped(999), "999");
+  EXPECT_EQ(grouped(1000), "1,000");
+  EXPECT_EQ(grouped(-1234567), "-1,234,567");
+  EXPECT_EQ(grouped(-999), "-999");
 }
 
 TEST_F(MeshPanel, FlatViewsAreTurnedTowardsTheTriangle) {

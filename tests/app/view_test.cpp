@@ -1,5 +1,6 @@
 // Nacre: the viewer as a script runs it, without a display.
 #include <cstdlib>
+#include <cstring>
 #include <map>
 
 #include "engine/picture/png.hpp"
@@ -203,6 +204,40 @@ TEST_F(View, KeysAndMouseInTheWindow) {
   EXPECT_EQ(knobs["panel"], (std::vector<nlohmann::json>{false}));
   EXPECT_GE(turns, 3);  // orthographic, turned, nearer
   EXPECT_EQ(orthographic, turns);
+  EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
+}
+
+/// The panel as a window draws it with this fault, without the lines that tell steps and times; empty where there is no
+/// Xvfb.
+Image panel_in_window(const std::string& fault, const fs::path& png, const Words& more) {
+  const Words words = {"--sample", "sphere",   "--detail",       "24", "--resolution", "64",        "--size", "800x600",
+                       "--set",    "tab=look", "--frames-count", "30", "--image",      png.string()};
+  const Outcome outcome = in_window(words + more, "export NACRE_FAULTS=" + fault);
+  if (outcome.status == 77) return {};
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const Image whole = read_png(png);
+  Image panel(400, 400);
+  for (int y = 0; y < panel.height; ++y)
+    std::memcpy(panel.at(0, y), whole.at(0, y + 130), 4 * std::size_t(panel.width));
+  return panel;
+}
+
+TEST_F(View, OnADenserScreenPanelsAndLettersGrow) {
+  const Image small = panel_in_window("none", folder / "small.png", {});
+  if (small.pixels.empty()) GTEST_SKIP() << "no Xvfb here";
+  const Image moved = panel_in_window("other-screen@10", folder / "moved.png", {});
+  const Image large = panel_in_window("none", folder / "large.png", {"--set", "text_size=2"});
+  EXPECT_EQ(moved.pixels, large.pixels);
+  EXPECT_NE(moved.pixels, small.pixels);
+  EXPECT_FALSE(panel_in_window("other-screen", folder / "last.png", {}).pixels.empty());  // to and fro, every frame
+}
+
+TEST_F(View, AnySizeAndScreenOfTheWindow) {
+  const fs::path recording = folder / "done.json", report = folder / "screens.json";
+  const Outcome outcome = run(
+      "/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_screens.sh", NACRE_PROGRAM, recording.string(), report.string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 

@@ -188,6 +188,32 @@ TEST_F(Nifti, WhatIsDamagedIsAnError) {
   EXPECT_NE(failure("a.nii.gz", gzipped(Header().with(shorts)).substr(0, 40)), "");
 }
 
+/// A file with words in an extension of that kind, as the standard lays them out.
+std::string extended(int code, const std::string& words, const std::string& data) {
+  std::string block = words;
+  block.resize((words.size() + 8 + 15) / 16 * 16 - 8, '\0');
+  std::string header = Header().put<float>(108, float(352 + 8 + block.size())).bytes();
+  header[348] = 1;
+  return header + bytes_of(std::int32_t(block.size() + 8)) + bytes_of(std::int32_t(code)) + block + data;
+}
+
+TEST_F(Nifti, LabelsHaveTheNamesOfItsTable) {
+  constexpr int caret = 30;
+  const std::string table =
+      "<?xml version=\"1.0\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>"
+      "<Label Key=\"3\" Red=\"0\"><![CDATA[kidney_left]]></Label><Label Key=\"-2\"> a &amp; b </Label>"
+      "<Label Key=\"x\">no number</Label><Label Key=\"4\"></Label></LabelTable></VolumeInformation></CaretExtension>";
+  const Volume volume = read("a.nii", extended(caret, table, shorts));
+  EXPECT_EQ(values_of(volume), count_up(12));
+  EXPECT_EQ(volume.label_names, (LabelNames{{-2, "a & b"}, {3, "kidney_left"}}));
+  EXPECT_EQ(read("a.nii.gz", gzipped(extended(caret, table, shorts))).label_names.size(), 2u);
+  EXPECT_EQ(read("a.nii", extended(0, table, shorts)).label_names.size(), 2u);
+  EXPECT_TRUE(read("a.nii", extended(6, table, shorts)).label_names.empty());  // a comment
+  EXPECT_TRUE(read("a.nii", extended(caret, table.substr(0, 90), shorts)).label_names.empty());
+  for (std::size_t end = 0; end < table.size(); ++end)
+    EXPECT_EQ(failure("a.nii", extended(caret, table.substr(0, end), shorts)), "") << end;
+}
+
 TEST_F(Nifti, EveryFlippedByteEndsWell) {
   for (const int version : {1, 2}) {
     const std::string whole = Header(version).sform({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}).with(shorts);

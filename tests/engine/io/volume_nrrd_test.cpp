@@ -35,6 +35,16 @@ TEST_F(Nrrd, EveryNumericType) {
   expect_type<double>(read("a.nrrd", raw("double", end, counting<double>(12))), "double");
 }
 
+TEST_F(Nrrd, LabelsHaveTheNamesOfSegments) {
+  const std::string segments =
+      "spacings: 1 1 1\nSegment0_LabelValue:=2\nSegment0_Name:=left lung\nSegment1_Name:=liver\n"
+      "Segment1_LabelValue:=7\nSegment2_Name:=no value\nSegment3_LabelValue:=nine\nSegment3_Name:=no number\n"
+      "Segment5_LabelValue:=5\nSegment5_Name:=after a gap\n";
+  const Volume volume = read("a.seg.nrrd", raw("uchar", segments, counting<std::uint8_t>(12)));
+  EXPECT_EQ(volume.label_names, (LabelNames{{2, "left lung"}, {7, "liver"}}));
+  EXPECT_TRUE(read("b.nrrd", raw("uchar", "spacings: 1 1 1\n", counting<std::uint8_t>(12))).label_names.empty());
+}
+
 TEST_F(Nrrd, BigEndian) {
   expect_type<std::int16_t>(
       read("a.nrrd", raw("short", "endian: big\nspacings: 1 1 1\n", counting<std::int16_t>(12, true))), "int16");

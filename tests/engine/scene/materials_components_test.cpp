@@ -49,6 +49,22 @@ TEST(SmallComponents, NumbersCloseUpAfterALostLabel) {
   EXPECT_EQ(*std::max_element(mesh.material.begin(), mesh.material.end()), 1);
 }
 
+TEST(SmallComponents, NamesStayWithTheirLabels) {
+  std::vector<std::uint8_t> values = cube();
+  values[middle] = 2;
+  values[middle + 1] = values[middle + 2] = 3;
+  Volume volume = volume_of({5, 5, 5}, values);
+  volume.label_names = {{1, "all around"}, {2, "speck"}, {3, "bar"}, {8, "nowhere"}};
+  MaterialOptions options;
+  EXPECT_EQ(materials_of(volume, options).names, (std::vector<std::string>{"outside", "all around", "speck", "bar"}));
+  options.min_component = 2;
+  EXPECT_EQ(materials_of(volume, options).names, (std::vector<std::string>{"outside", "all around", "bar"}));
+  options.merge = {{1, 3}};
+  EXPECT_EQ(materials_of(volume, options).names, (std::vector<std::string>{"outside", "bar"}));
+  volume.label_names = {{8, "nowhere"}};
+  EXPECT_TRUE(materials_of(volume).names.empty());
+}
+
 TEST(SmallComponents, HolesAreFilledButTheOutsideAtTheFacesStays) {
   std::vector<std::uint8_t> values(125, 1);
   values[middle] = 0;  // a hole

@@ -185,6 +185,24 @@ std::vector<Volume> probabilities() {
           volume_of<std::uint8_t>(eight, {0, 55, 105, 255, 100, 20, 0, 50}, "b.nrrd")};
 }
 
+TEST(LabelMaterials, EightBitsOfAnImageAreNoLabels) {
+  std::vector<std::uint8_t> image, patches;
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 16; ++x) {
+        const bool inside = x > 2 && y > 2;
+        image.push_back(std::uint8_t(inside ? 9 * x + 5 * y + 3 * z : 0));
+        patches.push_back(std::uint8_t(inside ? 1 + x / 4 + 4 * (y / 4) + 16 * (z / 4) : 0));
+      }
+  const Volume of_image = volume_of({16, 16, 16}, image), of_patches = volume_of({16, 16, 16}, patches);
+  const std::string why = refusal(of_image);
+  EXPECT_TRUE(contains(why, "needs an iso-value") && contains(why, "--labels")) << why;
+  EXPECT_EQ(materials_of(of_patches).labels.size(), 65u);
+  MaterialOptions options;
+  options.mode = MaterialOptions::Mode::labels;
+  EXPECT_GT(materials_of(of_image, options).labels.size(), 100u);
+}
+
 TEST(IndicatorMaterials, ProbabilitiesLeaveTheRestToTheOutside) {
   const std::vector<Volume> volumes = probabilities();
   const MeshVolume mesh = make_mesh_volume(volumes, {});
@@ -264,10 +282,10 @@ TEST(MaterialOptionsTest, ThatDoNotGoTogether) {
 }
 
 TEST(MaterialOptionsTest, ManyLabelsLookLikeAnImage) {
-  std::vector<std::uint8_t> values(216);
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::uint8_t(i);
+  std::vector<std::uint8_t> values(432);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::uint8_t(i / 4);
   std::vector<std::string> warnings;
-  EXPECT_EQ(materials_of(volume_of({6, 6, 6}, values), {}, &warnings).labels.size(), 216u);
+  EXPECT_EQ(materials_of(volume_of({12, 6, 6}, values), {}, &warnings).labels.size(), 108u);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(contains(warnings[0], "give --isovalue"));
   std::vector<std::int16_t> more(343);

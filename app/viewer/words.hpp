@@ -1,0 +1,22 @@
+// Nacre: words and numbers for the panels.
+#pragma once
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <string>
+
+namespace nacre {
+
+/// A line as it is, with no sign in it that Dear ImGui would take for its own.
+inline void text(const std::string& words) { ImGui::TextUnformatted(words.data(), words.data() + words.size()); }
+
+/// 1234567 as 1,234,567.
+inline std::string grouped(long long number) {
+  std::string digits = fmt::format("{}", number);
+  const std::size_t sign = number < 0 ? 1 : 0;
+  for (std::size_t end = digits.size(); end > sign + 3; end -= 3) digits.insert(end - 3, ",");
+  return digits;
+}
+
+}  // namespace nacre
