@@ -170,10 +170,14 @@ void FlowWorker::run() {
       const auto errand = std::exchange(errand_, nullptr);
       const auto place = std::exchange(sample_, {});
       const auto boxes = std::exchange(boxes_, {});
+      interrupt_ = false;  // it was meant for a stage
       lock.unlock();
-      if (errand) errand();
-      if (place) answer_sample(*place);
-      if (boxes) write_boxes(boxes->first, boxes->second);
+      try {
+        if (errand) errand();
+        if (place) answer_sample(*place);
+        if (boxes) write_boxes(boxes->first, boxes->second);
+      } catch (const Interrupted&) {  // the end: nobody waits for answers any more
+      }
       take_timers();
       lock.lock();
     } else {

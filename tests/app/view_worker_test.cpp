@@ -91,6 +91,17 @@ TEST(FlowWorker, StepsWriteWhatIsToBeShown) {
   for (const float value : run.memory) ASSERT_TRUE(value >= 0 && value <= 1) << value;
 }
 
+TEST(FlowWorker, MayEndWhileItAnswers) {
+  const Vec3d place = make_sample("sphere", 24).load(0).points[5];
+  for (int k = 0; k < 100; ++k) {
+    WorkerRun run;
+    run.step();
+    run.worker->sample(place);
+    std::this_thread::sleep_for(std::chrono::microseconds(k));
+    run.worker->finish();  // an interruption that left the thread would end the program
+  }
+}
+
 TEST(FlowWorker, OnlyWhatDependsOnAKnobRunsAgain) {
   WorkerRun run;
   EXPECT_EQ(run.calls("embed"), 1);
