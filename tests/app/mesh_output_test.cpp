@@ -107,6 +107,15 @@ TEST_F(MeshOutput, ParticlesComeWithTheirArrays) {
   EXPECT_EQ(particles["arrays"][2]["max"], 2);
 }
 
+TEST_F(MeshOutput, AsManySeedsAsAskedForStandOnSurfaces) {
+  const Outcome run = nacre({"mesh", "--sample", "two-spheres", "--detail", "24", "--particles", "500", "--iterations",
+                             "5", "--out", path("a.vtp"), "--report", path("r.json")});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json particles = read_json("r.json")["particles"];
+  EXPECT_NEAR(double(particles["seeded_on_surfaces"]), 500, 2);
+  EXPECT_GT(particles["seeded"], particles["seeded_on_surfaces"]) << "the junction has its own";
+}
+
 TEST_F(MeshOutput, APictureShowsTheMesh) {
   ASSERT_EQ(nacre(small_mesh +
                   Words{"--image", path("a.png"), "--size", "96x72", "--camera", "+x", "--background", "transparent"})
