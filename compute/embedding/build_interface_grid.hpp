@@ -181,7 +181,7 @@ struct EmbedInterface {
   NACRE_HD float last_step() const { return 0.04f / min(cells_per_voxel, 1.0f); }
 
   /// How far Newton's steps can lead, and the distance of known points from each other.
-  NACRE_HD float farthest() const { return min(5 / cells_per_voxel, 10 * 0.5f) + 0.35f; }
+  NACRE_HD float farthest() const { return min(5 / cells_per_voxel, newton_steps * newton_stride) + 0.35f; }
 
   /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
   /// also for a surface farther away than the stencils around its points reach, two cells along each axis.

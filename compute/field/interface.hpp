@@ -74,14 +74,18 @@ NACRE_HD inline bool junction_step(const FieldSample* f, int count, Vec3f& step,
 
 }  // namespace detail
 
-/// Newton's method onto the junction from `p` (Eq. 3.5 with its sign mended, for differences of indicator functions): up
-/// to 10 steps of at most half a voxel, until one is shorter than `last_step` (what is left is about its square times the
-/// curvature). False where it does not arrive within `reach` voxels of `p`.
+/// At most so many steps of Newton's method, of so many voxels.
+inline constexpr int newton_steps = 10;
+inline constexpr float newton_stride = 0.5f;
+
+/// Newton's method onto the junction from `p` (Eq. 3.5 with its sign mended, for differences of indicator functions), until
+/// a step is shorter than `last_step` (what is left is about its square times the curvature). False where it does not
+/// arrive within `reach` voxels of `p`.
 NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& junction, const Vec3f& p, float reach,
                              JunctionPoint& at, float last_step = 1e-3f) {
   const int count = junction.materials();
   at.p = p;
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < newton_steps; ++k) {
     if (!field.inside(at.p, 2.5f)) return false;
     const CubicStencil stencil(field, at.p);
     FieldSample f[4];
@@ -92,7 +96,7 @@ NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& ju
     Vec3f step;
     if (!detail::junction_step(f, count, step, at)) return false;
     const float size = length(step);
-    at.p += size > 0.5f ? step * (0.5f / size) : step;
+    at.p += size > newton_stride ? step * (newton_stride / size) : step;
     if (dot(at.p - p, at.p - p) > reach * reach) return false;
     if (size < last_step) return true;
   }

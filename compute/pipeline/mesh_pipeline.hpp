@@ -79,13 +79,13 @@ struct MeshInfo {
   double smallest_size = 0, largest_size = 0;  ///< of the sizing field on the interfaces, voxels
   double expected_particles = 0;               ///< from area and sizing field
   std::int64_t seeded = 0, final = 0;
+  std::int64_t seeded_on_surfaces = 0;  ///< of `seeded`; the others are on curves and at points
   std::int64_t points_final = 0, curves_final = 0, surfaces_final = 0;  ///< of `final`, by junction order
   int iterations = 0;                                                   ///< of the surfaces
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
   double final_energy = 0;          ///< mean on surfaces, measured alike for all solvers: by the tree, with theta 0
-  std::int64_t seeded_on_surfaces = 0;                                  ///< of `seeded`; the others are on curves
 };
 
 /// Where the particles are, world coordinates.
@@ -180,9 +180,9 @@ class MeshPipeline {
   /// counts tell. None before `relax`; also within `progress` of `relax` and `triangulate`, where points and curves are
   /// alone at first.
   virtual ShownCounts show_particles(const ShownParticles& memory) = 0;
-  /// The same for the boxes around particles: the nodes of the tree that was built last, level by level from the roots; while
-  /// the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns how many
-  /// there are.
+  /// The same for the boxes around particles: the nodes of the tree that was built last, level by level from the roots;
+  /// while the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns how
+  /// many there are.
   virtual std::int64_t show_boxes(ShownBox* memory, std::int64_t capacity) = 0;
   virtual VoxelFrame voxel_frame() const = 0;  ///< of the volume that was loaded
 
