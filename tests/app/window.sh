@@ -1,7 +1,8 @@
 # Nacre: a viewer in a window, for scripts that play its user; to be sourced. They wait for what they see, not for times.
 
 # on_display SCREEN TOOLS...: brings up an Xvfb with a screen of that size, which dies with the script; ends with 77 where
-# it or a tool is missing. The server picks its number itself: others may be starting.
+# it or a tool is missing. The server picks its number itself, as others may be starting. It does not begin anew when its
+# last client goes: meanwhile it would refuse the next.
 on_display() {
   local screen=$1 tool number
   shift
@@ -11,7 +12,7 @@ on_display() {
       exit 77
     }
   done
-  exec {numbers}< <(exec Xvfb -displayfd 1 -screen 0 "${screen}x24" 2>/dev/null)
+  exec {numbers}< <(exec Xvfb -displayfd 1 -noreset -screen 0 "${screen}x24" 2>/dev/null)
   display=$!
   state=$(mktemp -d)  # recent files are the user's own
   export XDG_STATE_HOME=$state
