@@ -20,6 +20,7 @@ void apply_source_preset(Settings& settings) {
   m.add_below = 0.75;
   m.delete_above = 1.35;
   m.subcells = 3;
+  m.smooth = 0;
   m.mend = 0;
   m.by_density = false;
 }
@@ -72,10 +73,10 @@ void choose_kernel(const MeshOptions& options, const KnobOptions& knobs, MeshVol
 
 void show_progress(MeshPipeline& pipeline, Progress& bar) {
   pipeline.progress = [&bar](const MeshProgress& p) {
-    bar.update(p.iteration > 0
-                   ? fmt::format("{} {}, {} particles, energy {:.4f}", p.stage, p.iteration, p.particles, p.energy)
-                   : std::string(p.stage),
-               p.fraction);
+    std::string what(p.stage);
+    if (p.iteration > 0) what += fmt::format(" {}, {} particles", p.iteration, p.particles);
+    if (p.energy > 0) what += fmt::format(", energy {:.4f}", p.energy);
+    bar.update(what, p.fraction);
   };
 }
 

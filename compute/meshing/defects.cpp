@@ -180,7 +180,7 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
     const std::uint32_t point = culprit(mesh, t, order, size, flat, rule, few);
     if (point != none)
       wishes.push_back({ratio, point, std::uint32_t(t), few});
-    else if (flat >= 0 && rule.fills)
+    else if (flat >= 0)
       caps.push_back({std::uint32_t(t), flat});
   }
   if (wishes.empty() && touching.empty() && caps.empty()) return defects;
@@ -189,6 +189,27 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
   fill_in(mesh, facets_at, size, touching, defects);
   for (const Cap& cap : caps) fill_before_rim(mesh, facets_at, size, cap.triangle, cap.flat, defects);
   return defects;
+}
+
+double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule) {
+  double least = wanted_ratio / rule.ratio;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto p = corners(mesh, t);
+    const Triangle& c = mesh.triangles[t];
+    const bool near = std::min({order[c.a], order[c.b], order[c.c]}) < 2;
+    least = std::min(least, radius_ratio(p[0], p[1], p[2]) / (near ? rule.near : rule.ratio));
+  }
+  return least;
+}
+
+std::vector<std::uint8_t> points_at_triangles_under(double ratio, const SurfaceMesh& mesh) {
+  std::vector<std::uint8_t> marked(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto p = corners(mesh, t);
+    if (radius_ratio(p[0], p[1], p[2]) < ratio)
+      for (int k = 0; k < 3; ++k) marked[mesh.triangles[t][k]] = 1;
+  }
+  return marked;
 }
 
 }  // namespace nacre

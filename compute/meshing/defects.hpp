@@ -18,8 +18,10 @@ struct DefectRule {
   bool fills = true;   ///< a rim's corner that lies flat gets a new point in front of it; else a neighbour goes
 };
 
-/// The least that is asked of a mesh, with a margin: what further rounds are worth their time for.
+/// The least that is asked of a mesh, with a margin: what particles go and come for once all have been smoothed.
 inline constexpr DefectRule worst_defects{0, 0.31, 0.17, false};
+/// Triangles with a smaller ratio are worth further rounds of smoothing.
+inline constexpr double wanted_ratio = 0.5;
 
 /// What to change about the particles of a mesh before they are triangulated again.
 struct MeshDefects {
@@ -42,5 +44,12 @@ struct MeshDefects {
 /// of the facets there. `order` (2 surface, 1 curve, 0 point) and `size` (world units) are per point of the mesh.
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
+
+/// How far the triangles are above the least ratios of `rule`, as a multiple of them: the least over all; below 1 where one
+/// is bad. No more than wanted_ratio / rule.ratio: better ones are all alike.
+double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
+
+/// Marks the points at triangles with a radius ratio under `ratio`.
+std::vector<std::uint8_t> points_at_triangles_under(double ratio, const SurfaceMesh& mesh);
 
 }  // namespace nacre

@@ -14,6 +14,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -76,15 +77,15 @@ std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& poi
   return order;
 }
 
-/// Puts the points from number `first` on into a triangulation, one after the other or, where it has locks, on many
-/// threads. `vertices` gets the vertex of each.
+/// Puts the points of these numbers into a triangulation, one after the other or, where it has locks, on many threads.
+/// `vertices` gets the vertex of each.
 class Insertion {
  public:
-  Insertion(Triangulation& triangulation, std::span<const Vec3d> points, std::size_t first,
+  Insertion(Triangulation& triangulation, std::span<const Vec3d> points, std::span<const std::uint32_t> numbers,
             std::vector<Vertex>& vertices, const std::atomic<bool>* stop)
-      : triangulation_(triangulation), first_(first), vertices_(vertices), stop_(stop) {
-    points_.reserve(points.size() - first);
-    for (const Vec3d& p : points.subspan(first)) points_.emplace_back(p.x, p.y, p.z);
+      : triangulation_(triangulation), numbers_(numbers), vertices_(vertices), stop_(stop) {
+    points_.reserve(numbers.size());
+    for (const std::uint32_t i : numbers) points_.emplace_back(points[i].x, points[i].y, points[i].z);
     order_ = insertion_order(points_, triangulation.is_parallel());
   }
 
@@ -110,7 +111,7 @@ class Insertion {
   bool insert(std::size_t point, Vertex& hint, bool* could_lock) {
     const Vertex vertex = triangulation_.insert(points_[point], hint, could_lock);
     if (could_lock && !*could_lock) return false;
-    vertices_[first_ + point] = hint = vertex;
+    vertices_[numbers_[point]] = hint = vertex;
     return true;
   }
 
@@ -125,11 +126,38 @@ class Insertion {
   }
 
   Triangulation& triangulation_;
-  std::size_t first_;
+  std::span<const std::uint32_t> numbers_;
   std::vector<Vertex>& vertices_;
   const std::atomic<bool>* stop_;
   std::vector<Kernel::Point_3> points_;
   std::vector<std::size_t> order_;
+};
+
+/// Points by where they are.
+class PlaceTable {
+ public:
+  explicit PlaceTable(std::span<const Vec3d> points)
+      : points_(points), slots_(std::bit_ceil(2 * points.size() + 2), none) {
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+      if (std::uint32_t& slot = slots_[slot_of(points[i])]; slot == none) slot = i;
+  }
+
+  /// The first point there, or `none`.
+  std::uint32_t find(const Vec3d& place) const { return slots_[slot_of(place)]; }
+
+ private:
+  /// That of the place, or the empty one where it would go.
+  std::size_t slot_of(const Vec3d& place) const {
+    std::uint64_t key = 0;
+    for (const double x : {place.x, place.y, place.z})
+      key = (std::rotl(key, 21) ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 is 0
+    std::size_t slot = (key ^ key >> 32) & (slots_.size() - 1);
+    while (slots_[slot] != none && !(points_[slots_[slot]] == place)) slot = (slot + 1) & (slots_.size() - 1);
+    return slot;
+  }
+
+  std::span<const Vec3d> points_;
+  std::vector<std::uint32_t> slots_;
 };
 
 using Cell = std::array<std::uint32_t, 4>;
@@ -222,36 +250,39 @@ struct Delaunay::Held {
   std::vector<Vec3d> points;
   std::vector<Vertex> vertices;  ///< per point
 
-  /// Takes out the points that are not at the front of `now`, in their order; how many are. None, where building anew
-  /// costs less: then all of this is as new.
-  std::size_t keep(std::span<const Vec3d> now) {
-    constexpr std::uint32_t unused = ~0u;
-    std::vector<Vertex> gone;
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      if (kept < now.size() && now[kept] == points[i])
-        vertices[kept++] = vertices[i];
+  /// Takes out the points that are not in `now`; the numbers of those that are to be put in, ascending. All, where building
+  /// anew costs less: then all of this is as new.
+  std::vector<std::uint32_t> keep(std::span<const Vec3d> now) {
+    const PlaceTable known(points);
+    std::vector<Vertex> at(now.size());
+    std::vector<std::uint32_t> fresh;
+    std::vector<char> stays(points.size(), 0);
+    for (std::size_t i = 0; i < now.size(); ++i)
+      if (const std::uint32_t old = known.find(now[i]); old != none)
+        at[i] = vertices[old], stays[old] = 1;
       else
-        gone.push_back(vertices[i]);
-    if (gone.size() > now.size() / dear_removal) {
-      triangulation.clear();
-      return 0;
+        fresh.push_back(std::uint32_t(i));
+    std::vector<Vertex> gone;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (!stays[i] && known.find(points[i]) == i) gone.push_back(vertices[i]);  // others share the vertex of the first
+    vertices = std::move(at);
+    if (gone.size() <= now.size() / dear_removal) {
+      for (const Vertex vertex : gone) triangulation.remove(vertex);
+      return fresh;
     }
-    for (const Vertex vertex : gone) vertex->info() = unused;
-    for (std::size_t i = 0; i < kept; ++i) vertices[i]->info() = 0;
-    for (const Vertex vertex : gone)  // points that coincide share one
-      if (std::exchange(vertex->info(), 0) == unused) triangulation.remove(vertex);
-    return kept;
+    triangulation.clear();
+    fresh.resize(now.size());
+    std::iota(fresh.begin(), fresh.end(), 0u);
+    return fresh;
   }
 
   void triangulate(std::span<const Vec3d> now, bool threaded, const std::atomic<bool>* stop) {
-    const std::size_t kept = keep(now);
+    const std::vector<std::uint32_t> fresh = keep(now);
     std::unique_ptr<LockGrid> locks;
-    if (threaded && now.size() - kept > few_points) locks = std::make_unique<LockGrid>(box_of(now), lock_cells);
+    if (threaded && fresh.size() > few_points) locks = std::make_unique<LockGrid>(box_of(now), lock_cells);
     points.assign(now.begin(), now.end());
-    vertices.resize(now.size());
     triangulation.set_lock_data_structure(locks.get());
-    Insertion(triangulation, now, kept, vertices, stop).run();
+    Insertion(triangulation, now, fresh, vertices, stop).run();
     triangulation.set_lock_data_structure(nullptr);
     for (std::size_t i = now.size(); i-- > 0;)
       vertices[i]->info() = std::uint32_t(i);  // the first of those that coincide

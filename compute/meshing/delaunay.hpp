@@ -21,7 +21,7 @@ struct DelaunayCells {
   std::vector<Vec3d> circumcentres;  ///< finite; see circumcentre_reach for cells next to flat
 };
 
-/// A Delaunay triangulation that follows its points: where few have gone or come since the last call, only their
+/// A Delaunay triangulation that follows its points: where few have gone, come or moved since the last call, only their
 /// neighbourhoods are made anew. What it gives depends on the points alone.
 class Delaunay {
  public:
@@ -31,8 +31,8 @@ class Delaunay {
   Delaunay(const Delaunay&) = delete;
   Delaunay& operator=(const Delaunay&) = delete;
 
-  /// The cells of `points`; of those that coincide the first is used. Points of the last call are known again where
-  /// they stand in the same order before all new ones. Throws Error where there are fewer than four points, all lie in
+  /// The cells of `points`; of those that coincide the first is used. Points of the last call are known again by their
+  /// places. Throws Error where there are fewer than four points, all lie in
   /// one plane or one is not finite, and Interrupted soon after `*stop` is set.
   DelaunayCells cells(std::span<const Vec3d> points, const std::atomic<bool>* stop = nullptr);
 

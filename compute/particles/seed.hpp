@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "compute/device/random.hpp"
 #include "compute/embedding/build_interface_grid.hpp"
 #include "compute/grid/morton.hpp"
 #include "compute/particles/particle_set.hpp"
@@ -85,6 +86,8 @@ struct CountSeeds {
   }
 };
 
+/// Seeds stand beside their cells' closest points, along the interface: two cells across a flat interface have the same one,
+/// and particles at one place would never part.
 struct WriteSeeds {
   SeedCells cells;
   const std::uint32_t* cell;
@@ -99,11 +102,20 @@ struct WriteSeeds {
     if (flag[i] == 0) return;
     const std::int64_t to = first + count[i], at = cell[i];
     const Float4 o = store(load(cells.grid.cell[at])), d = cells.grid.direction(at);
-    const Vec3f p = (cell_centre(cells.cell(at)) + Vec3f(o.x, o.y, o.z)) / cells.grid.cells_per_voxel;
+    const Vec3f p = (cell_centre(cells.cell(at)) + Vec3f(o.x, o.y, o.z) + aside(at, {d.x, d.y, d.z})) /
+                    cells.grid.cells_per_voxel;
     place[to] = {p.x, p.y, p.z, d.w};
     direction[to] = {d.x, d.y, d.z, 0};
     interface[to] = cells.grid.brick_interface[at / 64];
     velocity[to] = {0, 0, 0, 0};
+  }
+
+ private:
+  /// Up to a quarter of a cell along each axis, in the tangent space.
+  NACRE_HD Vec3f aside(std::int64_t at, const Vec3f& direction) const {
+    const auto random = [&](std::uint32_t axis) { return 0.5f * uniform_random(1, std::uint32_t(at), axis) - 0.25f; };
+    const Vec3f r(random(0), random(1), random(2)), along = direction * dot(direction, r);
+    return cells.wanted == 2 ? r - along : along;
   }
 };
 

@@ -31,7 +31,7 @@ struct MeshParameters {
   int subcells = 2;                    ///< closest-point cells per voxel and axis
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
-  int iterations = 120;                ///< at most, per junction order
+  int iterations = 50;                 ///< at most, per junction order
   double stagnation = 0.00005;         ///< ends when the energy falls by less, (E_prev - E) / E
   double step = 1.2;                   ///< tree: share of the Newton step
   double momentum = 0.85;              ///< tree: heavy ball
@@ -40,7 +40,8 @@ struct MeshParameters {
   double delete_above = 1.75;          ///< delete particles with more
   bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the source's rule
   int control_every = 10;              ///< iterations between two controls of the population
-  int mend = 3;                        ///< rounds of mending bad triangles after the first triangulation, at most
+  int smooth = 2;                      ///< rounds of moving particles within the triangles around them
+  int mend = 8;                        ///< rounds of mending bad triangles after the first triangulation, at most
   int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };
@@ -166,7 +167,7 @@ class MeshPipeline {
   /// False where none had to run; else the particles are dropped.
   virtual bool build_fields() = 0;
   virtual void relax() = 0;               ///< stages seed, relax, population
-  virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, mend; world coordinates
+  virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, mend; world coordinates
 
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality

@@ -3,6 +3,7 @@
 #include "compute/pipeline/mesh_backends.hpp"
 #include "compute/pipeline/mesh_fields_impl.hpp"
 #include "compute/pipeline/mesh_look_impl.hpp"
+#include "compute/pipeline/mesh_mending_impl.hpp"
 #include "compute/pipeline/mesh_relaxation_impl.hpp"
 
 std::unique_ptr<nacre::MeshPipeline> nacre::make_mesh_pipeline(Cpu, Device& device) {

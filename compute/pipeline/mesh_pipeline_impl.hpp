@@ -48,7 +48,22 @@ class MeshPipelineOf : public MeshPipeline {
   void watch(const std::atomic<bool>* stop) override { exec_.watch(stop_ = stop); }
 
  private:
-  static constexpr int further_rounds = 4;  ///< of mending, for what falls short of the least that is asked of a mesh
+  /// A mesh of the particles as they are.
+  struct Triangulated {
+    SurfaceMesh mesh;
+    std::vector<std::uint32_t> point_of;  ///< the particle at each of its points, ascending
+    LabelRepair repair;
+    double fitness = -1;  ///< see there; below 0: it touches itself
+  };
+  struct PointFacts {
+    std::vector<std::uint8_t> order;  ///< of junction
+    std::vector<float> size;          ///< world units
+  };
+  /// What has been done for the triangles.
+  struct MeshRounds {
+    int smoothed = 0, mended = 0;
+    std::int64_t bad = std::int64_t(1) << 40;  ///< points at bad triangles when they were last smoothed alone
+  };
 
   void tell(std::string_view stage, double fraction, int iteration = 0, double energy = 0) {
     if (progress) progress({stage, fraction, iteration, solver_ ? solver_->particles().count : 0, energy});
@@ -73,13 +88,19 @@ class MeshPipelineOf : public MeshPipeline {
   void relax_by_tree(int order, double from, double to);
   void relax_by_turns(int order, double from, double to);
   void note_iteration(int order, double energy, std::int64_t movers);
+  void spread_seeds();
   void measure_energy();
   void polish(std::int64_t first = 0);
-  double mend_fraction(int round) const { return 0.86 + 0.08 * round / (parameters.mend + further_rounds); }
   void begin_unmended();
-  bool mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles, std::span<const std::uint32_t> point_of,
-            const LabelRepair& repair);
-  void close_up(int round);
+  Triangulated triangulate_once(Delaunay& delaunay);
+  bool improve(MeshRounds& rounds, Triangulated& made);
+  PointFacts point_facts(const Triangulated& made) const;
+  double improve_fraction(const MeshRounds& rounds) const {
+    return 0.85 + 0.09 * (rounds.smoothed + rounds.mended) / std::max(1, parameters.smooth + parameters.mend);
+  }
+  std::int64_t smooth(const MeshRounds& rounds, Triangulated& made, std::span<const std::uint8_t> moving);
+  bool mend(const Triangulated& made, const DefectRule& rule);
+  std::vector<Vec3d> particle_places() const;
   HostParticles download_particles() const;
   void upload_particles(const HostParticles& particles);
   std::int64_t change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
@@ -114,42 +135,5 @@ class MeshPipelineOf : public MeshPipeline {
   std::chrono::steady_clock::time_point seeded_;
   const std::atomic<bool>* stop_ = nullptr;
 };
-
-template <class Backend>
-SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
-  if (!solver_) throw Error("no particles");
-  begin_unmended();
-  SurfaceMesh mesh;
-  Delaunay delaunay(exec_.device().threads());
-  for (int round = 0;; ++round) {
-    tell("triangulate", mend_fraction(round));
-    const MeshParticles particles = this->particles();
-    std::vector<std::uint32_t> point_of;
-    LabelRepair repair;
-    {
-      auto stage = exec_.stage("triangulate");
-      const DelaunayCells cells = delaunay.cells(particles.points, stop_);
-      std::vector<std::uint16_t> label = material_at(cells.circumcentres);
-      repair = repair_labels(particles.points, cells, label);
-      mesh = extract_interfaces(particles.points, cells, label, &point_of);
-    }
-    if (parameters.mend == 0 || !mend(round, mesh, particles, point_of, repair)) break;
-  }
-  const MeshParticles particles = this->particles();
-  info_.final = std::int64_t(particles.points.size());
-  info_.points_final = std::count(particles.order.begin(), particles.order.end(), 0);
-  info_.curves_final = std::count(particles.order.begin(), particles.order.end(), 1);
-  info_.surfaces_final = std::count(particles.order.begin(), particles.order.end(), 2);
-  return mesh;
-}
-
-/// The first mesh after `relax` is made of what it left, and so are all others: mending has changed the particles since.
-template <class Backend>
-void MeshPipelineOf<Backend>::begin_unmended() {
-  if (relaxed_)
-    upload_particles(*relaxed_);
-  else
-    relaxed_ = download_particles();
-}
 
 }  // namespace nacre

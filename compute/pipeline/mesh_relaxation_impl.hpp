@@ -1,4 +1,4 @@
-// Nacre: the part of the mesh pipeline that moves particles: seeds, the three solvers, population, mending.
+// Nacre: the part of the mesh pipeline that moves particles: seeds, the three solvers, population.
 #pragma once
 
 #include <algorithm>
@@ -108,12 +108,27 @@ void MeshPipelineOf<Backend>::relax() {
   } catch (const Interrupted&) {
     // What has been done so far can be triangulated, if every interface has its particles.
     const Unwatched finish(exec_, stop_);
-    if (order == 1) seed_order(2);
+    if (order == 1) seed_order(2), spread_seeds();
     polish();
     throw;
   }
   auto stage = exec_.stage("relax");
   polish();
+}
+
+/// A few steps of seeds that had no time to settle, so that they leave the rims to the particles there.
+template <class Backend>
+void MeshPipelineOf<Backend>::spread_seeds() {
+  auto stage = exec_.stage("relax");
+  const RelatedView related = this->related();
+  TreeRule rule = tree_rule();
+  rule.momentum = 0.6f;
+  const std::int64_t movers = solver_->movers(exec_, related, 2);
+  for (int k = 0; k < 16; ++k) {
+    if (k % 4 == 0) solver_->rebuild(exec_);
+    solver_->forces(exec_, related, 2, rule.theta, movers);
+    solver_->move(exec_, embedded_ground(), related, 2, rule);
+  }
 }
 
 /// Each solver knows the energy while it moves particles; this one can be compared.
@@ -288,55 +303,6 @@ void MeshPipelineOf<Backend>::relax_by_turns(int order, double from, double to) 
     before = turn.energy;
   }
   solver_->velocity().upload(std::vector<Float4>(std::size_t(set.count), Float4{0, 0, 0, 0}));
-}
-
-/// Takes away the particles that spoil triangles, adds some where a surface touches itself, and lets the others close up.
-/// Past the rounds that were asked for, a few more mend what falls short of the least that is asked of a mesh. False where
-/// nothing is left to mend.
-template <class Backend>
-bool MeshPipelineOf<Backend>::mend(int round, const SurfaceMesh& mesh, const MeshParticles& particles,
-                                   std::span<const std::uint32_t> point_of, const LabelRepair& repair) {
-  {
-    auto stage = exec_.stage("mend");
-    if (round >= parameters.mend + further_rounds) return false;
-    std::vector<std::uint8_t> order(point_of.size());
-    std::vector<float> size(point_of.size());
-    for (std::size_t v = 0; v < point_of.size(); ++v)
-      order[v] = particles.order[point_of[v]], size[v] = particles.size[point_of[v]];
-    std::vector<std::array<std::uint32_t, 2>> touching = repair.places;
-    for (auto& place : touching)  // particles; the mesh has those that facets use, in the same order
-      for (std::uint32_t& p : place)
-        p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
-    const MeshDefects defects =
-        find_defects(mesh, order, size, touching, round < parameters.mend ? DefectRule() : worst_defects);
-    if (defects.remove.empty() && defects.insert.empty()) return false;
-    std::vector<std::uint8_t> gone(particles.points.size(), 0);
-    for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
-    polish(change_particles(gone, defects.insert));  // the others lie on the fields
-  }
-  if (round < 2) close_up(round);  // later, moving all would spoil others
-  return true;
-}
-
-/// A few steps of all particles on surfaces, so that gaps close and new ones find room.
-template <class Backend>
-void MeshPipelineOf<Backend>::close_up(int round) {
-  const RelatedView related = this->related();
-  TreeRule rule = tree_rule();
-  rule.momentum = 0.6f;
-  const std::int64_t movers = solver_->movers(exec_, related, 2);
-  for (int k = 0; k < 8; ++k) {
-    double energy = 0;
-    {
-      auto stage = exec_.stage("mend");
-      if (k % 4 == 0) solver_->rebuild(exec_);
-      energy = solver_->forces(exec_, related, 2, rule.theta, movers);
-      solver_->move(exec_, field_ground(), related, 2, rule);
-    }
-    tell("mend", mend_fraction(round), k + 1, energy);
-  }
-  auto stage = exec_.stage("mend");
-  polish();
 }
 
 }  // namespace nacre

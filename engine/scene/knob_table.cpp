@@ -165,6 +165,7 @@ std::vector<Knob> mesh_knobs(Settings& s) {
        0,
        1,
        {}},
+      {"smooth", "particles", "rounds", "of moving particles within the triangles around them", &m.smooth, 0, 100, {}},
       {"mend", "particles", "rounds", "of mending bad triangles once triangulated, at most", &m.mend, 0, 100, {}},
       {"particles",
        "particles",

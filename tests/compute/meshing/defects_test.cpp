@@ -180,5 +180,18 @@ TEST(Defects, PlacesThatTouchGetNewPointsUnlessTheyAreCrowded) {
   EXPECT_TRUE(ball.defects({}, {{t.a, t.a}}).insert.empty()) << "junctions may be touched";
 }
 
+TEST(Defects, FitnessIsTheLeastRatioByWhatIsAsked) {
+  Ball ball(with_a_twin(400));
+  const double worst = ball.worst();
+  EXPECT_NEAR(fitness(ball.mesh, ball.order, worst_defects), worst / worst_defects.ratio, 1e-9);
+  for (std::uint8_t& o : ball.order) o = 1;
+  EXPECT_NEAR(fitness(ball.mesh, ball.order, worst_defects), worst / worst_defects.near, 1e-9);
+  const Ball good(test::points_on_sphere(400, 1));
+  EXPECT_EQ(fitness(good.mesh, good.order, worst_defects), wanted_ratio / worst_defects.ratio) << "good ones are alike";
+  const std::vector<std::uint8_t> marked = points_at_triangles_under(worst + 1e-9, ball.mesh);
+  EXPECT_EQ(std::count(marked.begin(), marked.end(), 1), 3);
+  EXPECT_TRUE(marked[400] && marked[7]);
+}
+
 }  // namespace
 }  // namespace nacre

@@ -133,6 +133,10 @@ TEST(Delaunay, FollowsPointsThatGoAndCome) {
   for (const Vec3d& p : random_points(50, 2)) points.push_back(p);
   take_out(0, 3, 10);
   expect_same(followed.cells(points), delaunay(points), "some gone, some new");
+  for (std::size_t i = 100; i < 200; i += 2) points[i] += Vec3d(0.01);
+  expect_same(followed.cells(points), delaunay(points), "a few moved where they stand");
+  std::swap(points[50], points[7000]);
+  expect_same(followed.cells(points), delaunay(points), "two have changed their numbers");
   for (const Vec3d& p : random_points(9000, 3)) points.push_back(p * 2.0);
   expect_same(followed.cells(points), delaunay(points), "twice as many, on threads");
   for (std::size_t i = 0; i < points.size(); i += 2) points[i] += Vec3d(0.01);

@@ -1,6 +1,10 @@
 // Nacre: test bodies for the first particles.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
 #include "compute/particles/seed.hpp"
 #include "compute/particles/solver_state.hpp"
 #include "tests/compute/embedding/embedding_cases.hpp"
@@ -85,6 +89,26 @@ void CurvesAreSeededByTheirLength(Executor<Backend>& exec) {
   EXPECT_NEAR(covered, 2 * sector_radius, 0.06 * 2 * sector_radius);
 }
 
+/// Cells on both sides of a flat interface have the same closest points; particles at one place would never part.
+template <class Backend>
+void NoTwoAtOnePlaceOfAFlatInterface(Executor<Backend>& exec) {
+  const MeshVolume volume = label_volume({20, 20, 20}, 2, [](const Vec3d&) { return 1; });  // its faces alone
+  SizingRule rule;
+  rule.min_size = rule.max_size = 0.6f;
+  const Embedding e = embedding_of(exec, volume, rule);
+  double expected = 0;
+  std::vector<Float4> seeds = seeds_of(exec, e, 2, 1, expected);
+  const auto along_x = [](const Float4& a, const Float4& b) {
+    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+  };
+  std::sort(seeds.begin(), seeds.end(), along_x);
+  ASSERT_GT(seeds.size(), 6000u);
+  for (std::size_t i = 0; i < seeds.size(); ++i)
+    for (std::size_t k = i + 1; k < seeds.size() && seeds[k].x - seeds[i].x < 1e-3f; ++k)
+      ASSERT_GT(std::hypot(seeds[k].y - seeds[i].y, seeds[k].z - seeds[i].z), 1e-3f);
+}
+
+NACRE_DEVICE_TEST(Seed, NoTwoAtOnePlaceOfAFlatInterface)
 NACRE_DEVICE_TEST(Seed, AsManyAsTheSizingFieldAsksFor)
 NACRE_DEVICE_TEST(Seed, EveryComponentGetsParticles)
 NACRE_DEVICE_TEST(Seed, CurvesAreSeededByTheirLength)

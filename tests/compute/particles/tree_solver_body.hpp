@@ -9,34 +9,10 @@
 #include "compute/particles/tree_solver.hpp"
 #include "tests/compute/embedding/embedding_cases.hpp"
 #include "tests/compute/on_devices.hpp"
+#include "tests/compute/particles/analytic_ground.hpp"
 #include "tests/compute/particles/solver_cases.hpp"
 
 namespace nacre::test {
-
-/// A surface with a formula as the solver's ground; `Surface` as in analytic_surfaces.hpp. Beyond `rim` from the z axis
-/// the interface does not exist.
-template <class Surface>
-struct AnalyticGround {
-  Surface surface;
-  float rim = 1e9f;
-  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
-    if (!surface.project(interface, p, 1e9f, on.p, on.direction)) return false;
-    on.h = surface.size(on.p);
-    on.margin = rim - std::sqrt(p.x * p.x + p.y * p.y);
-    return true;
-  }
-};
-
-/// Without bounds in x and y.
-struct Plane {
-  float h;
-  NACRE_HD bool project(std::uint32_t, const Vec3f& p, float, Vec3f& on, Vec3f& direction) const {
-    on = {p.x, p.y, 0};
-    direction = {0, 0, 1};
-    return true;
-  }
-  NACRE_HD float size(const Vec3f&) const { return h; }
-};
 
 /// A tree solver with particles of some interfaces. `bounds`: interface k + 1 is the rim of interface k.
 template <class Backend>

@@ -171,7 +171,8 @@ class MeshShow : public ::testing::TestWithParam<std::string> {
       }
       EXPECT_TRUE(any || order_of(counts, i) != order) << i;
     }
-    for (std::size_t b = 0; b < std::size_t(n); ++b) EXPECT_GT(inside[b], 0) << b;
+    const auto empty = std::count(inside.begin(), inside.end(), 0);
+    EXPECT_LE(empty, slack > 0.1f ? 1 : 0);  // the last step takes particles away that have lost their interface
   }
 
   const MeshVolume volume_ = askew(three_balls());
@@ -195,22 +196,23 @@ TEST_P(MeshShow, ParticlesAreShownAsTheyAreOrderByOrder) {
 }
 
 TEST_P(MeshShow, TheyCanBeFollowedWhileTheyMove) {
-  int curves_alone = 0, with_surfaces = 0, mending = 0;
+  int curves_alone = 0, with_surfaces = 0, smoothing = 0;
   pipeline_->progress = [&](const MeshProgress& p) {
-    if (p.iteration == 0 || p.iteration % 4 != 1) return;
+    const bool smooths = p.stage == "smooth";
+    if (p.iteration == 0 || (!smooths && p.iteration % 4 != 1)) return;
     const ShownCounts counts = pipeline_->show_particles(lent());
     EXPECT_EQ(counts.total(), p.particles);
     EXPECT_EQ(counts.points, pipeline_->info().points);
     EXPECT_GT(counts.curves, 0);
-    ++(p.stage == "mend" ? mending : counts.surfaces == 0 ? curves_alone : with_surfaces);
+    ++(smooths ? smoothing : counts.surfaces == 0 ? curves_alone : with_surfaces);
     expect_shown(*pipeline_, place_, direction_);
-    expect_boxes(counts.surfaces == 0 ? 1 : 2);
+    if (!smooths) expect_boxes(counts.surfaces == 0 ? 1 : 2);  // the tree is not needed any more
   };
   pipeline_->relax();
   pipeline_->triangulate();
   EXPECT_GE(curves_alone, 3);
   EXPECT_GE(with_surfaces, 3);
-  EXPECT_GE(mending, 2);
+  EXPECT_GE(smoothing, 6);
   const SurfaceMesh followed = pipeline_->triangulate();
   pipeline_->progress = nullptr;
   pipeline_->relax();

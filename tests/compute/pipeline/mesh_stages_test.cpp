@@ -129,7 +129,7 @@ TEST(MeshStages, TheStepsBehindTheFieldsRunWhole) {
   pipeline->parameters = few_iterations();
   pipeline->load(volume);
   pipeline->build_fields();
-  const Names moves{"seed", "relax", "population"}, meshes{"triangulate", "mend"};
+  const Names moves{"seed", "relax", "population"}, meshes{"triangulate", "mend", "smooth"};
   EXPECT_EQ(stages_of(*pipeline, [&] { pipeline->relax(); }), moves);
   EXPECT_EQ(stages_of(*pipeline, [&] { pipeline->triangulate(); }), meshes);
   pipeline->parameters.theta = 0.8;
@@ -276,8 +276,9 @@ TEST_F(MeshStops, WhileMendingAndTriangulatesAgain) {
   pipeline_->parameters = hasty();
   pipeline_->build_fields();
   pipeline_->relax();
-  for (const int nth : {1, 3, 8}) {
-    pipeline_->progress = [&](const MeshProgress& p) { stop_ = stop_ || (p.stage == "mend" && p.iteration == nth); };
+  for (const int nth : {1, 3, 5}) {
+    int told = 0;
+    pipeline_->progress = [&](const MeshProgress& p) { stop_ = stop_ || (p.stage == "smooth" && ++told == nth); };
     stop_ = false;
     pipeline_->watch(&stop_);
     EXPECT_THROW(pipeline_->triangulate(), Interrupted);

@@ -1,0 +1,163 @@
+// Nacre: the part of the mesh pipeline that makes triangles of the particles, and moves, takes and adds these for their sake.
+#pragma once
+
+#include <algorithm>
+
+#include "compute/particles/ring_smoothing.hpp"
+#include "compute/pipeline/mesh_pipeline_impl.hpp"
+
+namespace nacre {
+
+template <class Backend>
+auto MeshPipelineOf<Backend>::triangulate_once(Delaunay& delaunay) -> Triangulated {
+  auto stage = exec_.stage("triangulate");
+  const std::vector<Vec3d> points = particle_places();
+  const DelaunayCells cells = delaunay.cells(points, stop_);
+  std::vector<std::uint16_t> label = material_at(cells.circumcentres);
+  Triangulated made;
+  made.repair = repair_labels(points, cells, label);
+  made.mesh = extract_interfaces(points, cells, label, &made.point_of);
+  if (made.repair.places.empty()) made.fitness = fitness(made.mesh, point_facts(made).order, worst_defects);
+  return made;
+}
+
+/// World coordinates.
+template <class Backend>
+std::vector<Vec3d> MeshPipelineOf<Backend>::particle_places() const {
+  const ParticleSet& set = solver_->particles();
+  std::vector<Vec3d> points;
+  points.reserve(std::size_t(set.count));
+  for (const Float4& p : set.place.download(0, std::size_t(set.count)))
+    points.push_back(frame_.to_world(Vec3d(p.x, p.y, p.z)));
+  return points;
+}
+
+/// Triangulates the particles, and changes them for better triangles until none is to be had: first the clear defects go,
+/// then all particles move within their triangles, at last those alone at bad ones. Of these last meshes the best counts.
+template <class Backend>
+SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
+  if (!solver_) throw Error("no particles");
+  begin_unmended();
+  Delaunay delaunay(exec_.device().threads());
+  MeshRounds rounds;
+  Triangulated made, best;
+  best.fitness = -2;
+  HostParticles best_particles;
+  do {
+    tell("triangulate", improve_fraction(rounds));
+    made = triangulate_once(delaunay);
+    if (rounds.smoothed < parameters.smooth || made.fitness <= best.fitness) continue;
+    best = made;
+    best_particles = download_particles();
+  } while (improve(rounds, made));
+  upload_particles(best_particles);
+  info_.final = std::int64_t(best_particles.interface.size());
+  std::int64_t of_order[3] = {};
+  for (const std::uint32_t k : best_particles.interface) ++of_order[junctions_[k].order()];
+  info_.points_final = of_order[0], info_.curves_final = of_order[1], info_.surfaces_final = of_order[2];
+  return std::move(best.mesh);
+}
+
+/// The first mesh after `relax` is made of what it left, and so are all others: mending has changed the particles since.
+template <class Backend>
+void MeshPipelineOf<Backend>::begin_unmended() {
+  if (relaxed_)
+    upload_particles(*relaxed_);
+  else
+    relaxed_ = download_particles();
+}
+
+/// Changes the particles before they are triangulated again; false where there is nothing to change.
+template <class Backend>
+bool MeshPipelineOf<Backend>::improve(MeshRounds& rounds, Triangulated& made) {
+  if (rounds.smoothed + rounds.mended == 0 && parameters.mend > 0) {
+    ++rounds.mended;
+    if (mend(made, DefectRule())) return true;
+  }
+  if (rounds.smoothed < parameters.smooth) {
+    ++rounds.smoothed;
+    smooth(rounds, made, std::vector<std::uint8_t>(made.mesh.points.size(), 1));
+    if (rounds.smoothed == parameters.smooth && parameters.mend > 0) mend(made, worst_defects);
+    return true;
+  }
+  const std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, made.mesh);
+  const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
+  const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * rounds.bad);
+  if (rounds.mended >= parameters.mend || !worth) return false;
+  ++rounds.mended;
+  rounds.bad = count;
+  const bool moved = parameters.smooth > 0 && smooth(rounds, made, bad) > 0;
+  return mend(made, worst_defects) || moved;
+}
+
+/// Moves the particles at points `moving` of the mesh to where their triangles are best, and the mesh's points with them.
+/// How many have moved by more than a hundredth of their size.
+template <class Backend>
+std::int64_t MeshPipelineOf<Backend>::smooth(const MeshRounds& rounds, Triangulated& made,
+                                             std::span<const std::uint8_t> moving) {
+  ParticleSet& set = solver_->particles();
+  const std::size_t count = std::size_t(set.count);
+  const TriangleRings ring = triangle_rings(made.mesh, made.point_of, moving, count);
+  const std::vector<Float4> before = set.place.download(0, count);
+  Arena::Scope scope(exec_.arena());
+  Arena& arena = exec_.arena();
+  Array<std::uint32_t> first = arena.temporary<std::uint32_t>(ring.first.size());
+  Array<RingEdge> edge = arena.temporary<RingEdge>(ring.edge.size());
+  Array<Float4> moved = arena.temporary<Float4>(count);
+  first.upload(ring.first);
+  edge.upload(ring.edge);
+  moved.upload(before);
+  const auto turn = [&](const Array<Float4>& from, Array<Float4>& to) {
+    auto stage = exec_.stage("smooth");
+    exec_.for_each(set.count, detail::SmoothInRing<FieldGround>{field_ground(), first.data(), edge.data(),
+                                                                order_.data(), set.interface.data(), from.data(),
+                                                                to.data(), set.direction.data()});
+  };
+  for (int k = 0; k < smoothing_turns; k += 2) {
+    turn(set.place, moved);
+    turn(moved, set.place);
+    tell("smooth", improve_fraction(rounds), k + 2);
+  }
+  const std::vector<Float4> after = set.place.download(0, count);
+  std::int64_t far = 0;
+  for (std::size_t v = 0; v < made.point_of.size(); ++v) {
+    const Float4 a = before[made.point_of[v]], b = after[made.point_of[v]];
+    const Vec3d place(b.x, b.y, b.z);
+    far += length(place - Vec3d(a.x, a.y, a.z)) > 0.01 * a.w;
+    made.mesh.points[v] = frame_.to_world(place);
+  }
+  return far;
+}
+
+/// Order and size of the particles at the points of a mesh.
+template <class Backend>
+auto MeshPipelineOf<Backend>::point_facts(const Triangulated& made) const -> PointFacts {
+  const HostParticles particles = download_particles();
+  PointFacts facts;
+  for (const std::uint32_t i : made.point_of) {
+    facts.order.push_back(std::uint8_t(junctions_[particles.interface[i]].order()));
+    facts.size.push_back(particles.place[i].w * float(frame_.unit));
+  }
+  return facts;
+}
+
+/// Takes away the particles that spoil triangles, and adds some where a surface touches itself or a rim has a gap. False
+/// where nothing is to be changed.
+template <class Backend>
+bool MeshPipelineOf<Backend>::mend(const Triangulated& made, const DefectRule& rule) {
+  auto stage = exec_.stage("mend");
+  const std::vector<std::uint32_t>& point_of = made.point_of;
+  const PointFacts facts = point_facts(made);
+  std::vector<std::array<std::uint32_t, 2>> touching = made.repair.places;
+  for (auto& place : touching)  // particles; the mesh has those that facets use, in the same order
+    for (std::uint32_t& p : place)
+      p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
+  const MeshDefects defects = find_defects(made.mesh, facts.order, facts.size, touching, rule);
+  if (defects.remove.empty() && defects.insert.empty()) return false;
+  std::vector<std::uint8_t> gone(std::size_t(solver_->particles().count), 0);
+  for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
+  polish(change_particles(gone, defects.insert));  // the others lie on the fields
+  return true;
+}
+
+}  // namespace nacre
