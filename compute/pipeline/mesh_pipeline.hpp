@@ -31,7 +31,7 @@ struct MeshParameters {
   int subcells = 2;                    ///< closest-point cells per voxel and axis
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
-  int iterations = 50;                 ///< at most, per junction order
+  int iterations = 70;                 ///< at most, per junction order
   double stagnation = 0.00005;         ///< ends when the energy falls by less, (E_prev - E) / E
   double step = 1.2;                   ///< tree: share of the Newton step
   double momentum = 0.85;              ///< tree: heavy ball
@@ -82,7 +82,7 @@ struct MeshInfo {
   std::int64_t seeded = 0, final = 0;
   std::int64_t seeded_on_surfaces = 0;  ///< of `seeded`; the others are on curves and at points
   std::int64_t points_final = 0, curves_final = 0, surfaces_final = 0;  ///< of `final`, by junction order
-  int iterations = 0;                                                   ///< of the surfaces
+  int iterations = 70;                                                  ///< of the surfaces
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration

@@ -17,8 +17,7 @@ auto of_relax(const MeshParameters& p) {
 
 auto of_tree(const MeshParameters& p) { return std::tie(p.theta, p.step, p.momentum); }
 
-// Mending lets particles close up by the tree, whichever solver has moved them, with a momentum of its own.
-auto of_mending(const MeshParameters& p) { return std::tie(p.theta, p.step); }
+auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.mend); }
 
 }  // namespace
 
@@ -27,9 +26,7 @@ MeshRerun mesh_rerun(const MeshParameters& before, const MeshParameters& after) 
   if (of_relax(before) != of_relax(after)) return MeshRerun::relax;
   const bool tree = after.solver == "tree";
   if (tree ? of_tree(before) != of_tree(after) : before.by_density != after.by_density) return MeshRerun::relax;
-  if (before.mend != after.mend) return MeshRerun::triangulate;
-  if (!tree && after.mend > 0 && of_mending(before) != of_mending(after)) return MeshRerun::triangulate;
-  return MeshRerun::nothing;
+  return of_triangles(before) != of_triangles(after) ? MeshRerun::triangulate : MeshRerun::nothing;
 }
 
 }  // namespace nacre

@@ -96,9 +96,10 @@ struct WorkerRun {
     while (!enough()) {
       worker->grant_turn();
       std::optional<MeshEvent> event = worker->wait(stop);
-      if (!event) return;
+      if (!event) break;
       take(*event);
     }
+    if (order.ends_with("MI")) order.pop_back();  // the particles of the mesh, shown when memory was lent again
   }
 
   std::map<std::string, long> calls() const {

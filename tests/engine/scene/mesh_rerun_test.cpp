@@ -22,7 +22,7 @@ const std::map<std::string, MeshRerun>& begins() {
       {"step", MeshRerun::relax},       {"momentum", MeshRerun::relax},     {"ideal_energy", MeshRerun::relax},
       {"add_below", MeshRerun::relax},  {"delete_above", MeshRerun::relax}, {"control_every", MeshRerun::relax},
       {"particles", MeshRerun::relax},  {"seed", MeshRerun::relax},         {"by_density", MeshRerun::nothing},
-      {"mend", MeshRerun::triangulate},
+      {"mend", MeshRerun::triangulate}, {"smooth", MeshRerun::triangulate},
   };
   return list;
 }
@@ -76,7 +76,7 @@ TEST(MeshRerun, TheGroupsHoldNoOthers) {
   }
 }
 
-TEST(MeshRerun, OtherSolversUseTheTreeOnlyToMend) {
+TEST(MeshRerun, OtherSolversDoNotUseTheTreesKnobs) {
   MeshParameters before;
   before.solver = "redblack";
   const auto after = [&](const auto& change) {
@@ -85,12 +85,10 @@ TEST(MeshRerun, OtherSolversUseTheTreeOnlyToMend) {
     return mesh_rerun(before, p);
   };
   using P = MeshParameters;
-  EXPECT_EQ(after([](P& p) { p.theta = 0.7; }), MeshRerun::triangulate);
-  EXPECT_EQ(after([](P& p) { p.step = 0.7; }), MeshRerun::triangulate);
+  EXPECT_EQ(after([](P& p) { p.theta = 0.7; }), MeshRerun::nothing);
+  EXPECT_EQ(after([](P& p) { p.step = 0.7; }), MeshRerun::nothing);
   EXPECT_EQ(after([](P& p) { p.momentum = 0.7; }), MeshRerun::nothing);
   EXPECT_EQ(after([](P& p) { p.by_density = false; }), MeshRerun::relax);
-  before.mend = 0;
-  EXPECT_EQ(after([](P& p) { p.theta = 0.7; }), MeshRerun::nothing);
   EXPECT_EQ(after([](P& p) { p.theta = 0.7, p.solver = "tree"; }), MeshRerun::relax);
 }
 
