@@ -87,15 +87,16 @@ class OctetSearch {
     nearest_ = min(nearest_, bound * bound);
     look();
     std::uint32_t left[room];
-    int n = 0;
-    for (std::uint64_t k = 0; k < count; ++k) {
-      const std::uint32_t c = at(k);
-      const ClusterBound& b = clusters_.bound[c];
-      left[n] = c;
-      n += int(b.radius > ClusterView::most) | int(in_reach(b));
-      if (n == room) take(left, n);
+    for (std::uint64_t k = 0; k < count;) {
+      int n = 0;
+      for (; k < count && n < room; ++k) {
+        const std::uint32_t c = at(k);
+        const ClusterBound& b = clusters_.bound[c];
+        left[n] = c;
+        n += int(b.radius > ClusterView::most) | int(in_reach(b));
+      }
+      take(left, n);
     }
-    take(left, n);
     settle();
   }
 
@@ -123,11 +124,11 @@ class OctetSearch {
  private:
   static constexpr int room = 32;
 
-  /// Puts the triangles of `n` clusters aside, and looks at them when there is no more room; `n` becomes 0.
-  NACRE_HD void take(const std::uint32_t* cluster, int& n) {
-    for (; n > 0; --n, ++cluster) {
-      const std::uint32_t last = clusters_.start[*cluster + 1];
-      for (std::uint32_t j = clusters_.start[*cluster]; j < last; ++j) {
+  /// Puts the triangles of `n` clusters aside, and looks at them when there is no more room.
+  NACRE_HD void take(const std::uint32_t* cluster, int n) {
+    for (int i = 0; i < n; ++i) {
+      const std::uint32_t last = clusters_.start[cluster[i] + 1];
+      for (std::uint32_t j = clusters_.start[cluster[i]]; j < last; ++j) {
         clusters_.fetch(j);
         triangle_[pending_] = j;
         if (++pending_ == room) settle();
