@@ -21,6 +21,7 @@ namespace nacre {
 //     find_surface(Int3)               number of the surface cell, or `no_cell`
 //     eight(Int3 first, at)            the 2^3 cells from `first`, x fastest; a bit for each that is stored
 //     eight_surface(Int3 first, at)    the same among surface cells
+//     each_surface_of_27(Int3 first, visit)  visit(k, number) for the surface cells among the 3^3 from `first`, x fastest
 //
 // Cell (i, j, k) has its centre at (i, j, k) + 1/2; all lengths are in cells. Numbers of cells are 64 bits wide.
 

@@ -29,11 +29,17 @@ struct CellMask {
     return first + before[z] + count_bits(word[z] & (bit - 1));
   }
 
+  /// Cells (x, y, z) to (x + n - 1, y, z), all of this brick: a bit for each that is there, and the number of the first
+  /// of these.
+  NACRE_HD_INLINE unsigned row(int x, int y, int z, int n, CellIndex& number) const {
+    const int shift = 8 * y + x;
+    number = first + before[z] + count_bits(word[z] & ((std::uint64_t(1) << shift) - 1));
+    return unsigned(word[z] >> shift) & ((1u << n) - 1);
+  }
+
   /// Cells (x, y, z) and (x + 1, y, z), x < 7; returns two bits for those that are there.
   NACRE_HD_INLINE unsigned pair(int x, int y, int z, CellIndex at[2]) const {
-    const int shift = 8 * y + x;
-    const unsigned there = unsigned(word[z] >> shift) & 3;
-    at[0] = first + before[z] + count_bits(word[z] & ((std::uint64_t(1) << shift) - 1));
+    const unsigned there = row(x, y, z, 2, at[0]);
     at[1] = at[0] + (there & 1);
     return there;
   }
@@ -122,6 +128,29 @@ class BrickOctreeView::Cursor {
     return eight(first, at, &OctreeBrick::surface);
   }
 
+  /// Calls visit(k, number) for the surface cells among the 3^3 from `first`, x fastest.
+  template <class Visit>
+  NACRE_HD_INLINE void each_surface_of_27(const Int3& first, const Visit& visit) {
+    const std::uint32_t* around = bricks_around(first);
+    const Int3 in{first.x & 7, first.y & 7, first.z & 7};
+    for (int row = 0; row < 9; ++row) {
+      const int y = in.y + row % 3, z = in.z + row / 3;
+      if (around && in.x < 6) {  // the row lies in one brick
+        const std::uint32_t b = around[3 * (y >> 3) + 9 * (z >> 3)];
+        if (b == none) continue;
+        CellIndex number;
+        const unsigned there = tree_.brick[b].surface.row(in.x, y & 7, z & 7, 3, number);
+        for (int x = 0; x < 3; ++x)
+          if (there >> x & 1) visit(3 * row + x, number++);
+        continue;
+      }
+      for (int x = 0; x < 3; ++x) {
+        const CellIndex number = find_near(around, first, {in.x + x, y, z}, &OctreeBrick::surface);
+        if (number != no_cell) visit(3 * row + x, number);
+      }
+    }
+  }
+
   /// Number of the brick that holds `cell`, or `none`.
   NACRE_HD_INLINE std::uint32_t brick_of(const Int3& cell) {
     const Int3 place{cell.x >> 3, cell.y >> 3, cell.z >> 3};
@@ -152,12 +181,27 @@ class BrickOctreeView::Cursor {
       return mask.pair(x, y, z, at) | mask.pair(x, y + 1, z, at + 2) << 2 | mask.pair(x, y, z + 1, at + 4) << 4 |
              mask.pair(x, y + 1, z + 1, at + 6) << 6;
     }
+    const std::uint32_t* around = bricks_around(first);
     unsigned there = 0;
     for (int k = 0; k < 8; ++k) {
-      at[k] = find(first + Int3(k & 1, k >> 1 & 1, k >> 2), which);
+      at[k] = find_near(around, first, {x + (k & 1), y + (k >> 1 & 1), z + (k >> 2)}, which);
       there |= unsigned(at[k] != no_cell) << k;
     }
     return there;
+  }
+
+  /// The table of the 27 bricks around the one that holds `cell`, its middle entry; null if that is not there.
+  NACRE_HD_INLINE const std::uint32_t* bricks_around(const Int3& cell) {
+    const std::uint32_t b = brick_of(cell);
+    return b == none ? nullptr : tree_.neighbour + 27 * std::size_t(b) + 13;
+  }
+
+  /// Cell `in`, 0..15 per axis from the lower corner of the brick of `first`, by its table.
+  NACRE_HD_INLINE CellIndex find_near(const std::uint32_t* around, const Int3& first, const Int3& in,
+                                      CellMask OctreeBrick::*which) {
+    if (!around) return find(Int3(first.x & ~7, first.y & ~7, first.z & ~7) + in, which);
+    const std::uint32_t b = around[(in.x >> 3) + 3 * (in.y >> 3) + 9 * (in.z >> 3)];
+    return b == none ? no_cell : (tree_.brick[b].*which).find(in.x & 7, in.y & 7, in.z & 7);
   }
 
   const BrickOctreeView& tree_;

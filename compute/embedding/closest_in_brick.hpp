@@ -10,15 +10,6 @@
 
 namespace nacre::detail {
 
-/// Adds one to memory that the lanes of a team share; returns what it was.
-NACRE_HD_INLINE int claim_slot(int* count) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(count, 1);
-#else
-  return (*count)++;
-#endif
-}
-
 /// Lowers eight floats >= 0 in memory that the lanes of a team share.
 NACRE_HD_INLINE void lower_to(float* shared, const Eight& to) {
 #if defined(__CUDA_ARCH__)
@@ -32,13 +23,21 @@ NACRE_HD_INLINE void lower_to(float* shared, const Eight& to) {
 template <class Item, int Room>
 struct ShortList {
   static constexpr int room = Room;
-  int count;  // over `Room`: some are not listed
-  Item item[Room];
+  int count;            // over `Room`: some are not listed
+  Item item[Room + 1];  // the last place takes what is not listed
 
   NACRE_HD_INLINE bool listed() const { return count <= Room; }
-  NACRE_HD_INLINE void add(Item what) {
-    const int slot = claim_slot(&count);
+
+  /// Lists `what` if `yes`; on the host without a choice that a processor would guess wrong.
+  NACRE_HD_INLINE void add_if(bool yes, Item what) {
+#if defined(__CUDA_ARCH__)
+    if (!yes) return;
+    const int slot = atomicAdd(&count, 1);
     if (slot < Room) item[slot] = what;
+#else
+    item[count < Room ? count : Room] = what;
+    count += yes;
+#endif
   }
 };
 
@@ -123,7 +122,8 @@ struct ClosestInBrick {
   NACRE_HD void sift_brick(Team& team, const Vec3d& centre, const std::uint32_t* all, int count, Scratch& s) const {
     team.each(8, [&](int b) { s.block[b].count = 0; });
     sift(
-        team, s, centre, 2, count, [&](int k) { return all[k]; }, [&](int b, int k) { s.block[b].add(all[k]); });
+        team, s, centre, 2, count, [&](int k) { return all[k]; },
+        [&](int b, int k, bool yes) { s.block[b].add_if(yes, all[k]); });
   }
 
   /// Fills the lists of a block's octets; those of a block without a list overflow.
@@ -136,12 +136,12 @@ struct ClosestInBrick {
     if (!block.listed() || block.count == 0) return;
     sift(
         team, s, centre, 1, block.count, [&](int k) { return block.item[k]; },
-        [&](int o, int k) { s.octet[8 * b + o].add(std::uint8_t(k)); });
+        [&](int o, int k, bool yes) { s.octet[8 * b + o].add_if(yes, std::uint8_t(k)); });
     team.each(8, [&](int o) { s.octet_near[8 * b + o] = s.near[o]; });
   }
 
-  /// Calls add(part, k) for the clusters at(0) .. at(count - 1) that may be of interest to a part of the cube around
-  /// `centre`, whose parts are cubes with half edge `half`; `near` takes how far the surface is from their centres.
+  /// Calls add(part, k, yes) for the clusters at(0) .. at(count - 1); `yes`: it may be of interest to that part of the
+  /// cube around `centre`, whose parts are cubes with half edge `half`; `near` takes how far the surface is from their centres.
   template <class At, class Add>
   NACRE_HD void sift(Team& team, Scratch& s, const Vec3d& centre, float half, int count, const At& at,
                      const Add& add) const {
@@ -161,7 +161,8 @@ struct ClosestInBrick {
       else
         slack = clusters.distances(at(k), centre, half, squared).lower;
       const Eight farthest = limit + slack;
-      for (unsigned bits = at_most(squared, farthest * farthest); bits; bits &= bits - 1) add(lowest_bit(bits), k);
+      const unsigned bits = at_most(squared, farthest * farthest);
+      for (int p = 0; p < 8; ++p) add(p, k, bits >> p & 1);
     });
   }
 

@@ -43,10 +43,13 @@ struct ClusterView {
     float upper;  // some point is no farther than this much more
   };
 
+  static constexpr float fine = 1;  // cells: what is smaller is taken for a ball, since its distance saves too little
+  static constexpr float most = 2.74f;  // cells: no cluster of several is larger (centroids in one cell, a cell around)
+
   /// Squares of the distances between cluster `c` and the corners of the cube around `centre` with half edge `half`.
   NACRE_HD_INLINE Slack distances(std::uint32_t c, const Vec3d& centre, float half, Eight& squared) const {
     const ClusterBound& b = bound[c];
-    if (start[c + 1] - start[c] == 1) {
+    if (b.radius > fine && start[c + 1] - start[c] == 1) {
       const float error = frame[start[c]].distances(centre, half, squared);
       return {error, error};
     }
@@ -73,7 +76,8 @@ class OctetSearch {
   }
 
   /// Looks at the clusters at(0) .. at(count - 1). Their centres lie on the surface: no cell is farther from it than from
-  /// them. What stands alone was measured when it was listed.
+  /// them. What is left of them is listed first, without a choice that a processor would guess wrong. A large triangle was
+  /// measured when the octet's list was made.
   template <class At>
   NACRE_HD void search(std::uint64_t count, const At& at) {
     Eight bound = eight(1e30f);
@@ -82,15 +86,16 @@ class OctetSearch {
     bound = sqrt(bound) + slack_;
     nearest_ = min(nearest_, bound * bound);
     look();
-    for (std::uint64_t k = 0; k < count; ++k) {
-      const std::uint32_t c = at(k), last = clusters_.start[c + 1];
-      std::uint32_t j = clusters_.start[c];
-      if (last - j > 1 && !in_reach(clusters_.bound[c])) continue;
-      for (; j < last; ++j) {
-        clusters_.fetch(j);
-        triangle_[pending_] = j;
-        if (++pending_ == room) settle();
+    std::uint32_t left[room];
+    for (std::uint64_t k = 0; k < count;) {
+      int n = 0;
+      for (; k < count && n < room; ++k) {
+        const std::uint32_t c = at(k);
+        const ClusterBound& b = clusters_.bound[c];
+        left[n] = c;
+        n += int(b.radius > ClusterView::most) | int(in_reach(b));
       }
+      take(left, n);
     }
     settle();
   }
@@ -118,6 +123,18 @@ class OctetSearch {
 
  private:
   static constexpr int room = 32;
+
+  /// Puts the triangles of `n` clusters aside, and looks at them when there is no more room.
+  NACRE_HD void take(const std::uint32_t* cluster, int n) {
+    for (int i = 0; i < n; ++i) {
+      const std::uint32_t last = clusters_.start[cluster[i] + 1];
+      for (std::uint32_t j = clusters_.start[cluster[i]]; j < last; ++j) {
+        clusters_.fetch(j);
+        triangle_[pending_] = j;
+        if (++pending_ == room) settle();
+      }
+    }
+  }
 
   NACRE_HD Vec3d cell(int k) const {
     return centre_ + Vec3d(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5);

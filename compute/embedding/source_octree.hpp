@@ -66,6 +66,14 @@ class SourceOctreeView::Cursor {
   NACRE_HD_INLINE CellIndex find_surface(const Int3& place) { return find(place); }
   NACRE_HD_INLINE unsigned eight_surface(const Int3& first, CellIndex at[8]) { return eight(first, at); }
 
+  template <class Visit>
+  NACRE_HD_INLINE void each_surface_of_27(const Int3& first, const Visit& visit) {
+    for (int k = 0; k < 27; ++k) {
+      const CellIndex at = find(first + Int3(k % 3, k / 3 % 3, k / 9));
+      if (at != no_cell) visit(k, at);
+    }
+  }
+
   NACRE_HD unsigned eight(const Int3& first, CellIndex at[8]) {
     unsigned there = 0;
     for (int k = 0; k < 8; ++k) {

@@ -45,15 +45,12 @@ struct NormaliseAndExtend {
   NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor& cursor) const {
     const SplineWeights weights(closest_point_of(place, view.point[cell], view.quantum));
     float sum = 0, hits = 0;
-    for (int k = 0; k < 27; ++k) {
-      const int x = k % 3, y = k / 3 % 3, z = k / 9;
-      const CellIndex at = cursor.find_surface(weights.first + Int3(x, y, z));
-      if (at == no_cell) continue;
+    cursor.each_surface_of_27(weights.first, [&](int k, CellIndex at) {
       const std::uint64_t d = sums[at];
-      const float w = weights.w[0][x] * weights.w[1][y] * weights.w[2][z];
+      const float w = weights.w[0][k % 3] * weights.w[1][k / 3 % 3] * weights.w[2][k / 9];
       sum += w * float(Deposit::value(d));
       hits += w * float(Deposit::hits(d));
-    }
+    });
     const float before = otherwise[s];
     const float mean = hits > 1e-6f ? clamp01(sum / (65535.0f * hits)) : before;
     value[s] = before + (mean - before) * share;

@@ -19,11 +19,14 @@ struct PackedVector {
     const float x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
     const float most = x > y ? (x > z ? x : z) : (y > z ? y : z);
     if (!(most > 0)) return 0;
-    int exponent;
-    std::frexp(most / float(largest), &exponent);  // most <= largest * 2^exponent
-    exponent += bias;
+    const float share = most / float(largest);
+    std::uint32_t bits;
+    memcpy(&bits, &share, sizeof bits);
+    int exponent = int(bits >> 23) - 126 + bias;  // most <= largest * 2^(exponent - bias)
     exponent = exponent < 0 ? 0 : exponent > 31 ? 31 : exponent;
-    const float scale = std::ldexp(1.0f, bias - exponent);
+    bits = std::uint32_t(127 + bias - exponent) << 23;
+    float scale;
+    memcpy(&scale, &bits, sizeof scale);
     std::uint32_t all = std::uint32_t(exponent) << 27;
     for (int axis = 0; axis < 3; ++axis) {
       const float q = std::floor(v[axis] * scale + 0.5f);

@@ -3,7 +3,8 @@
 // bench_octree_build MESH|SAMPLE[:SPLITS] [resolution=512,1024] [radius=4.47] [threads=0] [runs=3]
 //
 // MESH is a file that the program reads, SAMPLE a built-in flow sample; SPLITS times every triangle is cut into four. The
-// runs alternate, and medians are compared. Embree is given the cells, an upper bound of their distance (the band's
+// runs alternate, and medians are compared, without and with the making of Embree's tree (ours has the sorting and bounding
+// of the triangles in it). Embree is given the cells, an upper bound of their distance (the band's
 // radius), and a closest-point function in single precision.
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -146,10 +147,8 @@ void bench(const Settings& settings, Surface surface, int resolution) {
                       arena.permanent_copy<Triangle>(surface.triangles).data(), nullptr};
   const std::size_t mark = arena.mark();
   BrickOctree tree;
-  std::vector<double> wall, processor, other_wall, other_processor;
+  std::vector<double> wall, processor, other_wall, other_processor, other_tree;
 #ifdef NACRE_EMBREE
-  EmbreeQueries embree(surface);
-  const Seconds bvh = embree.build(device->threads());
   std::vector<CellPoint> found;
   double worst = 0;
 #endif
@@ -159,6 +158,8 @@ void bench(const Settings& settings, Surface surface, int resolution) {
     wall.push_back(ours.wall);
     processor.push_back(ours.processor);
 #ifdef NACRE_EMBREE
+    EmbreeQueries embree(surface);
+    other_tree.push_back(embree.build(device->threads()).processor);
     found.resize(tree.cells);
     const Seconds theirs = embree.run(tree.view(), device->threads(), found);
     other_wall.push_back(theirs.wall);
@@ -177,9 +178,10 @@ void bench(const Settings& settings, Surface surface, int resolution) {
 #ifdef NACRE_EMBREE
   const double theirs = median(other_processor);
   std::printf("  Embree %8.3f s wall, %8.3f s processor, %6.1f ns processor per cell; its tree %.3f s beside\n",
-              median(other_wall), theirs, 1e9 * theirs / cells, bvh.wall);
-  std::printf("  Embree / octree: %.2f wall, %.2f processor; distances differ by at most %.1e cells\n",
-              median(other_wall) / median(wall), theirs / ours, worst);
+              median(other_wall), theirs, 1e9 * theirs / cells, median(other_tree));
+  std::printf(
+      "  Embree / octree: %.2f wall, %.2f processor, %.2f with its tree; distances differ by at most %.1e cells\n",
+      median(other_wall) / median(wall), theirs / ours, (theirs + median(other_tree)) / ours, worst);
 #else
   std::printf("  built without Embree: nothing to compare with\n");
 #endif

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
@@ -115,6 +116,12 @@ void CursorsFindWhatIsStored(Executor<Backend>& exec) {
           ASSERT_TRUE(!(there >> k & 1) || at[k] == expected.first);
           ASSERT_TRUE(!(there_surface >> k & 1) || at_surface[k] == expected.second);
         }
+        if ((x + y + z) % 3) continue;
+        CellIndex around[27];
+        std::fill(around, around + 27, no_cell);
+        walker.each_surface_of_27(c, [&](int k, CellIndex number) { around[k] = number; });
+        for (int k = 0; k < 27; ++k)
+          ASSERT_EQ(around[k], look(c + Int3(k % 3, k / 3 % 3, k / 9)).second) << x << ' ' << y << ' ' << z;
       }
 }
 
