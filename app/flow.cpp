@@ -70,11 +70,11 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   return make_flow_input(std::move(series), session.settings, news, &interrupt_flag());
 }
 
-Camera camera_for(const Session& session, const PreparedSurface& surface) {
+Camera camera_for(const Session& session, const PreparedSurface& surface, bool legend) {
   std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
   for (const Triangle& t : surface.triangles)
     for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  return read_camera(session, corners);
+  return read_camera(session, corners, legend);
 }
 
 /// Draws frames of one run.
@@ -86,7 +86,7 @@ class Painter {
         settings_(session.settings),
         frame_time_(frame_time),
         map_(colormap(settings_.colormap)),
-        camera_(camera_for(session, input.surface())) {
+        camera_(camera_for(session, input.surface(), settings_.legend && input.colored())) {
     if (settings_.background == "transparent")
       transparent_ = true;
     else

@@ -45,7 +45,7 @@ void write_particles(const std::string& file, const MeshParticles& particles) {
 Image draw_mesh(const SurfaceMesh& mesh, const Session& session, bool cut_away) {
   const Settings& settings = session.settings;
   MeshPictureOptions options;
-  options.camera = read_camera(session, mesh.points);
+  options.camera = read_camera(session, mesh.points, false);
   options.width = settings.width;
   options.height = settings.height;
   options.samples = settings.samples;
@@ -111,13 +111,13 @@ std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Se
   }
   StageTimers::Scope scope(timers, "write");
   if (result.cells) {
-    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels);
+    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels, input.names);
     files.push_back(options.out);
   } else if (options.per_material) {
-    for (const fs::path& file : write_material_surfaces(options.out, result.mesh, input.labels))
+    for (const fs::path& file : write_material_surfaces(options.out, result.mesh, input.labels, input.names))
       files.push_back(file.string());
   } else if (!options.out.empty()) {
-    write_surface_mesh(options.out, result.mesh, input.labels);
+    write_surface_mesh(options.out, result.mesh, input.labels, input.names);
     files.push_back(options.out);
   }
   if (!options.particles_out.empty()) {

@@ -3,22 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "app/common.hpp"
 #include "compute/device/error.hpp"
+#include "engine/picture/legend.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
 #include "engine/scene/camera_json.hpp"
 
 namespace nacre {
-namespace {
-
-bool is_camera_file(const Settings& settings) { return std::filesystem::path(settings.camera).extension() == ".json"; }
-
-}  // namespace
 
 std::array<float, 3> parse_color(const std::string& text) {
   if (text.size() != 7 || text[0] != '#' || text.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
@@ -29,7 +24,8 @@ std::array<float, 3> parse_color(const std::string& text) {
 
 void check_picture_words(const Settings& settings) {
   checked_words([&] {
-    if (!is_camera_file(settings)) fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
+    if (!is_camera_file(settings.camera))
+      fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
   });
   if (settings.background != "transparent") parse_color(settings.background);
 }
@@ -41,12 +37,16 @@ void check_picture_size(int width, int height, bool png, bool video) {
   });
 }
 
-Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {
-  if (!is_camera_file(settings)) return fit_camera(settings.camera, corners, settings.width, settings.height);
+Camera read_camera(const Settings& settings, std::span<const Vec3d> corners, bool legend) {
+  const auto fitted = [&](const std::string& view) {
+    const KeptFree kept = legend ? legend_room(settings.width, settings.height) : KeptFree();
+    return fit_camera(view, corners, settings.width, settings.height, kept);
+  };
+  if (!is_camera_file(settings.camera)) return fitted(settings.camera);
   std::ifstream stream(settings.camera);
   if (!stream) throw Error("cannot read camera " + settings.camera);
   try {
-    return camera_of(nlohmann::json::parse(stream), fit_camera("iso", corners, settings.width, settings.height).height);
+    return camera_of(nlohmann::json::parse(stream), fitted("iso").height);
   } catch (const nlohmann::json::exception& error) {
     throw Error(settings.camera + " is no camera", error.what(), camera_advice);
   } catch (const Error& error) {
@@ -54,8 +54,8 @@ Camera read_camera(const Settings& settings, std::span<const Vec3d> corners) {
   }
 }
 
-Camera read_camera(const Session& session, std::span<const Vec3d> corners) {
-  return session.camera ? *session.camera : read_camera(session.settings, corners);
+Camera read_camera(const Session& session, std::span<const Vec3d> corners, bool legend) {
+  return session.camera ? *session.camera : read_camera(session.settings, corners, legend);
 }
 
 }  // namespace nacre

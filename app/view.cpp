@@ -229,7 +229,16 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   if (!options.save_recording.empty())
     viewer.recorded = [&](const Session& done) { write_text(options.save_recording, session_text(done)); };
   viewer.stop = &interrupt_flag();
-  viewer.first_camera = [](const Settings& s, const std::vector<Vec3d>& corners) { return read_camera(s, corners); };
+  viewer.first_camera = [](const Settings& s, const std::vector<Vec3d>& seen, bool legend) {
+    return read_camera(s, seen, legend);
+  };
+  viewer.check = [](const Session& session) {
+    try {
+      check_all_names(session);
+    } catch (const UsageError& error) {
+      throw Error(error.what());
+    }
+  };
   viewer.say = [&](const std::string& line) { say(options.common, line); };
   const ViewerResult result = run_viewer(viewer);
 

@@ -30,22 +30,4 @@ void move_camera(Camera& camera, const std::string& turning, const FreeArea& are
   }
 }
 
-void look_from(Camera& camera, const std::string& view, std::span<const Vec3d> points, int width, int height) {
-  if (points.empty()) return;
-  const bool orthographic = camera.orthographic;
-  camera = fit_camera(view, points, width, height);
-  camera.orthographic = orthographic;
-}
-
-void fit(Camera& camera, std::span<const Vec3d> points) {
-  if (points.empty()) return;
-  Vec3d low = points.front(), high = low;
-  for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
-  const Vec3d middle = (low + high) * 0.5, forward = camera.forward();
-  const double radius = std::max(0.5 * length(high - low), 1e-30), distance = 9 * radius;
-  camera.eye = middle - forward * distance;
-  camera.target = middle;
-  camera.height = 2.1 * radius;
-}
-
 }  // namespace nacre

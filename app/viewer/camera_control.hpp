@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <string>
 
 #include "compute/raycast/camera.hpp"
@@ -22,11 +21,5 @@ std::array<double, 2> place_in(const FreeArea& area, double x, double y);
 /// Moves the camera by what the mouse has done since the last frame, where no panel wants it. `turning`: turntable or
 /// trackball. Between Interface::begin and end.
 void move_camera(Camera& camera, const std::string& turning, const FreeArea& area);
-
-/// All of `points` from a named view; perspective or orthographic as before.
-void look_from(Camera& camera, const std::string& view, std::span<const Vec3d> points, int width, int height);
-
-/// All of `points` from where the camera looks now.
-void fit(Camera& camera, std::span<const Vec3d> points);
 
 }  // namespace nacre

@@ -108,11 +108,13 @@ void FileDialog::draw_entries() {
     const auto flags = ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick |
                        ImGuiSelectableFlags_DontClosePopups;
     if (ImGui::Selectable(label.c_str(), entry.chosen, flags)) {
-      const bool more = mode_ == Mode::open && ImGui::GetIO().KeyCtrl;
+      const bool more = mode_ == Mode::open && ImGui::GetIO().KeyCtrl, taken_back = more && entry.chosen;
       for (Entry& other : entries_) other.chosen = other.chosen && more;
-      entry.chosen = !entry.folder;
+      entry.chosen = !entry.folder && !taken_back;
       if (entry.folder && ImGui::IsMouseDoubleClicked(0)) into = folder_ / entry.name;
-      if (!entry.folder) name_ = entry.name;
+      if (!entry.folder) name_ = taken_back ? "" : entry.name;
+      for (const Entry& other : entries_)
+        if (taken_back && other.chosen) name_ = other.name;
       if (!entry.folder && ImGui::IsMouseDoubleClicked(0)) entered_ = true;
     }
     ImGui::TableNextColumn();
@@ -149,6 +151,8 @@ std::optional<std::vector<fs::path>> FileDialog::draw() {
   if (ImGui::InputTextWithHint("##name", mode_ == Mode::save ? "name" : "name or path", &name_,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
     entered_ = true;
+  if (ImGui::IsItemEdited())  // what is typed is meant, not what was clicked on before
+    for (Entry& entry : entries_) entry.chosen = false;
   std::optional<std::vector<fs::path>> result;
   const std::vector<fs::path> files = chosen();
   std::error_code ignored;
@@ -158,7 +162,11 @@ std::optional<std::vector<fs::path>> FileDialog::draw() {
   }
   const bool exists = mode_ == Mode::save && files.size() == 1 && fs::exists(files[0], ignored);
   const bool asks = exists && overwrite_ == files[0];
-  const char* words = asks ? "replace it" : mode_ == Mode::save ? "save" : "open";
+  const std::string several = fmt::format("open {} files###open", files.size());
+  const char* words = asks                  ? "replace it"
+                      : mode_ == Mode::save ? "save"
+                      : files.size() > 1    ? several.c_str()
+                                            : "open###open";
   if ((ImGui::Button(words) || entered_) && !files.empty()) {
     if (exists && !asks)
       overwrite_ = files[0];  // once more to be sure

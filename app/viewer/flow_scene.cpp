@@ -83,10 +83,14 @@ std::string FlowScene::state() const {
   return fmt::format("time {:.4g}   step {}{}", time_, steps_, worker_.cancelled() ? "   cancelled" : "");
 }
 
+/// Before the data are known, what was asked for counts.
+bool FlowScene::has_legend() const {
+  return settings_.legend && (data_.array.empty() ? settings_.color : data_.color) != "none";
+}
+
 FlowCaption FlowScene::caption() const {
   FlowCaption caption;
-  const bool coloured = !data_.array.empty() && data_.color != "none";
-  if (settings_.legend && coloured) caption.map = &colormap(settings_.colormap);
+  if (has_legend() && !data_.array.empty()) caption.map = &colormap(settings_.colormap);
   caption.low = range_.low;
   caption.high = range_.high;
   caption.title = data_.color == "speed" ? data_.array : data_.color;
@@ -164,6 +168,7 @@ void FlowScene::take(FlowEvent& event) {
 void FlowScene::take(SurfaceRead& told) {
   surface_ = SurfaceBuffers(told.geometry);
   corners_ = std::move(told.corners);
+  ++surfaces_;
   name_ = std::move(told.name);
   tree_ = std::move(told.tree);
   area_ = told.area;

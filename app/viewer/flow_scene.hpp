@@ -35,6 +35,7 @@ class FlowScene : public Scene {
   bool advance_and_wait(const std::atomic<bool>& stop, double patience = endless) override;
   void set_settings(const Settings& settings) override;
   void cancel() override { worker_.cancel(); }
+  bool halted() const override { return worker_.cancelled() || !failure_.empty(); }
   void resume() override { worker_.resume(); }
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
@@ -48,6 +49,8 @@ class FlowScene : public Scene {
   std::vector<std::string> result_formats() const override { return {".vtp"}; }
 
   const std::vector<Vec3d>& corners() const override { return corners_; }
+  std::uint64_t seen_version() const override { return surfaces_; }
+  bool has_legend() const override;
   bool complete() const override { return shown_ != nullptr; }
   bool settled() const override;
   std::string title() const override;
@@ -115,6 +118,7 @@ class FlowScene : public Scene {
   BoxPass box_pass_;
   std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
   std::vector<Vec3d> corners_;
+  std::uint64_t surfaces_ = 0;  ///< read so far
   std::shared_ptr<const TriangleTree> tree_;
   FlowArrows arrows_;
   FlowData data_;

@@ -241,13 +241,13 @@ std::uint64_t MeshScene::overlay_version() const {
 Image MeshScene::overlay(int width, int height) {
   Image image(width, height);
   std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t(0));
-  if (!settings_.legend) return image;
+  if (!has_legend()) return image;
   const Colormap& map = colormap(settings_.colormap);
   if (particles_drawn()) {
     const bool by_energy = settings_.look.particle_color == "energy";
     const std::array<double, 2> range = by_energy ? energy_range(settings_.mesh) : size_range();
     draw_legend(image, map, range[0], range[1], by_energy ? "energy / ideal" : "size, voxels");
-  } else if (slice_axis(settings_.look) >= 0 && slice_values_) {
+  } else {
     draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], settings_.look.slice_field);
   }
   return image;

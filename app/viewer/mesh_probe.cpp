@@ -32,6 +32,15 @@ std::optional<double> distance_to(const SlicePlane& plane, const Vec3d& from, co
   return distance;
 }
 
+/// The value in the file; where each material has a file, in the one that has the voxel.
+void describe_voxel(Probed& probed, const ViewedVolume& volume, std::size_t index) {
+  if (volume.input.kind != MeshVolume::Kind::indicators)
+    return probed.lines.push_back(fmt::format("volume: {:.6g}", volume.value(index)));
+  const std::size_t material = volume.material[index], file = std::size_t(volume.input.labels[material]) - 1;
+  if (material > 0 && file < volume.volumes->size())
+    probed.lines.push_back(fmt::format("{}: {:.6g}", volume.input.names[material], volume.value(index, file)));
+}
+
 }  // namespace
 
 /// The nearest triangle that is not hidden or cut away.
@@ -80,7 +89,7 @@ std::optional<Probed> MeshScene::probe(const Vec3d& from, const Vec3d& along) {
   probed.lines.push_back(place_line("voxel", volume.to_voxels(probed.place)));
   if (!on_slice) describe_hit(probed, *hit);
   if (const std::optional<std::size_t> index = volume.index_at(probed.place)) {
-    probed.lines.push_back(fmt::format("volume: {:.6g}", volume.value(*index)));
+    describe_voxel(probed, volume, *index);
     if (on_slice) probed.lines.push_back("material: " + material_name(volume.input, volume.material[*index]));
   }
   return probed;

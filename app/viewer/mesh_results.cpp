@@ -76,7 +76,8 @@ void topology_figures(const TopologyReport& t) {
   });
 }
 
-/// Looks at a triangle from where the camera is, or from in front of it where that is along its plane, and from near.
+/// Looks at a triangle from near: from where the camera is, but from in front of it where that is along its plane, and
+/// from outside where the outside is on one of its sides.
 void look_at(const SurfaceMesh& mesh, std::uint32_t triangle, std::optional<Camera>& camera) {
   if (!camera) return;
   const Triangle& t = mesh.triangles[triangle];
@@ -84,7 +85,9 @@ void look_at(const SurfaceMesh& mesh, std::uint32_t triangle, std::optional<Came
   const double edge = std::max({length(b - a), length(c - b), length(a - c)});
   Vec3d normal = cross(b - a, c - a), back = normalized(camera->eye - camera->target);
   if (length(normal) > 0) {
-    normal = normalized(normal);
+    normal = normalized(normal);  // to the side of the first material
+    const bool outer = mesh.materials[triangle][0] == 0;
+    if (outer && dot(normal, back) < 0) back = back - normal * (2 * dot(normal, back));
     const double facing = dot(normal, back);
     if (std::fabs(facing) < 0.3) back = normalized(back + normal * (facing < 0 ? -0.6 : 0.6));
   }
@@ -104,7 +107,10 @@ void worst_list(const MeshResults& results, Session& session) {
     const MeshInput& input = results.volume->input;
     const std::string line = fmt::format("{:.3f}  {} | {}##{}", worst.radius_ratio, material_name(input, pair[0]),
                                          material_name(input, pair[1]), k);
-    if (ImGui::Selectable(line.c_str())) look_at(*results.mesh, worst.triangle, session.camera);
+    if (!ImGui::Selectable(line.c_str())) continue;
+    look_at(*results.mesh, worst.triangle, session.camera);
+    int& highlighted = session.settings.look.worst;  // or it could not be told from its neighbours, nor seen inside
+    highlighted = std::max(highlighted, int(k) + 1);
   }
 }
 

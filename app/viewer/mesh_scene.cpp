@@ -147,6 +147,8 @@ void MeshScene::take(VolumeRead& told) {
   surface_ = {};
   counts_ = {};
   corners_ = std::move(told.corners);
+  box_ = told.volume->box();
+  ++volumes_;
   voxels_ = placement_of(told.frame);
   const MeshInput& input = told.volume->input;
   for (const std::string& warning : input.warnings) warn_once(warning);
@@ -265,12 +267,15 @@ std::vector<std::string> MeshScene::result_formats() const {
 std::string MeshScene::title() const { return results_.volume ? results_.volume->input.name : ""; }
 
 std::string MeshScene::state() const {
+  const std::string end = worker_.halted() && failure_.empty() ? "   cancelled" : "";
   if (results_.mesh && !stale_)
     return fmt::format("{} triangles of {} particles", grouped((long long)results_.mesh->triangles.size()),
-                       grouped(results_.info.final));
-  if (results_.energy.empty()) return "";
-  return fmt::format("{} particles, energy {:.4f}", grouped((long long)results_.particles.back()),
-                     results_.energy.back());
+                       grouped(results_.info.final)) +
+           end;
+  if (results_.energy.empty()) return end;
+  // All that are seen: the history is of those that move, which are the few of the curves at first.
+  const auto particles = std::max((long long)results_.particles.back(), (long long)counts_.total());
+  return fmt::format("{} particles, energy {:.4f}", grouped(particles), results_.energy.back()) + end;
 }
 
 SceneProgress MeshScene::progress() const {

@@ -34,6 +34,7 @@ class MeshScene : public Scene {
   void set_lockstep(bool lockstep) override;
   void set_settings(const Settings& settings) override;
   void cancel() override { worker_.cancel(); }
+  bool halted() const override { return worker_.halted(); }
   void resume() override;
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
@@ -48,6 +49,9 @@ class MeshScene : public Scene {
   std::vector<std::string> result_formats() const override;
 
   const std::vector<Vec3d>& corners() const override { return corners_; }
+  const std::vector<Vec3d>& seen() const override { return shown_plane() ? box_ : corners_; }
+  std::uint64_t seen_version() const override { return 2 * volumes_ + (shown_plane() ? 1 : 0); }
+  bool has_legend() const override { return settings_.legend && (particles_drawn() || slice_has_legend()); }
   bool complete() const override { return results_.mesh || counts_.total() > 0; }
   bool settled() const override { return worker_.settled(); }
   std::string title() const override;
@@ -94,6 +98,7 @@ class MeshScene : public Scene {
   void draw_triangles(const View& view) const;
   void draw_volume(const View& view) const;
   bool particles_drawn() const;
+  bool slice_has_legend() const { return slice_axis(settings_.look) >= 0 && slice_values_; }
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.look.triangles; }
   std::array<double, 2> size_range() const;
   std::optional<TriangleHit> first_seen(const Vec3d& from, const Vec3d& along) const;
@@ -106,7 +111,8 @@ class MeshScene : public Scene {
   MeshResults results_;
   MaterialList materials_;
   TriangleTree rays_;
-  std::vector<Vec3d> corners_;
+  std::vector<Vec3d> corners_, box_;  ///< of what is not outside; of all voxels
+  std::uint64_t volumes_ = 0;         ///< taken so far
   std::vector<std::string> warnings_;
   std::string failure_;
   std::string proposal_;                ///< an iso-value that the session shall take over

@@ -155,18 +155,18 @@ void MeshWorker::write_result() {
   }
   MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; let it be made first"};
   const auto write = [&] {
-    const std::vector<std::int64_t>& labels = viewed_->input.labels;
+    const MeshInput& input = viewed_->input;
     if (has_cells(file)) {
       TetrahedralMesh cells;
       {
         StageTimers::Scope scope(pipeline_->timers(), "tetrahedra");
-        cells = fill_with_tetrahedra(*mesh_, longest_edge(max_cell, viewed_->input.spacing), &interrupt_);
+        cells = fill_with_tetrahedra(*mesh_, longest_edge(max_cell, input.spacing), &interrupt_);
       }
       StageTimers::Scope scope(pipeline_->timers(), "write");
-      write_tetrahedral_mesh(file, cells, *mesh_, labels);
+      write_tetrahedral_mesh(file, cells, *mesh_, input.labels, input.names);
     } else {
       StageTimers::Scope scope(pipeline_->timers(), "write");
-      write_surface_mesh(file, *mesh_, labels);
+      write_surface_mesh(file, *mesh_, input.labels, input.names);
     }
     told.failure.clear();
   };

@@ -49,6 +49,8 @@ class Scene {
   /// Ends what goes on; what there is stays. Other knobs, or `resume`, begin again.
   virtual void cancel() = 0;
   virtual void resume() = 0;
+  /// It was cancelled, or has failed: nothing goes on until `resume` or other knobs.
+  virtual bool halted() const = 0;
 
   virtual void draw(const View& view) = 0;
   /// What lies over the picture and belongs to it: legend and time; transparent elsewhere. Changes with `overlay_version`.
@@ -74,9 +76,13 @@ class Scene {
   /// Extensions that `write_result` takes, e.g. ".vtp".
   virtual std::vector<std::string> result_formats() const = 0;
 
-  virtual const std::vector<Vec3d>& corners() const = 0;  ///< to fit a camera to; empty: nothing read yet
-  virtual bool complete() const = 0;                      ///< shows what it is for: the texture; particles or triangles
-  virtual bool settled() const = 0;  ///< nothing more will come unless something is changed (a mesh that is done)
+  virtual const std::vector<Vec3d>& corners() const = 0;  ///< of the data, world; empty: nothing read yet
+  /// What a camera has to be fitted to: corners of all that is drawn now. Changes with `seen_version`.
+  virtual const std::vector<Vec3d>& seen() const { return corners(); }
+  virtual std::uint64_t seen_version() const = 0;
+  virtual bool has_legend() const = 0;  ///< a colour legend lies over the picture, or soon will
+  virtual bool complete() const = 0;    ///< shows what it is for: the texture; particles or triangles
+  virtual bool settled() const = 0;     ///< nothing more will come unless something is changed (a mesh that is done)
   virtual std::string title() const = 0;
   virtual std::string state() const = 0;  ///< a line: "time 0.2, step 12"; "12,345 particles, energy 0.71"
   virtual SceneProgress progress() const = 0;

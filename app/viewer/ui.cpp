@@ -204,7 +204,7 @@ void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
       if (work_began_ < 0) work_began_ = ImGui::GetTime();
       text(lasting(ImGui::GetTime() - work_began_));
       ImGui::SameLine();
-    } else if (!scene.complete() || !scene.failure().empty()) {
+    } else if (scene.halted()) {
       if (ImGui::Button("compute")) wishes.resume = true;
       ImGui::SameLine();
     }

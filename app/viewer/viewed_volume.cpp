@@ -100,8 +100,8 @@ std::optional<std::size_t> ViewedVolume::index_at(const Vec3d& world) const {
   return index;
 }
 
-double ViewedVolume::value(std::size_t index) const {
-  return std::visit([&](const auto& values) { return double(values[index]); }, volumes->front().values);
+double ViewedVolume::value(std::size_t index, std::size_t file) const {
+  return std::visit([&](const auto& values) { return double(values[index]); }, (*volumes)[file].values);
 }
 
 std::vector<Vec3d> ViewedVolume::corners() const {
@@ -114,6 +114,13 @@ std::vector<Vec3d> ViewedVolume::corners() const {
         low = min(low, Vec3d(x, y, z));
         high = max(high, Vec3d(x + 1, y + 1, z + 1));
       }
+  return corners_of(low, high);
+}
+
+std::vector<Vec3d> ViewedVolume::box() const { return corners_of(Vec3d(0), Vec3d(input.dims)); }
+
+/// Of the voxels from `low` to before `high`.
+std::vector<Vec3d> ViewedVolume::corners_of(const Vec3d& low, const Vec3d& high) const {
   std::vector<Vec3d> corner;
   for (int k = 0; k < 8; ++k)
     corner.push_back(

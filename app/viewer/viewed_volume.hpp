@@ -27,7 +27,7 @@ ValueSpread spread_of(const Volume& volume);
 /// Never changes once it is made: threads share it.
 struct ViewedVolume {
   MeshInput input;
-  std::shared_ptr<const std::vector<Volume>> volumes;  ///< as read; a probe tells values of the first one
+  std::shared_ptr<const std::vector<Volume>> volumes;  ///< as read
   std::vector<std::uint16_t> material;                 ///< per voxel
   ValueSpread spread;                                  ///< of a scalar volume
 
@@ -36,10 +36,15 @@ struct ViewedVolume {
   Vec3d to_voxels(const Vec3d& world) const;
   /// The voxel that holds a place of the world, as an index; none beyond the volume.
   std::optional<std::size_t> index_at(const Vec3d& world) const;
-  double value(std::size_t index) const;
+  double value(std::size_t index, std::size_t file = 0) const;
   /// Corners of the box around the voxels that are not outside, world: corner k has the far side of axis a where bit a is
   /// set.
   std::vector<Vec3d> corners() const;
+  /// The same of the box around all voxels.
+  std::vector<Vec3d> box() const;
+
+ private:
+  std::vector<Vec3d> corners_of(const Vec3d& low, const Vec3d& high) const;
 };
 
 /// A plane of the volume: a parallelogram in the world.

@@ -10,6 +10,7 @@
 #include "app/viewer/camera_control.hpp"
 #include "app/viewer/captions.hpp"
 #include "app/viewer/film.hpp"
+#include "app/viewer/framing.hpp"
 #include "app/viewer/interface.hpp"
 #include "app/viewer/kept_recording.hpp"
 #include "app/viewer/news.hpp"
@@ -107,7 +108,7 @@ class Viewer {
     scene_.reset();
     captions_->forget();
     news_.forget();
-    fitted_ = false;
+    framing_.forget();
     // A number of frames is for headless runs to compare with: these do not begin again after the last time.
     const SceneOptions options{options_.open_device, options_.frames == 0, waits(), !waits(), options_.stop};
     for (const auto& file : session_.inputs)
@@ -189,7 +190,7 @@ class Viewer {
   void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background) {
     frame.bind();
     frame.clear(background);
-    if (!fitted_) return;
+    if (!framing_.ready()) return;
     frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
     const View view = scene_view(session_, scene_->corners(), turned_, area.width, area.height);
     scene_->draw(view);
@@ -201,7 +202,7 @@ class Viewer {
     interface_->begin(width, height, seconds, session_.settings.look);
     const FreeArea area = ui_.free_area(session_.settings.look, width, height);
     area_ = area;
-    fit_new(area.width, area.height);
+    framing_.keep(session_, *scene_, area, options_.first_camera);
     draw_scene(*frame_, area, background_of(session_.settings));
     if (session_.camera) move_by_hand(*session_.camera, area);
     const UiFacts facts{clock_,
@@ -233,6 +234,12 @@ class Viewer {
     if (moved == seen) return;
     camera = moved;
     turned_ = 0;
+  }
+
+  /// From where it is seen now, as far as it has turned.
+  void fit_what_is_seen() {
+    session_.camera = orbit(*session_.camera, std::exchange(turned_, 0));
+    framing_.fit(session_, *scene_, area_);
   }
 
   void take_picture(const Screenshot& picture) {
@@ -280,9 +287,8 @@ class Viewer {
     if (wishes.redo) undo_.redo(session_);
     if (wishes.cancel) scene_->cancel();
     if (wishes.resume) scene_->resume();
-    if (session_.camera && wishes.fit) fit(*session_.camera, scene_->corners());
-    if (session_.camera && !wishes.look_from.empty())
-      look_from(*session_.camera, wishes.look_from, scene_->corners(), area_.width, area_.height);
+    if (session_.camera && wishes.fit) fit_what_is_seen();
+    if (session_.camera && !wishes.look_from.empty()) framing_.look_from(wishes.look_from, session_, *scene_, area_);
     if (wishes.load_session) attempt([&] { load_session(*wishes.load_session); });
     if (wishes.save_session) attempt([&] { save(*wishes.save_session, session_text(session_)); });
     if (wishes.save_result) attempt([&] { saving_.begin(*scene_, *wishes.save_result); });
@@ -330,11 +336,12 @@ class Viewer {
   /// Its state; where it is a recording, that is played.
   void load_session(const std::filesystem::path& file) {
     Session loaded = read_session(file);
+    options_.check(loaded);
     player_.emplace(loaded);
     played_since_ = time_.seconds();
     loaded.events.clear();
     loaded.duration = 0;
-    if (!loaded.camera) fitted_ = false;
+    if (!loaded.camera) framing_.forget();
     session_ = std::move(loaded);
     recent_.add(file);
   }
@@ -363,17 +370,6 @@ class Viewer {
     told_ = session_;
   }
 
-  void fit_new(int width, int height) {
-    if (scene_->corners().empty()) return;
-    if (!session_.camera) {
-      Settings settings = session_.settings;
-      settings.width = width;
-      settings.height = height;
-      session_.camera = options_.first_camera(settings, scene_->corners());
-    }
-    fitted_ = true;
-  }
-
   void open_dropped() {
     if (dropped_.size() == 1 && dropped_[0].extension() == ".json") {
       const std::vector<std::filesystem::path> file = std::exchange(dropped_, {});
@@ -385,7 +381,7 @@ class Viewer {
 
   void note_times(double begin, double end) {
     if (result_.frame_seconds.empty()) result_.first_frame = end - started_;
-    if (fitted_ && result_.first_surface == 0) result_.first_surface = end - started_;
+    if (framing_.ready() && result_.first_surface == 0) result_.first_surface = end - started_;
     if (scene_->complete() && result_.first_texture == 0) result_.first_texture = end - started_;
     if (scene_->complete() || !scene_->failure().empty()) ++counted_;
     result_.frame_seconds.push_back(end - begin);
@@ -427,9 +423,10 @@ class Viewer {
   Undo undo_;
   RecentFiles recent_;
   Wishes wishes_;
+  Framing framing_;
   FreeArea area_;
   FrameClock clock_;
-  bool fitted_ = false, quit_ = false;
+  bool quit_ = false;
   int counted_ = 0;
   News news_;
   std::vector<std::filesystem::path> dropped_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/framing.hpp"
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "engine/picture/image.hpp"
@@ -29,8 +30,9 @@ struct ViewerOptions {
       recorded;  ///< what the user did: told at the end, also after a failure, and now and then in a window
   std::filesystem::path out;  ///< where to write the result at the end; empty: nowhere
   const std::atomic<bool>* stop = nullptr;
-  std::function<Camera(const Settings& settings, const std::vector<Vec3d>& corners)> first_camera;
-  std::function<void(const std::string& line)> say;  ///< a line for stderr
+  Framing::FirstCamera first_camera;
+  std::function<void(const Session& session)> check;  ///< of one that is opened; throws Error as for the first
+  std::function<void(const std::string& line)> say;   ///< a line for stderr
 };
 
 /// How it went, for the report.

@@ -29,9 +29,20 @@ struct Camera {
   }
 };
 
+/// What of a picture's right border nothing may lie under, such as a legend: from `left` to the border, from `top` to
+/// `bottom`, in shares of its width and height from the left upper corner. As it stands: nothing.
+struct KeptFree {
+  double left = 1, top = 0, bottom = 1;
+};
+
 /// A camera that sees all `points` from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z is
-/// up, y for the two z views). Throws Error for any other word.
-Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height);
+/// up, y for the two z views). They fill the picture, or, where they would reach into what is kept free, what is to the
+/// left of it. Throws Error for any other word.
+Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height,
+                  const KeptFree& kept = {});
+
+/// The same from where `from` looks, in its projection.
+Camera fit_camera(const Camera& from, std::span<const Vec3d> points, int width, int height, const KeptFree& kept = {});
 
 /// The same for the corners of a box.
 Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& upper, int width, int height);

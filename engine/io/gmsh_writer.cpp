@@ -1,8 +1,11 @@
 // Nacre: meshes written for Gmsh (.msh, version 2.2, binary).
 #include "engine/io/gmsh_writer.hpp"
 
+#include <fmt/format.h>
+
 #include <bit>
 #include <limits>
+#include <set>
 
 #include "compute/device/error.hpp"
 #include "engine/io/chunks.hpp"
@@ -18,6 +21,24 @@ std::string quoted(const std::string& name) {
   return out + '"';
 }
 
+/// At most so many bytes of it, and no half character of UTF-8.
+std::string shortened(const std::string& name, std::size_t most) {
+  std::size_t end = std::min(most, name.size());
+  while (end < name.size() && end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
+  return name.substr(0, end);
+}
+
+/// A name as Gmsh takes it, that no other group has: readers such as meshio know groups by their names.
+std::string group_name(const GmshMesh::Group& group, std::set<std::string>& taken) {
+  constexpr std::size_t most = 127;
+  std::string name = quoted(shortened(group.name, most));
+  for (int times = 1; !taken.insert(name).second; ++times) {
+    const std::string number = times == 1 ? fmt::format(" {}", group.tag) : fmt::format(" {}.{}", group.tag, times);
+    name = quoted(shortened(group.name, most - number.size()) + number);
+  }
+  return name;
+}
+
 void write_points(Chunks& out, std::span<const Vec3d> points) {
   out.print("$Nodes\n{}\n", points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -31,8 +52,10 @@ void write_groups(Chunks& out, const GmshMesh& mesh) {
   std::size_t groups = 0;
   for (const GmshMesh::Block& block : mesh.blocks) groups += block.groups.size();
   out.print("$PhysicalNames\n{}\n", groups);
+  std::set<std::string> taken;
   for (const GmshMesh::Block& block : mesh.blocks)
-    for (const auto& [tag, name] : block.groups) out.print("{} {} {}\n", block.corners - 1, tag, quoted(name));
+    for (const GmshMesh::Group& group : block.groups)
+      out.print("{} {} {}\n", block.corners - 1, group.tag, group_name(group, taken));
   out.print("$EndPhysicalNames\n");
 }
 

@@ -18,7 +18,7 @@ namespace nacre {
 struct GmshMesh {
   struct Group {
     std::int32_t tag;  ///< > 0; those of triangles and of tetrahedra do not meet
-    std::string name;
+    std::string name;  ///< is cut to 127 bytes and, where another group has it, made its own by the tag
   };
   struct Block {
     int corners = 3;  ///< per cell: 3 triangles, 4 tetrahedra

@@ -24,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Labels = std::span<const std::int64_t>;
+using Names = std::vector<std::string>;
 using Pair = std::array<std::uint16_t, 2>;
 
 std::string checked_extension(const fs::path& file, const std::vector<std::string>& known) {
@@ -66,6 +67,36 @@ CellNumbers cell_numbers(const std::string& name, Labels labels, std::function<s
   return {name, *lower, *upper, [=](std::uint64_t i) { return labels[of(i)]; }};
 }
 
+/// Of every material: what it is called, and with its label where another one is called so, too; "material_LABEL" where
+/// it has no name. None where no material has one.
+Names full_names(Labels labels, std::span<const std::string> given) {
+  const auto empty = [](const std::string& name) { return name.empty(); };
+  if (std::all_of(given.begin(), given.end(), empty)) return {};
+  Names names(labels.size());
+  for (std::size_t m = 0; m < labels.size(); ++m) {
+    const std::string name = m < given.size() ? given[m] : "";
+    const bool shared = !name.empty() && std::count(given.begin(), given.end(), name) > 1;
+    names[m] = name.empty() ? fmt::format("material_{}", labels[m])
+               : shared     ? fmt::format("{} {}", name, labels[m])
+                            : name;
+  }
+  return names;
+}
+
+std::string name_of(std::uint16_t material, Labels labels, const Names& names) {
+  return names.empty() ? fmt::format("material_{}", labels[material]) : names[material];
+}
+
+/// As field data: for each material an array of its name that holds its label. Arrays of strings would stop meshio.
+std::string announce_names(Labels labels, const Names& names) {
+  if (names.empty()) return {};
+  std::string xml = "<FieldData>\n";
+  for (std::size_t m = 0; m < names.size(); ++m)
+    xml += fmt::format("<DataArray type=\"Int64\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n",
+                       xml_escaped(names[m]), labels[m]);
+  return xml + "</FieldData>\n";
+}
+
 /// The labels on both sides of each triangle.
 std::array<CellNumbers, 2> side_numbers(const SurfaceMesh& mesh, Labels labels) {
   const auto side = [&](std::size_t k) {
@@ -84,8 +115,9 @@ std::map<Pair, std::int32_t> numbered_pairs(const SurfaceMesh& mesh) {
   return pairs;
 }
 
-std::string pair_name(const Pair& pair, Labels labels) {
-  return fmt::format("material_{}_{}", labels[pair[0]], labels[pair[1]]);
+std::string pair_name(const Pair& pair, Labels labels, const Names& names = {}) {
+  if (names.empty()) return fmt::format("material_{}_{}", labels[pair[0]], labels[pair[1]]);
+  return names[pair[0]] + " - " + names[pair[1]];
 }
 
 void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
@@ -130,20 +162,20 @@ void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
 }
 
 /// Triangles, one physical group per pair of materials.
-GmshMesh::Block gmsh_triangles(const SurfaceMesh& mesh, Labels labels) {
+GmshMesh::Block gmsh_triangles(const SurfaceMesh& mesh, Labels labels, const Names& names) {
   GmshMesh::Block block;
   const std::map<Pair, std::int32_t> pairs = numbered_pairs(mesh);
   block.cells = mesh.triangles.size();
   block.corner = [&mesh](std::size_t i, int k) { return mesh.triangles[i][k]; };
   block.group = [&mesh, pairs](std::size_t i) { return pairs.at(mesh.materials[i]); };
-  for (const auto& [pair, tag] : pairs) block.groups.push_back({tag, pair_name(pair, labels)});
+  for (const auto& [pair, tag] : pairs) block.groups.push_back({tag, pair_name(pair, labels, names)});
   return block;
 }
 
-void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels, const Names& names) {
   GmshMesh out;
   out.points = mesh.points;
-  out.blocks.push_back(gmsh_triangles(mesh, labels));
+  out.blocks.push_back(gmsh_triangles(mesh, labels, names));
   for (CellNumbers& side : side_numbers(mesh, labels))
     out.numbers.push_back({side.name, [of = side.of](std::size_t, std::size_t i) { return double(of(i)); }});
   write_gmsh(file, out);
@@ -181,15 +213,15 @@ void write_one_material(const fs::path& file, const Surface& surface, const std:
   write_gmsh(file, {surface.points, {std::move(triangles)}, {}});
 }
 
-void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels) {
+void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels, const Names& names) {
   constexpr int vtk_tetrahedron = 10;
   const std::uint64_t cells = mesh.cells.size();
   const CellNumbers material = cell_numbers("material", labels, [&mesh](std::uint64_t i) { return mesh.material[i]; });
   Appended appended;
   std::string xml = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-      mesh.points.size(), cells);
+      "header_type=\"UInt64\">\n<UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+      announce_names(labels, names), mesh.points.size(), cells);
   xml += announce_cell_data(appended, cells, std::span(&material, 1));
   const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3d);
   xml += "<Points>\n" + appended.announce("Float64", "Points", 3, bytes, [&](Base64Text& file) {
@@ -209,7 +241,7 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels)
 }
 
 /// Physical groups are the labels themselves where those are positive, else the materials' numbers.
-GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels) {
+GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, const Names& names) {
   const std::set<std::uint16_t> present(mesh.material.begin(), mesh.material.end());
   const bool usable = std::all_of(present.begin(), present.end(), [&](std::uint16_t m) {
     return labels[m] > 0 && labels[m] <= std::numeric_limits<std::int32_t>::max();
@@ -220,16 +252,17 @@ GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels) {
   block.cells = mesh.cells.size();
   block.corner = [&mesh](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; };
   block.group = [&mesh, tag](std::size_t i) { return tag(mesh.material[i]); };
-  for (const std::uint16_t m : present) block.groups.push_back({tag(m), fmt::format("material_{}", labels[m])});
+  for (const std::uint16_t m : present) block.groups.push_back({tag(m), name_of(m, labels, names)});
   return block;
 }
 
 /// The triangles between the materials, then the tetrahedra. A tetrahedron has its own label on both sides; a triangle's
 /// `material` is the one that its normal points out of.
-void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels) {
+void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels,
+               const Names& names) {
   GmshMesh out;
   out.points = mesh.points;
-  out.blocks = {gmsh_triangles(surface, labels), gmsh_tetrahedra(mesh, labels)};
+  out.blocks = {gmsh_triangles(surface, labels, names), gmsh_tetrahedra(mesh, labels, names)};
   const auto label_of = [&](std::size_t side) {
     return [&mesh, &surface, labels, side](std::size_t block, std::size_t i) {
       return double(labels[block == 0 ? surface.materials[i][side] : mesh.material[i]]);
@@ -245,28 +278,31 @@ std::vector<std::string> surface_mesh_extensions() { return {".vtp", ".ply", ".m
 
 std::vector<std::string> tetrahedral_mesh_extensions() { return {".vtu", ".msh"}; }
 
-void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
+                        std::span<const std::string> names) {
   const std::string extension = checked_extension(file, surface_mesh_extensions());
   check(file, mesh, labels);
   if (extension == ".vtp")
     return write_vtp(file, std::span<const Vec3d>(mesh.points), mesh.triangles, {}, std::nullopt,
-                     side_numbers(mesh, labels));
+                     side_numbers(mesh, labels), announce_names(labels, full_names(labels, names)));
   if (extension == ".ply") return write_ply(file, mesh, labels);
   if (extension == ".obj") return write_obj(file, mesh, labels);
-  if (extension == ".msh") return write_msh(file, mesh, labels);
+  if (extension == ".msh") return write_msh(file, mesh, labels, full_names(labels, names));
   write_surface(file, {mesh.points, mesh.triangles, {}});
 }
 
-std::vector<fs::path> write_material_surfaces(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+std::vector<fs::path> write_material_surfaces(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
+                                              std::span<const std::string> names) {
   checked_extension(file, surface_mesh_extensions());
   check(file, mesh, labels);
+  const Names full = full_names(labels, names);
   std::vector<fs::path> written;
   try {
     for (std::size_t m = 1; m < labels.size(); ++m) {
       const Surface surface = surface_of(mesh, std::uint16_t(m));
       if (surface.triangles.empty()) continue;
       const std::string name = fmt::format("{}_{}{}", file.stem().string(), labels[m], file.extension().string());
-      write_one_material(file.parent_path() / name, surface, fmt::format("material_{}", labels[m]));
+      write_one_material(file.parent_path() / name, surface, name_of(std::uint16_t(m), labels, full));
       written.push_back(file.parent_path() / name);
     }
   } catch (...) {
@@ -278,13 +314,13 @@ std::vector<fs::path> write_material_surfaces(const fs::path& file, const Surfac
 }
 
 void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
-                            Labels labels) {
+                            Labels labels, std::span<const std::string> names) {
   const std::string extension = checked_extension(file, tetrahedral_mesh_extensions());
   check(file, mesh, labels);
   check(file, surface, labels);
   if (surface.points.size() > mesh.points.size()) fail(file, "its surface has more points than it");
-  if (extension == ".vtu") return write_vtu(file, mesh, labels);
-  write_msh(file, mesh, surface, labels);
+  if (extension == ".vtu") return write_vtu(file, mesh, labels, full_names(labels, names));
+  write_msh(file, mesh, surface, labels, full_names(labels, names));
 }
 
 }  // namespace nacre

@@ -12,29 +12,31 @@
 namespace nacre {
 
 /// Writes `mesh`, world coordinates, as .vtp, .ply (binary), .msh (Gmsh 2.2, binary), .obj, .off or .stl (binary).
-/// `labels` has the file's label of each material, that of the outside first.
+/// `labels` has the file's label of each material, that of the outside first; `names` what they are called, where known.
 /// .vtp, .ply and .msh have `material_0` and `material_1` per triangle: the labels on its two sides, in the order of
 /// SurfaceMesh::materials, so that corners run counter-clockwise as seen from the side of `material_0`. .msh moreover
-/// has one physical group per pair of materials; .obj has one group per pair, named by the labels. .stl keeps 32-bit
-/// coordinates. Throws Error for other extensions, for an empty or broken mesh, and where writing fails.
+/// has one physical group per pair of materials, called by their names ("outside - liver") or labels ("material_0_5");
+/// .obj has one group per pair, called by the labels. .vtp has the names as field data: an array of each name that holds
+/// the label. .stl keeps 32-bit coordinates. Throws Error for other extensions, for an empty or broken mesh, and where writing fails.
 void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh,
-                        std::span<const std::int64_t> labels);
+                        std::span<const std::int64_t> labels, std::span<const std::string> names = {});
 
 /// Writes the closed surface of each material but the outside into a file of its own, with normals that point out of
 /// it: `file` F.ext becomes F_LABEL.ext. Materials without a surface are left out; points are those that it uses. If
 /// one fails, those already written are removed. Returns the files. Formats and errors as above; nothing is written per
 /// triangle.
 std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem::path& file, const SurfaceMesh& mesh,
-                                                           std::span<const std::int64_t> labels);
+                                                           std::span<const std::int64_t> labels,
+                                                           std::span<const std::string> names = {});
 
 /// Writes `mesh` as .vtu or .msh (Gmsh 2.2, binary) with the label of each cell as `material`. `surface` is the mesh that
 /// was filled: its points are the first ones of `mesh`, its triangles the facets between materials. .msh has these, too,
 /// before the tetrahedra, with `material_0` and `material_1` as in write_surface_mesh (a tetrahedron has its own label
 /// in both, a triangle's `material` is its `material_1`); one physical group per pair of materials of the triangles and
-/// per material of the tetrahedra. Throws Error for other extensions, for an empty or broken mesh, and where writing
+/// per material of the tetrahedra. Names as above, in .vtu as in .vtp. Throws Error for other extensions, for an empty or broken mesh, and where writing
 /// fails.
 void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
-                            std::span<const std::int64_t> labels);
+                            std::span<const std::int64_t> labels, std::span<const std::string> names = {});
 
 /// Extensions, lower case, with dot.
 std::vector<std::string> surface_mesh_extensions();

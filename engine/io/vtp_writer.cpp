@@ -42,7 +42,8 @@ std::string announce_arrays(Appended& appended, std::span<const PointArray> arra
 
 template <class Real>
 void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points, std::span<const Triangle> triangles,
-           std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells) {
+           std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
+           const std::string& field_data) {
   for (const PointArray& array : arrays)
     if (array.components < 1 || array.values.size() != points.size() * std::size_t(array.components))
       throw Error(fmt::format("cannot write {}", path.string()),
@@ -57,6 +58,7 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
         "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
         "format=\"ascii\">{}</DataArray>\n</FieldData>\n",
         *time);
+  xml += field_data;
   xml += fmt::format(
       "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
       "NumberOfPolys=\"{}\">\n",
@@ -78,13 +80,14 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
 }  // namespace
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
-               std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells) {
-  write<double>(file, points, triangles, arrays, time, cells);
+               std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
+               const std::string& field_data) {
+  write<double>(file, points, triangles, arrays, time, cells, field_data);
 }
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time) {
-  write<float>(file, points, triangles, arrays, time, {});
+  write<float>(file, points, triangles, arrays, time, {}, "");
 }
 
 }  // namespace nacre

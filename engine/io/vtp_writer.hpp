@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "compute/grid/vec.hpp"
 #include "engine/io/vtk_appended.hpp"
@@ -13,11 +14,12 @@ namespace nacre {
 
 /// Writes `points`, `triangles` (empty: every point becomes a vertex cell) and `arrays` (one tuple per point each) as
 /// VTK XML PolyData: appended raw little-endian data, 64-bit headers, no compression; coordinates keep their type.
-/// `time` becomes the field array TimeValue, `cells` arrays on the triangles. Data go to the file as they are, never through a second copy.
+/// `time` becomes the field array TimeValue, or `field_data` is a whole <FieldData> element; `cells` are arrays on the
+/// triangles. Data go to the file as they are, never through a second copy.
 /// Throws Error where the file cannot be written, or an array's length is not that of the points.
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt,
-               std::span<const CellNumbers> cells = {});
+               std::span<const CellNumbers> cells = {}, const std::string& field_data = "");
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt);
 

@@ -15,6 +15,20 @@ namespace {
 
 int rounded(float x) { return int(std::lround(x)); }
 
+/// Rows of a legend's bar.
+struct Rows {
+  int first, count;
+};
+
+Rows bar_rows(int height, float font) {
+  const int first = rounded(0.11f * float(height) + 2.2f * font);
+  const int above_orientation = height - rounded(10 * font) - first;
+  return {first, std::clamp(above_orientation, rounded(5 * font), height / 2)};
+}
+
+int bar_width(float font) { return rounded(1.2f * font); }
+int bar_gap(float font) { return rounded(0.65f * font); }  // to the numbers
+
 /// Where the parts of a legend lie, in pixels.
 struct Layout {
   float font = 0;
@@ -33,9 +47,9 @@ int widest(const std::vector<std::string>& labels, float font) {
 bool lay_out(const Image& image, const Ticks& ticks, float scale, Layout& out) {
   out.font = lettering_size(image) * scale;
   if (out.font <= 0) return false;
-  const int margin = rounded(out.font), gap = rounded(0.65f * out.font);
+  const int margin = rounded(out.font), gap = bar_gap(out.font);
   out.line = std::max(1, rounded(out.font / 16));
-  out.bar_width = rounded(1.2f * out.font);
+  out.bar_width = bar_width(out.font);
   const int exponent_width = ticks.exponent != 0 ? text_width(power_of_ten(ticks.exponent), out.font) : 0;
   const int width =
       out.bar_width + gap + std::max(widest(ticks.labels, out.font), exponent_width - out.bar_width - gap);
@@ -43,9 +57,9 @@ bool lay_out(const Image& image, const Ticks& ticks, float scale, Layout& out) {
   out.right = image.width - margin;
   out.bar_x = out.right - width;
   out.label_x = out.bar_x + out.bar_width + gap;
-  out.bar_y = rounded(0.11f * float(image.height) + 2.2f * out.font);
-  const int above_orientation = image.height - rounded(10 * out.font) - out.bar_y;
-  out.bar_height = std::clamp(above_orientation, rounded(5 * out.font), image.height / 2);
+  const Rows rows = bar_rows(image.height, out.font);
+  out.bar_y = rows.first;
+  out.bar_height = rows.count;
   return true;
 }
 
@@ -102,6 +116,18 @@ void draw_legend(Image& image, const Colormap& map, double min, double max, cons
   draw_bar(image, layout, map, ink);
   draw_ticks(image, layout, ticks, min, max, ink);
   draw_title(image, layout, title, ticks.exponent, ink);
+}
+
+KeptFree legend_room(int width, int height) {
+  const float font = lettering_size(width, height), halo = font / 6 + 1;
+  if (font <= 0) return {};
+  const int margin = rounded(font), bar = bar_width(font) + bar_gap(font);
+  if (bar + text_width("0", font) + margin > width / 4) return {};
+  const float widest = float(bar + text_width("\u22120.000", font) + margin);
+  const Rows rows = bar_rows(height, font);
+  const float left = float(width) - std::min(widest, float(width / 4)) - halo;
+  const float top = float(rows.first) - 3.4f * font, bottom = float(rows.first + rows.count) + 0.5f * font;
+  return {left / float(width), top / float(height), bottom / float(height)};
 }
 
 void draw_time(Image& image, double t, const std::string& unit, double step) {

@@ -2,6 +2,7 @@
 #include "engine/scene/camera_json.hpp"
 
 #include <array>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "compute/device/error.hpp"
@@ -41,5 +42,7 @@ Camera camera_of(const nlohmann::json& json, double height) {
     throw Error("this is no camera", "eye and target must differ, up and height be above zero", camera_advice);
   return camera;
 }
+
+bool is_camera_file(const std::string& camera) { return std::filesystem::path(camera).extension() == ".json"; }
 
 }  // namespace nacre

@@ -17,4 +17,7 @@ inline constexpr const char* camera_advice = R"(it holds {"eye":[x,y,z],"target"
 /// camera: eye and target must differ, up and height be above zero.
 Camera camera_of(const nlohmann::json& json, double height = 2);
 
+/// Is the knob "camera" the name of a JSON file, and not of a view?
+bool is_camera_file(const std::string& camera);
+
 }  // namespace nacre

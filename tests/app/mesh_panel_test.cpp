@@ -88,7 +88,10 @@ class MeshPanel : public testing::Test {
         const Look& look = session_.settings.look;
         hidden_.insert(look.hidden);
         ghosts_.insert(look.ghosts);
-        if (*session_.camera != *before.camera) cameras_[session_.camera->target.x] = *session_.camera;
+        if (*session_.camera != *before.camera) {
+          cameras_[session_.camera->target.x] = *session_.camera;
+          highlighted_[session_.camera->target.x] = look.worst;
+        }
         if (!session_change(before, session_)) click(float(x), float(y));  // a header that has been closed
         session_ = before;
       }
@@ -100,6 +103,7 @@ class MeshPanel : public testing::Test {
   Session session_;
   std::set<std::string> hidden_, ghosts_;
   std::map<double, Camera> cameras_;  ///< by what they look at
+  std::map<double, int> highlighted_;
 };
 
 TEST_F(MeshPanel, MaterialsAreHiddenGhostedAndShownAlone) {
@@ -181,6 +185,16 @@ TEST(Words, LongNumbersAreGrouped) {
   EXPECT_EQ(grouped(1000), "1,000");
   EXPECT_EQ(grouped(-1234567), "-1,234,567");
   EXPECT_EQ(grouped(-999), "-999");
+}
+
+TEST_F(MeshPanel, OuterTrianglesAreSeenFromOutsideAndStandOut) {
+  session_.camera->eye = {3, 4, -20};
+  click_everything();
+  ASSERT_EQ(cameras_.size(), 2u);
+  EXPECT_LT(cameras_.begin()->second.forward().z, -0.3) << "one to the outside, which was behind it";
+  EXPECT_GT(cameras_.rbegin()->second.forward().z, 0.3) << "one between two materials";
+  EXPECT_EQ(highlighted_.begin()->second, 2) << "the second of the list";
+  EXPECT_EQ(highlighted_.rbegin()->second, 1);
 }
 
 TEST_F(MeshPanel, FlatViewsAreTurnedTowardsTheTriangle) {

@@ -9,6 +9,7 @@
 
 #include "app/viewer/scene_view.hpp"
 #include "engine/gl/framebuffer.hpp"
+#include "engine/io/nrrd_writer.hpp"
 #include "tests/engine/gl/offscreen.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
@@ -18,8 +19,7 @@ namespace {
 class MeshInView : public test::Offscreen {
  protected:
   void open(bool lockstep, int iterations = 20) {
-    session_.sample = "two-spheres";
-    session_.detail = 20;
+    if (session_.inputs.empty()) session_.sample = "two-spheres", session_.detail = 20;
     session_.settings.mesh.iterations = iterations;
     if (iterations > 20) session_.settings.mesh.stagnation = 0;
     session_.settings.mesh.mend = 0;
@@ -139,9 +139,13 @@ TEST_F(MeshInView, CancelStopsAndResumeGoesOn) {
   advance();
   EXPECT_LE(scene_->steps(), 26);
   EXPECT_FALSE(scene_->settled());
+  EXPECT_TRUE(scene_->halted());
+  EXPECT_TRUE(scene_->state().ends_with("cancelled")) << scene_->state();
   EXPECT_GT(drawn(), 100);  // what there is stays
   scene_->resume();
+  EXPECT_FALSE(scene_->halted());
   EXPECT_TRUE(settles());
+  EXPECT_FALSE(scene_->state().ends_with("cancelled"));
 }
 
 TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
@@ -172,6 +176,49 @@ TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
   EXPECT_LT(slice->place.x, beyond->place.x);
   EXPECT_NE(line(*slice, "material"), "");
   EXPECT_FALSE(scene_->probe(from, along * -1.0));
+}
+
+TEST_F(MeshInView, AProbeTellsTheProbabilityOfWhatIsThere) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"left", "right"}) {
+    Volume volume;
+    volume.dims = {12, 8, 8};
+    std::vector<std::uint8_t> values(12 * 8 * 8, 0);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if ((i % 12 < 6) == (std::string(name) == "left")) values[i] = i % 12 < 6 ? 200 : 250;
+    volume.values = std::move(values);
+    write_nrrd(folder / (name + std::string(".nrrd")), volume);
+    session_.inputs.push_back(folder / (name + std::string(".nrrd")));
+  }
+  open(true);
+  advance();
+  change([](Settings& s) { s.look.slice = "z"; });
+  const std::optional<Probed> left = scene_->probe({2, 4, 100}, {0, 0, -1}),
+                              right = scene_->probe({9, 4, 100}, {0, 0, -1});
+  ASSERT_TRUE(left && right);
+  EXPECT_EQ(line(*left, "material"), "1 left");
+  EXPECT_EQ(line(*left, "left"), "200");
+  EXPECT_EQ(line(*right, "right"), "250");
+  EXPECT_EQ(line(*right, "volume"), "") << "of which file?";
+}
+
+TEST_F(MeshInView, WhatIsSeenIsTheVolumeUntilThereAreParticles) {
+  open(false, 200);
+  while (scene_->corners().empty()) scene_->advance(0);
+  if (!scene_->complete()) {
+    EXPECT_GT(scene_->seen().back().x, scene_->corners().back().x) << "the box around all voxels";
+    EXPECT_FALSE(scene_->has_legend());
+  }
+  while (!scene_->complete()) scene_->advance(0);
+  EXPECT_EQ(scene_->seen(), scene_->corners());
+  EXPECT_TRUE(scene_->has_legend()) << "of the particles";
+  const std::uint64_t before = scene_->seen_version();
+  change([](Settings& s) { s.look.slice = "x", s.mesh.iterations = 20; });
+  EXPECT_NE(scene_->seen_version(), before);
+  EXPECT_GT(scene_->seen().back().x, scene_->corners().back().x);
+  change([](Settings& s) { s.look.slice = "none"; });
+  EXPECT_TRUE(settles());
+  EXPECT_FALSE(scene_->has_legend()) << "triangles have none";
 }
 
 TEST_F(MeshInView, WritesWhereItIsLiveToo) {

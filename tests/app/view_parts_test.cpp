@@ -150,21 +150,6 @@ TEST(FreeArea, PlacesRunFromTheLeftLowerCorner) {
   EXPECT_EQ(place_in(area, 500, 20), (std::array<double, 2>{1, 1}));
 }
 
-TEST(LookFrom, KeepsTheKindOfProjection) {
-  Camera camera;
-  camera.orthographic = true;
-  const std::vector<Vec3d> corners{{0, 0, 0}, {2, 1, 1}};
-  look_from(camera, "+x", corners, 400, 300);
-  EXPECT_TRUE(camera.orthographic);
-  EXPECT_GT(camera.eye.x, 2);
-  const Vec3d before = camera.forward();
-  camera.target = {9, 9, 9};
-  camera.eye = camera.target - before;
-  fit(camera, corners);
-  EXPECT_NEAR(length(camera.forward() - before), 0, 1e-12);
-  EXPECT_NEAR(length(camera.target - Vec3d(1, 0.5, 0.5)), 0, 1e-12);
-}
-
 }  // namespace
 }  // namespace nacre::test
 

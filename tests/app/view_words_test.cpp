@@ -19,6 +19,18 @@ TEST_F(ViewWords, SizesOfParticlesAreInOrder) {
   expect_failure(nacre(start_ + Words{"--script", path("s.json")}), 2, {"the event at 1 s", complaint});
 }
 
+TEST_F(ViewWords, ASessionIsRefusedInTheWindowAsOnTheCommandLine) {
+  std::ofstream(path("s.json")) << R"({"nacre": "session 1", "sample": "two-spheres",
+                                       "knobs": {"min_size": 3, "max_size": 2}})";
+  const Outcome window = run(
+      "/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_refused.sh", NACRE_PROGRAM, path("s.json"), path("done.json")});
+  if (window.status == 77) GTEST_SKIP() << window.err;
+  ASSERT_EQ(window.status, 0) << window.err;
+  EXPECT_TRUE(contains(window.err, "--min-size 3 is larger than --max-size 2")) << window.err;
+  EXPECT_EQ(read_json(folder / "done.json").at("sample"), "sphere") << "what was open stays";
+  EXPECT_FALSE(contains(read_json(folder / "done.json").dump(), "two-spheres"));
+}
+
 TEST_F(ViewWords, PicturesThatNoFileCanHold) {
   const Words flow = start_ + Words{"--sample", "sphere"}, large = {"--size", "16384x16384"};
   const std::string limit = "268435455 pixels";

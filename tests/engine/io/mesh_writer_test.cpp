@@ -10,6 +10,7 @@
 #include "compute/device/error.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/registry.hpp"
+#include "engine/io/vtk_xml.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
@@ -209,6 +210,60 @@ TEST(MeshWriter, GmshSurfaceHasAGroupPerPair) {
   EXPECT_EQ(msh.names.at({2, msh.group[4]}), "material_0_300");
   EXPECT_EQ(write_material_surfaces(folder / "b.msh", mesh, labels).size(), 2u);
   EXPECT_EQ(Msh(read_all(folder / "b_300.msh")).cells.size(), 4u);
+}
+
+TEST(MeshWriter, GmshGroupsHaveTheNamesOfTheirMaterials) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names = {"outside", "Le foie, d\u00e9coup\u00e9", "", "skin \"thin\""};
+  write_tetrahedral_mesh(folder / "a.msh", two_cells(), two_bodies(), labels, names);
+  const Msh msh(read_all(folder / "a.msh"));
+  EXPECT_EQ(msh.names.at({2, msh.group[0]}), "outside - Le foie, d\u00e9coup\u00e9");
+  EXPECT_EQ(msh.names.at({2, msh.group[1]}), "Le foie, d\u00e9coup\u00e9 - skin _thin_");
+  EXPECT_EQ(msh.names.at({3, 5}), "Le foie, d\u00e9coup\u00e9");
+  EXPECT_EQ(msh.names.at({3, 300}), "skin _thin_");
+  write_surface_mesh(folder / "b.msh", two_bodies(), labels, std::vector<std::string>{"outside", "", "", "skin"});
+  const Msh some(read_all(folder / "b.msh"));
+  EXPECT_EQ(some.names.at({2, some.group[0]}), "outside - material_5") << "one without a name keeps its label";
+  EXPECT_EQ(some.names.at({2, some.group[1]}), "material_5 - skin");
+  write_material_surfaces(folder / "c.msh", two_bodies(), labels, names);
+  EXPECT_EQ(Msh(read_all(folder / "c_300.msh")).names.at({2, 1}), "skin _thin_");
+}
+
+TEST(MeshWriter, GmshGroupsAreToldApartByTheirNames) {
+  const TemporaryFolder folder;
+  const std::string wide(126, 'w');
+  for (const auto& names : {std::vector<std::string>{"outside", "cyst", "cyst", "cyst"},
+                            std::vector<std::string>{"outside", wide + "\u00e9", "", wide + "\u00e9"}}) {
+    write_tetrahedral_mesh(folder / "a.msh", two_cells(), two_bodies(), labels, names);
+    const Msh msh(read_all(folder / "a.msh"));
+    std::set<std::string> different;
+    for (const auto& [group, name] : msh.names) {
+      different.insert(name);
+      EXPECT_LE(name.size(), 127u + 2);
+      EXPECT_NE(name.back(), '\xc3') << "half a letter";
+    }
+    EXPECT_EQ(different.size(), 5u);
+  }
+}
+
+TEST(MeshWriter, VtkFilesHaveTheNamesAsFieldData) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names = {"outside", "liver & bile", "", "skin"};
+  write_surface_mesh(folder / "a.vtp", two_bodies(), labels, names);
+  write_tetrahedral_mesh(folder / "a.vtu", two_cells(), two_bodies(), labels, names);
+  for (const char* file : {"a.vtp", "a.vtu"}) {
+    const std::vector<RawArray> field = VtkXmlFile(read_all(folder / file), folder / file).field_arrays();
+    ASSERT_EQ(field.size(), 4u);
+    const std::vector<std::pair<std::string, float>> expected = {
+        {"outside", 0}, {"liver & bile", 5}, {"material_-7", -7}, {"skin", 300}};
+    for (std::size_t m = 0; m < 4; ++m) {
+      EXPECT_EQ(field[m].name, expected[m].first);
+      EXPECT_EQ(field[m].values, std::vector<float>{expected[m].second});
+    }
+    EXPECT_EQ(read_raw(folder / file).mesh.points.size(), 5u);
+  }
+  write_surface_mesh(folder / "b.vtp", two_bodies(), labels);
+  EXPECT_EQ(read_all(folder / "b.vtp").find("FieldData"), std::string::npos);
 }
 
 TEST(MeshWriter, TetrahedraKeepTheirMaterials) {

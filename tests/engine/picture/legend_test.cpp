@@ -76,6 +76,25 @@ TEST(Legend, StrangeRanges) {
   }
 }
 
+TEST(Legend, StaysInItsRoom) {
+  for (const auto& [width, height] :
+       {std::pair{240, 180}, {320, 240}, {640, 480}, {1024, 768}, {1920, 1080}, {600, 900}})
+    for (const auto& [min, max] :
+         {std::pair{0.0, 47.3}, {-0.004, 0.009}, {-12345.0, 99999.0}, {0.0, 3e-7}, {0.99, 1.01}}) {
+      const KeptFree room = legend_room(width, height);
+      const Image blank = plain_image(width, height, white);
+      Image image = blank;
+      draw_legend(image, colormap("sea"), min, max, "W");
+      const int left = int(room.left * width), top = int(room.top * height),
+                bottom = int(std::ceil(room.bottom * height));
+      EXPECT_EQ(changed_pixels(blank, image, 0, 0, left, height), 0) << width << " x " << height << ": " << max;
+      EXPECT_EQ(changed_pixels(blank, image, 0, 0, width, top), 0) << width << " x " << height << ": " << max;
+      EXPECT_EQ(changed_pixels(blank, image, 0, bottom, width, height), 0) << width << " x " << height;
+      if (width > 600) EXPECT_GT(room.left, 0.85) << "and that is no larger than it need be";
+    }
+  EXPECT_EQ(legend_room(120, 600).left, 1) << "where there is none";
+}
+
 TEST(TimeStamp, IsAtTheBottomLeft) {
   const Image blank = plain_image(640, 480, white);
   Image image = blank;
