@@ -97,7 +97,10 @@ std::int64_t MeshPipelineOf<Backend>::smooth(const MeshRounds& rounds, Triangula
                                              std::span<const std::uint8_t> moving) {
   ParticleSet& set = solver_->particles();
   const std::size_t count = std::size_t(set.count);
-  const TriangleRings ring = triangle_rings(made.mesh, made.point_of, moving, count);
+  const TriangleRings ring = [&] {
+    auto stage = exec_.stage("smooth");
+    return triangle_rings(made.mesh, made.point_of, moving, count);
+  }();
   const std::vector<Float4> before = set.place.download(0, count);
   Arena::Scope scope(exec_.arena());
   Arena& arena = exec_.arena();
