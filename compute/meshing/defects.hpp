@@ -15,7 +15,8 @@ struct DefectRule {
   double angle = 25;   ///< one under this, degrees
   double ratio = 0.4;  ///< or the radius ratio under this
   double near = 0.4;   ///< ... where a corner is on a junction
-  bool fills = true;   ///< a rim's corner that lies flat gets a new point in front of it; else a neighbour goes
+  bool fills =
+      true;  ///< a rim's corner that lies flat gets a new point in front of it; else a neighbour goes, if one may
 };
 
 /// The least that is asked of a mesh, with a margin: what particles go and come for once all have been smoothed.
