@@ -94,7 +94,9 @@ void MeshRuns::place(const MeshSolve& solve) {
 MeshRun MeshRuns::run_once(const MeshSolve& solve) {
   const StageTimers& timers = pipeline_->timers();
   const auto placing = [&] { return timers.seconds("seed") + timers.seconds("relax") + timers.seconds("population"); };
-  const auto extracting = [&] { return timers.seconds("triangulate") + timers.seconds("smooth") + timers.seconds("mend"); };
+  const auto extracting = [&] {
+    return timers.seconds("triangulate") + timers.seconds("smooth") + timers.seconds("mend");
+  };
   const double placed = placing(), relaxed = timers.seconds("relax"), extracted = extracting();
   place(solve);
   MeshRun run;

@@ -141,7 +141,8 @@ struct ClosestInBrick {
   }
 
   /// Calls add(part, k, yes) for the clusters at(0) .. at(count - 1); `yes`: it may be of interest to that part of the
-  /// cube around `centre`, whose parts are cubes with half edge `half`; `near` takes how far the surface is from their centres.
+  /// cube around `centre`, whose parts are cubes with half edge `half`; `near` takes how far the surface is from their
+  /// centres.
   template <class At, class Add>
   NACRE_HD void sift(Team& team, Scratch& s, const Vec3d& centre, float half, int count, const At& at,
                      const Add& add) const {

@@ -29,6 +29,10 @@ std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
   return {mesh.points[c.a], mesh.points[c.b], mesh.points[c.c]};
 }
 
+bool at_junction(const Triangle& t, std::span<const std::uint8_t> order) {
+  return std::min({order[t.a], order[t.b], order[t.c]}) < 2;
+}
+
 /// The corner that lies flat between the two others, or -1.
 int flat_corner(const std::array<double, 3>& angles) {
   const int widest = int(std::max_element(angles.begin(), angles.end()) - angles.begin());
@@ -170,7 +174,7 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
     const double ratio = radius_ratio(p[0], p[1], p[2]);
     if (ratio > 0.75) continue;  // then no angle is under 25 degrees
     const Triangle& c = mesh.triangles[t];
-    const bool near = std::min({order[c.a], order[c.b], order[c.c]}) < 2;
+    const bool near = at_junction(c, order);
     const std::array<double, 3> angles = triangle_angles(p[0], p[1], p[2]);
     const double least = *std::min_element(angles.begin(), angles.end());
     if (ratio >= (near ? rule.near : rule.ratio) && least >= rule.angle) continue;
@@ -195,9 +199,8 @@ double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, con
   double least = wanted_ratio / rule.ratio;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto p = corners(mesh, t);
-    const Triangle& c = mesh.triangles[t];
-    const bool near = std::min({order[c.a], order[c.b], order[c.c]}) < 2;
-    least = std::min(least, radius_ratio(p[0], p[1], p[2]) / (near ? rule.near : rule.ratio));
+    const double asked = at_junction(mesh.triangles[t], order) ? rule.near : rule.ratio;
+    least = std::min(least, radius_ratio(p[0], p[1], p[2]) / asked);
   }
   return least;
 }

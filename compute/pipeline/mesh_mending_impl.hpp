@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include "compute/particles/ring_smoothing.hpp"
 #include "compute/pipeline/mesh_pipeline_impl.hpp"
@@ -40,13 +42,13 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
   begin_unmended();
   Delaunay delaunay(exec_.device().threads());
   MeshRounds rounds;
-  Triangulated made, best;
-  best.fitness = -2;
+  Triangulated made;
+  std::optional<Triangulated> best;
   HostParticles best_particles;
   do {
     tell("triangulate", improve_fraction(rounds));
     made = triangulate_once(delaunay);
-    if (rounds.smoothed < parameters.smooth || made.fitness <= best.fitness) continue;
+    if (rounds.smoothed < parameters.smooth || (best && made.fitness <= best->fitness)) continue;
     best = made;
     best_particles = download_particles();
   } while (improve(rounds, made));
@@ -55,7 +57,7 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
   std::int64_t of_order[3] = {};
   for (const std::uint32_t k : best_particles.interface) ++of_order[junctions_[k].order()];
   info_.points_final = of_order[0], info_.curves_final = of_order[1], info_.surfaces_final = of_order[2];
-  return std::move(best.mesh);
+  return std::move(best->mesh);
 }
 
 /// The first mesh after `relax` is made of what it left, and so are all others: mending has changed the particles since.

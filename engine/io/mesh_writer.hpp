@@ -17,7 +17,8 @@ namespace nacre {
 /// SurfaceMesh::materials, so that corners run counter-clockwise as seen from the side of `material_0`. .msh moreover
 /// has one physical group per pair of materials, called by their names ("outside - liver") or labels ("material_0_5");
 /// .obj has one group per pair, called by the labels. .vtp has the names as field data: an array of each name that holds
-/// the label. .stl keeps 32-bit coordinates. Throws Error for other extensions, for an empty or broken mesh, and where writing fails.
+/// the label. .stl keeps 32-bit coordinates. Throws Error for other extensions, for an empty or broken mesh, and where
+/// writing fails.
 void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh,
                         std::span<const std::int64_t> labels, std::span<const std::string> names = {});
 
@@ -33,8 +34,8 @@ std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem
 /// was filled: its points are the first ones of `mesh`, its triangles the facets between materials. .msh has these, too,
 /// before the tetrahedra, with `material_0` and `material_1` as in write_surface_mesh (a tetrahedron has its own label
 /// in both, a triangle's `material` is its `material_1`); one physical group per pair of materials of the triangles and
-/// per material of the tetrahedra. Names as above, in .vtu as in .vtp. Throws Error for other extensions, for an empty or broken mesh, and where writing
-/// fails.
+/// per material of the tetrahedra. Names as above, in .vtu as in .vtp. Throws Error for other extensions, for an empty or
+/// broken mesh, and where writing fails.
 void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
                             std::span<const std::int64_t> labels, std::span<const std::string> names = {});
 
