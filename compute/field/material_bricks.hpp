@@ -141,26 +141,24 @@ class CubicStencil {
     return {sum(v * x_.value), Vec3f(sum(v * x_.slope), sum(dy * x_.value), sum(dz * x_.value)) * field.cells_per_unit};
   }
 
-  NACRE_HD CubicStencil(const MaterialBricksView& field, const Vec3f& u, int)
-      : first_{int(std::floor(u.x)) - 1, int(std::floor(u.y)) - 1, int(std::floor(u.z)) - 1},
-        x_(field.kernel, u.x - float(first_.x + 1)) {
-    const CubicWeights y(field.kernel, u.y - float(first_.y + 1)), z(field.kernel, u.z - float(first_.z + 1));
+  NACRE_HD_INLINE CubicStencil(const MaterialBricksView& field, const Vec3f& u, int)
+      : local_{int(std::floor(u.x)) - 1, int(std::floor(u.y)) - 1, int(std::floor(u.z)) - 1},
+        x_(field.kernel, u.x - float(local_.x + 1)) {
+    const CubicWeights y(field.kernel, u.y - float(local_.y + 1)), z(field.kernel, u.z - float(local_.z + 1));
     put(y, wy_, sy_, cy_);
     put(z, wz_, sz_, cz_);
     for (int axis = 0; axis < 3; ++axis) {
-      const int block = first_[axis] / block_size;
-      local_[axis] = first_[axis] - block * block_size;
-      split_[axis] = block_size - local_[axis];
-      first_[axis] = block;
+      block_[axis] = local_[axis] / block_size;
+      local_[axis] %= block_size;
     }
   }
 
-  NACRE_HD static void put(const CubicWeights& from, float* value, float* slope, float* curve) {
+  NACRE_HD_INLINE static void put(const CubicWeights& from, float* value, float* slope, float* curve) {
     store4(from.value, value);
     store4(from.slope, slope);
     store4(from.curve, curve);
   }
-  NACRE_HD static void store4(Lanes from, float* to) {
+  NACRE_HD_INLINE static void store4(Lanes from, float* to) {
     const Float4 f = store(from);
     to[0] = f.x, to[1] = f.y, to[2] = f.z, to[3] = f.w;
   }
@@ -168,35 +166,35 @@ class CubicStencil {
   /// The stencil's rows of one material, wherever its up to eight bricks lie.
   class Rows {
    public:
-    NACRE_HD Rows(const CubicStencil& stencil, const MaterialBricksView& field, std::uint32_t material) : at_(stencil) {
-      for (int z = 0; z < (at_.split_[2] < 4 ? 2 : 1); ++z)
-        for (int y = 0; y < (at_.split_[1] < 4 ? 2 : 1); ++y)
-          for (int x = 0; x < (at_.split_[0] < 4 ? 2 : 1); ++x)
-            base_[z][y][x] =
-                field.value +
-                std::size_t(brick_voxels) *
-                    field.brick(field.block_number(at_.first_.x + x, at_.first_.y + y, at_.first_.z + z), material);
+    NACRE_HD_INLINE Rows(const CubicStencil& stencil, const MaterialBricksView& field, std::uint32_t material)
+        : at_(stencil), first_(stencil.local_.x > 4 ? stencil.local_.x - 4 : 0) {
+      const Int3 b = at_.block_;
+      for (int z = 0; z < (at_.local_.z > 4 ? 2 : 1); ++z)
+        for (int y = 0; y < (at_.local_.y > 4 ? 2 : 1); ++y) {
+          const std::int64_t block = field.block_number(b.x, b.y + y, b.z + z);
+          const float* brick = field.value + std::size_t(brick_voxels) * field.brick(block, material);
+          low_[2 * z + y] = brick + at_.local_.x - first_;
+          high_[2 * z + y] = first_ == 0 ? low_[2 * z + y]
+                                         : field.value + std::size_t(brick_voxels) * field.brick(block + 1, material);
+        }
     }
 
     NACRE_HD_INLINE Lanes operator()(int b, int c) const {
-      const int hy = b >= at_.split_[1], hz = c >= at_.split_[2];
-      const int y = at_.local_[1] + b - hy * block_size, z = at_.local_[2] + c - hz * block_size;
-      const int line = (z * block_size + y) * block_size;
-      const float* lower = base_[hz][hy][0] + line + at_.local_[0];
-      if (at_.split_[0] >= 4) return lanes(lower[0], lower[1], lower[2], lower[3]);
-      const float* upper = base_[hz][hy][1] + line - at_.split_[0];
-      return lanes(lower[0], (1 < at_.split_[0] ? lower : upper)[1], (2 < at_.split_[0] ? lower : upper)[2], upper[3]);
+      const int y = at_.local_.y + b, z = at_.local_.z + c;
+      const int brick = 2 * (z / block_size) + y / block_size;
+      const int line = (z % block_size * block_size + y % block_size) * block_size;
+      return four_of(low_[brick] + line, high_[brick] + line, first_);
     }
 
    private:
     const CubicStencil& at_;
-    const float* base_[2][2][2];
+    int first_;                       ///< of the eight voxels from low_ and high_
+    const float *low_[4], *high_[4];  ///< per brick along y and z: four voxels of it, and the next four
   };
 
-  Int3 first_;  ///< after construction: the lowest block
+  Int3 local_, block_;  ///< the lowest voxel: its place in its block
   CubicWeights x_;
   float wy_[4], sy_[4], cy_[4], wz_[4], sz_[4], cz_[4];
-  int local_[3], split_[3];
 };
 
 /// The material of a point: the one whose function is the largest there; ties go to the lower number.

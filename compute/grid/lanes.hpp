@@ -29,6 +29,11 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a.x, a.y, a.z, a.w}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return {x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a.x, a.y, a.z}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a.x + a.y + (a.z + a.w); }
+/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 4) on.
+NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
+  const auto at = [&](int k) { return k < 4 ? low[k] : high[k - 4]; };
+  return {at(first), at(first + 1), at(first + 2), at(first + 3)};
+}
 
 #else
 
@@ -40,6 +45,18 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a[0], a[1], a[2], a[3]}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return Lanes{x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a[0], a[1], a[2]}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a[0] + a[1] + (a[2] + a[3]); }
+/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 4) on.
+NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
+#if __has_builtin(__builtin_shuffle)
+  typedef float Unaligned __attribute__((vector_size(16), aligned(4), may_alias));
+  typedef int Places __attribute__((vector_size(16)));
+  return __builtin_shuffle(Lanes(*reinterpret_cast<const Unaligned*>(low)),
+                           Lanes(*reinterpret_cast<const Unaligned*>(high)), Places{0, 1, 2, 3} + first);
+#else
+  const auto at = [&](int k) { return k < 4 ? low[k] : high[k - 4]; };
+  return Lanes{at(first), at(first + 1), at(first + 2), at(first + 3)};
+#endif
+}
 
 /// Four nodes of a row side by side: the first two axes of a 4^3 stencil are reduced for all of them at once.
 typedef float Row __attribute__((vector_size(64)));
