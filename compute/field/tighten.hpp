@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "compute/field/build_material_bricks.hpp"
+#include "compute/field/slopes.hpp"
 
 namespace nacre {
 
@@ -23,13 +24,31 @@ struct GaussianTaps {
 
 namespace detail {
 
+/// What of each voxel belongs to the material of a brick: all or nothing, but along slopes.
 struct StartTightening {
   BrickVoxels voxels;
+  LabelSlopes slopes;
   float* source;
+
   NACRE_HD void operator()(std::int64_t i) const {
     const Int3 v = voxels(i);
-    const std::uint32_t m = voxels.field.voxel_material[voxels.field.voxel_number(v.x, v.y, v.z)];
-    source[i + 2 * brick_voxels] = m == voxels.field.brick_material[i / brick_voxels + 2] ? 1.0f : 0.0f;
+    const MaterialBricksView& field = slopes.field;
+    const std::uint16_t* at = field.voxel_material + field.voxel_number(v.x, v.y, v.z);
+    const std::uint32_t mine = field.brick_material[i / brick_voxels + 2], own = *at;
+    const Int3 n = field.voxels();
+    const std::int64_t stride[3] = {1, n.x, std::int64_t(n.x) * n.y};
+    float all = 0, part = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {-1, 1}) {
+        if (slopes.reach <= 0 || v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
+        const std::uint32_t other = at[side * stride[axis]];
+        if (other == own) continue;
+        const float share = slopes.share_beyond(v, axis, side);
+        all += share;
+        part += other == mine ? share : 0;
+      }
+    const float most = all > 0.5f ? 0.5f / all : 1;
+    source[i + 2 * brick_voxels] = mine == own ? 1 - all * most : part * most;
   }
 };
 
@@ -202,7 +221,7 @@ struct TightenResult {
 /// smooth everywhere, and every voxel's centre stays in its material, thin ones by a wider margin. `width`: of G in voxels,
 /// up to 1.5; 0: the binary functions as they are.
 template <class Backend>
-TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width) {
+TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, double stairs) {
   constexpr int reach = 6, narrow_reach = 2;
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
@@ -211,7 +230,7 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width) 
   const std::int64_t elements = (b.bricks - 2) * brick_voxels;
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
   if (width <= 0) {
-    exec.for_each(elements, detail::StartTightening{voxels, b.value.data()});
+    exec.for_each(elements, detail::StartTightening{voxels, {b.view(), 0}, b.value.data()});
     return result;
   }
   Array<float> source = arena.temporary<float>(b.value.size());
@@ -222,7 +241,7 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width) 
   from.value = source.data();
   b.value.fill_bytes(0);
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{source.data(), 0, 1});
-  exec.for_each(elements, detail::StartTightening{voxels, source.data()});
+  exec.for_each(elements, detail::StartTightening{voxels, {b.view(), float(stairs)}, source.data()});
   changed.fill_bytes(1);
   exec.for_each_team(b.bricks - 2, detail::SmoothBrick<reach, 2>{
                                        from,

@@ -11,6 +11,7 @@ enum FieldStage { tighten_stage, distance_stage, sizing_stage, embed_stage, fiel
 /// Values as the stages see them: two sets of knobs that come to the same are the same.
 struct FieldRecipe {
   double width = 0;  ///< tighten: 0 where the volume is not made of labels
+  double stairs = 0;  ///< tighten
   CubicKernel kernel =
       CubicKernel::catmull_rom;  ///< of all stages that read the materials' functions: from distance on
   float spacing = 0.25f;         ///< asked for; the lattice that follows from it is what counts
@@ -21,7 +22,7 @@ struct FieldRecipe {
 
   /// How many stages, from the first, are built alike by `other`.
   int alike(const FieldRecipe& other) const {
-    if (width != other.width) return tighten_stage;
+    if (width != other.width || stairs != other.stairs) return tighten_stage;
     if (kernel != other.kernel || !(lattice == other.lattice) || reach != other.reach) return distance_stage;
     if (!(rule == other.rule)) return sizing_stage;
     return cells_per_voxel != other.cells_per_voxel ? embed_stage : field_stages;

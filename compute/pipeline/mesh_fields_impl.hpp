@@ -50,6 +50,7 @@ template <class Backend>
 FieldRecipe MeshPipelineOf<Backend>::field_recipe() const {
   FieldRecipe recipe;
   if (kind_ == MeshVolume::Kind::labels) recipe.width = parameters.tighten;
+  if (recipe.width > 0) recipe.stairs = parameters.stairs;
   recipe.kernel = cubic_kernel(parameters);
   recipe.rule = {float(parameters.epsilon), float(parameters.delta), float(parameters.min_size),
                  float(std::max(parameters.min_size, parameters.max_size)), parameters.curvature};
@@ -99,7 +100,7 @@ void MeshPipelineOf<Backend>::build_stage(FieldStage which) {
   auto stage = exec_.stage(name[which]);
   tell(name[which], fraction[which]);
   switch (which) {
-    case tighten_stage: info_.constrained_voxels = tighten(exec_, bricks_, recipe_.width).held; break;
+    case tighten_stage: info_.constrained_voxels = tighten(exec_, bricks_, recipe_.width, recipe_.stairs).held; break;
     case distance_stage: distance_ = distance_field(exec_, bricks_, recipe_.spacing, recipe_.reach); break;
     case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule); break;
     default:

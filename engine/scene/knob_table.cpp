@@ -119,6 +119,7 @@ std::vector<Knob> mesh_knobs(Settings& s) {
        most,
        {}},
       {"tighten", "fields", "voxels", "smoothing of label boundaries; 0: keep the stairs", &m.tighten, 0, 1.5, {}},
+      {"stairs", "fields", "voxels", "stairs of labels with treads up to this wide become slopes", &m.stairs, 0, 128, {}},
       {"kernel", "fields", "", "reconstruction of fields", &m.kernel, 0, 0, {"catmull-rom", "b-spline"}},
       {"mesh_subcells", "fields", "", "closest-point cells per voxel and axis", &m.subcells, 1, 8, {}},
       {"epsilon",

@@ -86,6 +86,84 @@ void AnObliquePlaneHasNoStairs(Executor<Backend>& exec) {
     EXPECT_LT(std::fabs(dot(Vec3d(at.p) - Vec3d(volume_padding + 0.5) - c, n)), 0.5);
 }
 
+/// A plane that rises one voxel in `run` along x and in `other_run` along y, its labels tightened with `stairs`: median error of
+/// its normals, degrees.
+template <class Backend>
+double slope_error(Executor<Backend>& exec, double run, double other_run, double stairs) {
+  const Vec3d n = normalized(Vec3d(-1 / run, -1 / other_run, 1)), c(40.2, 40.1, 16.6);
+  const MeshVolume volume = label_volume({80, 80, 33}, 2, [&](const Vec3d& p) { return dot(p - c, n) > 0; });
+  std::vector<Vec3f> places;
+  for (int i = -60; i <= 60; ++i)
+    for (int j = -60; j <= 60; ++j) {
+      const double x = 0.43 * i, y = 0.43 * j;
+      places.push_back(in_fields(c + Vec3d(x, y, x / run + y / other_run)));
+    }
+  const std::size_t mark = exec.arena().mark();
+  const MaterialBricks b = bricks_of(exec, volume, 1.2, CubicKernel::catmull_rom, nullptr, wide_range, stairs);
+  const double error = median_of(normal_errors(exec, b, places, [&](const Vec3f&) { return Vec3f(n); }));
+  exec.arena().rewind(mark);
+  return error;
+}
+
+template <class Backend>
+void StairsBecomeSlopes(Executor<Backend>& exec) {
+  const double runs[][2] = {{3, 7}, {5, 1e9}, {12, 1e9}, {12.3, 19.7}, {30, 1e9}, {30, 41}};
+  for (const auto& [run, other] : runs) {
+    const double off = slope_error(exec, run, other, 0), on = slope_error(exec, run, other, 32);
+    std::printf("one voxel in %g and in %g: median normal error %.2f degrees, as stairs %.2f\n", run, other, on, off);
+    EXPECT_LT(on, 1.7);
+    EXPECT_LT(on, 0.6 * off);
+  }
+}
+
+struct ShareAtTop {
+  LabelSlopes slopes;
+  int top;
+  float* share;
+  NACRE_HD void operator()(std::int64_t x) const {
+    const Int3 v = Int3(int(x), 8, top) + Int3(volume_padding), up(0, 0, 1);
+    share[x] = slopes.share_beyond(v + up, 2, -1) - slopes.share_beyond(v, 2, 1);
+  }
+};
+
+/// Of the voxels above voxel `top`, what belongs to the lower material, less what does not of those below; along x at y = 8.
+template <class Backend>
+std::vector<float> shares_along_x(Executor<Backend>& exec, const Int3& n,
+                                  const std::function<bool(const Vec3d&)>& lower, int top) {
+  const std::size_t mark = exec.arena().mark();
+  Arena::Scope scope(exec.arena());
+  const MaterialBricks b = bricks_of(exec, label_volume(n, 2, lower), 0);
+  Array<float> share = exec.arena().template temporary<float>(n.x);
+  exec.for_each(n.x, ShareAtTop{{b.view()}, top, share.data()});
+  const std::vector<float> shares = share.download();
+  exec.arena().rewind(mark);
+  return shares;
+}
+
+/// Four treads of six voxels: in the middle ones the boundary runs from centre to centre.
+template <class Backend>
+void ATreadIsReadAsASlope(Executor<Backend>& exec) {
+  const auto stairs = [](const Vec3d& p) { return p.z <= 4 + int(p.x) / 6; };
+  const auto second = shares_along_x(exec, {24, 17, 16}, stairs, 5);
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(second[6 + k], (k - 2.5f) / 6, 1e-5f) << k;
+  for (const int x : {0, 3, 5, 12, 20}) EXPECT_EQ(second[x], 0) << x;  // the boundary is not there
+}
+
+/// Below a step of more than three voxels, and on a plate that ends there, treads stay.
+template <class Backend>
+void WallsAreNoSteps(Executor<Backend>& exec) {
+  const Int3 n(24, 17, 20);
+  const auto all_zero = [](const std::vector<float>& shares) {
+    return std::all_of(shares.begin(), shares.end(), [](float s) { return s == 0; });
+  };
+  EXPECT_TRUE(all_zero(shares_along_x(
+      exec, n, [](const Vec3d& p) { return p.z <= (p.x < 12 ? 5 : 9); }, 5)));
+  EXPECT_FALSE(all_zero(shares_along_x(
+      exec, n, [](const Vec3d& p) { return p.z <= (p.x < 12 ? 5 : 8); }, 5)));
+  EXPECT_TRUE(all_zero(shares_along_x(
+      exec, n, [](const Vec3d& p) { return p.z >= 5 && p.z < 8 && p.x > 6 && p.x < 16 && p.y > 3 && p.y < 13; }, 7)));
+}
+
 /// The cube between eight voxel centres that holds a point has corners of both materials: its voxel shell.
 inline bool in_shell(const MeshVolume& volume, const Vec3f& p) {
   const Vec3d at = Vec3d(p) - Vec3d(volume_padding + 0.5);
@@ -128,6 +206,9 @@ NACRE_DEVICE_TEST(Tighten, EveryVoxelStaysInItsMaterial)
 NACRE_DEVICE_TEST(Tighten, EvenTheWorstVoxelsStay)
 NACRE_DEVICE_TEST(Tighten, WithoutWidthTheLabelsAreLeftAlone)
 NACRE_DEVICE_TEST(Tighten, AnObliquePlaneHasNoStairs)
+NACRE_DEVICE_TEST(Tighten, StairsBecomeSlopes)
+NACRE_DEVICE_TEST(Tighten, ATreadIsReadAsASlope)
+NACRE_DEVICE_TEST(Tighten, WallsAreNoSteps)
 NACRE_DEVICE_TEST(Tighten, ABallOfLabelsBecomesRound)
 
 }  // namespace nacre::test
