@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "compute/device/executor.hpp"
+#include "compute/device/team.hpp"
 #include "compute/field/build_material_bricks.hpp"
 #include "compute/field/interface.hpp"
 
@@ -42,6 +43,26 @@ struct Lattice {
     return c;
   }
   bool operator==(const Lattice&) const = default;
+
+  /// Tiles of 8^3 cells, for work that much of the lattice does without.
+  static constexpr int tile = 8;
+  NACRE_HD Int3 tiles() const {
+    return {(cells.x + tile - 1) / tile, (cells.y + tile - 1) / tile, (cells.z + tile - 1) / tile};
+  }
+  NACRE_HD std::int64_t tile_count() const { return std::int64_t(tiles().x) * tiles().y * tiles().z; }
+  NACRE_HD Int3 tile_at(std::int64_t t) const {
+    const Int3 n = tiles();
+    return {int(t % n.x), int(t / n.x % n.y), int(t / n.x / n.y)};
+  }
+  /// body(cell, number of the cell) for the cells of tile `t`, shared out among the team.
+  template <class Body>
+  NACRE_HD void each_in_tile(Team& team, std::int64_t t, const Body& body) const {
+    const Int3 low = tile_at(t) * Int3(tile);
+    team.each(tile * tile * tile, [&](int k) {
+      const Int3 c = low + Int3(k % tile, k / tile % tile, k / (tile * tile));
+      if (holds(c)) body(c, number(c.x, c.y, c.z));
+    });
+  }
 };
 
 /// For each cell of a lattice within `reach` voxels of an interface: which interface point is the closest to its centre.
@@ -195,60 +216,66 @@ struct FindInterfacePoints {
   }
 };
 
-/// Blocks that can be within reach of an interface: those with a list of materials, and `around` blocks about them.
-struct MarkNearBlocks {
+/// Tiles that can be within reach of an interface: those with a block that lists materials not farther away than `margin`.
+struct MarkNearTiles {
   MaterialBricksView field;
-  int around;
+  Lattice lattice;
+  float margin;  ///< voxels
   std::uint8_t* near;
 
-  NACRE_HD void operator()(std::int64_t i) const {
-    const Int3 n = field.blocks, b{int(i % n.x), int(i / n.x % n.y), int(i / n.x / n.y)};
-    const Int3 low = max(b - Int3(around), Int3(0)), high = min(b + Int3(around), n - Int3(1));
-    near[i] = 0;
+  NACRE_HD void operator()(std::int64_t t) const {
+    const Int3 tile = lattice.tile_at(t);
+    Int3 low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float wide = Lattice::tile * lattice.spacing[axis], per_block = field.cells_per_unit[axis] / block_size;
+      low[axis] = int(max((float(tile[axis]) * wide - margin) * per_block, 0.0f));
+      high[axis] = int((float(tile[axis] + 1) * wide + margin) * per_block);
+    }
+    high = min(high, field.blocks - Int3(1));
+    near[t] = 0;
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
           const std::int64_t k = field.block_number(x, y, z);
-          if (field.block_start[k] != field.block_start[k + 1]) near[i] = 1;
+          if (field.block_start[k] != field.block_start[k + 1]) near[t] = 1;
         }
   }
 };
 
 /// One round of jump flooding (Rong & Tan 2006): look `jump` cells away for a closer point.
 struct JumpFlood {
-  MaterialBricksView field;
-  const std::uint8_t* near;  ///< per block
+  const std::uint8_t* near;  ///< per tile; the others keep what they have
   DistanceFieldView from;
   int jump;
   std::uint32_t* to;
 
-  NACRE_HD bool is_near(const Vec3f& p) const {
-    const Vec3f u = p * field.cells_per_unit;
-    const Int3 b = min(Int3(int(u.x), int(u.y), int(u.z)), field.voxels() - Int3(1));
-    return near[field.block_number(b.x / block_size, b.y / block_size, b.z / block_size)] != 0;
+  static constexpr std::size_t scratch_bytes() { return 0; }
+
+  NACRE_HD void operator()(Team& team, std::int64_t t) const {
+    if (!near[t]) return;
+    from.lattice.each_in_tile(team, t, [&](const Int3& v, std::int64_t i) { to[i] = closest(v); });
   }
 
-  NACRE_HD void operator()(std::int64_t i) const {
-    const Int3 v = from.lattice.cell(i);
-    const Vec3f p = from.lattice.centre(v);
+ private:
+  NACRE_HD std::uint32_t closest(const Int3& v) const {
+    const Lattice& lattice = from.lattice;
+    const Vec3f p = lattice.centre(v);
     std::uint32_t best = none;
-    if (!is_near(p)) {
-      to[i] = none;
-      return;
-    }
     float least = from.reach * from.reach;
-    for (int dz = -jump; dz <= jump; dz += jump)
-      for (int dy = -jump; dy <= jump; dy += jump)
-        for (int dx = -jump; dx <= jump; dx += jump) {
-          const Int3 w = v + Int3(dx, dy, dz);
-          if (!from.lattice.holds(w)) continue;
-          const std::uint32_t q = from.nearest[from.lattice.number(w.x, w.y, w.z)];
+    for (int z = v.z - jump; z <= v.z + jump; z += jump)
+      for (int y = v.y - jump; y <= v.y + jump; y += jump) {
+        if (unsigned(y) >= unsigned(lattice.cells.y) || unsigned(z) >= unsigned(lattice.cells.z)) continue;
+        const std::uint32_t* row = from.nearest + lattice.number(0, y, z);
+        for (int x = v.x - jump; x <= v.x + jump; x += jump) {
+          if (unsigned(x) >= unsigned(lattice.cells.x)) continue;
+          const std::uint32_t q = row[x];
           if (q == none || q == best) continue;
           const Vec3f r = from.place(q) - p;
           const float d = dot(r, r);
           if (d < least || (d == least && q < best)) least = d, best = q;
         }
-    to[i] = best;
+      }
+    return best;
   }
 };
 
@@ -295,14 +322,16 @@ DistanceField distance_field(Executor<Backend>& exec, const MaterialBricks& b, f
   int jump = 1;
   while (2 * jump * std::min({d.lattice.spacing.x, d.lattice.spacing.y, d.lattice.spacing.z}) < reach) jump *= 2;
   // A list says what is within 4 voxels of its block, and an interface point lies up to 2.5 from its boundary voxel.
-  const int around = std::max(0, int(std::ceil((reach + 3.5f - 4) / block_size)));
-  Array<std::uint8_t> near = arena.temporary<std::uint8_t>(b.block_count());
-  exec.for_each(b.block_count(), detail::MarkNearBlocks{b.view(), around, near.data()});
+  const float margin = std::max(reach + 3.5f - 4, 0.0f);
+  const std::int64_t tiles = d.lattice.tile_count();
+  Array<std::uint8_t> near = arena.temporary<std::uint8_t>(tiles);
+  exec.for_each(tiles, detail::MarkNearTiles{b.view(), d.lattice, margin, near.data()});
+  other.fill_bytes(0xff);  // `none`, as in the first
   std::uint32_t *from = d.nearest.data(), *to = other.data();
   const auto flood = [&](int distance) {
     DistanceFieldView view = d.view();
     view.nearest = from;
-    exec.for_each(n, detail::JumpFlood{b.view(), near.data(), view, distance, to});
+    exec.for_each_team(tiles, detail::JumpFlood{near.data(), view, distance, to});
     std::swap(from, to);
   };
   for (; jump >= 1; jump /= 2) flood(jump);

@@ -116,16 +116,45 @@ struct SpreadSize {
   }
 };
 
-/// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis.
+/// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis. Looks at tiles
+/// that have changed, or one beside them has: elsewhere `from` and `to` are alike.
 struct LimitSlope {
   Lattice lattice;
   float delta;
   const float* from;
   float* to;
+  const std::uint32_t* had_changed;  ///< per tile
   std::uint32_t* changed;
+  std::uint32_t* any;
 
-  NACRE_HD void operator()(std::int64_t i) const {
-    const Int3 v = lattice.cell(i);
+  static constexpr float least_change = 1e-3f;
+  static constexpr std::size_t scratch_bytes() { return 0; }
+
+  NACRE_HD void operator()(Team& team, std::int64_t t) const {
+    if (team.first()) changed[t] = 0;
+    team.wait();
+    if (!needed(t)) return;
+    lattice.each_in_tile(team, t, [&](const Int3& v, std::int64_t i) {
+      const float limited = limit(v, i);
+      to[i] = limited;
+      if (limited == from[i]) return;
+      relaxed_store(changed + t, 1);
+      relaxed_store(any, 1);
+    });
+  }
+
+ private:
+  NACRE_HD bool needed(std::int64_t t) const {
+    if (had_changed[t]) return true;
+    const Int3 at = lattice.tile_at(t), n = lattice.tiles();
+    const std::int64_t stride[3] = {1, n.x, std::int64_t(n.x) * n.y};
+    for (int axis = 0; axis < 3; ++axis)
+      if ((at[axis] > 0 && had_changed[t - stride[axis]]) || (at[axis] + 1 < n[axis] && had_changed[t + stride[axis]]))
+        return true;
+    return false;
+  }
+
+  NACRE_HD float limit(const Int3& v, std::int64_t i) const {
     const std::int64_t stride[3] = {1, lattice.cells.x, std::int64_t(lattice.cells.x) * lattice.cells.y};
     float low[3], step[3];
     int count = 0;
@@ -153,8 +182,7 @@ struct LimitSlope {
       best = x;
       if (k + 1 < count && x <= low[k + 1]) break;
     }
-    to[i] = min(own, best);
-    if (best < own - 1e-3f) relaxed_store(changed, 1);
+    return best < own - least_change ? best : own;
   }
 };
 
@@ -222,15 +250,19 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   }
   field.small = low;
   Array<float> other = arena.temporary<float>(n);
-  Array<std::uint32_t> changed = arena.temporary<std::uint32_t>(1);
+  const std::int64_t tiles = field.lattice.tile_count();
+  Array<std::uint32_t> changed[2] = {arena.temporary<std::uint32_t>(tiles), arena.temporary<std::uint32_t>(tiles)};
+  Array<std::uint32_t> any = arena.temporary<std::uint32_t>(1);
+  changed[0].fill_bytes(1);
   exec.for_each(n, detail::SpreadSize{view, rule, at_point.data(), field.h.data()});
   float *from = field.h.data(), *to = other.data();
   const int most_rounds = field.lattice.cells.x + field.lattice.cells.y + field.lattice.cells.z;
   for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {
-    changed.fill_bytes(0);
-    exec.for_each(n, detail::LimitSlope{field.lattice, rule.delta, from, to, changed.data()});
+    any.fill_bytes(0);
+    exec.for_each_team(tiles, detail::LimitSlope{field.lattice, rule.delta, from, to, changed[round % 2].data(),
+                                                 changed[1 - round % 2].data(), any.data()});
     std::swap(from, to);
-    if (changed.download()[0] == 0 && from == field.h.data()) break;
+    if (any.download()[0] == 0 && from == field.h.data()) break;
   }
   return field;
 }
