@@ -174,6 +174,10 @@ StatusLine::~StatusLine() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
+nlohmann::json stage_report(const StageTimers::Stage& stage) {
+  return {{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}, {"launches", stage.launches}};
+}
+
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
                             std::size_t arena_bytes) {
   nlohmann::json report;
@@ -182,7 +186,7 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
   report["device"] = {{"backend", device.backend()}, {"name", device.name()}, {"threads", device.threads()}};
   report["stages"] = nlohmann::json::array();
   for (const auto& stage : timers.stages())
-    report["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}});
+    report["stages"].push_back(stage_report(stage));
   std::unique_ptr<Device> host = device.backend() == "cpu" ? nullptr : make_cpu_device();
   report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()},
                       {"device_peak_bytes", arena_bytes}};

@@ -105,6 +105,9 @@ class StatusLine {
   bool drawn_ = false;
 };
 
+/// "name", "seconds", "calls", "launches".
+nlohmann::json stage_report(const StageTimers::Stage& stage);
+
 /// "nacre", "command", "device", "stages", "memory".
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
                             std::size_t arena_bytes);

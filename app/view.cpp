@@ -178,7 +178,7 @@ nlohmann::json view_report(const ViewerResult& result, const Session& session) {
   report["input"] = input_report(session);
   report["stages"] = nlohmann::json::array();
   for (const StageTimers::Stage& stage : result.timers.stages())
-    report["stages"].push_back({{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}});
+    report["stages"].push_back(stage_report(stage));
   report["memory"] = {{"peak_bytes", make_cpu_device()->peak_bytes()}, {"device_peak_bytes", result.peak_bytes}};
   report["parameters"] = knob_values(session.settings);
   report["view"] = frame_report(result);

@@ -33,6 +33,13 @@ class ExecutorBase {
     if (stopped()) throw Interrupted();
   }
 
+ protected:
+  /// At the head of every launch.
+  void begin_launch() {
+    check_stop();
+    timers_.count_launch();
+  }
+
  private:
   Device& device_;
   Arena arena_;

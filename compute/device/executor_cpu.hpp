@@ -23,6 +23,7 @@ class Executor<Cpu> : public ExecutorBase {
 
   template <class Kernel>
   void for_each(std::int64_t n, const Kernel& kernel) {
+    begin_launch();
     run(n, [&](std::int64_t first, std::int64_t last) {
       const Kernel local = kernel;  // a copy on the stack: its members cannot alias what the kernel writes
       for (std::int64_t i = first; i < last; ++i) local(i);
@@ -31,6 +32,7 @@ class Executor<Cpu> : public ExecutorBase {
 
   template <class Kernel>
   void for_each_team(std::int64_t n, const Kernel& kernel) {
+    begin_launch();
     run(n, [&](std::int64_t first, std::int64_t last) {
       const Kernel local = kernel;
       std::vector<unsigned char> scratch(Team::sum_bytes + local.scratch_bytes());
@@ -41,6 +43,7 @@ class Executor<Cpu> : public ExecutorBase {
 
   template <class T>
   T exclusive_scan(const T* in, T* out, std::int64_t n) {
+    begin_launch();
     const std::int64_t block = 1 << 16;
     const std::int64_t blocks = (n + block - 1) / block;
     std::vector<T> sums(blocks + 1, T(0));
@@ -66,7 +69,7 @@ class Executor<Cpu> : public ExecutorBase {
   }
 
   void sort(std::uint64_t* keys, std::int64_t n, int lowest = 0) {
-    check_stop();
+    begin_launch();
     if (n <= 1) return;
     Arena::Scope scope(arena());
     Array<std::uint64_t> other = arena().temporary<std::uint64_t>(n);
@@ -76,7 +79,7 @@ class Executor<Cpu> : public ExecutorBase {
   }
 
   void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
-    check_stop();
+    begin_launch();
     if (n <= 1) return;
     Arena::Scope scope(arena());
     Array<std::uint64_t> other_keys = arena().temporary<std::uint64_t>(n);
@@ -90,7 +93,7 @@ class Executor<Cpu> : public ExecutorBase {
 
   template <class T, class Get, class Merge>
   T reduce(std::int64_t n, T identity, const Get& get, const Merge& merge) {
-    check_stop();
+    begin_launch();
     CpuDevice::Access access(cpu_);
     T result = identity;
     cpu_.workers().execute([&] {
@@ -109,7 +112,6 @@ class Executor<Cpu> : public ExecutorBase {
   /// Calls body(first, last) over pieces of 0..n-1 on the device's workers; leaves early when the user asks to stop.
   template <class Body>
   void run(std::int64_t n, const Body& body) {
-    check_stop();
     if (n <= 0) return;
     {
       CpuDevice::Access access(cpu_);

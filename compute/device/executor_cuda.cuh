@@ -55,7 +55,7 @@ class Executor<Cuda> : public ExecutorBase {
 
   template <class Kernel>
   void for_each(std::int64_t n, const Kernel& kernel) {
-    check_stop();
+    begin_launch();
     if (n <= 0) return;
     static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     constexpr int threads = 256;
@@ -66,7 +66,7 @@ class Executor<Cuda> : public ExecutorBase {
 
   template <class Kernel>
   void for_each_team(std::int64_t n, const Kernel& kernel) {
-    check_stop();
+    begin_launch();
     if (n <= 0) return;
     static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     const std::size_t scratch = Team::sum_bytes + kernel.scratch_bytes();
@@ -81,7 +81,7 @@ class Executor<Cuda> : public ExecutorBase {
 
   template <class T>
   T exclusive_scan(const T* in, T* out, std::int64_t n) {
-    check_stop();
+    begin_launch();
     if (n <= 0) return T(0);
     T last_in{}, last_out{};
     device().copy_to_host(&last_in, in + n - 1, sizeof(T));  // before the scan: in == out is allowed
@@ -92,7 +92,7 @@ class Executor<Cuda> : public ExecutorBase {
   }
 
   void sort(std::uint64_t* keys, std::int64_t n, int lowest = 0) {
-    check_stop();
+    begin_launch();
     if (n <= 1) return;
     Arena::Scope scope(arena());
     Array<std::uint64_t> other = arena().temporary<std::uint64_t>(n);
@@ -105,7 +105,7 @@ class Executor<Cuda> : public ExecutorBase {
   }
 
   void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
-    check_stop();
+    begin_launch();
     if (n <= 1) return;
     Arena::Scope scope(arena());
     Array<std::uint64_t> other_keys = arena().temporary<std::uint64_t>(n);
@@ -125,7 +125,7 @@ class Executor<Cuda> : public ExecutorBase {
 
   template <class T, class Get, class Merge>
   T reduce(std::int64_t n, T identity, const Get& get, const Merge& merge) {
-    check_stop();
+    begin_launch();
     Arena::Scope scope(arena());
     Array<T> result = arena().temporary<T>(1);
     auto values = thrust::make_transform_iterator(thrust::make_counting_iterator<std::int64_t>(0), get);

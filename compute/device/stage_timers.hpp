@@ -8,20 +8,24 @@
 
 namespace nacre {
 
-/// Wall time and number of calls per named stage, in the order in which the stages first ran.
+/// Wall time, number of calls and of launches per named stage, in the order in which the stages first ran.
 class StageTimers {
  public:
   struct Stage {
     std::string name;
     double seconds = 0;
     long calls = 0;
+    long launches = 0;  ///< of an Executor, within its calls; alike on all backends
   };
 
-  void add(std::string_view name, double seconds) {
+  void add(std::string_view name, double seconds, long launches = 0) {
     Stage& stage = find(name);
     stage.seconds += seconds;
+    stage.launches += launches;
     ++stage.calls;
   }
+
+  void count_launch() { ++launches_; }
 
   const std::vector<Stage>& stages() const { return stages_; }
 
@@ -35,14 +39,18 @@ class StageTimers {
   class Scope {
    public:
     Scope(StageTimers& timers, std::string_view name)
-        : timers_(timers), name_(name), start_(std::chrono::steady_clock::now()) {}
-    ~Scope() { timers_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count()); }
+        : timers_(timers), name_(name), launches_(timers.launches_), start_(std::chrono::steady_clock::now()) {}
+    ~Scope() {
+      timers_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
+                  timers_.launches_ - launches_);
+    }
     Scope(const Scope&) = delete;
     Scope& operator=(const Scope&) = delete;
 
    private:
     StageTimers& timers_;
     std::string name_;
+    long launches_;
     std::chrono::steady_clock::time_point start_;
   };
 
@@ -50,10 +58,11 @@ class StageTimers {
   Stage& find(std::string_view name) {
     for (Stage& stage : stages_)
       if (stage.name == name) return stage;
-    return stages_.emplace_back(Stage{std::string(name), 0, 0});
+    return stages_.emplace_back(Stage{std::string(name)});
   }
 
   std::vector<Stage> stages_;
+  long launches_ = 0;
 };
 
 }  // namespace nacre

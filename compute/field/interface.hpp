@@ -131,7 +131,7 @@ NACRE_HD inline bool project_closest(const MaterialBricksView& field, const Junc
       along = junction.order() == 2 ? r - part : part;
     }
     const float size = length(onto), shift = length(along);
-    at.p += detail::at_most(onto, size, newton_stride) + detail::at_most(along, shift, 2 * newton_stride);
+    at.p += detail::at_most(onto, size, newton_stride) + detail::at_most(along, shift, 0.4f * reach);
     if (dot(at.p - p, at.p - p) > reach * reach) return false;
     if (size < last_step && shift < 1.6f * last_step) return true;
   }
