@@ -157,7 +157,18 @@ struct EmbedInterface {
     cell[i] = EmbeddedCell({0, 0, 0, -4}, {0, 0, 0, 0}, size_unit);
     found[i] = 0;
     JunctionPoint at;
-    if (!field.inside(p, 3) || !closest(j, p, at)) return;
+    if (!field.inside(p, 3) || !first_guess(j, p, at)) return;
+    // From there to the closest point: along the tangent towards p and back onto the interface.
+    for (int k = 0; k < 2; ++k) {
+      const Vec3f r = p - at.p;
+      const Vec3f along =
+          j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
+      if (dot(along, along) < 2.5f * last_step() * last_step()) break;
+      JunctionPoint better;
+      if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
+        break;
+      at = better;
+    }
     const Vec3f o = at.p * cells_per_voxel - middle;
     const float margin = max(junction_margin(field, j, at.p, at.steepness), -4.0f);
     cell[i] =
@@ -172,23 +183,23 @@ struct EmbedInterface {
   /// How far Newton's steps can lead, and the distance of known points from each other.
   NACRE_HD float farthest() const { return min(5 / cells_per_voxel, newton_steps * newton_stride) + 0.35f; }
 
-  /// The interface's closest point to p: sought from the nearest known point if that is on this interface, else straight from
-  /// p. False also for a surface farther away than the stencils around its points reach, two cells along each axis.
-  NACRE_HD bool closest(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
+  /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
+  /// also for a surface farther away than the stencils around its points reach, two cells along each axis.
+  NACRE_HD bool first_guess(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
     float away = 0;
     const std::uint32_t q = distance.closest(p, away);
     if ((q == none ? distance.reach : away) > farthest()) return false;
-    const float reach = 5 / cells_per_voxel;
-    if (j.order() == 2 && q != none && distance.point[q].surface == j) {
-      const Float4 n = distance.point[q].normal;
-      if (away > 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f) return false;
-      const Vec3f normal(n.x, n.y, n.z), on = distance.place(q), r = p - on;
-      const Vec3f along = r - normal * dot(r, normal);
-      if (project_closest(field, j, p, on + detail::at_most(along, length(along), 2), max(reach, 3.0f), at,
-                          last_step()))
-        return true;
-    }
-    return project_closest(field, j, p, p, reach, at, last_step());
+    if (j.order() != 2 || q == none || !(distance.point[q].surface == j))
+      return project(field, j, p, 5 / cells_per_voxel, at, last_step());
+    const Float4 n = distance.point[q].normal;
+    const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
+    if (away > reach) return false;
+    const Vec3f normal(n.x, n.y, n.z), on = distance.place(q), r = p - on;
+    Vec3f along = r - normal * dot(r, normal);
+    const float most = 2, size = length(along);
+    if (size > most) along *= most / size;
+    return project(field, j, on + along, 3, at, last_step()) ||
+           project(field, j, p, 5 / cells_per_voxel, at, last_step());
   }
 };
 

@@ -78,62 +78,27 @@ NACRE_HD inline bool junction_step(const FieldSample* f, int count, Vec3f& step,
 inline constexpr int newton_steps = 10;
 inline constexpr float newton_stride = 0.5f;
 
-namespace detail {
-
-/// Newton's step from `x` onto the junction; `at` gets what holds at x. False where it cannot be known.
-NACRE_HD inline bool newton_step(const MaterialBricksView& field, const Junction& junction, const Vec3f& x, Vec3f& step,
-                                 JunctionPoint& at) {
-  if (!field.inside(x, 2.5f)) return false;
-  const int count = junction.materials();
-  const CubicStencil stencil(field, x);
-  FieldSample f[4];
-  if (count == 2)
-    f[0] = stencil.difference(field, junction.material(0), junction.material(1));  // f[1] is zero
-  else
-    for (int m = 0; m < count; ++m) f[m] = stencil.sample(field, junction.material(m));
-  return junction_step(f, count, step, at);
-}
-
-NACRE_HD inline Vec3f at_most(const Vec3f& step, float size, float most) {
-  return size > most ? step * (most / size) : step;
-}
-
-}  // namespace detail
-
 /// Newton's method onto the junction from `p` (Eq. 3.5 with its sign mended, for differences of indicator functions), until
 /// a step is shorter than `last_step` (what is left is about its square times the curvature). False where it does not
 /// arrive within `reach` voxels of `p`.
 NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& junction, const Vec3f& p, float reach,
                              JunctionPoint& at, float last_step = 1e-3f) {
+  const int count = junction.materials();
   at.p = p;
   for (int k = 0; k < newton_steps; ++k) {
+    if (!field.inside(at.p, 2.5f)) return false;
+    const CubicStencil stencil(field, at.p);
+    FieldSample f[4];
+    if (count == 2)
+      f[0] = stencil.difference(field, junction.material(0), junction.material(1));  // f[1] is zero
+    else
+      for (int m = 0; m < count; ++m) f[m] = stencil.sample(field, junction.material(m));
     Vec3f step;
-    if (!detail::newton_step(field, junction, at.p, step, at)) return false;
+    if (!detail::junction_step(f, count, step, at)) return false;
     const float size = length(step);
-    at.p += detail::at_most(step, size, newton_stride);
+    at.p += size > newton_stride ? step * (newton_stride / size) : step;
     if (dot(at.p - p, at.p - p) > reach * reach) return false;
     if (size < last_step) return true;
-  }
-  return false;
-}
-
-/// The junction's closest point to `p`: Newton's steps from `guess`, and in the same steps along the junction to where it
-/// is seen from p at a right angle. Those are left out after the fourth, where they may not converge (the junction bends
-/// around p). Steps end below `last_step`. False where they do not arrive within `reach` voxels of p.
-NACRE_HD inline bool project_closest(const MaterialBricksView& field, const Junction& junction, const Vec3f& p,
-                                     const Vec3f& guess, float reach, JunctionPoint& at, float last_step) {
-  at.p = guess;
-  for (int k = 0; k < newton_steps; ++k) {
-    Vec3f onto, along;
-    if (!detail::newton_step(field, junction, at.p, onto, at)) return false;
-    if (k < 4) {
-      const Vec3f r = p - at.p, part = at.direction * dot(r, at.direction);
-      along = junction.order() == 2 ? r - part : part;
-    }
-    const float size = length(onto), shift = length(along);
-    at.p += detail::at_most(onto, size, newton_stride) + detail::at_most(along, shift, 0.4f * reach);
-    if (dot(at.p - p, at.p - p) > reach * reach) return false;
-    if (size < last_step && shift < 1.6f * last_step) return true;
   }
   return false;
 }
