@@ -11,7 +11,6 @@
 #include "compute/embedding/closest_in_brick.hpp"
 #include "compute/embedding/octree_nodes.hpp"
 #include "compute/embedding/place_lists.hpp"
-#include "compute/embedding/sorted_pairs.hpp"
 
 namespace nacre {
 
@@ -119,18 +118,42 @@ struct GatherBricks {
   }
 };
 
-/// The bricks that a triangle touches.
+/// The Morton codes of the bricks that a triangle touches.
 struct BricksTouched {
   MeshView mesh;
-  BrickOctreeView tree;
+  int levels;
   template <class Visit>
   NACRE_HD void operator()(std::int64_t t, Visit&& visit) const {
-    for_cells_near(mesh.corners(std::uint32_t(t)) * (1.0 / BrickOctreeView::width), 0.0, Int3(1 << tree.levels),
-                   [&](const Int3& b) {
-                     const std::uint32_t brick = tree.locate(b);
-                     if (brick != none) visit(brick);
-                   });
+    for_cells_near(mesh.corners(std::uint32_t(t)) * (1.0 / BrickOctreeView::width), 0.0, Int3(1 << levels),
+                   [&](const Int3& b) { visit(morton(b)); });
   }
+};
+
+/// Where the list of a brick begins among those of all places; entry `bricks` ends the last.
+struct FindList {
+  const std::uint64_t* brick_code;
+  std::uint32_t bricks, places;
+  std::uint64_t items;
+  const std::uint64_t* place;  // ascending
+  const std::uint64_t* place_start;
+  std::uint64_t* start;
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint32_t low = i < bricks ? 0 : places, high = places;
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      if (place[middle] < brick_code[i])
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    start[i] = low < places ? place_start[low] : items;
+  }
+};
+
+struct CopyItems {
+  const std::uint32_t* from;
+  std::uint32_t* to;
+  NACRE_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
 };
 
 /// About how many bricks a cluster touches.
@@ -238,12 +261,13 @@ class BrickOctreeBuilder {
   void list_triangles() {
     Arena& arena = exec_.arena();
     Arena::Scope scope(arena);
-    const Array<std::uint64_t> pairs = sorted_pairs(exec_, triangles_, BricksTouched{mesh_, tree_.view()});
+    const PlaceLists lists = place_lists(exec_, triangles_, BricksTouched{mesh_, tree_.levels});
     tree_.list_start = arena.permanent<std::uint64_t>(std::size_t(tree_.brick_count) + 1);
-    tree_.list = arena.permanent<std::uint32_t>(pairs.size());
+    tree_.list = arena.permanent<std::uint32_t>(lists.item.size());
     exec_.for_each(std::int64_t(tree_.brick_count) + 1,
-                   ListStart<std::uint64_t>{pairs.size(), pairs.data(), tree_.list_start.data()});
-    exec_.for_each(std::int64_t(pairs.size()), LowHalf{pairs.data(), tree_.list.data()});
+                   FindList{tree_.brick_code.data(), tree_.brick_count, lists.places.count, lists.item.size(),
+                            lists.places.place.data(), lists.places.start.data(), tree_.list_start.data()});
+    exec_.for_each(std::int64_t(lists.item.size()), CopyItems{lists.item.data(), tree_.list.data()});
   }
 
   Executor<Backend>& exec_;

@@ -25,20 +25,32 @@ struct PlaceLists {
 namespace detail {
 
 /// Counts the places of an item where `place` is null, else writes them: one kernel for both, because a compiler may
-/// round two instantiations of the same geometry differently.
+/// round two instantiations of the same geometry differently. An item's first places are kept when they are counted, so
+/// that only one that has more is looked at twice.
 template <class Enumerate>
 struct EnumeratePlaces {
+  static constexpr int kept = 4;
   Enumerate enumerate;
+  std::uint64_t items, pairs;
   std::uint64_t* count;  // later: where the item's places begin
+  std::uint64_t* first;  // `kept` per item
   std::uint64_t* place;
   std::uint32_t* item;
+
   NACRE_HD void operator()(std::int64_t i) const {
     std::uint64_t at = place ? count[i] : 0;
-    enumerate(i, [&](std::uint64_t code) {
-      if (place) {
-        place[at] = code;
-        item[at] = std::uint32_t(i);
+    if (place) {
+      const std::uint64_t end = std::uint64_t(i) + 1 < items ? count[i + 1] : pairs;
+      if (end - at <= kept) {
+        for (std::uint64_t k = at; k < end; ++k) place[k] = first[kept * i + (k - at)], item[k] = std::uint32_t(i);
+        return;
       }
+    }
+    enumerate(i, [&](std::uint64_t code) {
+      if (place)
+        place[at] = code, item[at] = std::uint32_t(i);
+      else if (at < kept)
+        first[kept * i + at] = code;
       ++at;
     });
     if (!place) count[i] = at;
@@ -105,17 +117,20 @@ CodeRuns runs_of(Executor<Backend>& exec, const std::uint64_t* code, std::uint64
 }
 
 /// `enumerate(i, visit)` calls visit(code) for every place of item i, at most once each. The lists are temporary in the
-/// caller's scope: 12 bytes per pair and 16 per place. Throws Error when they do not fit.
+/// caller's scope: 12 bytes per pair, 16 per place and 40 per item. Throws Error when they do not fit.
 template <class Backend, class Enumerate>
 PlaceLists place_lists(Executor<Backend>& exec, std::int64_t items, const Enumerate& enumerate) {
   Arena& arena = exec.arena();
   PlaceLists lists;
+  const auto n = std::uint64_t(items);
+  using Places = detail::EnumeratePlaces<Enumerate>;
   Array<std::uint64_t> count = arena.temporary<std::uint64_t>(items);
-  exec.for_each(items, detail::EnumeratePlaces<Enumerate>{enumerate, count.data(), nullptr, nullptr});
+  Array<std::uint64_t> first = arena.temporary<std::uint64_t>(Places::kept * n);
+  exec.for_each(items, Places{enumerate, n, 0, count.data(), first.data(), nullptr, nullptr});
   const std::uint64_t pairs = exec.exclusive_scan(count.data(), count.data(), items);
   lists.item = arena.temporary<std::uint32_t>(pairs);
   Array<std::uint64_t> code = arena.temporary<std::uint64_t>(pairs);
-  exec.for_each(items, detail::EnumeratePlaces<Enumerate>{enumerate, count.data(), code.data(), lists.item.data()});
+  exec.for_each(items, Places{enumerate, n, pairs, count.data(), first.data(), code.data(), lists.item.data()});
   exec.sort_pairs(code.data(), lists.item.data(), std::int64_t(pairs));
   lists.places = runs_of(exec, code.data(), pairs, 0);
   return lists;

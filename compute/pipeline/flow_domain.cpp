@@ -140,20 +140,25 @@ double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& paramet
   const double seeds = brick ? surface : cells;
   const double structure =
       brick ? bricks * 340 + lists * 4 : cells * (8 + 5 + (parameters.neighbour_index ? 24 : 0) + 24);
-  return cells * (12 + 4 * (ttl + 1)) + seeds * (8 * ttl + 12) + structure + triangles * 150 + 256e6;
+  return cells * (12 + 4 * (ttl + 1)) + seeds * (8 * ttl + 12) + structure + triangles * 300 + 256e6;
 }
 
 namespace {
+constexpr int least_resolution = 16;
+
 /// Throws Error with the largest resolution that fits where `estimate` says that the memory will not do.
 template <class Estimate>
 void require(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available, const Estimate& estimate) {
   const double needed = estimate(mesh, parameters);
   if (needed <= double(available)) return;
   FlowParameters smaller = parameters;
-  while (smaller.resolution > 16 && estimate(mesh, smaller) > double(available))
-    smaller.resolution = smaller.resolution * 15 / 16;
-  throw Error("--resolution " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
-              gibibytes(double(available)) + " are free", "use --resolution " + std::to_string(smaller.resolution));
+  while (smaller.resolution > least_resolution && estimate(mesh, smaller) > double(available))
+    smaller.resolution = std::max(least_resolution, smaller.resolution * 15 / 16);
+  const bool fits = estimate(mesh, smaller) <= double(available);
+  throw Error(
+      "--resolution " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
+      gibibytes(double(available)) + " are free" + (fits ? "" : ", too few for these triangles at any resolution"),
+      fits ? "use --resolution " + std::to_string(smaller.resolution) : "free some, or use fewer triangles");
 }
 }  // namespace
 

@@ -1,5 +1,6 @@
 // Nacre: tests of too little memory, of disks that are full or may not be written, and of Ctrl-C.
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include "engine/picture/png.hpp"
@@ -27,15 +28,26 @@ TEST_F(Limits, WhatDoesNotFitInMemoryIsNamedWithWhatDoes) {
   const std::string limit = "-v 600000";  // KiB of address space
   const Words words = {"flow", "--sample", "sphere", "--detail", "24",     "--steps", "1",       "--ttl",
                        "1",    "--warmup", "0",      "--quiet",  "--size", "64x48",   "--image", path("a.png")};
-  const Outcome refused = nacre_limited(limit, words + Words{"--resolution", "4000"});
-  expect_failure(refused, 1, {"--resolution 4000", "GiB"});
-  EXPECT_EQ(names(), Words{});
-  const std::string fits = advised_resolution(refused.err);
-  ASSERT_NE(fits, "") << refused.err;
-  EXPECT_GE(std::stoi(fits), 64);
-  const Outcome run = nacre_limited(limit, words + Words{"--resolution", fits});
-  EXPECT_EQ(run.status, 0) << fits << ": " << run.err;
-  EXPECT_EQ(names(), Words{"a.png"});
+  for (const Words& method :
+       {Words{}, Words{"--method", "octree"}, Words{"--method", "octree", "--octree", "source"}}) {
+    const Outcome refused = nacre_limited(limit, words + method + Words{"--resolution", "4000"});
+    expect_failure(refused, 1, {"--resolution 4000", "GiB"});
+    EXPECT_EQ(names(), Words{});
+    const std::string fits = advised_resolution(refused.err);
+    ASSERT_NE(fits, "") << refused.err;
+    EXPECT_GE(std::stoi(fits), 64);
+    const Outcome run = nacre_limited(limit, words + method + Words{"--resolution", fits});
+    EXPECT_EQ(run.status, 0) << fits << ": " << run.err;
+    EXPECT_EQ(names(), Words{"a.png"});
+    std::filesystem::remove(path("a.png"));
+  }
+}
+
+TEST_F(Limits, TrianglesThatFitAtNoResolutionAreSaidToBeTooMany) {
+  const Outcome run =
+      nacre_limited("-v 600000", {"flow", "--sample", "sphere", "--detail", "200", "--method", "octree", "--resolution",
+                                  "64", "--steps", "1", "--quiet", "--image", path("a.png")});
+  expect_failure(run, 1, {"--resolution 64", "GiB", "fewer triangles"});
 }
 #endif
 
