@@ -111,7 +111,7 @@ void Ui::switch_recording(const UiFacts& facts, Wishes& wishes) {
 }
 
 void Ui::switch_film(const UiFacts& facts, Wishes& wishes) {
-  if (facts.filming)
+  if (!facts.film.empty())
     wishes.end_film = true;
   else
     ask_save("save video", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, "video.mp4", &Wishes::film);
@@ -135,7 +135,8 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes&
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
     asks_record_ = true;
-  if (ImGui::MenuItem(facts.filming ? "End the video" : "Video of every frame ...", "ctrl m", facts.filming))
+  if (ImGui::MenuItem(!facts.film.empty() ? "End the video" : "Video of every frame ...", "ctrl m",
+                      !facts.film.empty()))
     switch_film(facts, wishes);
   ImGui::Separator();
   if (ImGui::MenuItem("Quit", "ctrl q")) wishes.quit = true;

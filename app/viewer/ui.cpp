@@ -210,11 +210,11 @@ void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
     }
     if (progress.stage.empty()) work_began_ = -1;
     const double frame = facts.clock.mean_seconds();
-    text(fmt::format("{:.0f} ms a frame   {:.0f} MiB", 1e3 * frame, double(scene.peak_bytes()) / (1 << 20)));
+    text(fmt::format("{:.0f} ms a frame   {:.0f} MiB of memory", 1e3 * frame, double(scene.peak_bytes()) / (1 << 20)));
     ImGui::SameLine();
     if (facts.recording) text("   recording");
     ImGui::SameLine();
-    if (facts.filming) text("   filming: frames wait for compute");
+    if (!facts.film.empty()) text("   filming: " + facts.film + "; frames wait for compute");
     ImGui::SameLine();
     if (!facts.saving.empty()) text("   saving " + facts.saving);
     ImGui::SameLine();

@@ -22,7 +22,7 @@ struct UiFacts {
   const std::vector<std::filesystem::path>& recent;
   bool can_undo = false, can_redo = false;
   bool recording = false;  ///< of what the user does
-  bool filming = false;    ///< every frame goes to a video
+  std::string film;        ///< how long the video is to which every frame goes; empty: none
   std::string saving;      ///< a file that is being written; empty: none
   int width = 0, height = 0;
   Camera camera;               ///< of what is seen
