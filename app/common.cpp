@@ -2,6 +2,7 @@
 #include "app/common.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <semaphore.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -68,7 +69,9 @@ void add_common_options(CLI::App& command, CommonOptions& options, const CommonW
   command.add_option("--threads", options.threads, "worker threads (0: all)")->check(CLI::Range(0, 4096));
   command.add_option(words.report_names, options.report, words.report_help);
   command.add_option("--session", options.session, words.session_help);
-  command.add_option("--set", options.set, "KNOB=VALUE, any knob by name")
+  command
+      .add_option("--set", options.set,
+                  "KNOB=VALUE, any knob by name, also those without an option: `nacre --knobs` lists them")
       ->expected(1)  // and no more: a FILE may follow
       ->allow_extra_args(false)
       ->take_all();
@@ -91,7 +94,11 @@ KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
     if (!knob.concerns(command_name)) continue;
     if (std::holds_alternative<bool*>(knob.value)) continue;  // commands give those as flags of their own
     auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
-    command.add_option(knob.option(), *value, knob.help + (knob.unit.empty() ? "" : " [" + knob.unit + "]"))
+    std::string help = knob.help;
+    if (!knob.choices.empty() && help.find(knob.choices[0]) == help.npos)
+      help += fmt::format(": {}", fmt::join(knob.choices, "|"));
+    if (!knob.unit.empty()) help += " [" + knob.unit + "]";
+    command.add_option(knob.option(), *value, help)
         ->default_str(knob.text())
         ->take_last()
         ->group("Knobs: " + knob.group);

@@ -157,6 +157,7 @@ nlohmann::json frame_report(const ViewerResult& result) {
           {"first_frame_seconds", result.first_frame},
           {"first_surface_seconds", result.first_surface},
           {"first_texture_seconds", result.first_texture},
+          {"filmed_frames", result.filmed_frames},
           {"steps", result.steps},
           {"copied_bytes", result.copied_bytes},
           {"opengl", {{"renderer", result.renderer}, {"version", result.version}}},
@@ -261,10 +262,12 @@ void run_view(const ViewOptions&, const KnobOptions&) {
 }  // namespace
 
 void add_view_command(CLI::App& program, std::function<void()>& run) {
-  CLI::App* command = program.add_subcommand("view", "the desktop viewer; without a FILE it shows a sample");
+  CLI::App* command = program.add_subcommand(
+      "view", "the desktop viewer; without a FILE it shows a sample. Flow begins at a resolution of 512");
   auto options = std::make_shared<ViewOptions>();
-  add_input_options(*command, options->input, "surface with vectors; several files are one series",
-                    "triangle edges along the sample's longest side (0: its own)");
+  add_input_options(*command, options->input,
+                    "surface with vectors, or a volume; several files are one series, or a volume's materials",
+                    "triangle edges, or voxels, along the sample's longest side (0: its own)");
   command->add_flag("--offscreen", options->offscreen, "draw without a display (EGL)");
   command->add_option("--script", options->script,
                       "play a session file: its input, knobs and camera, each at its time");

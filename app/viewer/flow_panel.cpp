@@ -7,6 +7,7 @@
 
 #include "app/viewer/flow_scene.hpp"
 #include "app/viewer/words.hpp"
+#include "engine/scene/prepare.hpp"
 
 namespace nacre {
 namespace {
@@ -25,6 +26,19 @@ bool edit_range(const char* label, RangeEdit& edit, const Range& now) {
 Range range_of(const RangeEdit& edit) { return {edit.ends[0], edit.ends[1]}; }
 
 }  // namespace
+
+std::vector<std::string> FlowScene::choices(const std::string& knob) const {
+  std::vector<std::string> all;
+  if (knob == "vectors") {
+    all = offer_.vectors;
+    all.insert(all.begin(), "");  // the likeliest
+    for (const std::string& field : analytic_vector_names()) all.push_back(field);
+  } else if (knob == "color") {
+    all = offer_.arrays;
+    all.insert(all.begin(), {"speed", "none"});
+  }
+  return all;
+}
 
 void FlowScene::data_panel(Session&) {
   if (!tree_ || corners_.empty()) return;

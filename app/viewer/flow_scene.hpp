@@ -40,6 +40,7 @@ class FlowScene : public Scene {
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
   std::uint64_t overlay_version() const override { return look_version_ + time_version_; }
+  std::vector<std::string> choices(const std::string& knob) const override;
   void data_panel(Session& session) override;
   void result_panel(Session& session) override;
   std::optional<Probed> probe(const Vec3d& from, const Vec3d& along) override;
@@ -83,6 +84,7 @@ class FlowScene : public Scene {
 
   void take(FlowEvent& event);
   void take(SurfaceRead& told);
+  void take(FlowOffer& told) { offer_ = std::move(told); }
   void take(FlowData& told);
   void take(FlowArrows& told);
   void take(FlowEmbedded& told);
@@ -121,6 +123,7 @@ class FlowScene : public Scene {
   std::uint64_t surfaces_ = 0;  ///< read so far
   std::shared_ptr<const TriangleTree> tree_;
   FlowArrows arrows_;
+  FlowOffer offer_;
   FlowData data_;
   FlowSpan span_;
   std::shared_ptr<const std::vector<Vec3f>> vectors_;  ///< at the time that is shown

@@ -31,6 +31,15 @@ SurfaceRead describe(const VectorsInTime& vectors) {
   return told;
 }
 
+FlowOffer offer_of(const Surface& surface) {
+  FlowOffer offer;
+  for (const PointArray& array : surface.arrays) {
+    offer.arrays.push_back(array.name);
+    if (array.components == 3) offer.vectors.push_back(array.name);
+  }
+  return offer;
+}
+
 }  // namespace
 
 void FlowWorker::read() {
@@ -46,6 +55,7 @@ void FlowWorker::read() {
       FlowNews news;
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
       news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
+      news.read = [&](const Surface& first) { tell(offer_of(first)); };
       vectors_ = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings_, news, &interrupt_));
       shown_time_ = vectors_->start();
     }

@@ -47,6 +47,11 @@ struct FlowData {
   std::vector<std::string> warnings;
 };
 
+/// What could be shown and what could colour it: arrays on the points.
+struct FlowOffer {
+  std::vector<std::string> vectors, arrays;
+};
+
 /// Where arrows stand; none: they are off.
 struct FlowArrows {
   std::vector<SurfacePlace> places;
@@ -94,8 +99,8 @@ struct FlowFailed {
   std::string what;
 };
 
-using FlowEvent = std::variant<SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowStarted, FlowStepped,
-                               FlowSampled, FlowInterrupted, FlowFailed>;
+using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowStarted,
+                               FlowStepped, FlowSampled, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {

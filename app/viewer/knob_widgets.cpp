@@ -55,9 +55,10 @@ void real_widget(double& value, const Knob& knob) {
 }
 
 void choice_widget(std::string& value, const std::vector<std::string>& choices) {
-  if (!ImGui::BeginCombo("##value", value.c_str())) return;
+  const auto shown = [](const std::string& choice) { return choice.empty() ? "(the likeliest)" : choice.c_str(); };
+  if (!ImGui::BeginCombo("##value", shown(value))) return;
   for (const std::string& each : choices)
-    if (ImGui::Selectable(each.c_str(), each == value)) value = each;
+    if (ImGui::Selectable(shown(each), each == value)) value = each;
   ImGui::EndCombo();
 }
 
@@ -65,7 +66,7 @@ void words_widget(std::string& value) {
   let_go(value, [](std::string& shown) { ImGui::InputText("##value", &shown); });
 }
 
-void value_widget(const Knob& knob) {
+void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
   if (auto* const* flag = std::get_if<bool*>(&knob.value)) ImGui::Checkbox("##value", *flag);
   if (auto* const* whole = std::get_if<int*>(&knob.value)) whole_widget(**whole, knob);
   if (auto* const* real = std::get_if<double*>(&knob.value)) real_widget(**real, knob);
@@ -76,8 +77,8 @@ void value_widget(const Knob& knob) {
   if (auto* const* words = std::get_if<std::string*>(&knob.value)) {
     if (knob.name == "colormap")
       choice_widget(**words, colormap_names());
-    else if (!knob.choices.empty())
-      choice_widget(**words, knob.choices);
+    else if (!knob.choices.empty() || !choices.empty())
+      choice_widget(**words, knob.choices.empty() ? choices : knob.choices);
     else
       words_widget(**words);
   }
@@ -108,13 +109,13 @@ void explain(const std::string& help, bool changed, const std::string& usual) {
   ImGui::EndTooltip();
 }
 
-void show(Settings& settings, const Knob& knob) {
+void show(Settings& settings, const Knob& knob, const std::vector<std::string>& choices = {}) {
   ImGui::PushID(knob.name.c_str());
   const std::string usual = default_text(knob);
   const bool changed = knob.text() != usual;
   ImGui::BeginGroup();  // the field and its name are one thing to the mouse
   ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
-  value_widget(knob);
+  value_widget(knob, choices);
   ImGui::SameLine();
   const std::string label = (changed ? "* " : "") + knob.name + (knob.unit.empty() ? "" : " [" + knob.unit + "]");
   ImGui::TextUnformatted(label.c_str());
@@ -127,9 +128,9 @@ void show(Settings& settings, const Knob& knob) {
 
 }  // namespace
 
-void knob_widget(Settings& settings, const std::string& name) {
+void knob_widget(Settings& settings, const std::string& name, const std::vector<std::string>& choices) {
   for (const Knob& knob : knobs(settings))
-    if (knob.name == name) return show(settings, knob);
+    if (knob.name == name) return show(settings, knob, choices);
 }
 
 void knob_groups(Settings& settings, const std::string& job, const std::string& filter) {

@@ -16,7 +16,8 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t few = 12;  ///< materials that are seen at a glance
+constexpr std::size_t few = 12;                                ///< materials that are seen at a glance
+constexpr const char* volume_head = "volume, unit³###volume";  ///< of a mesh, in the data's unit of length
 
 using Labels = std::set<std::int64_t>;
 
@@ -64,7 +65,8 @@ std::string volume_words(const MeshResults& results, std::size_t m) {
 
 /// Of the column; it is known before the rows are drawn.
 float volume_width(const std::vector<std::size_t>& rows, const MeshResults& results) {
-  float widest = ImGui::CalcTextSize("volume").x + 1.2f * ImGui::GetFontSize();  // and the arrow of the order
+  float widest =
+      ImGui::CalcTextSize(volume_head, nullptr, true).x + 1.2f * ImGui::GetFontSize();  // and the arrow of the order
   for (std::size_t k = 0; k < std::min<std::size_t>(rows.size(), 500); ++k)
     widest = std::max(widest, ImGui::CalcTextSize(volume_words(results, rows[k]).c_str()).x);
   return widest;
@@ -136,7 +138,7 @@ void table(const MeshResults& results, std::vector<std::size_t> rows, Sight& sig
   const ImVec2 size(0, many ? (float(few) + 1.5f) * row_height : 0);  // half a row says that there are more
   if (!ImGui::BeginTable("materials", 3, flags | (many ? ImGuiTableFlags_ScrollY : 0), size)) return;
   ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthStretch);
-  ImGui::TableSetupColumn(results.measures ? "volume###volume" : "voxels###volume",
+  ImGui::TableSetupColumn(results.measures ? volume_head : "voxels###volume",
                           ImGuiTableColumnFlags_WidthFixed | ImGuiTableColumnFlags_PreferSortDescending,
                           volume_width(rows, results));
   ImGui::TableSetupColumn("", ImGuiTableColumnFlags_NoSort);

@@ -46,7 +46,7 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"ctrl r", "record what you do; once more: end and save"},
                                    {"ctrl m", "video of every frame; once more: end"},
                                    {"ctrl z, ctrl y", "take a change back; make it again"},
-                                   {"escape", "cancel what is being computed"},
+                                   {"escape", "close what is open, else cancel what is computed"},
                                    {"?", "this list"},
                                    {"q, ctrl q", "quit"}};
 
@@ -111,7 +111,7 @@ void Ui::switch_recording(const UiFacts& facts, Wishes& wishes) {
 }
 
 void Ui::switch_film(const UiFacts& facts, Wishes& wishes) {
-  if (facts.filming)
+  if (!facts.film.empty())
     wishes.end_film = true;
   else
     ask_save("save video", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, "video.mp4", &Wishes::film);
@@ -135,7 +135,8 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, Wishes&
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
     asks_record_ = true;
-  if (ImGui::MenuItem(facts.filming ? "End the video" : "Video of every frame ...", "ctrl m", facts.filming))
+  if (ImGui::MenuItem(!facts.film.empty() ? "End the video" : "Video of every frame ...", "ctrl m",
+                      !facts.film.empty()))
     switch_film(facts, wishes);
   ImGui::Separator();
   if (ImGui::MenuItem("Quit", "ctrl q")) wishes.quit = true;
@@ -178,13 +179,23 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, Wishes& wis
   ImGui::EndMainMenuBar();
 }
 
+/// Closes the uppermost of what lies over the picture; false: nothing does.
+bool Ui::leave() {
+  if (dialog_.is_open())
+    dialog_.close();
+  else if (ImGui::IsPopupOpen("screenshot"))
+    leaves_shot_ = true;
+  else if (help_ || about_)
+    help_ = about_ = false;
+  else
+    return false;
+  return true;
+}
+
 void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, Wishes& wishes) {
   for (const KeyPress& pressed : facts.keys) switch (pressed.key) {
       case 27:
-        if (dialog_.is_open())
-          dialog_.close();
-        else
-          wishes.cancel = true;
+        if (!leave()) wishes.cancel = true;
         break;
       case 'O': ask_open(); break;
       case 'S': ask_save("save session", {".json"}, "session.json", &Wishes::save_session); break;
@@ -227,6 +238,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, Wishes& 
 void Ui::screenshot_window(const UiFacts& facts) {
   if (std::exchange(asks_shot_, false)) ImGui::OpenPopup("screenshot");
   if (!ImGui::BeginPopup("screenshot")) return;
+  if (std::exchange(leaves_shot_, false)) ImGui::CloseCurrentPopup();
   ImGui::SliderInt("scale", &shot_.scale, 1, 4, "%dx", ImGuiSliderFlags_AlwaysClamp);
   ImGui::Checkbox("without background", &shot_.transparent);
   ImGui::Checkbox("with panels, as on the screen", &shot_.panel);
@@ -243,8 +255,14 @@ void Ui::screenshot_window(const UiFacts& facts) {
   ImGui::EndPopup();
 }
 
-void Ui::help_windows(const UiFacts& facts) {
+void Ui::help_windows(const UiFacts& facts, const FreeArea& area) {
+  const auto place = [&] {  // over the picture, and nothing shows through
+    const ImVec2 middle(float(area.x) + 0.5f * float(area.width), float(area.y) + 0.5f * float(area.height));
+    ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowBgAlpha(1);
+  };
   if (help_) {
+    place();
     if (ImGui::Begin("Keys and mouse", &help_, ImGuiWindowFlags_AlwaysAutoResize) && ImGui::BeginTable("keys", 2)) {
       for (const auto& [key, what] : keys) {
         ImGui::TableNextColumn();
@@ -257,6 +275,7 @@ void Ui::help_windows(const UiFacts& facts) {
     ImGui::End();
   }
   if (about_) {
+    place();
     if (ImGui::Begin("About", &about_, ImGuiWindowFlags_AlwaysAutoResize)) {
       ImGui::Text("Nacre %s", NACRE_VERSION);
       ImGui::TextUnformatted("Flow on surfaces, and meshes from volumes.");

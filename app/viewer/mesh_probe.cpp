@@ -71,7 +71,7 @@ void MeshScene::describe_hit(Probed& probed, const TriangleHit& hit) const {
   if (!results_.measures) return;
   const std::vector<float>& size = results_.measures->size;
   probed.lines.push_back(fmt::format(
-      "wanted size: {:.4g}", hit.weights.x * size[t.a] + hit.weights.y * size[t.b] + hit.weights.z * size[t.c]));
+      "wanted size: {:.4g} voxels", hit.weights.x * size[t.a] + hit.weights.y * size[t.b] + hit.weights.z * size[t.c]));
 }
 
 std::optional<Probed> MeshScene::probe(const Vec3d& from, const Vec3d& along) {

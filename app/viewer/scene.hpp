@@ -59,6 +59,8 @@ class Scene {
 
   /// Takes over into the session what the data have decided and the user had left open.
   virtual void settle_knobs(Session&) {}
+  /// What the data offer for a knob that takes words; empty: anything may be written.
+  virtual std::vector<std::string> choices(const std::string& /*knob*/) const { return {}; }
   /// The job's own part of the tab "data": what the data are.
   virtual void data_panel(Session& session) = 0;
   /// The job's own part of the tab "result", made with Dear ImGui: measures, histogram, worst triangles. May change the

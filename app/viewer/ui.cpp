@@ -99,7 +99,7 @@ void data_tab(Session& session, Scene& scene) {
     for (const char* name : {"labels", "isovalue", "threshold", "materials", "merge", "min_component"})
       knob_widget(settings, name);
   } else {
-    for (const char* name : {"vectors", "color", "colormap"}) knob_widget(settings, name);
+    for (const char* name : {"vectors", "color", "colormap"}) knob_widget(settings, name, scene.choices(name));
   }
   scene.data_panel(session);
   for (const std::string& warning : scene.warnings()) ImGui::TextWrapped("! %s", warning.c_str());
@@ -171,8 +171,10 @@ void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("panel", nullptr, fixed)) {
-    ImGui::TextWrapped("%s", scene.title().empty() ? "opening ..." : scene.title().c_str());
-    ImGui::TextWrapped("%s", scene.state().c_str());
+    const char* refused = facts.can_undo ? "not opened; ctrl z brings back what was there" : "not opened";
+    const std::string title = scene.title();
+    ImGui::TextWrapped("%s", !title.empty() ? title.c_str() : scene.failure().empty() ? "opening ..." : refused);
+    ImGui::TextWrapped("%s", title.empty() ? "" : scene.state().c_str());
     if (!scene.failure().empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.95f, 0.4f, 0.3f, 1));
       ImGui::TextWrapped("%s", scene.failure().c_str());
@@ -210,11 +212,11 @@ void Ui::status(Scene& scene, const UiFacts& facts, Wishes& wishes) {
     }
     if (progress.stage.empty()) work_began_ = -1;
     const double frame = facts.clock.mean_seconds();
-    text(fmt::format("{:.0f} ms a frame   {:.0f} MiB", 1e3 * frame, double(scene.peak_bytes()) / (1 << 20)));
+    text(fmt::format("{:.0f} ms a frame   {:.0f} MiB of memory", 1e3 * frame, double(scene.peak_bytes()) / (1 << 20)));
     ImGui::SameLine();
     if (facts.recording) text("   recording");
     ImGui::SameLine();
-    if (facts.filming) text("   filming: frames wait for compute");
+    if (!facts.film.empty()) text("   filming: " + facts.film + "; frames wait for compute");
     ImGui::SameLine();
     if (!facts.saving.empty()) text("   saving " + facts.saving);
     ImGui::SameLine();
@@ -267,7 +269,7 @@ Wishes Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   }
   complaint_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, wishes);
-  help_windows(facts);
+  help_windows(facts, area);
   screenshot_window(facts);
   if (const auto files = dialog_.draw()) then_(*files, session, wishes);
   return wishes;

@@ -22,7 +22,7 @@ struct UiFacts {
   const std::vector<std::filesystem::path>& recent;
   bool can_undo = false, can_redo = false;
   bool recording = false;  ///< of what the user does
-  bool filming = false;    ///< every frame goes to a video
+  std::string film;        ///< how long the video is to which every frame goes; empty: none
   std::string saving;      ///< a file that is being written; empty: none
   int width = 0, height = 0;
   Camera camera;               ///< of what is seen
@@ -68,7 +68,8 @@ class Ui {
   void screenshot_window(const UiFacts& facts);
   void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
   void complaint_window(const FreeArea& area);
-  void help_windows(const UiFacts& facts);
+  void help_windows(const UiFacts& facts, const FreeArea& area);
+  bool leave();
   void ask_open();
   void ask_result(Scene& scene);
   void switch_film(const UiFacts& facts, Wishes& wishes);
@@ -79,7 +80,7 @@ class Ui {
   FileDialog dialog_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
-  bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
+  bool help_ = false, about_ = false, asks_shot_ = false, leaves_shot_ = false, asks_record_ = false;
   std::string filter_, told_, complaint_, drawn_tab_;
   double told_until_ = 0, work_began_ = -1;  ///< on Dear ImGui's clock; -1: no work goes on
 };

@@ -2,6 +2,8 @@
 // the last frame's is told to the scene, to the recorder, and can be taken back.
 #include "app/viewer/viewer.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,7 +58,7 @@ class Viewer {
     try {
       while (!done()) {
         if (*options_.stop) throw Interrupted();
-        if (window_) window_->poll();
+        if (window_) window_->poll(!film_.on());
         frame();
         if (context_->lost()) begin_again();
       }
@@ -211,7 +213,7 @@ class Viewer {
                         undo_.can_undo(),
                         undo_.can_redo(),
                         recording_.on(),
-                        film_.from_menu(),
+                        film_.from_menu() ? film_.length() : "",
                         saving_.name(),
                         width,
                         height,
@@ -220,10 +222,7 @@ class Viewer {
     wishes_ = ui_.draw(session_, *scene_, facts);
     undo_.note(session_, Interface::busy());
     interface_->end();
-    if (window_) {
-      frame_->show_in_window();
-      glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    }
+    if (window_) frame_->show_in_window();
   }
 
   /// What the hand takes hold of is what is seen, as far as it has turned.
@@ -320,7 +319,7 @@ class Viewer {
     if (wishes.end_film && film_.from_menu()) {
       attempt([&] {
         film_.finish();
-        ui_.tell("saved " + film_.file().string());
+        ui_.tell(fmt::format("saved {} ({})", film_.file().string(), film_.length()));
       });
       scene_->set_lockstep(waits());
     }
@@ -400,6 +399,7 @@ class Viewer {
     result_.threads = scene_->device().threads();
     result_.backend = scene_->device().backend();
     result_.driver_messages = context_->messages();
+    result_.filmed_frames = film_.frames();
     film_.finish();
   }
 

@@ -40,6 +40,7 @@ struct ViewerResult {
   std::vector<double> frame_seconds;            ///< without waiting for compute (where frames do) or for the display
   double first_frame = 0;                       ///< seconds from the start to the first frame
   double first_surface = 0, first_texture = 0;  ///< to the first frame with it; 0: there was none
+  long filmed_frames = 0;                       ///< in all videos
   int steps = 0;                                ///< of the flow, or iterations of the particles
   std::uint64_t copied_bytes = 0;
   std::string renderer, version;

@@ -88,7 +88,10 @@ GLuint Framebuffer::resolved() const {
 }
 
 void Framebuffer::show_in_window() const {
-  glBlitNamedFramebuffer(resolved(), 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  const GLuint picture = resolved();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, width_, height_);  // at which Mesa asks how large the window is by now
+  glBlitNamedFramebuffer(picture, 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 Image Framebuffer::read() const {

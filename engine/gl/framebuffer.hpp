@@ -29,7 +29,7 @@ class Framebuffer {
   void bind_part(int x, int y, int width, int height) const;
   /// All of it to one colour, encoded; depth to far away.
   void clear(const std::array<float, 4>& colour) const;
-  /// Puts the picture into the left lower corner of the window.
+  /// Puts the picture into the left lower corner of the window. Draws go to the window from now on.
   void show_in_window() const;
   /// The picture; row 0 at the top. Waits until it is drawn.
   Image read() const;

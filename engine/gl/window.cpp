@@ -83,10 +83,10 @@ void Window::make_current() { glfwMakeContextCurrent(window_); }
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 
-void Window::poll() {
+void Window::poll(bool idles) {
   if (fault_due("other-screen")) density_ = 3 - density_;
   const auto [width, height] = pixels();
-  if (width > 0 && height > 0 && !glfwGetWindowAttrib(window_, GLFW_ICONIFIED))
+  if (width > 0 && height > 0 && !(idles && glfwGetWindowAttrib(window_, GLFW_ICONIFIED)))
     glfwPollEvents();
   else
     glfwWaitEventsTimeout(0.1);

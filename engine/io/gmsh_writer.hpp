@@ -34,7 +34,8 @@ struct GmshMesh {
 
   std::span<const Vec3d> points;
   std::vector<Block> blocks;
-  std::vector<Numbers> numbers;  ///< written as $ElementData of all cells: readers such as meshio want no gaps
+  std::vector<Numbers>
+      numbers;  ///< written as $ElementData of all cells; meshio 5.3 reads them where there is one block
 
   std::size_t cells() const;
 };

@@ -16,7 +16,7 @@
 #include "engine/io/chunks.hpp"
 #include "engine/io/gmsh_writer.hpp"
 #include "engine/io/surface_writer.hpp"
-#include "engine/io/vtk_appended.hpp"
+#include "engine/io/vtk_inline.hpp"
 #include "engine/io/vtp_writer.hpp"
 
 namespace nacre {
@@ -217,26 +217,24 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels,
   constexpr int vtk_tetrahedron = 10;
   const std::uint64_t cells = mesh.cells.size();
   const CellNumbers material = cell_numbers("material", labels, [&mesh](std::uint64_t i) { return mesh.material[i]; });
-  Appended appended;
+  Inline numbers;
   std::string xml = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n<UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
       announce_names(labels, names), mesh.points.size(), cells);
-  xml += announce_cell_data(appended, cells, std::span(&material, 1));
+  xml += announce_cell_data(numbers, cells, std::span(&material, 1));
   const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3d);
-  xml += "<Points>\n" + appended.announce("Float64", "Points", 3, bytes, [&](Base64Text& file) {
+  xml += "<Points>\n" + numbers.announce("Float64", "Points", 3, bytes, [&](Base64Text& file) {
     file.write(mesh.points.data(), bytes);
   }) + "</Points>\n<Cells>\n";
-  xml += announce_indices(appended, "connectivity", 4 * cells, mesh.points.size(),
+  xml += announce_indices(numbers, "connectivity", 4 * cells, mesh.points.size(),
                           [&mesh](std::uint64_t i) { return mesh.cells[i / 4][i % 4]; });
-  xml += announce_indices(appended, "offsets", cells, 4 * cells, [](std::uint64_t i) { return 4 * i + 4; });
-  xml += appended.announce("UInt8", "types", 1, cells, [cells](Base64Text& file) {
+  xml += announce_indices(numbers, "offsets", cells, 4 * cells, [](std::uint64_t i) { return 4 * i + 4; });
+  xml += numbers.announce("UInt8", "types", 1, cells, [cells](Base64Text& file) {
     write_generated<std::uint8_t>(file, cells, [](std::uint64_t) { return vtk_tetrahedron; });
   });
   OutputFile file(path);
-  file.write(xml + "</Cells>\n</Piece>\n</UnstructuredGrid>\n");
-  appended.write(file);
-  file.write("</VTKFile>\n");
+  numbers.write(file, xml + "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
   file.commit();
 }
 
@@ -256,19 +254,13 @@ GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, cons
   return block;
 }
 
-/// The triangles between the materials, then the tetrahedra. A tetrahedron has its own label on both sides; a triangle's
-/// `material` is the one that its normal points out of.
+/// The triangles between the materials, then the tetrahedra. Groups say what each belongs to, and nothing else does: of a
+/// file with cells of two kinds, meshio 5.3 reads no numbers that stand beside them, nor the rest.
 void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels,
                const Names& names) {
   GmshMesh out;
   out.points = mesh.points;
   out.blocks = {gmsh_triangles(surface, labels, names), gmsh_tetrahedra(mesh, labels, names)};
-  const auto label_of = [&](std::size_t side) {
-    return [&mesh, &surface, labels, side](std::size_t block, std::size_t i) {
-      return double(labels[block == 0 ? surface.materials[i][side] : mesh.material[i]]);
-    };
-  };
-  out.numbers = {{"material", label_of(1)}, {"material_0", label_of(0)}, {"material_1", label_of(1)}};
   write_gmsh(file, out);
 }
 

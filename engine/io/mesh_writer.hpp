@@ -30,11 +30,10 @@ std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem
                                                            std::span<const std::int64_t> labels,
                                                            std::span<const std::string> names = {});
 
-/// Writes `mesh` as .vtu or .msh (Gmsh 2.2, binary) with the label of each cell as `material`. `surface` is the mesh that
-/// was filled: its points are the first ones of `mesh`, its triangles the facets between materials. .msh has these, too,
-/// before the tetrahedra, with `material_0` and `material_1` as in write_surface_mesh (a tetrahedron has its own label
-/// in both, a triangle's `material` is its `material_1`); one physical group per pair of materials of the triangles and
-/// per material of the tetrahedra. Names as above, in .vtu as in .vtp. Throws Error for other extensions, for an empty or
+/// Writes `mesh` as .vtu, with the label of each cell as `material`, or as .msh (Gmsh 2.2, binary). `surface` is the mesh
+/// that was filled: its points are the first ones of `mesh`, its triangles the facets between materials. .msh has these,
+/// too, before the tetrahedra: one physical group per pair of materials of the triangles, and one per material of the
+/// tetrahedra, whose number is the label where all labels are positive. Names as above, in .vtu as in .vtp. Throws Error for other extensions, for an empty or
 /// broken mesh, and where writing fails.
 void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
                             std::span<const std::int64_t> labels, std::span<const std::string> names = {});

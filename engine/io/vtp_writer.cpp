@@ -17,24 +17,24 @@ namespace {
 
 static_assert(sizeof(Vec3f) == 12 && sizeof(Vec3d) == 24 && sizeof(Triangle) == 12);
 
-std::string announce_cells(Appended& appended, std::uint64_t points, std::span<const Triangle> triangles) {
+std::string announce_cells(Inline& numbers, std::uint64_t points, std::span<const Triangle> triangles) {
   const auto self = [](std::uint64_t i) { return i; };
   const auto after = [](std::uint64_t i) { return i + 1; };
   if (triangles.empty())
-    return "<Verts>\n" + announce_indices(appended, "connectivity", points, points, self) +
-           announce_indices(appended, "offsets", points, points, after) + "</Verts>\n";
+    return "<Verts>\n" + announce_indices(numbers, "connectivity", points, points, self) +
+           announce_indices(numbers, "offsets", points, points, after) + "</Verts>\n";
   const std::string corners =
-      appended.announce("UInt32", "connectivity", 1, triangles.size_bytes(),
-                        [triangles](Base64Text& file) { file.write(triangles.data(), triangles.size_bytes()); });
+      numbers.announce("UInt32", "connectivity", 1, triangles.size_bytes(),
+                       [triangles](Base64Text& file) { file.write(triangles.data(), triangles.size_bytes()); });
   const auto end = [](std::uint64_t i) { return 3 * i + 3; };
-  return "<Polys>\n" + corners + announce_indices(appended, "offsets", triangles.size(), 3 * triangles.size(), end) +
+  return "<Polys>\n" + corners + announce_indices(numbers, "offsets", triangles.size(), 3 * triangles.size(), end) +
          "</Polys>\n";
 }
 
-std::string announce_arrays(Appended& appended, std::span<const PointArray> arrays) {
+std::string announce_arrays(Inline& numbers, std::span<const PointArray> arrays) {
   std::string xml = "<PointData>\n";
   for (const PointArray& array : arrays)
-    xml += appended.announce(
+    xml += numbers.announce(
         "Float32", array.name, array.components, array.values.size() * sizeof(float),
         [&array](Base64Text& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
   return xml + "</PointData>\n";
@@ -49,7 +49,7 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
       throw Error(fmt::format("cannot write {}", path.string()),
                   fmt::format("array \"{}\" has {} values in tuples of {} for {} points", array.name,
                               array.values.size(), array.components, points.size()));
-  Appended appended;
+  Inline numbers;
   std::string xml =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n<PolyData>\n";
@@ -63,17 +63,15 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
       "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
       "NumberOfPolys=\"{}\">\n",
       points.size(), triangles.empty() ? points.size() : 0, triangles.size());
-  xml += announce_arrays(appended, arrays) + announce_cell_data(appended, triangles.size(), cells);
+  xml += announce_arrays(numbers, arrays) + announce_cell_data(numbers, triangles.size(), cells);
   xml += "<Points>\n" +
-         appended.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
-                           [points](Base64Text& file) { file.write(points.data(), points.size_bytes()); }) +
+         numbers.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
+                          [points](Base64Text& file) { file.write(points.data(), points.size_bytes()); }) +
          "</Points>\n";
-  xml += announce_cells(appended, points.size(), triangles) + "</Piece>\n</PolyData>\n";
+  xml += announce_cells(numbers, points.size(), triangles) + "</Piece>\n</PolyData>\n</VTKFile>\n";
 
   OutputFile file(path);
-  file.write(xml);
-  appended.write(file);
-  file.write("</VTKFile>\n");
+  numbers.write(file, xml);
   file.commit();
 }
 

@@ -7,13 +7,13 @@
 #include <string>
 
 #include "compute/grid/vec.hpp"
-#include "engine/io/vtk_appended.hpp"
+#include "engine/io/vtk_inline.hpp"
 #include "engine/scene/surface.hpp"
 
 namespace nacre {
 
 /// Writes `points`, `triangles` (empty: every point becomes a vertex cell) and `arrays` (one tuple per point each) as
-/// VTK XML PolyData: appended raw little-endian data, 64-bit headers, no compression; coordinates keep their type.
+/// VTK XML PolyData: little-endian numbers in base64, 64-bit headers, no compression; coordinates keep their type.
 /// `time` becomes the field array TimeValue, or `field_data` is a whole <FieldData> element; `cells` are arrays on the
 /// triangles. Data go to the file as they are, never through a second copy.
 /// Throws Error where the file cannot be written, or an array's length is not that of the points.

@@ -12,6 +12,7 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
                               const std::atomic<bool>* stop) {
   for (const std::string& warning : series.warnings) news.warn(warning);
   const Surface first = series.load(0);
+  if (news.read) news.read(first);
   std::vector<std::string> warnings;
   PreparedSurface surface = prepare(first, settings.crease, &warnings);
   for (const std::string& warning : warnings) news.warn(warning);

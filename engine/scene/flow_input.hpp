@@ -15,6 +15,7 @@ namespace nacre {
 struct FlowNews {
   std::function<void(const std::string& sentence)> warn;
   std::function<void(const VectorChoice& choice)> chosen;  ///< which vectors, and why
+  std::function<void(const Surface& first)> read = {};     ///< the first step, before a choice is made; may be empty
 };
 
 /// Prepares the surface of `series`, chooses vectors and looks at all steps. Throws Error where there is nothing to show,

@@ -79,7 +79,7 @@ std::vector<Knob> flow_knobs(Settings& s) {
        &s.mesh.seed},
       {"contrast", "colours", "", "standard deviation of the shown texture", &f.contrast, 0, 1, {}},
       {"color", "colours", "", "array to colour by, speed or none", &s.color, 0, 0, {}},
-      {"colormap", "colours", "", "colours", &s.colormap, 0, 0, {}},
+      {"colormap", "colours", "", "sea, ember, blue-red, gray or phase", &s.colormap, 0, 0, {}},
       {"color_range", "colours", "", "LO:HI of the colour map; empty: of the data", &s.color_range, 0, 0, {}},
       {"camera", "picture", "", "iso, +x, -x, +y, -y, +z, -z or a JSON file", &s.camera, 0, 0, {}},
       {"orbit", "frames", "degrees", "turn of the camera per frame", &s.orbit, -360, 360, {}},

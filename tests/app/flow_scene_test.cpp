@@ -12,7 +12,9 @@
 
 #include "app/viewer/interface.hpp"
 #include "engine/gl/framebuffer.hpp"
+#include "engine/io/surface_writer.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/scene/samples.hpp"
 #include "tests/engine/gl/offscreen.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
@@ -81,6 +83,25 @@ TEST_F(FlowInView, EachCallIsOneStep) {
   EXPECT_TRUE(scene_->complete());
   EXPECT_FALSE(scene_->settled());
   EXPECT_EQ(scene_->copied_bytes(), 0u);
+}
+
+TEST_F(FlowInView, OffersTheArraysOfTheData) {
+  const test::TemporaryFolder folder;
+  Surface surface = make_sample("sphere", 24).load(0);
+  const std::size_t points = surface.points.size();
+  surface.arrays.push_back({"pressure", 1, std::vector<float>(points, 1)});
+  surface.arrays.push_back({"shear", 3, std::vector<float>(3 * points, 1)});
+  write_surface(folder / "a.vtp", surface);
+  Session session = small_session();
+  session.sample.clear();
+  session.inputs = {folder / "a.vtp"};
+  open(session);
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(scene_->choices("vectors"), (Names{"", "@swirl", "@rotation"})) << "before anything is read";
+  advance();
+  EXPECT_EQ(scene_->choices("vectors"), (Names{"", "velocity", "shear", "@swirl", "@rotation"}));
+  EXPECT_EQ(scene_->choices("color"), (Names{"speed", "none", "velocity", "pressure", "shear"}));
+  EXPECT_TRUE(scene_->choices("time").empty());
 }
 
 TEST_F(FlowInView, StandsStillWhereItDoesNotPlay) {

@@ -241,6 +241,30 @@ TEST_F(View, AnySizeAndScreenOfTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
+/// A frame of the video is a step, seen or not; then the window is pulled larger, and what it shows fills it.
+TEST_F(View, AMinimisedWindowIsFilmedAndAPulledOneIsFilled) {
+  const fs::path video = folder / "flow.mp4", report = folder / "film.json", png = folder / "screen.png";
+  const Outcome outcome = run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_film.sh", NACRE_PROGRAM, video.string(),
+                                            report.string(), png.string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json told = read_json(report), view = told.at("view");
+  const Outcome counted = run("/usr/bin/env", {"ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                                               "stream=nb_read_frames", "-of", "csv=p=0", video.string()});
+  ASSERT_EQ(counted.status, 0) << counted.err;
+  EXPECT_EQ(std::stoi(counted.out), view.at("filmed_frames"));
+  EXPECT_GE(view.at("filmed_frames"), 3);
+  for (const auto& stage : told.at("stages")) {
+    if (stage.at("name") != "filter") continue;
+    EXPECT_GE(stage.at("calls"), view.at("filmed_frames"));
+  }
+  const Image screen = read_png(png);
+  ASSERT_EQ(screen.width, 720);
+  for (const int y : {8, 548})  // the bars of menus and status are dark from one side to the other
+    for (const int x : {3, 716})
+      EXPECT_LT(*std::max_element(screen.at(x, y), screen.at(x, y) + 3), 60) << x << ' ' << y;
+}
+
 TEST_F(View, ANewcomerGetsAVideoAndAMesh) {
   const fs::path flow = folder / "flow.vtp", labels = folder / "labels.nrrd";
   ASSERT_EQ(nacre({"sample", "torus", "--detail", "48", "--out", flow.string()}).status, 0);

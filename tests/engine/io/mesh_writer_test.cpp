@@ -266,6 +266,20 @@ TEST(MeshWriter, VtkFilesHaveTheNamesAsFieldData) {
   EXPECT_EQ(read_all(folder / "b.vtp").find("FieldData"), std::string::npos);
 }
 
+/// ParaView 5.11 with today's expat finds no appended data.
+TEST(MeshWriter, VtkFilesHaveTheirNumbersBetweenTheTags) {
+  const TemporaryFolder folder;
+  write_surface_mesh(folder / "a.vtp", two_bodies(), labels);
+  write_tetrahedral_mesh(folder / "a.vtu", two_cells(), two_bodies(), labels);
+  for (const char* file : {"a.vtp", "a.vtu"}) {
+    const std::string text = read_all(folder / file);
+    EXPECT_EQ(text.find("AppendedData"), std::string::npos);
+    EXPECT_EQ(text.find('\1'), std::string::npos);
+    EXPECT_NE(text.find("Name=\"Points\" NumberOfComponents=\"3\" format=\"binary\">eAAAAAAAAA"), std::string::npos)
+        << "120 bytes of five points";
+  }
+}
+
 TEST(MeshWriter, TetrahedraKeepTheirMaterials) {
   const TemporaryFolder folder;
   const TetrahedralMesh mesh = two_cells();
@@ -288,17 +302,14 @@ TEST(MeshWriter, GmshTetrahedraComeWithTheTrianglesBetweenMaterials) {
   for (std::size_t i = 0; i < 7; ++i) {
     ASSERT_EQ(msh.cells[i].size(), 3u);
     for (int k = 0; k < 3; ++k) EXPECT_EQ(msh.cells[i][std::size_t(k)], surface.triangles[i][k]);
-    EXPECT_EQ(msh.numbers.at("material_0")[i], double(labels[surface.materials[i][0]]));
-    EXPECT_EQ(msh.numbers.at("material_1")[i], double(labels[surface.materials[i][1]]));
-    EXPECT_EQ(msh.numbers.at("material")[i], msh.numbers.at("material_1")[i]);
   }
+  EXPECT_TRUE(msh.numbers.empty()) << "meshio 5.3 does not read a file that has some beside cells of two kinds";
   EXPECT_EQ(msh.names.size(), 3u + 2u);
   EXPECT_EQ(msh.names.at({2, msh.group[1]}), "material_5_300");
   EXPECT_EQ(msh.cells[8], (std::vector<std::uint32_t>{0, 2, 1, 4}));
   for (std::size_t i = 7; i < 9; ++i) {
     const std::int32_t label = i == 7 ? 5 : 300;
     EXPECT_EQ(msh.group[i], label) << "the labels themselves";
-    for (const char* name : {"material", "material_0", "material_1"}) EXPECT_EQ(msh.numbers.at(name)[i], label);
     const auto& c = msh.cells[i];
     const Vec3d a = msh.points[c[0]];
     EXPECT_NEAR(dot(msh.points[c[1]] - a, cross(msh.points[c[2]] - a, msh.points[c[3]] - a)), 1, 1e-15);

@@ -1,5 +1,6 @@
-// Nacre: the appended data of VTK XML files that we write, in base64: raw bytes behind an underscore are no XML, and
-// readers that parse strictly refuse them.
+// Nacre: the numbers of VTK XML files that we write, in base64 between the tags. Appended data are found by fewer readers:
+// raw ones are no XML, and VTK before 9.3 (ParaView 5.11) finds none at all, not even its own, where expat has the fixes
+// of 2024.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@
 
 namespace nacre {
 
-static_assert(std::endian::native == std::endian::little, "appended data are written as they are in memory");
+static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
 
 inline std::string xml_escaped(const std::string& text) {
   std::string out;
@@ -64,9 +65,6 @@ class Base64Text {
     text_.clear();
   }
 
-  /// Characters for so many bytes.
-  static std::uint64_t length(std::uint64_t bytes) { return (bytes + 2) / 3 * 4; }
-
  private:
   void put(int digits) {
     static constexpr char alphabet[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -85,29 +83,32 @@ class Base64Text {
   int count_ = 0;  ///< bytes in held_
 };
 
-/// The blocks behind the XML: each is announced first, which gives it its offset, and written afterwards.
-class Appended {
+/// The blocks of numbers: each is announced first, which leaves a gap in the XML, and fills it when that is written.
+class Inline {
  public:
   /// The XML element of a block of `bytes` that `write` will put into the file.
   std::string announce(const std::string& type, const std::string& name, int components, std::uint64_t bytes,
                        std::function<void(Base64Text&)> write) {
-    const std::string element = fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type,
-        xml_escaped(name), components, offset_);
-    offset_ += Base64Text::length(sizeof(std::uint64_t) + bytes);
     blocks_.push_back({bytes, std::move(write)});
-    return element;
+    return fmt::format(
+        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}{}{}</DataArray>\n", type,
+        xml_escaped(name), components, gap, blocks_.size() - 1, gap);
   }
 
-  void write(OutputFile& file) const {
-    file.write("<AppendedData encoding=\"base64\">\n_");
-    for (const Block& block : blocks_) {
+  /// `xml` has the elements that were announced, in whatever order.
+  void write(OutputFile& file, const std::string& xml) const {
+    std::size_t begin = 0;
+    for (std::size_t left; (left = xml.find(gap, begin)) != xml.npos;) {
+      const std::size_t right = xml.find(gap, left + 1);
+      file.write(xml.substr(begin, left - begin));
+      const Block& block = blocks_.at(std::stoul(xml.substr(left + 1, right - left - 1)));
       Base64Text text(file);
       text.write(&block.bytes, sizeof block.bytes);
       block.write(text);
       text.finish();
+      begin = right + 1;
     }
-    file.write("\n</AppendedData>\n");
+    file.write(xml.substr(begin));
   }
 
  private:
@@ -115,8 +116,8 @@ class Appended {
     std::uint64_t bytes;
     std::function<void(Base64Text&)> write;
   };
+  static constexpr char gap = '\1';  ///< on both sides of a block's number; no text has it (xml_escaped)
   std::vector<Block> blocks_;
-  std::uint64_t offset_ = 0;
 };
 
 /// Writes value(0), value(1), ... value(count - 1) by way of a small buffer.
@@ -132,21 +133,21 @@ void write_generated(Base64Text& file, std::uint64_t count, const Value& value) 
 
 /// One DataArray of `count` whole numbers from `lower` to `upper`, 32-bit where that is wide enough.
 template <class Value>
-std::string announce_numbers(Appended& appended, const std::string& name, std::uint64_t count, std::int64_t lower,
+std::string announce_numbers(Inline& numbers, const std::string& name, std::uint64_t count, std::int64_t lower,
                              std::int64_t upper, Value value) {
   using Narrow = std::numeric_limits<std::int32_t>;
   if (lower >= Narrow::min() && upper <= Narrow::max())
-    return appended.announce("Int32", name, 1, 4 * count,
-                             [=](Base64Text& file) { write_generated<std::int32_t>(file, count, value); });
-  return appended.announce("Int64", name, 1, 8 * count,
-                           [=](Base64Text& file) { write_generated<std::int64_t>(file, count, value); });
+    return numbers.announce("Int32", name, 1, 4 * count,
+                            [=](Base64Text& file) { write_generated<std::int32_t>(file, count, value); });
+  return numbers.announce("Int64", name, 1, 8 * count,
+                          [=](Base64Text& file) { write_generated<std::int64_t>(file, count, value); });
 }
 
 /// The same for indices from 0 to `largest`.
 template <class Value>
-std::string announce_indices(Appended& appended, const char* name, std::uint64_t count, std::uint64_t largest,
+std::string announce_indices(Inline& numbers, const char* name, std::uint64_t count, std::uint64_t largest,
                              Value value) {
-  return announce_numbers(appended, name, count, 0, std::int64_t(largest), value);
+  return announce_numbers(numbers, name, count, 0, std::int64_t(largest), value);
 }
 
 /// A whole number per cell, made as it is written.
@@ -157,10 +158,10 @@ struct CellNumbers {
 };
 
 /// The CellData of `cells` cells; nothing where there are no arrays.
-inline std::string announce_cell_data(Appended& appended, std::uint64_t cells, std::span<const CellNumbers> arrays) {
+inline std::string announce_cell_data(Inline& numbers, std::uint64_t cells, std::span<const CellNumbers> arrays) {
   if (arrays.empty()) return {};
   std::string xml = "<CellData>\n";
-  for (const CellNumbers& a : arrays) xml += announce_numbers(appended, a.name, cells, a.lower, a.upper, a.of);
+  for (const CellNumbers& a : arrays) xml += announce_numbers(numbers, a.name, cells, a.lower, a.upper, a.of);
   return xml + "</CellData>\n";
 }
 
