@@ -21,17 +21,21 @@ struct LabelSlopes {
     up[axis] = side;
     const Tread tread{v, up, label(v), label(v + up)};
     if (tread.own == tread.other) return 0;
-    Ends rising, falling;
+    Ends rising, falling, other_rising, other_falling;
     float bend = 0;
     for (int k = 1; k <= 2; ++k) {
       Int3 along{};
       along[(axis + k) % 3] = 1;
       const float voxel = 1 / field.cells_per_unit[(axis + k) % 3];
       const End a = end(tread, along, voxel), b = end(tread, Int3(0) - along, voxel);
-      for (const End& e : {a, b})
-        if (e.step != 0) (e.step > 0 ? rising : falling).add(e.distance);
-      if (a.step * b.step < 0) bend += (1 / a.distance + 1 / b.distance) * bend_between(a, b);
+      const bool through = a.step * b.step < 0;  // the slope runs along this axis
+      for (const End& e : {a, b}) {
+        if (e.step > 0) (through ? rising : other_rising).add(e.distance);
+        if (e.step < 0) (through ? falling : other_falling).add(e.distance);
+      }
+      if (through) bend += (1 / a.distance + 1 / b.distance) * bend_between(a, b);
     }
+    if (rising.count == 0) rising = other_rising, falling = other_falling;
     const float r = rising.weight(falling), f = falling.weight(rising);
     return r + f > 0 ? min(max((0.5f * (f - r) - bend) / (r + f), 0.0f), 0.5f) : 0;
   }

@@ -6,12 +6,6 @@ source "$(dirname "$0")/window.sh"
 on_display 800x600 xdotool ffmpeg
 program=$1 video=$2 report=$3 screen=$4
 
-if command -v openbox >/dev/null; then # without a window manager nothing is minimised, only hidden
-  openbox 2>/dev/null &
-  minimise=windowminimize
-else
-  minimise=windowunmap
-fi
 open_window "$program" --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet --report "$report"
 window=$(xdotool search --name 'Nacre$' | head -1)
 filming() { titled '^film - '; }
@@ -33,7 +27,7 @@ film() { # by its key, until WHAT holds; more slowly at each attempt, where much
 xdotool mousemove 500 200
 film filming
 sleep 1
-xdotool $minimise "$window"
+xdotool windowunmap "$window" # without a window manager that is what minimising does
 sleep 1
 xdotool windowmap "$window"
 sleep 0.5

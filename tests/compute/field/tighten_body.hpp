@@ -149,19 +149,19 @@ void ATreadIsReadAsASlope(Executor<Backend>& exec) {
   for (const int x : {0, 3, 5, 12, 20}) EXPECT_EQ(second[x], 0) << x;  // the boundary is not there
 }
 
-/// Below a step of more than three voxels, and on a plate that ends there, treads stay.
+/// Steps of more than three voxels leave their treads alone, and so does the rim of a plate.
 template <class Backend>
 void WallsAreNoSteps(Executor<Backend>& exec) {
-  const Int3 n(24, 17, 20);
-  const auto all_zero = [](const std::vector<float>& shares) {
+  const auto all_zero = [&](const Int3& n, int top, const std::function<bool(const Vec3d&)>& lower) {
+    const auto shares = shares_along_x(exec, n, lower, top);
     return std::all_of(shares.begin(), shares.end(), [](float s) { return s == 0; });
   };
-  EXPECT_TRUE(all_zero(shares_along_x(
-      exec, n, [](const Vec3d& p) { return p.z <= (p.x < 12 ? 5 : 9); }, 5)));
-  EXPECT_FALSE(all_zero(shares_along_x(
-      exec, n, [](const Vec3d& p) { return p.z <= (p.x < 12 ? 5 : 8); }, 5)));
-  EXPECT_TRUE(all_zero(shares_along_x(
-      exec, n, [](const Vec3d& p) { return p.z >= 5 && p.z < 8 && p.x > 6 && p.x < 16 && p.y > 3 && p.y < 13; }, 7)));
+  const auto stairs = [](int step) { return [=](const Vec3d& p) { return p.z <= 4 + step * (int(p.x) / 8); }; };
+  EXPECT_FALSE(all_zero({24, 17, 20}, 7, stairs(3)));
+  EXPECT_TRUE(all_zero({24, 17, 20}, 8, stairs(4)));
+  EXPECT_TRUE(all_zero({24, 17, 20}, 7, [](const Vec3d& p) {
+    return p.z >= 5 && p.z < 8 && p.x > 6 && p.x < 16 && p.y > 3 && p.y < 13;
+  }));
 }
 
 /// The cube between eight voxel centres that holds a point has corners of both materials: its voxel shell.
