@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t small_body = 24, tiny_body = 12;  // points
 constexpr double too_close = 0.25;                      // of a new point to old ones, in sizes
 constexpr double long_edge = 1.3;                       // in sizes
+constexpr double intrudes = 0.25;                       // from the line between two points of a curve, in sizes
 constexpr double flat_angle = 115;                      // degrees
 constexpr double in_front = 0.8, crowd = 0.45;          // in sizes: a new point before a rim, and from all others
 
@@ -98,6 +99,47 @@ void split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::sp
   if (order[a] == 2 && order[b] == 2 &&
       length(mesh.points[b] - mesh.points[a]) > long_edge * std::min(size[a], size[b]))
     defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t]});
+}
+
+/// Points of a surface that have facets of several pairs of materials.
+std::vector<std::uint32_t> in_junctions(const SurfaceMesh& mesh, std::span<const std::uint8_t> order) {
+  std::vector<std::array<std::uint16_t, 2>> pair(mesh.points.size());
+  std::vector<std::uint8_t> seen(mesh.points.size(), 0), several(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[t][k];
+      if (!seen[v]) pair[v] = mesh.materials[t];
+      several[v] |= pair[v] != mesh.materials[t];
+      seen[v] = 1;
+    }
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t v = 0; v < several.size(); ++v)
+    if (several[v] && order[v] == 2) found.push_back(v);
+  return found;
+}
+
+/// Points of a surface that stand in a curve, between two of its own points, so that the curve is bent aside to them.
+void find_intruders(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const std::uint8_t> order,
+                    std::span<const float> size, std::span<const std::uint32_t> candidates, std::vector<Wish>& wishes) {
+  std::vector<std::uint32_t> rim;
+  for (const std::uint32_t v : candidates) {
+    rim.clear();
+    for (const std::uint32_t corner : facets_at.corners(v))
+      for (int k = 0; k < 3; ++k)
+        if (const std::uint32_t other = mesh.triangles[corner / 3][k]; order[other] < 2) rim.push_back(other);
+    const auto between = [&](std::uint32_t a, std::uint32_t b) {
+      const Vec3d along = mesh.points[b] - mesh.points[a], r = mesh.points[v] - mesh.points[a];
+      const double share = dot(r, along) / dot(along, along);
+      return share > 0.2 && share < 0.8 && length(r - along * share) < intrudes * size[v];
+    };
+    for (std::size_t i = 0; i < rim.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        if (rim[i] != rim[j] && between(rim[i], rim[j])) {
+          wishes.push_back({0, v, facets_at.corners(v)[0] / 3, small_body});
+          i = rim.size();
+          break;
+        }
+  }
 }
 
 /// Points wished away, the worst triangles first, no two of one triangle.
@@ -187,8 +229,10 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
     else if (flat >= 0)
       caps.push_back({std::uint32_t(t), flat});
   }
-  if (wishes.empty() && touching.empty() && caps.empty()) return defects;
+  const std::vector<std::uint32_t> candidates = in_junctions(mesh, order);
+  if (wishes.empty() && touching.empty() && caps.empty() && candidates.empty()) return defects;
   const VertexTable facets_at(mesh.triangles, mesh.points.size());
+  find_intruders(mesh, facets_at, order, size, candidates, wishes);
   choose(mesh, facets_at, order, size, wishes, defects);
   fill_in(mesh, facets_at, size, touching, defects);
   for (const Cap& cap : caps) fill_before_rim(mesh, facets_at, size, cap.triangle, cap.flat, defects);

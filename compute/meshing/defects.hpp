@@ -38,7 +38,8 @@ struct MeshDefects {
 /// Bad triangles come from particles that are far too close together (under half of the smaller `size`): one of the two is
 /// to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all edges are
 /// long, from one that lies flat between its neighbours: it is to go if it is on a surface. One on a rim stays: a new point
-/// is put in front of it or, as a last resort, the nearest corner on the surface is to go. Small bodies keep theirs (a
+/// is put in front of it or, as a last resort, the nearest corner on the surface is to go. A point of a surface that stands between
+/// two neighbours on a curve goes, too: it bends the curve aside. Small bodies keep theirs (a
 /// closed surface of 24 points; of 12, if they are too close together), but for those nearer than 0.2 sizes; there a new
 /// point splits the longest edge, if it is long. `touching` are edges (two points), or vertices (one point twice), where a
 /// surface touches itself: off the junctions that shows that it is too coarsely sampled, and new points go into the middle

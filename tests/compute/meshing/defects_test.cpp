@@ -121,6 +121,31 @@ TEST(Defects, BeforeAFlatCornerOnARimIsRoomForOneMore) {
   EXPECT_TRUE(ball.defects({0, 0.3, 0.3}).insert.empty()) << "somebody is there";
 }
 
+/// A ball, one half of it against another material: the rim between is a zigzag of edges.
+TEST(Defects, ASurfacesPointInACurveGoes) {
+  Ball ball(test::points_on_sphere(800, 1));
+  std::vector<std::uint8_t> sides(ball.mesh.points.size(), 0);
+  for (std::size_t t = 0; t < ball.mesh.triangles.size(); ++t) {
+    const Triangle& c = ball.mesh.triangles[t];
+    const bool right = ball.mesh.points[c.a].x + ball.mesh.points[c.b].x + ball.mesh.points[c.c].x > 0;
+    ball.mesh.materials[t] = right ? std::array<std::uint16_t, 2>{1, 2} : std::array<std::uint16_t, 2>{0, 1};
+    for (int k = 0; k < 3; ++k) sides[c[k]] |= right ? 1 : 2;
+  }
+  for (std::size_t v = 0; v < sides.size(); ++v) ball.order[v] = sides[v] == 3 ? 1 : 2;
+  EXPECT_TRUE(ball.defects(worst_defects).remove.empty());
+  int intruders = 0;
+  for (std::uint32_t v = 0; v < sides.size(); ++v) {
+    if (sides[v] != 3) continue;
+    ball.order[v] = 2;
+    const Points gone = ball.defects(worst_defects).remove;
+    EXPECT_TRUE(gone.empty() || gone == Points{v});
+    intruders += gone == Points{v};
+    ball.order[v] = 1;
+  }
+  EXPECT_GT(intruders, 3) << "where the rim is straight";
+  EXPECT_LT(intruders, std::count(sides.begin(), sides.end(), 3)) << "not where it has a corner";
+}
+
 TEST(Defects, SmallBodiesKeepAllOfTheirs) {
   for (const int count : {11, 12}) {
     Ball ball(with_a_twin(count));
