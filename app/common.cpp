@@ -181,8 +181,12 @@ StatusLine::~StatusLine() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
-nlohmann::json stage_report(const StageTimers::Stage& stage) {
-  return {{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}, {"launches", stage.launches}};
+nlohmann::json stages_report(const StageTimers& timers) {
+  auto report = nlohmann::json::array();
+  for (const StageTimers::Stage& stage : timers.stages())
+    report.push_back(
+        {{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}, {"launches", stage.launches}});
+  return report;
 }
 
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
@@ -191,9 +195,7 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
   report["nacre"] = version;
   report["command"] = command;
   report["device"] = {{"backend", device.backend()}, {"name", device.name()}, {"threads", device.threads()}};
-  report["stages"] = nlohmann::json::array();
-  for (const auto& stage : timers.stages())
-    report["stages"].push_back(stage_report(stage));
+  report["stages"] = stages_report(timers);
   std::unique_ptr<Device> host = device.backend() == "cpu" ? nullptr : make_cpu_device();
   report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()},
                       {"device_peak_bytes", arena_bytes}};

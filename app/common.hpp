@@ -105,8 +105,8 @@ class StatusLine {
   bool drawn_ = false;
 };
 
-/// "name", "seconds", "calls", "launches".
-nlohmann::json stage_report(const StageTimers::Stage& stage);
+/// Of each stage "name", "seconds", "calls", "launches".
+nlohmann::json stages_report(const StageTimers& timers);
 
 /// "nacre", "command", "device", "stages", "memory".
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,

@@ -177,9 +177,7 @@ nlohmann::json view_report(const ViewerResult& result, const Session& session) {
   report["command"] = "view";
   report["device"] = {{"backend", result.backend}, {"name", result.device_name}, {"threads", result.threads}};
   report["input"] = input_report(session);
-  report["stages"] = nlohmann::json::array();
-  for (const StageTimers::Stage& stage : result.timers.stages())
-    report["stages"].push_back(stage_report(stage));
+  report["stages"] = stages_report(result.timers);
   report["memory"] = {{"peak_bytes", make_cpu_device()->peak_bytes()}, {"device_peak_bytes", result.peak_bytes}};
   report["parameters"] = knob_values(session.settings);
   report["view"] = frame_report(result);

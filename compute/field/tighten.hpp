@@ -219,7 +219,7 @@ struct TightenResult {
 /// motion (Merriman, Bence & Osher 1992), by 2 G - G G, which leaves quadratics alone, so that boundaries do not shrink
 /// with their curvature to leading order. Voxels that would change sides are then held by narrow Gaussians: the result is
 /// smooth everywhere, and every voxel's centre stays in its material, thin ones by a wider margin. `width`: of G in voxels,
-/// up to 1.5; 0: the binary functions as they are.
+/// up to 1.5; 0: the binary functions as they are. `stairs`: the reach of LabelSlopes, voxels; 0: all of a voxel is of its label.
 template <class Backend>
 TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, double stairs) {
   constexpr int reach = 6, narrow_reach = 2;

@@ -132,13 +132,11 @@ void find_intruders(const SurfaceMesh& mesh, const VertexTable& facets_at, std::
       const double share = dot(r, along) / dot(along, along);
       return share > 0.2 && share < 0.8 && length(r - along * share) < intrudes * size[v];
     };
-    for (std::size_t i = 0; i < rim.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (rim[i] != rim[j] && between(rim[i], rim[j])) {
-          wishes.push_back({0, v, facets_at.corners(v)[0] / 3, small_body});
-          i = rim.size();
-          break;
-        }
+    const auto ends_here = [&](std::uint32_t a) {
+      return std::any_of(rim.begin(), rim.end(), [&](std::uint32_t b) { return a < b && between(a, b); });
+    };
+    if (std::any_of(rim.begin(), rim.end(), ends_here))
+      wishes.push_back({0, v, facets_at.corners(v)[0] / 3, small_body});
   }
 }
 

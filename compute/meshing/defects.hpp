@@ -15,8 +15,8 @@ struct DefectRule {
   double angle = 25;   ///< one under this, degrees
   double ratio = 0.4;  ///< or the radius ratio under this
   double near = 0.4;   ///< ... where a corner is on a junction
-  bool fills =
-      true;  ///< a rim's corner that lies flat gets a new point in front of it; else a neighbour goes, if one may
+  /// A rim's corner that lies flat gets a new point in front of it; else a neighbour goes, if one may.
+  bool fills = true;
 };
 
 /// The least that is asked of a mesh, with a margin: what particles go and come for once all have been smoothed.
@@ -38,10 +38,10 @@ struct MeshDefects {
 /// Bad triangles come from particles that are far too close together (under half of the smaller `size`): one of the two is
 /// to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all edges are
 /// long, from one that lies flat between its neighbours: it is to go if it is on a surface. One on a rim stays: a new point
-/// is put in front of it or, as a last resort, the nearest corner on the surface is to go. A point of a surface that stands between
-/// two neighbours on a curve goes, too: it bends the curve aside. Small bodies keep theirs (a
-/// closed surface of 24 points; of 12, if they are too close together), but for those nearer than 0.2 sizes; there a new
-/// point splits the longest edge, if it is long. `touching` are edges (two points), or vertices (one point twice), where a
+/// is put in front of it or, as a last resort, the nearest corner on the surface is to go. A point of a surface that stands
+/// between two neighbours on a curve goes, too: it bends the curve aside. Small bodies keep theirs (a closed surface of 24
+/// points; of 12, if they are too close together), but for those nearer than 0.2 sizes; there a new point splits the longest
+/// edge, if it is long. `touching` are edges (two points), or vertices (one point twice), where a
 /// surface touches itself: off the junctions that shows that it is too coarsely sampled, and new points go into the middle
 /// of the facets there. `order` (2 surface, 1 curve, 0 point) and `size` (world units) are per point of the mesh.
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,

@@ -10,8 +10,8 @@ enum FieldStage { tighten_stage, distance_stage, sizing_stage, embed_stage, fiel
 
 /// Values as the stages see them: two sets of knobs that come to the same are the same.
 struct FieldRecipe {
-  double width = 0;  ///< tighten: 0 where the volume is not made of labels
-  double stairs = 0;  ///< tighten
+  double width = 0;   ///< tighten: 0 where the volume is not made of labels
+  double stairs = 0;  ///< tighten: 0 where width is
   CubicKernel kernel =
       CubicKernel::catmull_rom;  ///< of all stages that read the materials' functions: from distance on
   float spacing = 0.25f;         ///< asked for; the lattice that follows from it is what counts

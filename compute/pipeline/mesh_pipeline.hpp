@@ -23,7 +23,7 @@ namespace nacre {
 struct MeshParameters {
   std::string solver = "tree";         ///< tree (ch. 4), redblack (sec. 3.2), serial (sec. 3.1)
   double tighten = 1.2;                ///< width of the smoothing of label boundaries; 0: keep the stairs
-  double stairs = 32;                  ///< the widest treads of stairs that are read as slopes, half of them, voxels; 0: none
+  double stairs = 32;                  ///< how far ends of treads are looked for, to read stairs as slopes; 0: not
   double epsilon = 0.5;                ///< sizing: share of the local feature size
   double delta = 0.4;                  ///< sizing: largest slope (Lipschitz constant)
   double min_size = 0.5;               ///< sizing: smallest distance of particles
