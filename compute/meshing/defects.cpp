@@ -62,7 +62,8 @@ std::uint32_t culprit(const SurfaceMesh& mesh, std::size_t t, std::span<const st
   const int next = (flat + 1) % 3, last = (flat + 2) % 3;
   const bool next_is_nearer = length(p[next] - p[flat]) < length(p[last] - p[flat]);
   const std::uint32_t nearer = c[next_is_nearer ? next : last], other = c[next_is_nearer ? last : next];
-  return order[nearer] == 2 ? nearer : order[other] == 2 ? other : none;
+  if (order[nearer] == 2 || order[other] == 2) return order[nearer] == 2 ? nearer : other;
+  return order[c[flat]] == 1 ? c[flat] : none;
 }
 
 /// Has the closed surface of one of the point's materials no more than `few` points, so that it needs them all?
@@ -98,7 +99,7 @@ void split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::sp
   const std::uint32_t a = c[longest], b = c[(longest + 1) % 3];
   if (order[a] == 2 && order[b] == 2 &&
       length(mesh.points[b] - mesh.points[a]) > long_edge * std::min(size[a], size[b]))
-    defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t]});
+    defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t], a});
 }
 
 /// Points of a surface that have facets of several pairs of materials.
@@ -160,16 +161,19 @@ void choose(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<con
 
 bool has_corner(const Triangle& t, std::uint32_t point) { return t.a == point || t.b == point || t.c == point; }
 
-/// New points in the facets where a surface of two materials touches itself; not next to old ones.
-void fill_in(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const float> size,
-             std::span<const std::array<std::uint32_t, 2>> touching, MeshDefects& defects) {
+/// New points in the facets where a surface of two materials touches itself, or another one off the junctions; at junctions
+/// `anyhow`. Not next to old ones.
+void fill_in(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const std::uint8_t> order,
+             std::span<const float> size, std::span<const std::array<std::uint32_t, 2>> touching, bool anyhow,
+             MeshDefects& defects) {
   std::vector<std::uint32_t> facets, here;
   for (const auto& [a, b] : touching) {
     here.clear();
     for (const std::uint32_t corner : facets_at.corners(a))
       if (has_corner(mesh.triangles[corner / 3], b)) here.push_back(corner / 3);
     const auto alike = [&](std::uint32_t t) { return mesh.materials[t] == mesh.materials[here[0]]; };
-    if (std::all_of(here.begin(), here.end(), alike)) facets.insert(facets.end(), here.begin(), here.end());
+    if (anyhow || (order[a] == 2 && order[b] == 2) || std::all_of(here.begin(), here.end(), alike))
+      facets.insert(facets.end(), here.begin(), here.end());
   }
   std::sort(facets.begin(), facets.end());
   facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
@@ -177,7 +181,8 @@ void fill_in(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<co
     const auto p = corners(mesh, t);
     const Vec3d middle = (p[0] + p[1] + p[2]) / 3.0;
     const auto crowded = [&](int k) { return length(p[k] - middle) < too_close * size[mesh.triangles[t][k]]; };
-    if (!crowded(0) && !crowded(1) && !crowded(2)) defects.insert.push_back({middle, mesh.materials[t]});
+    if (!crowded(0) && !crowded(1) && !crowded(2))
+      defects.insert.push_back({middle, mesh.materials[t], mesh.triangles[t].a});
   }
 }
 
@@ -195,7 +200,7 @@ void fill_before_rim(const SurfaceMesh& mesh, const VertexTable& facets_at, std:
         const std::uint32_t q = mesh.triangles[corner / 3][j];
         if (length(mesh.points[q] - place) < crowd * size[q]) return;
       }
-  defects.insert.push_back({place, mesh.materials[t]});
+  defects.insert.push_back({place, mesh.materials[t], c[flat]});
 }
 
 }  // namespace
@@ -232,18 +237,22 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
   const VertexTable facets_at(mesh.triangles, mesh.points.size());
   find_intruders(mesh, facets_at, order, size, candidates, wishes);
   choose(mesh, facets_at, order, size, wishes, defects);
-  fill_in(mesh, facets_at, size, touching, defects);
+  fill_in(mesh, facets_at, order, size, touching, !rule.fills, defects);
   for (const Cap& cap : caps) fill_before_rim(mesh, facets_at, size, cap.triangle, cap.flat, defects);
   return defects;
 }
 
+double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
+                        const DefectRule& rule) {
+  const auto p = corners(mesh, t);
+  const double asked = at_junction(mesh.triangles[t], order) ? rule.near : rule.ratio;
+  return std::min(radius_ratio(p[0], p[1], p[2]) / asked, best_fitness(rule));
+}
+
 double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule) {
-  double least = wanted_ratio / rule.ratio;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto p = corners(mesh, t);
-    const double asked = at_junction(mesh.triangles[t], order) ? rule.near : rule.ratio;
-    least = std::min(least, radius_ratio(p[0], p[1], p[2]) / asked);
-  }
+  double least = best_fitness(rule);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    least = std::min(least, triangle_fitness(mesh, t, order, rule));
   return least;
 }
 

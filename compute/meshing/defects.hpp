@@ -29,6 +29,7 @@ struct MeshDefects {
   struct NewPoint {
     Vec3d place;
     std::array<std::uint16_t, 2> materials;
+    std::uint32_t at;  ///< a point of the mesh that it is next to
   };
   std::int64_t bad_triangles = 0;
   std::vector<std::uint32_t> remove;  ///< points of the mesh, ascending; no two of them share a triangle
@@ -38,17 +39,24 @@ struct MeshDefects {
 /// Bad triangles come from particles that are far too close together (under half of the smaller `size`): one of the two is
 /// to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all edges are
 /// long, from one that lies flat between its neighbours: it is to go if it is on a surface. One on a rim stays: a new point
-/// is put in front of it or, as a last resort, the nearest corner on the surface is to go. A point of a surface that stands
-/// between two neighbours on a curve goes, too: it bends the curve aside. Small bodies keep theirs (a closed surface of 24
-/// points; of 12, if they are too close together), but for those nearer than 0.2 sizes; there a new point splits the longest
-/// edge, if it is long. `touching` are edges (two points), or vertices (one point twice), where a
-/// surface touches itself: off the junctions that shows that it is too coarsely sampled, and new points go into the middle
-/// of the facets there. `order` (2 surface, 1 curve, 0 point) and `size` (world units) are per point of the mesh.
+/// is put in front of it or, as a last resort (`rule.fills` unset), the nearest corner on the surface is to go, and where all
+/// are on curves the flat one. A point of a surface that stands between two neighbours on a curve goes, too: it bends the
+/// curve aside. Small bodies keep theirs (a closed surface of 24 points; of 12, if they are too close together), but for those
+/// nearer than 0.2 sizes; there a new point splits the longest edge, if it is long. `touching` are edges (two points), or
+/// vertices (one point twice), where a surface touches itself: off the junctions that shows that it is too coarsely sampled,
+/// and new points go into the middle of the facets there; as a last resort at junctions, too. `order` (2 surface, 1 curve,
+/// 0 point) and `size` (world units) are per point of the mesh.
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
 
-/// How far the triangles are above the least ratios of `rule`, as a multiple of them: the least over all; below 1 where one
-/// is bad. No more than wanted_ratio / rule.ratio: better ones are all alike.
+/// How far a triangle is above the least ratio of `rule`, as a multiple of it; below 1 where it is bad.
+double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
+                        const DefectRule& rule);
+
+/// What no fitness is above: better triangles are all alike.
+inline double best_fitness(const DefectRule& rule) { return wanted_ratio / rule.ratio; }
+
+/// The least fitness of all triangles.
 double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
 
 /// Marks the points at triangles with a radius ratio under `ratio`.

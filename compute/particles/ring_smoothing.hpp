@@ -4,13 +4,17 @@
 #include <cmath>
 #include <cstdint>
 
+#include "compute/device/random.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 #include "compute/particles/tree_solver.hpp"
 
 namespace nacre {
 
-/// Simultaneous steps in a row while the triangles stay; even.
-inline constexpr int smoothing_turns = 6;
+/// How particles move while the triangles stay.
+struct SmoothingRule {
+  int turns = 6;            ///< simultaneous steps in a row; even
+  std::uint32_t shake = 0;  ///< not 0: the first of them goes anywhere, by this seed
+};
 
 namespace detail {
 
@@ -42,6 +46,7 @@ struct SmoothInRing {
   const Float4* from;
   Float4* to;
   Float4* direction;
+  std::uint32_t shake = 0;  ///< not 0: a step at random instead, by this seed
 
   static constexpr float share = 0.8f;
   static constexpr float longest = 0.3f;  ///< step, by the smallest height of the ring's triangles
@@ -65,6 +70,10 @@ struct SmoothInRing {
  private:
   NACRE_HD Vec3f place(std::uint32_t k) const { return {from[k].x, from[k].y, from[k].z}; }
 
+  NACRE_HD float random(std::int64_t i, std::uint32_t axis) const {
+    return 2 * uniform_random(shake, std::uint32_t(i), axis) - 1;
+  }
+
   NACRE_HD Vec3f step(std::int64_t i, const Vec3f& p, const Vec3f& n, bool on_surface, float h) const {
     const Vec3f helper = std::fabs(n.x) < 0.6f ? Vec3f(1, 0, 0) : Vec3f(0, 1, 0);
     const Vec3f s = on_surface ? normalized(cross(n, helper)) : n, t = on_surface ? cross(n, s) : Vec3f();
@@ -87,6 +96,7 @@ struct SmoothInRing {
       hst += f.fxx * xs * xt + f.fxy * (xs * yt + xt * ys) + f.fyy * ys * yt;
       htt += f.fxx * xt * xt + 2 * f.fxy * xt * yt + f.fyy * yt * yt;
     }
+    if (shake != 0) return (s * random(i, 0) + t * random(i, 1)) * (longest * least);
     Vec3f v;
     if (on_surface) {
       const float determinant = hss * htt - hst * hst;

@@ -81,39 +81,44 @@ struct CountSeeds {
   std::uint32_t* count;
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint64_t half = 1u << 23, end = i + 1 < cells ? sum[i + 1] : total;
-    const std::uint64_t n = ((end + half) >> 24) - ((sum[i] + half) >> 24);
-    count[i] = n > 0 ? 1 : 0;
+    count[i] = std::uint32_t(((end + half) >> 24) - ((sum[i] + half) >> 24));
   }
 };
 
 /// Seeds stand beside their cells' closest points, along the interface: two cells across a flat interface have the same one,
-/// and particles at one place would never part.
+/// and particles at one place would never part. Those of a cell that has several spread over it.
 struct WriteSeeds {
   SeedCells cells;
   const std::uint32_t* cell;
-  const std::uint32_t* count;  ///< scanned
-  const std::uint32_t* flag;
+  const std::uint32_t* start;  ///< the counts scanned
+  const std::uint32_t* count;
   std::int64_t first;
   Float4* place;
   Float4* direction;
   std::uint32_t* interface;
   Float4* velocity;
   NACRE_HD void operator()(std::int64_t i) const {
-    if (flag[i] == 0) return;
-    const std::int64_t to = first + count[i], at = cell[i];
+    if (count[i] == 0) return;
+    const std::int64_t at = cell[i];
     const Float4 o = store(load(cells.grid.cell[at])), d = cells.grid.direction(at);
-    const Vec3f p = (cell_centre(cells.cell(at)) + Vec3f(o.x, o.y, o.z) + aside(at, {d.x, d.y, d.z})) /
-                    cells.grid.cells_per_voxel;
-    place[to] = {p.x, p.y, p.z, d.w};
-    direction[to] = {d.x, d.y, d.z, 0};
-    interface[to] = cells.grid.brick_interface[at / 64];
-    velocity[to] = {0, 0, 0, 0};
+    const Vec3f middle = cell_centre(cells.cell(at)) + Vec3f(o.x, o.y, o.z);
+    for (std::uint32_t k = 0; k < count[i]; ++k) {
+      const Vec3f p = (middle + aside(at, k, count[i], {d.x, d.y, d.z})) / cells.grid.cells_per_voxel;
+      const std::int64_t to = first + start[i] + k;
+      place[to] = {p.x, p.y, p.z, d.w};
+      direction[to] = {d.x, d.y, d.z, 0};
+      interface[to] = cells.grid.brick_interface[at / 64];
+      velocity[to] = {0, 0, 0, 0};
+    }
   }
 
  private:
-  /// Up to a quarter of a cell along each axis, in the tangent space.
-  NACRE_HD Vec3f aside(std::int64_t at, const Vec3f& direction) const {
-    const auto random = [&](std::uint32_t axis) { return 0.5f * uniform_random(1, std::uint32_t(at), axis) - 0.25f; };
+  /// Up to a quarter of a cell along each axis, in the tangent space; half of it for one of several.
+  NACRE_HD Vec3f aside(std::int64_t at, std::uint32_t number, std::uint32_t of, const Vec3f& direction) const {
+    const float reach = of == 1 ? 0.25f : 0.5f;
+    const auto random = [&](std::uint32_t axis) {
+      return reach * (2 * uniform_random(1, std::uint32_t(at), 3 * number + axis) - 1);
+    };
     const Vec3f r(random(0), random(1), random(2)), along = direction * dot(direction, r);
     return cells.wanted == 2 ? r - along : along;
   }
@@ -158,14 +163,14 @@ std::int64_t seed_particles(Executor<Backend>& exec, const InterfaceGrid& grid, 
   Array<std::uint64_t> sum = arena.temporary<std::uint64_t>(n);
   exec.for_each(n, detail::SeedShares{cells, cell.data(), scale, sum.data()});
   const std::uint64_t total = exec.exclusive_scan(sum.data(), sum.data(), n);
-  Array<std::uint32_t> flag = arena.temporary<std::uint32_t>(n), count = arena.temporary<std::uint32_t>(n);
-  exec.for_each(n, detail::CountSeeds{sum.data(), total, n, flag.data()});
-  const std::int64_t seeds = exec.exclusive_scan(flag.data(), count.data(), n);
+  Array<std::uint32_t> count = arena.temporary<std::uint32_t>(n), start = arena.temporary<std::uint32_t>(n);
+  exec.for_each(n, detail::CountSeeds{sum.data(), total, n, count.data()});
+  const std::int64_t seeds = exec.exclusive_scan(count.data(), start.data(), n);
   if (set.count + seeds > set.capacity())
     throw Error("more particles than expected",
                 std::to_string(set.count + seeds) + " of at most " + std::to_string(set.capacity()),
                 "raise --min-size or --epsilon");
-  exec.for_each(n, detail::WriteSeeds{cells, cell.data(), count.data(), flag.data(), set.count, set.place.data(),
+  exec.for_each(n, detail::WriteSeeds{cells, cell.data(), start.data(), count.data(), set.count, set.place.data(),
                                       set.direction.data(), set.interface.data(), velocity.data()});
   set.count += seeds;
   return seeds;

@@ -5,10 +5,11 @@
 #include <optional>
 #include <utility>
 
-#include "compute/particles/ring_smoothing.hpp"
 #include "compute/pipeline/mesh_pipeline_impl.hpp"
 
 namespace nacre {
+
+constexpr int most_further = 4;  // rounds of an attempt after its first
 
 template <class Backend>
 auto MeshPipelineOf<Backend>::triangulate_once(Delaunay& delaunay) -> Triangulated {
@@ -19,6 +20,7 @@ auto MeshPipelineOf<Backend>::triangulate_once(Delaunay& delaunay) -> Triangulat
   Triangulated made;
   made.repair = repair_labels(points, cells, label);
   made.mesh = extract_interfaces(points, cells, label, &made.point_of);
+  made.fitness = -double(made.repair.places.size());
   if (made.repair.places.empty()) made.fitness = fitness(made.mesh, point_facts(made).order, worst_defects);
   return made;
 }
@@ -45,13 +47,19 @@ SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
   Triangulated made;
   std::optional<Triangulated> best;
   HostParticles best_particles;
-  do {
+  for (bool again = true; again;) {
     tell("triangulate", improve_fraction(rounds));
     made = triangulate_once(delaunay);
-    if (rounds.smoothed < parameters.smooth || (best && made.fitness <= best->fitness)) continue;
-    best = made;
-    best_particles = download_particles();
-  } while (improve(rounds, made));
+    if (rounds.attempt) {
+      if (go_on(rounds, made)) continue;
+      if (take_back(rounds)) made = triangulate_once(delaunay);
+    }
+    if (rounds.smoothed >= parameters.smooth && !(best && made.fitness < best->fitness)) {
+      best = made;
+      best_particles = download_particles();
+    }
+    again = improve(rounds, made);
+  }
   upload_particles(best_particles);
   info_.final = std::int64_t(best_particles.interface.size());
   std::int64_t of_order[3] = {};
@@ -82,21 +90,86 @@ bool MeshPipelineOf<Backend>::improve(MeshRounds& rounds, Triangulated& made) {
     if (rounds.smoothed == parameters.smooth && parameters.mend > 0) mend(made, worst_defects);
     return true;
   }
-  const std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, made.mesh);
+  const std::vector<std::uint8_t> bad = bad_points(made);
   const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
   const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * rounds.bad);
   if (rounds.mended >= parameters.mend || !worth) return false;
   ++rounds.mended;
   rounds.bad = count;
-  const bool moved = parameters.smooth > 0 && smooth(rounds, made, bad) > 0;
-  return mend(made, worst_defects) || moved;
+  return attempt(rounds, made, bad);
+}
+
+/// Changes what is around the points `bad`, each time in another of four ways: the particles there move and those that spoil
+/// triangles go; they move by less, where the last way made them flip to and fro; those go without moving others; as the
+/// first, from places chosen at random. False where nothing is to be changed in any way.
+template <class Backend>
+bool MeshPipelineOf<Backend>::attempt(MeshRounds& rounds, Triangulated& made, std::span<const std::uint8_t> bad) {
+  rounds.before = download_particles();
+  const PointFacts facts = point_facts(made);
+  const auto touching = touching_points(made);
+  rounds.attempt.emplace(rounds.before.interface.size(), Attempt::View{made.mesh, made.point_of, facts.order, touching},
+                         bad, worst_defects);
+  rounds.further = 0;
+  for (int tried = 0; tried < 4; ++tried) {
+    const std::uint32_t way = std::uint32_t(rounds.attempts++);
+    const SmoothingRule rule{way % 4 == 1 ? 2 : 6, way % 4 == 3 ? way : 0};
+    const bool moved = way % 4 != 2 && parameters.smooth > 0 && smooth(rounds, made, bad, rule) > 0;
+    const bool mended = way % 4 != 1 && mend(made, worst_defects, &*rounds.attempt);
+    if (moved || mended) return true;
+  }
+  rounds.attempt.reset();
+  return false;
+}
+
+/// Goes on with an attempt where triangles have become no better: it may take more steps than one. False where it has ended.
+template <class Backend>
+bool MeshPipelineOf<Backend>::go_on(MeshRounds& rounds, Triangulated& made) {
+  const PointFacts facts = point_facts(made);
+  const auto touching = touching_points(made);
+  const Attempt::View view{made.mesh, made.point_of, facts.order, touching};
+  rounds.attempt->judge(view);
+  const std::vector<std::uint8_t> open = rounds.attempt->open(view);
+  if (open.empty() || rounds.further == most_further || rounds.mended >= parameters.mend) return false;
+  ++rounds.further, ++rounds.mended;
+  std::vector<std::uint8_t> moving = bad_points(made);
+  for (std::size_t v = 0; v < moving.size(); ++v) moving[v] &= open[v];
+  const bool moved = parameters.smooth > 0 && smooth(rounds, made, moving) > 0;
+  return mend(made, worst_defects, &*rounds.attempt, open) || moved;
+}
+
+/// Ends an attempt: particles go back to where they were before, in those patches whose triangles are no better since. True
+/// where there are some.
+template <class Backend>
+bool MeshPipelineOf<Backend>::take_back(MeshRounds& rounds) {
+  const std::vector<Attempt::Source> sources = rounds.attempt->taken_back();
+  rounds.attempt.reset();
+  if (sources.empty()) return false;
+  const HostParticles now = download_particles();
+  HostParticles mixed;
+  for (const auto& [before, i] : sources) {
+    const HostParticles& from = before ? rounds.before : now;
+    mixed.place.push_back(from.place[i]);
+    mixed.direction.push_back(from.direction[i]);
+    mixed.interface.push_back(from.interface[i]);
+  }
+  upload_particles(mixed);
+  return true;
+}
+
+/// Marks the points of the mesh at triangles that are worth further work, and where it touches itself.
+template <class Backend>
+std::vector<std::uint8_t> MeshPipelineOf<Backend>::bad_points(const Triangulated& made) const {
+  std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, made.mesh);
+  for (const auto& place : touching_points(made))
+    for (const std::uint32_t point : place) bad[point] = 1;
+  return bad;
 }
 
 /// Moves the particles at points `moving` of the mesh to where their triangles are best, and the mesh's points with them.
 /// How many have moved by more than a hundredth of their size.
 template <class Backend>
 std::int64_t MeshPipelineOf<Backend>::smooth(const MeshRounds& rounds, Triangulated& made,
-                                             std::span<const std::uint8_t> moving) {
+                                             std::span<const std::uint8_t> moving, SmoothingRule rule) {
   ParticleSet& set = solver_->particles();
   const std::size_t count = std::size_t(set.count);
   const TriangleRings ring = [&] {
@@ -112,15 +185,15 @@ std::int64_t MeshPipelineOf<Backend>::smooth(const MeshRounds& rounds, Triangula
   first.upload(ring.first);
   edge.upload(ring.edge);
   moved.upload(before);
-  const auto turn = [&](const Array<Float4>& from, Array<Float4>& to) {
+  const auto turn = [&](const Array<Float4>& from, Array<Float4>& to, std::uint32_t shake) {
     auto stage = exec_.stage("smooth");
     exec_.for_each(set.count, detail::SmoothInRing<FieldGround>{field_ground(), first.data(), edge.data(),
                                                                 order_.data(), set.interface.data(), from.data(),
-                                                                to.data(), set.direction.data()});
+                                                                to.data(), set.direction.data(), shake});
   };
-  for (int k = 0; k < smoothing_turns; k += 2) {
-    turn(set.place, moved);
-    turn(moved, set.place);
+  for (int k = 0; k < rule.turns; k += 2) {
+    turn(set.place, moved, k == 0 ? rule.shake : 0);
+    turn(moved, set.place, 0);
     tell("smooth", improve_fraction(rounds), k + 2);
   }
   const std::vector<Float4> after = set.place.download(0, count);
@@ -146,22 +219,34 @@ auto MeshPipelineOf<Backend>::point_facts(const Triangulated& made) const -> Poi
   return facts;
 }
 
-/// Takes away the particles that spoil triangles, and adds some where a surface touches itself or a rim has a gap. False
-/// where nothing is to be changed.
+/// Where the mesh touches itself: two points of it, or one twice.
 template <class Backend>
-bool MeshPipelineOf<Backend>::mend(const Triangulated& made, const DefectRule& rule) {
-  auto stage = exec_.stage("mend");
+std::vector<std::array<std::uint32_t, 2>> MeshPipelineOf<Backend>::touching_points(const Triangulated& made) const {
   const std::vector<std::uint32_t>& point_of = made.point_of;
-  const PointFacts facts = point_facts(made);
   std::vector<std::array<std::uint32_t, 2>> touching = made.repair.places;
   for (auto& place : touching)  // particles; the mesh has those that facets use, in the same order
     for (std::uint32_t& p : place)
       p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
-  const MeshDefects defects = find_defects(made.mesh, facts.order, facts.size, touching, rule);
+  return touching;
+}
+
+/// Takes away the particles that spoil triangles, and adds some where a surface touches itself or a rim has a gap; only at the
+/// mesh's points `there`, where these are marked. False where nothing is to be changed.
+template <class Backend>
+bool MeshPipelineOf<Backend>::mend(const Triangulated& made, const DefectRule& rule, Attempt* attempt,
+                                   std::span<const std::uint8_t> there) {
+  auto stage = exec_.stage("mend");
+  const PointFacts facts = point_facts(made);
+  MeshDefects defects = find_defects(made.mesh, facts.order, facts.size, touching_points(made), rule);
+  if (!there.empty()) {
+    std::erase_if(defects.remove, [&](std::uint32_t v) { return !there[v]; });
+    std::erase_if(defects.insert, [&](const MeshDefects::NewPoint& p) { return !there[p.at]; });
+  }
   if (defects.remove.empty() && defects.insert.empty()) return false;
   std::vector<std::uint8_t> gone(std::size_t(solver_->particles().count), 0);
-  for (const std::uint32_t v : defects.remove) gone[point_of[v]] = 1;
+  for (const std::uint32_t v : defects.remove) gone[made.point_of[v]] = 1;
   polish(change_particles(gone, defects.insert));  // the others lie on the fields
+  if (attempt) attempt->change(gone, std::size_t(solver_->particles().count));
   return true;
 }
 

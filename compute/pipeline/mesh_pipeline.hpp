@@ -42,7 +42,7 @@ struct MeshParameters {
   bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the source's rule
   int control_every = 10;              ///< iterations between two controls of the population
   int smooth = 2;                      ///< rounds of moving particles within the triangles around them
-  int mend = 8;                        ///< rounds of mending bad triangles after the first triangulation, at most
+  int mend = 12;                       ///< rounds of mending bad triangles after the first triangulation, at most
   int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };

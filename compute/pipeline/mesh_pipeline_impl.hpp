@@ -6,10 +6,12 @@
 #include <optional>
 
 #include "compute/embedding/build_interface_grid.hpp"
+#include "compute/meshing/attempt.hpp"
 #include "compute/meshing/defects.hpp"
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/repair.hpp"
+#include "compute/particles/ring_smoothing.hpp"
 #include "compute/particles/solver_state.hpp"
 #include "compute/particles/tree_solver.hpp"
 #include "compute/pipeline/field_recipe.hpp"
@@ -53,7 +55,7 @@ class MeshPipelineOf : public MeshPipeline {
     SurfaceMesh mesh;
     std::vector<std::uint32_t> point_of;  ///< the particle at each of its points, ascending
     LabelRepair repair;
-    double fitness = -1;  ///< see there; below 0: it touches itself
+    double fitness = 0;  ///< see there; below 0: it touches itself at so many places
   };
   struct PointFacts {
     std::vector<std::uint8_t> order;  ///< of junction
@@ -63,6 +65,10 @@ class MeshPipelineOf : public MeshPipeline {
   struct MeshRounds {
     int smoothed = 0, mended = 0;
     std::int64_t bad = std::int64_t(1) << 40;  ///< points at bad triangles when they were last smoothed alone
+    int attempts = 0;                          ///< at bad places alone
+    std::optional<Attempt> attempt;            ///< the one that is under way,
+    HostParticles before;                      ///< what was there before it,
+    int further = 0;                           ///< and its rounds after the first
   };
 
   void tell(std::string_view stage, double fraction, int iteration = 0, double energy = 0) {
@@ -98,8 +104,15 @@ class MeshPipelineOf : public MeshPipeline {
   double improve_fraction(const MeshRounds& rounds) const {
     return 0.85 + 0.09 * (rounds.smoothed + rounds.mended) / std::max(1, parameters.smooth + parameters.mend);
   }
-  std::int64_t smooth(const MeshRounds& rounds, Triangulated& made, std::span<const std::uint8_t> moving);
-  bool mend(const Triangulated& made, const DefectRule& rule);
+  std::vector<std::array<std::uint32_t, 2>> touching_points(const Triangulated& made) const;
+  bool attempt(MeshRounds& rounds, Triangulated& made, std::span<const std::uint8_t> bad);
+  bool go_on(MeshRounds& rounds, Triangulated& made);
+  bool take_back(MeshRounds& rounds);
+  std::vector<std::uint8_t> bad_points(const Triangulated& made) const;
+  std::int64_t smooth(const MeshRounds& rounds, Triangulated& made, std::span<const std::uint8_t> moving,
+                      SmoothingRule rule = {});
+  bool mend(const Triangulated& made, const DefectRule& rule, Attempt* attempt = nullptr,
+            std::span<const std::uint8_t> there = {});
   std::vector<Vec3d> particle_places() const;
   HostParticles download_particles() const;
   void upload_particles(const HostParticles& particles);

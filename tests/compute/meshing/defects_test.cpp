@@ -99,7 +99,10 @@ TEST(Defects, TheLastResortAtARimIsToTakeANeighbour) {
     ++told_apart;
     EXPECT_TRUE(goes(nearer, false)) << k;
     ball.order[t.a] = ball.order[t.b] = 1;
-    EXPECT_FALSE(goes(nearer, false)) << "curves keep theirs";
+    EXPECT_FALSE(goes(nearer, false));
+    EXPECT_TRUE(goes(t.c, false)) << "where all are on curves, the one that lies flat";
+    ball.order[t.c] = 0;
+    EXPECT_FALSE(goes(t.c, false)) << "points stay";
   }
   EXPECT_GT(told_apart, 3);
 }
@@ -202,7 +205,10 @@ TEST(Defects, PlacesThatTouchGetNewPointsUnlessTheyAreCrowded) {
   EXPECT_TRUE(ball.defects({0, 0, 0}, {{t.a, t.a}}).insert.empty());
   ball.mesh.materials[50] = {0, 2};
   for (float& s : ball.size) s /= 4;
+  EXPECT_EQ(ball.defects({}, {{t.a, t.a}}).insert.size(), facets) << "the surface of others, off the junctions";
+  ball.order[t.a] = 1;
   EXPECT_TRUE(ball.defects({}, {{t.a, t.a}}).insert.empty()) << "junctions may be touched";
+  EXPECT_EQ(ball.defects(worst_defects, {{t.a, t.a}}).insert.size(), facets) << "at last, there too";
 }
 
 TEST(Defects, FitnessIsTheLeastRatioByWhatIsAsked) {

@@ -39,11 +39,11 @@ struct RingRun {
   }
 
   template <class Ground>
-  std::vector<Vec3f> turns(const Ground& ground, int count) {
+  std::vector<Vec3f> turns(const Ground& ground, int count, std::uint32_t shake = 0) {
     for (int k = 0; k < count; ++k) {
       exec.for_each(std::int64_t(place.size()),
                     detail::SmoothInRing<Ground>{ground, first.data(), edge.data(), order.data(), interface.data(),
-                                                 place.data(), moved.data(), direction.data()});
+                                                 place.data(), moved.data(), direction.data(), shake});
       std::swap(place, moved);
     }
     std::vector<Vec3f> points;
@@ -102,13 +102,47 @@ void ADisturbedLatticeBecomesEven(Executor<Backend>& exec) {
     return surface_quality(mesh).all.radius_ratio_min;
   };
   EXPECT_LT(worst(points), 0.75);
-  const std::vector<Vec3f> few = run.turns(ground, smoothing_turns);
+  const std::vector<Vec3f> few = run.turns(ground, SmoothingRule().turns);
   EXPECT_GT(worst(few), 0.9);
   const std::vector<Vec3f> many = run.turns(ground, 60);
   for (std::size_t v = 0; v < many.size(); ++v) {
     EXPECT_LT(length(Vec3d(many[v]) - even.points[v]), 0.01) << v;
     EXPECT_TRUE(inner[v] || few[v] == points[v]) << v;
   }
+}
+
+/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed, another place. The steps
+/// that follow lead back.
+template <class Backend>
+void AShakenLatticeSettlesAgain(Executor<Backend>& exec) {
+  const SurfaceMesh even = lattice_mesh(12, 10);
+  std::vector<std::uint8_t> inner(even.points.size(), 0);
+  std::vector<Vec3f> points;
+  for (std::size_t v = 0; v < even.points.size(); ++v) {
+    inner[v] = v % 12 > 0 && v % 12 < 11 && v >= 12 && v < 108;
+    points.push_back(Vec3f(even.points[v]));
+  }
+  const TriangleRings rings = triangle_rings(even, all_points(even), inner, points.size());
+  const AnalyticGround<Plane> ground{{1}};
+  const auto shaken = [&](std::uint32_t seed) {
+    return RingRun<Backend>(exec, points, {0, 0, 1}, 2, rings).turns(ground, 1, seed);
+  };
+  const std::vector<Vec3f> once = shaken(3), other = shaken(5);
+  const float most = 0.3f * std::sqrt(0.75f) + 1e-5f;
+  double far = 0;
+  int differ = 0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Vec3f d = once[v] - points[v];
+    EXPECT_TRUE(inner[v] || d == Vec3f()) << v;
+    EXPECT_TRUE(std::fabs(d.x) <= most && std::fabs(d.y) <= most && d.z == 0) << v;
+    far += double(length(d));
+    differ += !(once[v] == other[v]);
+  }
+  EXPECT_GT(far / 80, 0.1);  // of 80 inner points; 0.2 by the square's mean
+  EXPECT_EQ(differ, 80);
+  RingRun<Backend> run(exec, once, {0, 0, 1}, 2, rings);
+  const std::vector<Vec3f> settled = run.turns(ground, 60);
+  for (std::size_t v = 0; v < settled.size(); ++v) EXPECT_LT(length(settled[v] - points[v]), 0.01f) << v;
 }
 
 /// The line y = 20, z = 0.
@@ -149,6 +183,7 @@ void NobodyIsSmoothedOverTheRim(Executor<Backend>& exec) {
 }
 
 NACRE_DEVICE_TEST(RingSmoothing, ADisturbedLatticeBecomesEven)
+NACRE_DEVICE_TEST(RingSmoothing, AShakenLatticeSettlesAgain)
 NACRE_DEVICE_TEST(RingSmoothing, CurvesAreKeptAndPointsStay)
 NACRE_DEVICE_TEST(RingSmoothing, NobodyIsSmoothedOverTheRim)
 

@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "compute/device/error.hpp"
+#include "compute/meshing/quality.hpp"
+#include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 
@@ -133,6 +135,20 @@ TEST(MeshPipeline, ANumberOfParticlesIsSeededAndNoneAdded) {
   const MeshRun many = run_mesh(*device, volume, parameters);
   EXPECT_NEAR(double(many.info.seeded), 3000, 30);
   for (std::size_t k = 1; k < many.info.count.size(); ++k) EXPECT_LE(many.info.count[k], many.info.count[k - 1]);
+  parameters.particles = 15000;  // more than the embedding has cells along the surface
+  const MeshRun most = run_mesh(*device, volume, parameters);
+  EXPECT_NEAR(double(most.info.seeded), 15000, 150);
+  EXPECT_GE(most.info.final, 13000) << "the crowded may go";
+}
+
+TEST(MeshPipeline, SizesFarBelowTheCellsOfTheEmbeddingAreHeld) {
+  const auto device = make_cpu_device();
+  MeshParameters parameters;
+  parameters.min_size = parameters.max_size = 0.2;
+  const MeshRun run = run_mesh(*device, scalar_volume({14, 14, 14}, ball({6.3, 6.2, 6.4}, 4.2)), parameters);
+  EXPECT_NEAR(double(run.info.final), run.info.expected_particles, 0.05 * run.info.expected_particles);
+  EXPECT_NEAR(double(run.info.final), 4 * M_PI * 4.2 * 4.2 * 1.1547 / 0.04, 0.06 * double(run.info.final));
+  EXPECT_GT(surface_quality(run.mesh).all.radius_ratio_mean, 0.98);
 }
 
 TEST(MeshPipeline, TellsHowFarItIs) {
