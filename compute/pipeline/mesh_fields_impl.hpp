@@ -57,10 +57,10 @@ FieldRecipe MeshPipelineOf<Backend>::field_recipe() const {
   recipe.spacing = 0.5f * recipe.rule.min_size;
   recipe.lattice = lattice_over(bricks_, recipe.spacing);
   recipe.reach = std::min(recipe.rule.reach() + 2, 64.0f);
-  // Cells of half the smallest distance of particles suffice for the stencils. They are searched voxel by voxel for what
-  // meets there, so that a few are no cheaper than many, and one that is larger than the volume takes forever.
-  constexpr double fewest = 0.125;
-  recipe.cells_per_voxel = std::clamp(2.0 / size_.small, fewest, double(parameters.subcells));
+  // Cells of two thirds of the smallest distance of particles suffice for the stencils. They are searched voxel by voxel for
+  // what meets there, so that a few are no cheaper than many, and one that is larger than the volume takes forever.
+  constexpr double fewest = 0.125, to_a_size = 1.5;
+  recipe.cells_per_voxel = std::clamp(to_a_size / size_.small, fewest, double(parameters.subcells));
   return recipe;
 }
 
