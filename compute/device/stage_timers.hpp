@@ -26,6 +26,7 @@ class StageTimers {
   }
 
   void count_launch() { ++launches_; }
+  long launches() const { return launches_; }  ///< of all stages so far
 
   const std::vector<Stage>& stages() const { return stages_; }
 
