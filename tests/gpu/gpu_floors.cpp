@@ -1,11 +1,13 @@
 // Nacre: how long a tree and the energies of many particles take, as one JSON object.
-// Usage: gpu_floors [cpu|cuda] [PARTICLES] [RUNS]
+// Usage: gpu_floors [cpu|cuda] [PARTICLES] [RUNS]. Status: 0 done, 1 failed or the energies are wrong, 77 no CUDA device.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
 #include "compute/device/error.hpp"
+#include "compute/particles/energy.hpp"
 #include "tests/gpu/floors.hpp"
 
 namespace {
@@ -19,6 +21,8 @@ void print_times(const std::string& backend, long particles, int runs) {
               particles, runs, static_cast<long long>(times.nodes));
   std::printf("  \"mean_energy\": %.6f,\n  \"tree_build_seconds\": %.9g,\n  \"energy_pass_seconds\": %.9g\n}\n",
               times.mean_energy, times.tree_build, times.energy_pass);
+  if (!(std::fabs(times.mean_energy / hexagonal_energy - 1) < 0.1))
+    throw Error("the energies are wrong", "their mean is " + std::to_string(times.mean_energy));
 }
 
 }  // namespace
