@@ -92,16 +92,19 @@ void CpuDevice::deallocate(void* block, std::size_t bytes) noexcept {
 }
 
 void CpuDevice::copy_to_device(void* to, const void* host, std::size_t bytes) {
+  Recording::forbid("a copy to the device");
   Access access(*this);
   if (bytes) std::memcpy(to, host, bytes);
 }
 
 void CpuDevice::copy_to_host(void* host, const void* from, std::size_t bytes) {
+  Recording::forbid("a copy to the host");
   Access access(*this);
   if (bytes) std::memcpy(host, from, bytes);
 }
 
 void CpuDevice::fill(void* to, unsigned char value, std::size_t bytes) {
+  Recording::forbid("a fill at once");
   Access access(*this);
   if (bytes) std::memset(to, value, bytes);
 }

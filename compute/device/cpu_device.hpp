@@ -29,6 +29,7 @@ class CpuDevice final : public Device {
   std::size_t arena_bytes() const override;
   std::size_t peak_bytes() const override;
 
+  bool remote() const { return remote_; }
   tbb::task_arena& workers() { return workers_; }
 
   /// While one lives, a remote device's memory is open to its kernels.

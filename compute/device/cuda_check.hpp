@@ -10,7 +10,9 @@
 namespace nacre {
 
 inline void cuda_check(cudaError_t status, const char* what) {
-  if (status != cudaSuccess) throw Error(std::string("CUDA: ") + what + " failed", cudaGetErrorString(status));
+  if (status == cudaSuccess) return;
+  cudaGetLastError();  // forgets the failure, or the next launch would be blamed for it
+  throw Error(std::string("CUDA: ") + what + " failed", cudaGetErrorString(status));
 }
 
 }  // namespace nacre

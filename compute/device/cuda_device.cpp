@@ -1,7 +1,7 @@
 // Nacre: one NVIDIA GPU as a device.
 #if NACRE_HAS_CUDA
 
-#include <cuda_runtime_api.h>
+#include "compute/device/cuda_device.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -9,72 +9,65 @@
 
 #include "compute/device/cuda_check.hpp"
 #include "compute/device/cuda_probe.hpp"
-#include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
 
 namespace nacre {
-namespace {
 
-class CudaDevice final : public Device {
- public:
-  explicit CudaDevice(std::size_t arena_limit)
-      : arena_limit_(arena_limit > 0 ? arena_limit : std::numeric_limits<std::size_t>::max()) {
-    cuda_check(cudaSetDevice(0), "choosing the device");
-    cuda_check(cudaGetDeviceProperties(&properties_, 0), "asking for the device's properties");
+CudaDevice::CudaDevice(std::size_t arena_limit)
+    : arena_limit_(arena_limit > 0 ? arena_limit : std::numeric_limits<std::size_t>::max()) {
+  cuda_check(cudaSetDevice(0), "choosing the device");
+  cuda_check(cudaGetDeviceProperties(&properties_, 0), "asking for the device's properties");
+  cuda_check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream");
+}
+
+CudaDevice::~CudaDevice() { cudaStreamDestroy(stream_); }
+
+void* CudaDevice::allocate(std::size_t bytes) {
+  Recording::forbid("an allocation");
+  void* block = nullptr;
+  if (cudaMalloc(&block, std::max<std::size_t>(bytes, 1)) != cudaSuccess) {
+    cudaGetLastError();  // forgets the failure, or the next launch would be blamed for it
+    throw Error("not enough memory on the GPU", std::to_string(bytes >> 20) + " MiB asked", "lower the resolution");
   }
+  in_use_ += bytes;
+  peak_ = std::max(peak_, in_use_);
+  return block;
+}
 
-  std::string backend() const override { return "cuda"; }
-  std::string name() const override { return properties_.name; }
-  int threads() const override { return 1; }
+void CudaDevice::deallocate(void* block, std::size_t bytes) noexcept {
+  cudaFree(block);  // waits for all that may still use it
+  in_use_ -= bytes;
+}
 
-  void* allocate(std::size_t bytes) override {
-    void* block = nullptr;
-    if (cudaMalloc(&block, std::max<std::size_t>(bytes, 1)) != cudaSuccess) {
-      cudaGetLastError();  // forgets the failure, or the next launch would be blamed for it
-      throw Error("not enough memory on the GPU", std::to_string(bytes >> 20) + " MiB asked", "lower the resolution");
-    }
-    in_use_ += bytes;
-    peak_ = std::max(peak_, in_use_);
-    return block;
-  }
+void CudaDevice::copy_to_device(void* to, const void* host, std::size_t bytes) {
+  Recording::forbid("a copy to the device");
+  cuda_check(cudaMemcpyAsync(to, host, bytes, cudaMemcpyHostToDevice, stream_), "copy to the device");
+  cuda_check(cudaStreamSynchronize(stream_), "copy to the device");  // the caller may drop what it gave
+}
 
-  void deallocate(void* block, std::size_t bytes) noexcept override {
-    cudaFree(block);
-    in_use_ -= bytes;
-  }
+void CudaDevice::copy_to_host(void* host, const void* from, std::size_t bytes) {
+  Recording::forbid("a copy to the host");
+  cuda_check(cudaMemcpyAsync(host, from, bytes, cudaMemcpyDeviceToHost, stream_), "copy from the device");
+  cuda_check(cudaStreamSynchronize(stream_), "copy from the device");
+}
 
-  void copy_to_device(void* to, const void* host, std::size_t bytes) override {
-    cuda_check(cudaMemcpy(to, host, bytes, cudaMemcpyHostToDevice), "copy to the device");
-  }
+void CudaDevice::fill(void* to, unsigned char value, std::size_t bytes) {
+  Recording::forbid("a fill at once");
+  cuda_check(cudaMemsetAsync(to, value, bytes, stream_), "fill");
+}
 
-  void copy_to_host(void* host, const void* from, std::size_t bytes) override {
-    cuda_check(cudaMemcpy(host, from, bytes, cudaMemcpyDeviceToHost), "copy from the device");
-  }
+void CudaDevice::synchronize() {
+  Recording::forbid("a wait");
+  cuda_check(cudaStreamSynchronize(stream_), "wait");
+}
 
-  void fill(void* to, unsigned char value, std::size_t bytes) override {
-    cuda_check(cudaMemset(to, value, bytes), "fill");
-  }
+std::size_t CudaDevice::available_bytes() const {
+  std::size_t free = 0, total = 0;
+  cuda_check(cudaMemGetInfo(&free, &total), "asking for free memory");
+  return free;
+}
 
-  void synchronize() override { cuda_check(cudaDeviceSynchronize(), "wait"); }
-
-  std::size_t available_bytes() const override {
-    std::size_t free = 0, total = 0;
-    cuda_check(cudaMemGetInfo(&free, &total), "asking for free memory");
-    return free;
-  }
-
-  /// Device memory is not lazy: leave a fifth to the display and to others.
-  std::size_t arena_bytes() const override { return std::min(available_bytes() / 5 * 4, arena_limit_); }
-  std::size_t peak_bytes() const override { return peak_; }
-
- private:
-  std::size_t arena_limit_;
-  cudaDeviceProp properties_{};
-  std::size_t in_use_ = 0;
-  std::size_t peak_ = 0;
-};
-
-}  // namespace
+std::size_t CudaDevice::arena_bytes() const { return std::min(available_bytes() / 5 * 4, arena_limit_); }
 
 int cuda_device_count() {
   int count = 0;

@@ -3,9 +3,28 @@
 
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 namespace nacre {
+
+/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does at
+/// once would overtake them: it is forbidden then, on every backend.
+class Recording {
+ public:
+  Recording() { ++depth_; }
+  ~Recording() { --depth_; }
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  /// Throws std::logic_error while one lives in this thread: a mistake of ours.
+  static void forbid(const char* what) {
+    if (depth_ > 0) throw std::logic_error(std::string(what) + " inside of a part that is repeated");
+  }
+
+ private:
+  static inline thread_local int depth_ = 0;
+};
 
 /// Memory of one backend. Chosen once per run; everything a pipeline makes lives on one device.
 /// Pointers from `allocate` must not be read on the host: copy them with a named call, also on the CPU.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string_view>
 
 #include "compute/device/arena.hpp"
@@ -16,6 +17,14 @@ namespace nacre {
 
 /// How far a long stage is: `fraction` in 0..1.
 using ProgressCallback = std::function<void(std::string_view stage, double fraction)>;
+
+/// What a part that is repeated leaves behind from call to call; empty at first. One for each such part.
+struct Steps {
+  struct Record {
+    virtual ~Record() = default;
+  };
+  std::unique_ptr<Record> record;
+};
 
 /// What every launch of one pipeline shares, whatever the backend.
 class ExecutorBase {
@@ -53,11 +62,19 @@ class ExecutorBase {
 ///   for_each_team(n, kernel)         kernel(team, i): the lanes of a team (team.hpp) work on item i together, with
 ///                                    kernel.scratch_bytes() bytes of shared memory
 ///   exclusive_scan(in, out, n)       out[i] = in[0] + .. + in[i-1]; returns the sum of all; in == out allowed
+///   scan(in, out, n)                 the same without the sum, which the host would have to wait for
 ///   sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those below
 ///                                    need not be looked at where they ascend before
-///   sort_pairs(keys, values, n)      the same by all bits, and values go with their keys
+///   sort_pairs(keys, values, n, bits = 64)  the same by the lowest `bits`, the others being alike; values go with keys
 ///   reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if merge
 ///                                    is exact (integers, minimum, maximum)
+///   reduce_into(result, n, identity, get, merge)  the same into *result, on the device: nothing waits for it
+///   fill(array, byte)                all bytes of an array, in the order of the launches
+///   known(get, most)                 get(), a number that the device holds, where it can be had without waiting (on the
+///                                    CPU); else `most`, which it does not exceed
+///   repeat(steps, body)              body(), which launches and reads nothing back. On CUDA from the second call on its
+///                                    launches become one, a graph, which is kept in `steps`
+///   wait()                           until all is done
 ///   stage(name)                      a scope that times a stage, the device's work included
 ///
 /// Kernels are plain function objects; pointers in them are device pointers.

@@ -6,6 +6,7 @@
 #include <oneapi/tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <cstring>
 #include <vector>
 
 #include "compute/device/cpu_device.hpp"
@@ -43,6 +44,12 @@ class Executor<Cpu> : public ExecutorBase {
 
   template <class T>
   T exclusive_scan(const T* in, T* out, std::int64_t n) {
+    Recording::forbid("a sum that the host asks for");
+    return scan(in, out, n);
+  }
+
+  template <class T>
+  T scan(const T* in, T* out, std::int64_t n) {
     begin_launch();
     const std::int64_t block = 1 << 16;
     const std::int64_t blocks = (n + block - 1) / block;
@@ -78,7 +85,7 @@ class Executor<Cpu> : public ExecutorBase {
         [&] { detail::radix_sort(detail::KeysAlone{keys}, detail::KeysAlone{other.data()}, n, lowest); });
   }
 
-  void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
+  void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n, int = 64) {
     begin_launch();
     if (n <= 1) return;
     Arena::Scope scope(arena());
@@ -93,6 +100,40 @@ class Executor<Cpu> : public ExecutorBase {
 
   template <class T, class Get, class Merge>
   T reduce(std::int64_t n, T identity, const Get& get, const Merge& merge) {
+    Recording::forbid("a sum that the host asks for");
+    return merged(n, identity, get, merge);
+  }
+
+  template <class T, class Get, class Merge>
+  void reduce_into(T* result, std::int64_t n, T identity, const Get& get, const Merge& merge) {
+    const T value = merged(n, identity, get, merge);
+    CpuDevice::Access access(cpu_);
+    *result = value;
+  }
+
+  template <class T>
+  void fill(const Array<T>& array, unsigned char value) {
+    CpuDevice::Access access(cpu_);
+    if (array.size() > 0) std::memset(static_cast<void*>(array.data()), value, array.bytes());
+  }
+
+  /// Memory that pretends to be remote keeps its numbers to itself.
+  template <class Get>
+  std::int64_t known(const Get& get, std::int64_t most) const {
+    return cpu_.remote() ? most : std::int64_t(get());
+  }
+
+  template <class Body>
+  void repeat(Steps&, const Body& body) {
+    const Recording recording;
+    body();
+  }
+
+  void wait() {}
+
+ private:
+  template <class T, class Get, class Merge>
+  T merged(std::int64_t n, T identity, const Get& get, const Merge& merge) {
     begin_launch();
     CpuDevice::Access access(cpu_);
     T result = identity;
@@ -108,7 +149,6 @@ class Executor<Cpu> : public ExecutorBase {
     return result;
   }
 
- private:
   /// Calls body(first, last) over pieces of 0..n-1 on the device's workers; leaves early when the user asks to stop.
   template <class Body>
   void run(std::int64_t n, const Body& body) {

@@ -6,11 +6,20 @@
 #include <thrust/iterator/transform_iterator.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_reduce.cuh>
 #include <cub/device/device_scan.cuh>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "compute/device/cuda_check.hpp"
+#include "compute/device/cuda_device.hpp"
+#include "compute/device/cuda_graph.hpp"
+#include "compute/device/cuda_stage_clock.hpp"
 #include "compute/device/executor.hpp"
 
 namespace nacre {
@@ -34,24 +43,86 @@ __global__ void for_each_team_kernel(std::int64_t n, const __grid_constant__ Ker
 template <>
 class Executor<Cuda> : public ExecutorBase {
  public:
-  explicit Executor(Device& device) : ExecutorBase(device) {}
+  explicit Executor(Device& device)
+      : ExecutorBase(device), stream_(dynamic_cast<CudaDevice&>(device).stream()), device_stream_(stream_) {
+    const char* graphs = std::getenv("NACRE_GRAPHS");
+    graphs_ = !graphs || std::string_view(graphs) != "0";
+    if (graphs_) cuda_check(cudaStreamCreateWithFlags(&capture_stream_, cudaStreamNonBlocking), "making a stream");
+  }
+  ~Executor() {
+    cudaStreamSynchronize(device_stream_);
+    if (capture_stream_) cudaStreamDestroy(capture_stream_);
+  }
+  Executor(const Executor&) = delete;
+  Executor& operator=(const Executor&) = delete;
 
-  /// Waits for the device at both ends, so that a stage's time is its own.
+  /// Times its life on the GPU; nothing waits for it.
   class Stage {
    public:
-    Stage(Executor& executor, std::string_view name) : executor_(executor), scope_(begin(executor), name) {}
-    ~Stage() { cudaDeviceSynchronize(); }  // an error shows at the next checked call
+    Stage(Executor& executor, std::string_view name)
+        : executor_(executor), name_(name), launches_(executor.launches()), begin_(executor.mark()) {}
+    ~Stage() {
+      try {
+        executor_.clock_.add(std::move(name_), begin_, executor_.mark(), executor_.launches() - launches_);
+      } catch (const Error&) {  // the next checked call says the same
+        executor_.clock_.drop(begin_);
+      }
+    }
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
 
    private:
-    static StageTimers& begin(Executor& executor) {
-      cuda_check(cudaDeviceSynchronize(), "wait");
-      return executor.timers();
-    }
     Executor& executor_;
-    StageTimers::Scope scope_;
+    std::string name_;
+    long launches_;
+    cudaEvent_t begin_;
   };
 
-  Stage stage(std::string_view name) { return {*this, name}; }
+  Stage stage(std::string_view name) {
+    if (!capturing_) clock_.collect(ExecutorBase::timers());
+    return {*this, name};
+  }
+
+  /// With all stages that have ended: waits for the device.
+  StageTimers& timers() {
+    wait();
+    return ExecutorBase::timers();
+  }
+
+  void wait() {
+    device().synchronize();
+    clock_.collect(ExecutorBase::timers());
+  }
+
+  /// The first call launches one by one, since CUDA loads a kernel when it is first launched, which cannot be captured.
+  /// NACRE_GRAPHS=0 makes all calls do so.
+  template <class Body>
+  void repeat(Steps& steps, const Body& body) {
+    if (capturing_) return body();
+    if (!steps.record) steps.record = std::make_unique<CudaGraph>();
+    auto& graph = static_cast<CudaGraph&>(*steps.record);
+    if (!graphs_ || !graph.warm) {
+      const Recording recording;  // what cannot be captured is forbidden here, too
+      body();
+      graph.warm = true;
+      return;
+    }
+    CudaCapture capture(capture_stream_);
+    const Diversion diversion(*this);
+    body();
+    graph.launch(capture.end(), device_stream_);
+    diversion.keep_stages();
+  }
+
+  template <class T>
+  void fill(const Array<T>& array, unsigned char value) {
+    if (array.size() > 0) cuda_check(cudaMemsetAsync(array.data(), value, array.bytes(), stream_), "fill");
+  }
+
+  template <class Get>
+  std::int64_t known(const Get&, std::int64_t most) const {
+    return most;
+  }
 
   template <class Kernel>
   void for_each(std::int64_t n, const Kernel& kernel) {
@@ -60,7 +131,7 @@ class Executor<Cuda> : public ExecutorBase {
     static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     constexpr int threads = 256;
     const auto blocks = unsigned(std::min<std::int64_t>((n + threads - 1) / threads, 1 << 20));
-    for_each_kernel<<<blocks, threads>>>(n, kernel);
+    for_each_kernel<<<blocks, threads, 0, stream_>>>(n, kernel);
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 
@@ -75,20 +146,33 @@ class Executor<Cuda> : public ExecutorBase {
           cudaFuncSetAttribute(for_each_team_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(scratch)),
           "shared memory of a team");
     const auto blocks = unsigned(std::min<std::int64_t>(n, 1 << 20));
-    for_each_team_kernel<<<blocks, Team::lanes, scratch>>>(n, kernel);
+    for_each_team_kernel<<<blocks, Team::lanes, scratch, stream_>>>(n, kernel);
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 
   template <class T>
   T exclusive_scan(const T* in, T* out, std::int64_t n) {
+    Recording::forbid("a sum that the host asks for");
+    if (n <= 0) {
+      begin_launch();
+      return T(0);
+    }
+    Arena::Scope scope(arena());
+    Array<T> ends = arena().temporary<T>(2);
+    copy(ends.data(), in + n - 1, 1);  // before the scan: in == out is allowed
+    scan(in, out, n);
+    copy(ends.data() + 1, out + n - 1, 1);
+    const std::vector<T> last = ends.download();
+    return last[0] + last[1];
+  }
+
+  template <class T>
+  void scan(const T* in, T* out, std::int64_t n) {
     begin_launch();
-    if (n <= 0) return T(0);
-    T last_in{}, last_out{};
-    device().copy_to_host(&last_in, in + n - 1, sizeof(T));  // before the scan: in == out is allowed
-    with_scratch(
-        [&](void* scratch, std::size_t& bytes) { return cub::DeviceScan::ExclusiveSum(scratch, bytes, in, out, n); });
-    device().copy_to_host(&last_out, out + n - 1, sizeof(T));
-    return last_out + last_in;
+    if (n <= 0) return;
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceScan::ExclusiveSum(scratch, bytes, in, out, n, stream_);
+    });
   }
 
   void sort(std::uint64_t* keys, std::int64_t n, int lowest = 0) {
@@ -98,13 +182,12 @@ class Executor<Cuda> : public ExecutorBase {
     Array<std::uint64_t> other = arena().temporary<std::uint64_t>(n);
     cub::DoubleBuffer<std::uint64_t> buffer(keys, other.data());
     with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n, lowest);
+      return cub::DeviceRadixSort::SortKeys(scratch, bytes, buffer, n, lowest, 64, stream_);
     });
-    if (buffer.Current() != keys)
-      cuda_check(cudaMemcpyAsync(keys, buffer.Current(), n * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice), "copy");
+    copy(keys, buffer.Current(), n);
   }
 
-  void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n) {
+  void sort_pairs(std::uint64_t* keys, std::uint32_t* values, std::int64_t n, int bits = 64) {
     begin_launch();
     if (n <= 1) return;
     Arena::Scope scope(arena());
@@ -113,29 +196,63 @@ class Executor<Cuda> : public ExecutorBase {
     cub::DoubleBuffer<std::uint64_t> key_buffer(keys, other_keys.data());
     cub::DoubleBuffer<std::uint32_t> value_buffer(values, other_values.data());
     with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffer, value_buffer, n);
+      return cub::DeviceRadixSort::SortPairs(scratch, bytes, key_buffer, value_buffer, n, 0, bits, stream_);
     });
-    if (key_buffer.Current() != keys)
-      cuda_check(cudaMemcpyAsync(keys, key_buffer.Current(), n * sizeof(std::uint64_t), cudaMemcpyDeviceToDevice),
-                 "copy");
-    if (value_buffer.Current() != values)
-      cuda_check(cudaMemcpyAsync(values, value_buffer.Current(), n * sizeof(std::uint32_t), cudaMemcpyDeviceToDevice),
-                 "copy");
+    copy(keys, key_buffer.Current(), n);
+    copy(values, value_buffer.Current(), n);
   }
 
   template <class T, class Get, class Merge>
   T reduce(std::int64_t n, T identity, const Get& get, const Merge& merge) {
-    begin_launch();
+    Recording::forbid("a sum that the host asks for");
     Arena::Scope scope(arena());
     Array<T> result = arena().temporary<T>(1);
-    auto values = thrust::make_transform_iterator(thrust::make_counting_iterator<std::int64_t>(0), get);
-    with_scratch([&](void* scratch, std::size_t& bytes) {
-      return cub::DeviceReduce::Reduce(scratch, bytes, values, result.data(), n, merge, identity);
-    });
+    reduce_into(result.data(), n, identity, get, merge);
     return result.download()[0];
   }
 
+  template <class T, class Get, class Merge>
+  void reduce_into(T* result, std::int64_t n, T identity, const Get& get, const Merge& merge) {
+    begin_launch();
+    auto values = thrust::make_transform_iterator(thrust::make_counting_iterator<std::int64_t>(0), get);
+    with_scratch([&](void* scratch, std::size_t& bytes) {
+      return cub::DeviceReduce::Reduce(scratch, bytes, values, result, n, merge, identity, stream_);
+    });
+  }
+
  private:
+  /// While it lives, launches go to the stream that is captured.
+  class Diversion {
+   public:
+    explicit Diversion(Executor& executor) : executor_(executor), stages_(executor.clock_.pending()) {
+      executor_.stream_ = executor_.capture_stream_;
+      executor_.capturing_ = true;
+    }
+    ~Diversion() {
+      executor_.stream_ = executor_.device_stream_;
+      executor_.capturing_ = false;
+      if (!kept_) executor_.clock_.take_back(stages_);
+    }
+    Diversion(const Diversion&) = delete;
+    Diversion& operator=(const Diversion&) = delete;
+
+    /// Their launches are under way: stages inside will have their times.
+    void keep_stages() const { kept_ = true; }
+
+   private:
+    Executor& executor_;
+    std::size_t stages_;
+    mutable bool kept_ = false;
+  };
+
+  long launches() { return ExecutorBase::timers().launches(); }
+  cudaEvent_t mark() { return clock_.mark(stream_, capturing_); }
+
+  template <class T>
+  void copy(T* to, const T* from, std::int64_t n) {
+    if (to != from) cuda_check(cudaMemcpyAsync(to, from, n * sizeof(T), cudaMemcpyDeviceToDevice, stream_), "copy");
+  }
+
   /// CUB's two calls: how much scratch, then the work, with scratch from the arena's tail.
   template <class Call>
   void with_scratch(const Call& call) {
@@ -145,6 +262,12 @@ class Executor<Cuda> : public ExecutorBase {
     Array<std::uint8_t> scratch = arena().temporary<std::uint8_t>(std::max<std::size_t>(bytes, 1));
     cuda_check(call(scratch.data(), bytes), "device primitive");
   }
+
+  cudaStream_t stream_;         ///< where launches go
+  cudaStream_t device_stream_;  ///< where they run
+  cudaStream_t capture_stream_ = nullptr;
+  bool graphs_ = true, capturing_ = false;
+  CudaStageClock clock_;
 };
 
 }  // namespace nacre

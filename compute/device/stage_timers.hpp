@@ -15,7 +15,7 @@ class StageTimers {
     std::string name;
     double seconds = 0;
     long calls = 0;
-    long launches = 0;  ///< of an Executor, within its calls; alike on all backends
+    long launches = 0;  ///< of an Executor, within its calls
   };
 
   void add(std::string_view name, double seconds, long launches = 0) {
@@ -26,6 +26,7 @@ class StageTimers {
   }
 
   void count_launch() { ++launches_; }
+  long launches() const { return launches_; }  ///< of all stages so far
 
   const std::vector<Stage>& stages() const { return stages_; }
 

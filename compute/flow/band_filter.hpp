@@ -119,22 +119,22 @@ struct EqualiseBand {
   View view;
   const float *value, *ahead;
   Local moments;
-  float mean, deviation;
-  float ahead_mean, ratio;
+  const TextureSpread* whole;  ///< of all of `value` and `ahead`
   float local, contrast;
   float *shown, *detail;
 
   NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& place, typename View::Cursor& cursor) const {
     const Vec3f m = moments.at(view, place, cursor);
-    float shift = 0, spread = deviation;
+    const TextureSpread all = *whole;
+    float shift = 0, spread = all.deviation;
     if (m.x > 0) {
       const float local_mean = m.y / m.x, variance = m.z / m.x - local_mean * local_mean;
-      const float local_deviation = std::sqrt(variance > 0 ? variance : 0), least = 0.25f * deviation;
-      shift = local * (local_mean - mean);
-      spread += local * ((local_deviation > least ? local_deviation : least) - deviation);
+      const float local_deviation = std::sqrt(variance > 0 ? variance : 0), least = 0.25f * all.deviation;
+      shift = local * (local_mean - all.mean);
+      spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
     }
-    shown[s] = clamp01(0.5f + contrast * (value[s] - mean - shift) / spread);
-    detail[s] = (ahead[s] - ahead_mean - shift) / (spread * ratio);
+    shown[s] = clamp01(0.5f + contrast * (value[s] - all.mean - shift) / spread);
+    detail[s] = (ahead[s] - all.ahead_mean - shift) / (spread * all.ratio);
   }
 };
 

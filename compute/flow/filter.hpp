@@ -18,8 +18,8 @@ struct FillNoise {
 struct Moments {
   std::uint64_t sum = 0, squares = 0;
 
-  float mean(std::int64_t n) const { return n ? float(double(sum) / double(n) / 65535.0) : 0.5f; }
-  float deviation(std::int64_t n) const {
+  NACRE_HD float mean(std::int64_t n) const { return n ? float(double(sum) / double(n) / 65535.0) : 0.5f; }
+  NACRE_HD float deviation(std::int64_t n) const {
     if (n == 0) return 0;
     const double m = double(sum) / double(n);
     const double variance = double(squares) / double(n) - m * m;
@@ -40,6 +40,39 @@ struct AddMoments {
     return {a.sum + b.sum, a.squares + b.squares};
   }
 };
+
+/// Mean and deviation of a texture and of what is ahead of it, whose deviation is `ratio` times the texture's; above 0.
+struct TextureSpread {
+  float mean, deviation;
+  float ahead_mean, ratio;
+};
+
+/// ... from their moments, where these are: the host need not wait for them.
+struct SpreadOf {
+  const Moments *now, *next;
+  std::int64_t n;
+  TextureSpread* spread;
+  NACRE_HD void operator()(std::int64_t) const {
+    const auto deviation_of = [&](const Moments& m) {
+      const float d = m.deviation(n);
+      return d > 1e-4f ? d : 1e-4f;
+    };
+    const float deviation = deviation_of(*now);
+    *spread = {now->mean(n), deviation, next->mean(n), deviation_of(*next) / deviation};
+  }
+};
+
+/// Of `n` values each; lasts as long as the caller's scope in the arena.
+template <class Backend>
+const TextureSpread* measure_spread(Executor<Backend>& exec, std::int64_t n, const float* value, const float* ahead) {
+  Arena& arena = exec.arena();
+  const Array<Moments> moments = arena.template temporary<Moments>(2);
+  const Array<TextureSpread> spread = arena.template temporary<TextureSpread>(1);
+  exec.reduce_into(moments.data(), n, Moments{}, MomentsOf{value}, AddMoments{});
+  exec.reduce_into(moments.data() + 1, n, Moments{}, MomentsOf{ahead}, AddMoments{});
+  exec.for_each(1, SpreadOf{moments.data(), moments.data() + 1, n, spread.data()});
+  return spread.data();
+}
 
 NACRE_HD inline float clamp01(float x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
 
@@ -83,31 +116,31 @@ struct BlurMoments {
 
 /// How far a value is from the mean, in standard deviations; mean and deviation are the local ones to the share `local`,
 /// else those of the whole texture. Without it what a diverging flow stretches grows into blotches, step by step.
-/// Gives the shown frame, contrast stretched, and the same of `ahead`, whose deviation is `ratio` times that of `value`.
+/// Gives the shown frame, contrast stretched, and the same of `ahead`.
 struct Equalise {
   RefinedGridView texture;
   const float* value;
   const float* ahead;
-  const Float4* moments;  ///< of `value`
-  float mean, deviation;  ///< of the whole of `value`; deviation > 0
-  float ahead_mean, ratio;
+  const Float4* moments;       ///< of `value`
+  const TextureSpread* whole;  ///< of the whole of `value` and `ahead`
   float local, contrast;
   float* shown;
   float* detail;
   NACRE_HD void operator()(std::int64_t i) const {
     const Vec3f p = cell_centre(texture.cell(std::uint32_t(i))) * texture.inverse_refine;
-    float shift = 0, spread = deviation;
+    const TextureSpread all = *whole;
+    float shift = 0, spread = all.deviation;
     Lanes around;
     if (interpolate_linear(texture.grid, moments, p, around)) {
       const Vec3f m = xyz(around);  // never empty: the cell's own value is in it
       const float local_mean = m.y / m.x, variance = m.z / m.x - local_mean * local_mean;
       const float local_deviation = std::sqrt(variance > 0 ? variance : 0);
-      const float least = 0.25f * deviation;  // a plain region stays plain
-      shift = local * (local_mean - mean);
-      spread += local * ((local_deviation > least ? local_deviation : least) - deviation);
+      const float least = 0.25f * all.deviation;  // a plain region stays plain
+      shift = local * (local_mean - all.mean);
+      spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
     }
-    shown[i] = clamp01(0.5f + contrast * (value[i] - mean - shift) / spread);
-    detail[i] = (ahead[i] - ahead_mean - shift) / (spread * ratio);
+    shown[i] = clamp01(0.5f + contrast * (value[i] - all.mean - shift) / spread);
+    detail[i] = (ahead[i] - all.ahead_mean - shift) / (spread * all.ratio);
   }
 };
 

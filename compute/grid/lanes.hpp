@@ -29,10 +29,12 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a.x, a.y, a.z, a.w}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return {x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a.x, a.y, a.z}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a.x + a.y + (a.z + a.w); }
-/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 4) on.
+/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 3) on. With a branch, since few rows go across
+/// two bricks, and a choice for each float would take more registers than there are.
 NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
-  const auto at = [&](int k) { return k < 4 ? low[k] : high[k - 4]; };
-  return {at(first), at(first + 1), at(first + 2), at(first + 3)};
+  if (first == 0) return {low[0], low[1], low[2], low[3]};
+  const float *lower = low + first, *upper = high + first - 4;
+  return {lower[0], (first < 3 ? lower : upper)[1], (first < 2 ? lower : upper)[2], upper[3]};
 }
 
 #else
@@ -45,7 +47,7 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a[0], a[1], a[2], a[3]}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return Lanes{x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a[0], a[1], a[2]}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a[0] + a[1] + (a[2] + a[3]); }
-/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 4) on.
+/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 3) on.
 NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
 #if __has_builtin(__builtin_shuffle)
   typedef float Unaligned __attribute__((vector_size(16), aligned(4), may_alias));

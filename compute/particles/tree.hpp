@@ -106,11 +106,21 @@ NACRE_HD inline std::uint32_t first_key_from(const std::uint64_t* key, std::uint
   return low;
 }
 
+/// What the device knows of a tree while it is built; the host asks once, at the end.
+struct TreeSizes {
+  std::uint32_t
+      begin[TreeView::bits + 2];  ///< of each level's nodes; the next one's is its end, behind the last one too
+  std::uint32_t leaves;
+  std::uint32_t full;  ///< nodes were wanted for which there was no room
+};
+
 struct MakeRoots {
   const std::uint64_t* key;
-  std::uint32_t count;
+  std::uint32_t count, interfaces;
   TreeNode* node;
+  TreeSizes* sizes;
   NACRE_HD void operator()(std::int64_t i) const {
+    if (i == 0) *sizes = {{0, interfaces}, 0, 0};
     TreeNode root;
     root.first = first_key_from(key, 0, count, std::uint64_t(i) << 48);
     root.last = first_key_from(key, root.first, count, std::uint64_t(i + 1) << 48);
@@ -122,13 +132,17 @@ struct MakeRoots {
 struct SplitNodes {
   const std::uint64_t* key;
   TreeNode* node;
-  std::uint32_t begin;  ///< of the level
-  int shift;
+  TreeSizes* sizes;
+  int level, shift;
+
+  /// How many nodes the level has, and which one of all is the i-th.
+  NACRE_HD std::uint32_t count() const { return sizes->begin[level + 1] - sizes->begin[level]; }
+  NACRE_HD TreeNode& at(std::int64_t i) const { return node[sizes->begin[level] + i]; }
 
   template <class Visit>
   NACRE_HD void children(std::int64_t i, const Visit& visit) const {
-    const TreeNode& n = node[begin + i];
-    if (n.last - n.first <= TreeView::leaf_size || shift < 0) return;
+    const TreeNode& n = at(i);
+    if (n.last - n.first <= TreeView::leaf_size) return;
     const std::uint64_t prefix = key[n.first] >> (shift + 3) << (shift + 3);
     std::uint32_t from = n.first;
     for (std::uint64_t octant = 0; octant < 8 && from < n.last; ++octant) {
@@ -140,12 +154,13 @@ struct SplitNodes {
   }
 };
 
+/// For i up to the most nodes that the level can have, and one more: none behind those that it has.
 struct CountChildren {
   SplitNodes split;
   std::uint32_t* count;
   NACRE_HD void operator()(std::int64_t i) const {
     std::uint32_t n = 0;
-    split.children(i, [&](std::uint32_t, std::uint32_t) { ++n; });
+    if (i < split.count()) split.children(i, [&](std::uint32_t, std::uint32_t) { ++n; });
     count[i] = n;
   }
 };
@@ -153,9 +168,18 @@ struct CountChildren {
 struct MakeChildren {
   SplitNodes split;
   const std::uint32_t* start;
-  std::uint32_t end;  ///< of the level: where children begin
+  std::int64_t most;       ///< nodes that the level can have: start[most] is the number of all children
+  std::uint32_t capacity;  ///< nodes that there is room for
   NACRE_HD void operator()(std::int64_t i) const {
-    TreeNode& parent = split.node[split.begin + i];
+    TreeSizes& sizes = *split.sizes;
+    const std::uint32_t end = sizes.begin[split.level + 1];  // of the level: where children begin
+    const bool full = start[most] > capacity - end;
+    if (i == 0) {
+      sizes.begin[split.level + 2] = full ? end : end + start[most];
+      if (full) sizes.full = 1;
+    }
+    if (full || i >= split.count()) return;
+    TreeNode& parent = split.at(i);
     std::uint32_t at = end + start[i];
     parent.child = at;
     split.children(i, [&](std::uint32_t from, std::uint32_t to) {
@@ -225,20 +249,26 @@ struct GatherParticles {
   }
 };
 
+/// Of the nodes before *end.
 struct IsLeaf {
   const TreeNode* node;
+  const std::uint32_t* end;
   std::uint32_t* count;
-  NACRE_HD void operator()(std::int64_t i) const {
-    count[i] = node[i].children == 0 && node[i].last > node[i].first ? 1 : 0;
+  NACRE_HD bool is_leaf(std::int64_t i) const {
+    return i < *end && node[i].children == 0 && node[i].last > node[i].first;
   }
+  NACRE_HD void operator()(std::int64_t i) const { count[i] = is_leaf(i) ? 1 : 0; }
 };
 
 struct ListLeaves {
-  const TreeNode* node;
+  IsLeaf is;
   const std::uint32_t* start;
+  std::int64_t most;  ///< start[most] is the number of all leaves
   std::uint32_t* leaf;
+  TreeSizes* sizes;
   NACRE_HD void operator()(std::int64_t i) const {
-    if (node[i].children == 0 && node[i].last > node[i].first) leaf[start[i]] = std::uint32_t(i);
+    if (i == 0) sizes->leaves = start[most];
+    if (is.is_leaf(i)) leaf[start[i]] = std::uint32_t(i);
   }
 };
 
@@ -251,32 +281,52 @@ class Tree {
   Tree(Executor<Backend>& exec, std::int64_t capacity, std::int64_t interfaces)
       : interfaces_(interfaces),
         node_(exec.arena().template permanent<TreeNode>(capacity / 3 + 9 * interfaces + 4096)),
-        leaf_(exec.arena().template permanent<std::uint32_t>(node_.size())) {}
+        leaf_(exec.arena().template permanent<std::uint32_t>(node_.size())),
+        sizes_(exec.arena().template permanent<detail::TreeSizes>(1)) {}
 
-  /// Builds the tree over particles that are sorted by `key`, level by level on the device.
+  /// Builds the tree over particles that are sorted by `key`.
   template <class Backend>
   void build(Executor<Backend>& exec, const Array<std::uint64_t>& key, std::int64_t particles) {
-    Arena::Scope scope(exec.arena());
+    launch_build(exec, key, particles);
+    read_sizes();
+  }
+
+  /// The first half of `build`: level by level on the device. How many nodes a level has is known there alone; launches
+  /// are for the most that it can have, where that would have to be waited for.
+  template <class Backend>
+  void launch_build(Executor<Backend>& exec, const Array<std::uint64_t>& key, std::int64_t particles) {
     bounded_ = 0;
-    level_.assign(1, 0);
-    exec.for_each(interfaces_, detail::MakeRoots{key.data(), std::uint32_t(particles), node_.data()});
-    std::uint32_t begin = 0, end = std::uint32_t(interfaces_);
-    for (int shift = 3 * TreeView::bits - 3; begin < end; shift -= 3) {
-      level_.push_back(end);
-      const std::int64_t n = end - begin;
-      Arena::Scope level(exec.arena());
-      Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n);
-      const detail::SplitNodes split{key.data(), node_.data(), begin, shift};
-      exec.for_each(n, detail::CountChildren{split, start.data()});
-      const std::uint32_t total = exec.exclusive_scan(start.data(), start.data(), n);
-      if (end + std::size_t(total) > node_.size())
-        throw Error("the tree of particles is full", std::to_string(node_.size()) + " nodes",
-                    "use another --seed or raise --min-size");
-      exec.for_each(n, detail::MakeChildren{split, start.data(), end});
-      begin = end;
-      end += total;
+    detail::TreeSizes* sizes = sizes_.data();
+    exec.for_each(
+        std::max<std::int64_t>(interfaces_, 1),
+        detail::MakeRoots{key.data(), std::uint32_t(particles), std::uint32_t(interfaces_), node_.data(), sizes});
+    std::int64_t most = interfaces_, all = most;
+    int level = 0;
+    for (; level < TreeView::bits; ++level) {
+      const detail::SplitNodes split{key.data(), node_.data(), sizes, level, 3 * (TreeView::bits - 1 - level)};
+      const std::int64_t n = exec.known([&] { return split.count(); }, most);
+      if (n == 0) break;
+      Arena::Scope scope(exec.arena());
+      Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n + 1);
+      exec.for_each(n + 1, detail::CountChildren{split, start.data()});
+      exec.scan(start.data(), start.data(), n + 1);
+      exec.for_each(n, detail::MakeChildren{split, start.data(), n, std::uint32_t(node_.size())});
+      most = std::min(8 * std::min(most, particles / (TreeView::leaf_size + 1)), std::int64_t(node_.size()));
+      all = std::min(all + most, std::int64_t(node_.size()));
     }
-    list_leaves(exec);
+    list_leaves(exec, level, all);
+  }
+
+  /// The second half, which waits for the first. Throws Error where there was not enough room.
+  void read_sizes() {
+    const detail::TreeSizes sizes = sizes_.download()[0];
+    if (sizes.full)
+      throw Error("the tree of particles is full", std::to_string(node_.size()) + " nodes",
+                  "use another --seed or raise --min-size");
+    level_.assign(1, 0);
+    for (int l = 0; l <= TreeView::bits && sizes.begin[l + 1] > sizes.begin[l]; ++l)
+      level_.push_back(sizes.begin[l + 1]);
+    leaf_count_ = sizes.leaves;
   }
 
   /// Bounds and means for where the particles are now; their order stays.
@@ -291,6 +341,7 @@ class Tree {
   TreeView view(const ParticleSet& particles, float theta) const {
     return {node_.data(), particles.place.data(), particles.direction.data(), theta};
   }
+  std::int64_t interfaces() const { return interfaces_; }
   const std::uint32_t* leaves() const { return leaf_.data(); }
   std::int64_t leaf_count() const { return leaf_count_; }
   std::int64_t nodes() const { return level_.back(); }
@@ -298,17 +349,23 @@ class Tree {
   std::int64_t bounded_nodes() const { return bounded_; }
 
  private:
+  /// Of a tree of `levels` levels, perhaps fewer, which has at most `most` nodes.
   template <class Backend>
-  void list_leaves(Executor<Backend>& exec) {
-    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(nodes());
-    exec.for_each(nodes(), detail::IsLeaf{node_.data(), start.data()});
-    leaf_count_ = exec.exclusive_scan(start.data(), start.data(), nodes());
-    exec.for_each(nodes(), detail::ListLeaves{node_.data(), start.data(), leaf_.data()});
+  void list_leaves(Executor<Backend>& exec, int levels, std::int64_t most) {
+    const std::uint32_t* end = sizes_.data()->begin + levels + 1;
+    const std::int64_t n = exec.known([&] { return *end; }, most);
+    Arena::Scope scope(exec.arena());
+    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n + 1);
+    const detail::IsLeaf is_leaf{node_.data(), end, start.data()};
+    exec.for_each(n + 1, is_leaf);
+    exec.scan(start.data(), start.data(), n + 1);
+    exec.for_each(n, detail::ListLeaves{is_leaf, start.data(), n, leaf_.data(), sizes_.data()});
   }
 
   std::int64_t interfaces_;
   Array<TreeNode> node_;
   Array<std::uint32_t> leaf_;
+  Array<detail::TreeSizes> sizes_;
   std::int64_t leaf_count_ = 0, bounded_ = 0;
   std::vector<std::uint32_t> level_;  ///< where each level's nodes begin, and where the last one's end
 };

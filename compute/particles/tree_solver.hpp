@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "compute/device/random.hpp"
@@ -307,6 +308,7 @@ class TreeSolver {
     number_ = arena.permanent<std::uint32_t>(capacity);
     gradient_ = arena.permanent<Float4>(capacity);
     energy_ = arena.permanent<float>(capacity);
+    energy_sum_ = arena.permanent<std::uint64_t>(1);
   }
 
   ParticleSet& particles() { return set_[0]; }
@@ -320,27 +322,38 @@ class TreeSolver {
   void rebuild(Executor<Backend>& exec) {
     ParticleSet &from = set_[0], &to = set_[1];
     const std::int64_t n = from.count;
-    exec.for_each(n, detail::TreeKey{from.place.data(), from.interface.data(), scale_, key_.data(), number_.data()});
-    exec.sort_pairs(key_.data(), number_.data(), n);
-    exec.for_each(n, detail::GatherParticles{number_.data(), from.place.data(), from.direction.data(),
-                                             from.interface.data(), velocity_[0].data(), to.place.data(),
-                                             to.direction.data(), to.interface.data(), velocity_[1].data()});
+    const int bits =
+        std::min(64, 3 * TreeView::bits + int(std::bit_width(std::uint64_t(tree_.interfaces()))));  // of keys
+    exec.repeat(rebuilding_, [&] {
+      exec.for_each(n, detail::TreeKey{from.place.data(), from.interface.data(), scale_, key_.data(), number_.data()});
+      exec.sort_pairs(key_.data(), number_.data(), n, bits);
+      exec.for_each(n, detail::GatherParticles{number_.data(), from.place.data(), from.direction.data(),
+                                               from.interface.data(), velocity_[0].data(), to.place.data(),
+                                               to.direction.data(), to.interface.data(), velocity_[1].data()});
+      tree_.launch_build(exec, key_, n);
+    });
     to.count = n;
     swap_sets();
-    tree_.build(exec, key_, n);
+    tree_.read_sizes();
     tree_.summarise(exec, set_[0]);
   }
 
   /// Energies, forces; returns the mean energy of the particles of this order.
   template <class Backend>
   double forces(Executor<Backend>& exec, const RelatedView& related, int order, float theta, std::int64_t movers) {
-    ParticleSet& set = set_[0];
-    exec.for_each_team(tree_.leaf_count(), LeafForces{view(theta), related, set.interface.data(), tree_.leaves(), order,
-                                                      gradient_.data(), energy_.data()});
-    const std::uint64_t sum =
-        exec.reduce(set.count, std::uint64_t(0), detail::EnergyOf{related, set.interface.data(), energy_.data(), order},
-                    detail::AddCounts{});
-    return double(sum) / 1048576.0 / double(std::max<std::int64_t>(movers, 1));
+    launch_forces(exec, related, order, theta);
+    return mean_energy(movers);
+  }
+
+  /// `forces`, then `move` by them; returns what `forces` does.
+  template <class Backend, class Ground>
+  double iterate(Executor<Backend>& exec, const Ground& ground, const RelatedView& related, int order,
+                 const TreeRule& rule, std::int64_t movers) {
+    exec.repeat(iterating_, [&] {
+      launch_forces(exec, related, order, rule.theta);
+      move(exec, ground, related, order, rule);
+    });
+    return mean_energy(movers);  // the one thing that the host waits for
   }
 
   /// A step from the forces. The tree's order is kept; its bounds follow.
@@ -401,6 +414,19 @@ class TreeSolver {
   }
 
  private:
+  template <class Backend>
+  void launch_forces(Executor<Backend>& exec, const RelatedView& related, int order, float theta) {
+    ParticleSet& set = set_[0];
+    exec.for_each_team(tree_.leaf_count(), LeafForces{view(theta), related, set.interface.data(), tree_.leaves(), order,
+                                                      gradient_.data(), energy_.data()});
+    exec.reduce_into(energy_sum_.data(), set.count, std::uint64_t(0),
+                     detail::EnergyOf{related, set.interface.data(), energy_.data(), order}, detail::AddCounts{});
+  }
+
+  double mean_energy(std::int64_t movers) const {
+    return double(energy_sum_.download()[0]) / 1048576.0 / double(std::max<std::int64_t>(movers, 1));
+  }
+
   void swap_sets() {
     std::swap(set_[0], set_[1]);
     std::swap(velocity_[0], velocity_[1]);
@@ -414,6 +440,8 @@ class TreeSolver {
   Array<std::uint32_t> number_;
   Array<Float4> gradient_;
   Array<float> energy_;
+  Array<std::uint64_t> energy_sum_;
+  Steps rebuilding_, iterating_;
 };
 
 }  // namespace nacre

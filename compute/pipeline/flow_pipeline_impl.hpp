@@ -19,11 +19,19 @@ class FlowPipelineOf final : public FlowPipeline {
     exec_.arena().rewind(0);
     std::unique_ptr<FlowMethod> method = make_method();
     method->embed(mesh);
+    exec_.wait();
     method_ = std::move(method);
   }
 
-  void start(const FlowVectors& vectors) override { method().start(vectors); }
-  void step() override { method().step(); }
+  void start(const FlowVectors& vectors) override {
+    method().start(vectors);
+    exec_.wait();
+  }
+  /// Waits once, at its end: then the frame is there, for whoever draws it.
+  void step() override {
+    method().step();
+    exec_.wait();
+  }
   double time() const override { return method().time(); }
   std::vector<float> shown() const override { return method().shown(); }
   void show_into(float* memory) override { method().show_into(memory); }

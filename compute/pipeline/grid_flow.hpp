@@ -111,6 +111,11 @@ class GridFlow final : public FlowMethodOn<Backend> {
 
   void advance(int k) override {
     this->look_ahead(k);
+    exec_.repeat(steps_, [&] { launch(k); });
+  }
+
+  /// What follows the look ahead; nothing in it waits for the device.
+  void launch(int k) {
     ReleaseParticles particles;
     particles.field.grid = coarse_.view();
     particles.field.steady = steady_;
@@ -129,7 +134,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
       exec_.for_each(fine_.surface_cells,
                      PathAxis{fine_.view(coarse_.view()), slots_[this->slot(k)].data(), axis_.data()});
       antialias(done, value_, 1, value_);
-      done.fill_bytes(0);
+      exec_.fill(done, 0);
       // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the mean
       // of this frame and of what older particles have already left in the next one; else the texture lags the flow.
       antialias(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
@@ -142,14 +147,10 @@ class GridFlow final : public FlowMethodOn<Backend> {
     auto stage = exec_.stage("filter");
     const std::int64_t n = fine_.surface_cells;
     const RefinedGridView texture = fine_.view(coarse_.view());
-    const auto moments_of = [&](const Array<float>& a) {
-      return exec_.reduce(n, Moments{}, MomentsOf{a.data()}, AddMoments{});
-    };
-    const Moments now = moments_of(value_), next = moments_of(ahead_);
-    const float deviation = std::max(now.deviation(n), 1e-4f);
+    Arena::Scope scope(exec_.arena());
+    const TextureSpread* whole = measure_spread(exec_, n, value_.data(), ahead_.data());
     const Float4* moments = gather_moments(texture);
-    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, now.mean(n), deviation, next.mean(n),
-                               std::max(next.deviation(n), 1e-4f) / deviation, float(parameters_.equalise),
+    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, whole, float(parameters_.equalise),
                                float(parameters_.contrast), display(), detail_.data()});
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
                                        parameters_.seed, std::uint32_t(++launched_), carried_.data()});
@@ -182,6 +183,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   Array<std::uint8_t> axis_;
   Array<float> carried_, value_, ahead_, detail_, shown_;
   Array<Float4> moments_[2];
+  Steps steps_;
 };
 
 template <class Backend>

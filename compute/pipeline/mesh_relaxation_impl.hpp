@@ -126,8 +126,7 @@ void MeshPipelineOf<Backend>::spread_seeds() {
   const std::int64_t movers = solver_->movers(exec_, related, 2);
   for (int k = 0; k < 16; ++k) {
     if (k % 4 == 0) solver_->rebuild(exec_);
-    solver_->forces(exec_, related, 2, rule.theta, movers);
-    solver_->move(exec_, embedded_ground(), related, 2, rule);
+    solver_->iterate(exec_, embedded_ground(), related, 2, rule, movers);
   }
 }
 
@@ -244,14 +243,16 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
   bool controls = true, sorted = false;
   double before = 0;
   for (int k = 0; k < iterations; ++k) {
+    const bool control = controls && k > 0 && k % every == 0 && k <= last_control;
     double energy = 0;
     {
       auto stage = exec_.stage("relax");
       if (!sorted || k % 5 == 0) solver_->rebuild(exec_);
       sorted = true;
-      energy = solver_->forces(exec_, related, order, rule.theta, movers);
+      energy = control ? solver_->forces(exec_, related, order, rule.theta, movers)
+                       : solver_->iterate(exec_, embedded_ground(), related, order, rule, movers);
     }
-    if (controls && k > 0 && k % every == 0 && k <= last_control) {
+    if (control) {
       auto stage = exec_.stage("population");
       const IterationResult changed =
           solver_->control(exec_, embedded_ground(), related, order, rule.theta, population, movers, k);
@@ -259,10 +260,6 @@ void MeshPipelineOf<Backend>::relax_by_tree(int order, double from, double to) {
       controls = changed.added + changed.deleted > 0;
       sorted = false;
       continue;
-    }
-    {
-      auto stage = exec_.stage("relax");
-      solver_->move(exec_, embedded_ground(), related, order, rule);
     }
     tell("relax", from + (to - from) * (k + 1) / iterations, k + 1, energy);
     note_iteration(order, energy, movers);

@@ -187,6 +187,11 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   void advance(int k) override {
     this->look_ahead(k);
+    exec_.repeat(steps_, [&] { launch(k); });
+  }
+
+  /// What follows the look ahead; nothing in it waits for the device.
+  void launch(int k) {
     const View view = octree_.view();
     ReleaseBandParticles<View> particles;
     particles.field.view = view;
@@ -234,20 +239,18 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
         exec_, view,
         SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter),
                           parameters_.seed, std::uint32_t(++launched_), carried_.data()});
-    done.fill_bytes(0);
+    exec_.fill(done, 0);
   }
 
   template <class Local>
   void equalise(const Local& local, const float* ahead, float* detail) {
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);
-    const auto moments_of = [&](const float* a) { return exec_.reduce(n, Moments{}, MomentsOf{a}, AddMoments{}); };
-    const Moments now = moments_of(value_.data()), next = moments_of(ahead);
-    const float deviation = std::max(now.deviation(n), 1e-4f);
+    Arena::Scope scope(exec_.arena());
+    const TextureSpread* whole = measure_spread(exec_, n, value_.data(), ahead);
     for_each_surface_cell(
         exec_, view,
-        EqualiseBand<View, Local>{view, value_.data(), ahead, local, now.mean(n), deviation, next.mean(n),
-                                  std::max(next.deviation(n), 1e-4f) / deviation, float(parameters_.equalise),
+        EqualiseBand<View, Local>{view, value_.data(), ahead, local, whole, float(parameters_.equalise),
                                   float(parameters_.contrast), display(), detail});
   }
 
@@ -257,6 +260,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   Array<std::uint64_t> sums_[max_ttl];
   Array<float> carried_, value_, shown_;
   Array<Float4> moments_;
+  Steps steps_;
 };
 
 template <class Backend, class Band>

@@ -12,25 +12,26 @@
 #include <array>
 
 #include "compute/device/cuda_check.hpp"
+#include "compute/device/cuda_device.hpp"
 
 namespace nacre {
 namespace {
 
 class RegisteredBuffer final : public CudaLink {
  public:
-  explicit RegisteredBuffer(GLuint buffer) {
+  RegisteredBuffer(cudaStream_t stream, GLuint buffer) : stream_(stream) {
     cuda_check(cudaGraphicsGLRegisterBuffer(&resource_, buffer, cudaGraphicsRegisterFlagsWriteDiscard),
                "registering a buffer of OpenGL");
   }
   ~RegisteredBuffer() override {
-    if (mapped_) cudaGraphicsUnmapResources(1, &resource_);
+    if (mapped_) cudaGraphicsUnmapResources(1, &resource_, stream_);
     cudaGraphicsUnregisterResource(resource_);
   }
   RegisteredBuffer(const RegisteredBuffer&) = delete;
   RegisteredBuffer& operator=(const RegisteredBuffer&) = delete;
 
   void* map() override {
-    cuda_check(cudaGraphicsMapResources(1, &resource_), "mapping a buffer of OpenGL");
+    cuda_check(cudaGraphicsMapResources(1, &resource_, stream_), "mapping a buffer of OpenGL");
     mapped_ = true;
     void* pointer = nullptr;
     std::size_t bytes = 0;
@@ -40,10 +41,11 @@ class RegisteredBuffer final : public CudaLink {
 
   void unmap() override {
     mapped_ = false;
-    cuda_check(cudaGraphicsUnmapResources(1, &resource_), "unmapping a buffer of OpenGL");
+    cuda_check(cudaGraphicsUnmapResources(1, &resource_, stream_), "unmapping a buffer of OpenGL");
   }
 
  private:
+  cudaStream_t stream_;  ///< of the device: draws and launches are ordered by it
   cudaGraphicsResource_t resource_ = nullptr;
   bool mapped_ = false;
 };
@@ -74,7 +76,9 @@ bool cuda_draws_here() {
   return std::find(devices.begin(), devices.begin() + count, current) != devices.begin() + count;
 }
 
-std::unique_ptr<CudaLink> link_cuda(unsigned gl_buffer) { return std::make_unique<RegisteredBuffer>(gl_buffer); }
+std::unique_ptr<CudaLink> link_cuda(Device& device, unsigned gl_buffer) {
+  return std::make_unique<RegisteredBuffer>(dynamic_cast<CudaDevice&>(device).stream(), gl_buffer);
+}
 
 std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes) { return std::make_unique<PinnedBlock>(bytes); }
 
@@ -86,7 +90,7 @@ namespace nacre {
 
 bool cuda_draws_here() { return false; }
 
-std::unique_ptr<CudaLink> link_cuda(unsigned) {
+std::unique_ptr<CudaLink> link_cuda(Device&, unsigned) {
   throw Error("CUDA cannot write into a buffer of OpenGL", "this build has no CUDA");
 }
 

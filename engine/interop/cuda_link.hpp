@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <memory>
 
+#include "compute/device/device.hpp"
+
 namespace nacre {
 
 /// One OpenGL buffer, registered with CUDA while this lives. OpenGL must not use it between map and unmap. All calls on
@@ -11,8 +13,8 @@ namespace nacre {
 class CudaLink {
  public:
   virtual ~CudaLink() = default;
-  virtual void* map() = 0;  ///< its device pointer; waits for draws that use it. Throws Error
-  virtual void unmap() = 0;
+  virtual void* map() = 0;  ///< its device pointer; what the device does next waits for draws that use it. Throws Error
+  virtual void unmap() = 0;  ///< the next draws wait for what the device has been told to do
 };
 
 /// Host memory that CUDA copies to at full speed.
@@ -25,8 +27,9 @@ class PinnedMemory {
 /// Is the current context on the GPU that CUDA computes on? False in a build without CUDA.
 bool cuda_draws_here();
 
-/// Registers the buffer named `gl_buffer`. Throws Error where CUDA cannot, or the build has none.
-std::unique_ptr<CudaLink> link_cuda(unsigned gl_buffer);
+/// Registers the buffer named `gl_buffer` for `device`, which is a CUDA device. Throws Error where CUDA cannot, or the build
+/// has none.
+std::unique_ptr<CudaLink> link_cuda(Device& device, unsigned gl_buffer);
 
 /// Throws Error where there is not that much, or the build has no CUDA.
 std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes);

@@ -37,7 +37,7 @@ SharedBuffer::SharedBuffer(Device& device, std::size_t bytes, GLenum format, Pat
     const float zero = 0;
     glClearNamedBufferData(half.buffer.id(), GL_R32F, GL_RED, GL_FLOAT, &zero);
     if (path == Path::registered)
-      half.link = link_cuda(half.buffer.id());
+      half.link = link_cuda(device_, half.buffer.id());
     else
       half.mapped = half.buffer.map(persistent);
   }

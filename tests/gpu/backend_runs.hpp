@@ -36,6 +36,13 @@ class BackendRuns {
   virtual std::vector<std::uint64_t> sort(std::span<const std::uint64_t> keys) = 0;
   virtual std::uint64_t sum(std::span<const std::uint32_t> in) = 0;
   virtual float maximum(std::span<const float> in) = 0;  ///< -1 for none
+  /// A repeated part, called once for each of `sizes`: clears n numbers, makes number i random, adds all up, puts sums of
+  /// those before in their place. Returns the numbers and their sum after each call.
+  virtual std::vector<std::vector<std::uint64_t>> repeat(std::span<const std::int64_t> sizes) = 0;
+  virtual long graphs_made() const = 0;  ///< by all calls of `repeat` so far; 0 where there are none
+  /// Calls of a repeated part of ten launches, of which the fifth asks to stop; how many of `calls` were interrupted.
+  virtual int stop_inside(int calls) = 0;
+  virtual StageTimers timers() = 0;  ///< stage "repeat" lies inside of the repeated part
   virtual HostEmbedding embed(const FlowMesh& mesh, const FlowParameters& parameters) = 0;
 };
 

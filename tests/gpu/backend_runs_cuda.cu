@@ -2,6 +2,13 @@
 #include "compute/device/executor_cuda.cuh"
 #include "tests/gpu/backend_runs_impl.hpp"
 
-std::unique_ptr<nacre::gpu_tests::BackendRuns> nacre::gpu_tests::make_runs(Cuda, Device& device) {
-  return std::make_unique<BackendRunsOf<Cuda>>(device);
+namespace nacre::gpu_tests {
+
+template <>
+long graphs_made<Cuda>(const Steps& steps) {
+  return steps.record ? static_cast<const CudaGraph&>(*steps.record).made() : 0;
 }
+
+std::unique_ptr<BackendRuns> make_runs(Cuda, Device& device) { return std::make_unique<BackendRunsOf<Cuda>>(device); }
+
+}  // namespace nacre::gpu_tests

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "compute/device/random.hpp"
@@ -14,6 +15,20 @@ namespace nacre::gpu_tests {
 struct RandomBits {
   std::uint32_t* out;
   NACRE_HD void operator()(std::int64_t i) const { out[i] = philox(std::uint32_t(i), 0, 7).a; }
+};
+
+/// How often CUDA made a graph, and did not update it, for a repeated part.
+template <class Backend>
+long graphs_made(const Steps& steps);
+
+struct RandomNumber {
+  std::uint64_t* out;
+  NACRE_HD void operator()(std::int64_t i) const { out[i] += philox(std::uint32_t(i), 0, 7).a; }
+};
+
+struct NumberAt {
+  const std::uint64_t* in;
+  NACRE_HD std::uint64_t operator()(std::int64_t i) const { return in[i]; }
 };
 
 struct CountByRemainder {
@@ -99,6 +114,51 @@ class BackendRunsOf final : public BackendRuns {
     return exec_.reduce(std::int64_t(in.size()), -1.0f, ValueAt{uploaded(in).data()}, Larger{});
   }
 
+  std::vector<std::vector<std::uint64_t>> repeat(std::span<const std::int64_t> sizes) override {
+    std::vector<std::vector<std::uint64_t>> results;
+    for (const std::int64_t n : sizes) {
+      Arena::Scope scope(arena());
+      const Array<std::uint64_t> out = arena().template temporary<std::uint64_t>(n + 1);
+      exec_.repeat(steps_, [&] {
+        auto stage = exec_.stage("repeat");
+        exec_.fill(out, 0);
+        exec_.for_each(n, RandomNumber{out.data()});
+        exec_.reduce_into(out.data() + n, n, std::uint64_t(0), NumberAt{out.data()}, Add{});
+        exec_.scan(out.data(), out.data(), n);
+      });
+      results.push_back(out.download());
+    }
+    return results;
+  }
+
+  long graphs_made() const override { return gpu_tests::graphs_made<Backend>(steps_); }
+
+  int stop_inside(int calls) override {
+    Arena::Scope scope(arena());
+    const Array<std::uint64_t> out = arena().template temporary<std::uint64_t>(1000);
+    std::atomic<bool> stop = false;
+    exec_.watch(&stop);
+    int interrupted = 0;
+    for (int call = 0; call < calls; ++call) {
+      stop = false;
+      try {
+        exec_.repeat(steps_, [&] {
+          auto stage = exec_.stage("stopped");
+          for (int k = 0; k < 10; ++k) {
+            if (k == 5) stop = true;
+            exec_.for_each(1000, RandomNumber{out.data()});
+          }
+        });
+      } catch (const Interrupted&) {
+        ++interrupted;
+      }
+    }
+    exec_.watch(nullptr);
+    return interrupted;
+  }
+
+  StageTimers timers() override { return exec_.timers(); }
+
   HostEmbedding embed(const FlowMesh& mesh, const FlowParameters& parameters) override;
 
  private:
@@ -122,6 +182,7 @@ class BackendRunsOf final : public BackendRuns {
   }
 
   Executor<Backend> exec_;
+  Steps steps_;
 };
 
 template <class Backend>

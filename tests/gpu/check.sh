@@ -39,7 +39,7 @@ pack_program() {
 }
 
 pack() {
-  local pack=$1 build=${NACRE_GPU_BUILD:-$root/build/gpu} programs=(nacre test_gpu gpu_info) name size
+  local pack=$1 build=${NACRE_GPU_BUILD:-$root/build/gpu} programs=(nacre test_gpu gpu_info gpu_floors) name size
   command -v cmake >/dev/null || fail "cmake is not installed: nothing to build with; bring a folder made by --pack"
   local options=(-DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_TESTS=ON "-DNACRE_MARCH=$march" -DCMAKE_BUILD_TYPE=Release
     -DCMAKE_CXX_FLAGS=-Wno-psabi  # our 64-byte vectors never cross a call
@@ -253,6 +253,41 @@ octree_benchmarks() {
   say "largest N on this device: $(sed -n 's/.*use --resolution \([0-9]*\).*/\1/p' "$out/octree-largest.log")"
 }
 
+# floor NAME TARGET SECONDS: a line of the table and an element of results.json.
+floor() {
+  awk -v name="$1" -v target="$2" -v seconds="$3" -v json="$out/floors.json" '
+    BEGIN {
+      if (seconds == "" || seconds <= 0) {
+        printf "%-38s %9.1f %9s %s\n", name, target * 1e3, "-", "not measured"
+        exit
+      }
+      printf "%-38s %9.1f %9.3f %s\n", name, target * 1e3, seconds * 1e3,
+        seconds <= target ? "reached" : sprintf("%.2f times the floor", seconds / target)
+      printf "    {\"name\": \"%s\", \"target_seconds\": %.9g, \"seconds\": %.9g},\n", name, target, seconds >> json
+    }' </dev/null
+}
+
+# What is to be aimed at on an H200. The band: the train at the resolution that gives it 66 million cells.
+floors() {
+  local resolution=6035 band="$out/octree-cuda-6035.json" times="$out/floor-times.json" build energy embed step
+  timeout "$(left)" "$pack/bin/gpu_floors" cuda 2000000 >"$times" 2>"$out/floor-times.log" ||
+    failures+=("gpu_floors: $(head -n 1 "$out/floor-times.log")")
+  build=$(report_value "$times" tree_build_seconds)
+  energy=$(report_value "$times" energy_pass_seconds)
+  octree_bench cuda 5 "$resolution" >"$out/floor-band.log"
+  if [[ -s $band ]]; then
+    embed=$(stage_seconds "$band" embed)
+    step=$(report_value "$band" flow.seconds_per_step.median)
+    say "the band of the floors has $(report_value "$band" embedding.cells) cells"
+  fi
+  : >"$out/floors.json"
+  printf '%-38s %9s %9s\n' 'floor (ms)' target value
+  floor 'tree build of 2M particles' 0.0005 "$build"
+  floor 'energy pass of 2M particles' 0.001 "$energy"
+  floor 'band of 66M cells' 0.025 "${embed:-}"
+  floor 'UFLIC step over that band' 0.025 "${step:-}"
+}
+
 # results.json: the device, the runs and what failed; the tests' own numbers are in tests.json.
 write_results() {
   {
@@ -260,9 +295,11 @@ write_results() {
     sed '2,$s/^/  /' "$out/device.json"
     printf '  ,\n  "runs": [\n'
     sed '$s/,$//' "$out/runs.json"
+    printf '  ],\n  "floors": [\n'
+    sed '$s/,$//' "$out/floors.json"
     printf '  ],\n  "failures": %d,\n  "seconds": %d\n}\n' "${#failures[@]}" "$SECONDS"
   } >"$out/results.json"
-  rm "$out/runs.json"
+  rm "$out/runs.json" "$out/floors.json"
 }
 
 run() {
@@ -278,6 +315,7 @@ run() {
   program_test
   mesh_test
   interop_test
+  floors
   benchmarks
   octree_benchmarks
   write_results

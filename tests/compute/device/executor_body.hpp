@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <numeric>
+#include <stdexcept>
 #include <vector>
 
 #include "compute/device/random.hpp"
@@ -143,11 +144,109 @@ void StagesAreTimed(Executor<Backend>& exec) {
   EXPECT_EQ(exec.timers().seconds("no such stage"), 0);
 }
 
+/// What needs no answer: scan, sum and fill leave their results on the device.
+template <class Backend>
+void ResultsStayOnTheDevice(Executor<Backend>& exec) {
+  for (const std::int64_t n : launch_sizes) {
+    Arena::Scope scope(exec.arena());
+    Array<std::uint64_t> values = exec.arena().template temporary<std::uint64_t>(n);
+    Array<std::uint64_t> sum = exec.arena().template temporary<std::uint64_t>(1);
+    exec.fill(values, 0xff);
+    EXPECT_EQ(values.download(), std::vector<std::uint64_t>(n, ~std::uint64_t(0)));
+    exec.fill(values, 0);
+    exec.for_each(n, CountVisit{values.data()});
+    exec.reduce_into(sum.data(), n, std::uint64_t(0), Element{values.data()}, Add{});
+    exec.scan(values.data(), values.data(), n);
+    EXPECT_EQ(sum.download()[0], std::uint64_t(n) * (n + 1) / 2);
+    std::vector<std::uint64_t> before(n);
+    for (std::int64_t i = 0; i < n; ++i) before[i] = std::uint64_t(i) * (i + 1) / 2;
+    EXPECT_EQ(values.download(), before);
+  }
+}
+
+/// By a part that is repeated: the sum of 1 .. n, with a stage inside.
+template <class Backend>
+std::uint64_t repeated_sum(Executor<Backend>& exec, Steps& steps, std::int64_t n) {
+  Arena::Scope scope(exec.arena());
+  Array<std::uint64_t> values = exec.arena().template temporary<std::uint64_t>(n);
+  Array<std::uint64_t> sum = exec.arena().template temporary<std::uint64_t>(1);
+  exec.repeat(steps, [&] {
+    auto stage = exec.stage("inside");
+    exec.fill(values, 0);
+    exec.for_each(n, CountVisit{values.data()});
+    exec.reduce_into(sum.data(), n, std::uint64_t(0), Element{values.data()}, Add{});
+  });
+  return sum.download()[0];
+}
+
+template <class Backend>
+void APartCanBeRepeated(Executor<Backend>& exec) {
+  Steps steps;
+  long calls = 0;
+  for (const std::int64_t n : {1000, 1000, 70000, 0, 0, 5, 1000}) {
+    EXPECT_EQ(repeated_sum(exec, steps, n), std::uint64_t(n) * (n + 1) / 2) << n;
+    ++calls;
+  }
+  const StageTimers::Stage stage = exec.timers().stages().front();
+  EXPECT_EQ(stage.name, "inside");
+  EXPECT_EQ(stage.calls, calls);
+  EXPECT_EQ(stage.launches, 2 * calls);
+  EXPECT_GT(stage.seconds, 0);
+}
+
+/// What would be waited for, or overtake the launches, is a mistake on every backend.
+template <class Backend>
+void NothingIsReadBackInsideOfIt(Executor<Backend>& exec) {
+  Arena::Scope scope(exec.arena());
+  Array<std::uint64_t> values = exec.arena().template temporary<std::uint64_t>(100);
+  Steps steps;
+  for (int call = 0; call < 3; ++call) {
+    EXPECT_THROW(exec.repeat(steps, [&] { values.download(); }), std::logic_error);
+    EXPECT_THROW(exec.repeat(steps, [&] { values.upload(std::vector<std::uint64_t>(100)); }), std::logic_error);
+    EXPECT_THROW(exec.repeat(steps, [&] { values.fill_bytes(0); }), std::logic_error);
+    EXPECT_THROW(exec.repeat(steps, [&] { exec.exclusive_scan(values.data(), values.data(), 100); }), std::logic_error);
+    EXPECT_THROW(exec.repeat(steps, [&] { exec.reduce(100, std::uint64_t(0), Element{values.data()}, Add{}); }),
+                 std::logic_error);
+    EXPECT_EQ(repeated_sum(exec, steps, 1000), 500500u) << "it works on";
+  }
+}
+
+/// Stopped between two launches: the first may have run or not, and all works on.
+template <class Backend>
+void ARepeatedPartCanBeStopped(Executor<Backend>& exec) {
+  std::atomic<bool> stop = false;
+  exec.watch(&stop);
+  Steps steps;
+  EXPECT_EQ(repeated_sum(exec, steps, 1000), 500500u);
+  Arena::Scope scope(exec.arena());
+  Array<std::uint64_t> values = exec.arena().template temporary<std::uint64_t>(100);
+  for (int call = 0; call < 3; ++call) {
+    values.fill_bytes(0);
+    const auto stopped = [&] {
+      auto stage = exec.stage("stopped");
+      exec.for_each(100, CountVisit{values.data()});
+      stop = true;
+      exec.for_each(100, CountVisit{values.data()});
+    };
+    EXPECT_THROW(exec.repeat(steps, stopped), Interrupted);
+    const std::uint64_t last = values.download(99, 1)[0];
+    EXPECT_TRUE(last == 0 || last == 100) << last;
+    stop = false;
+    EXPECT_EQ(repeated_sum(exec, steps, 1000), 500500u);
+  }
+  EXPECT_EQ(exec.timers().stages().front().calls, 4);
+  exec.watch(nullptr);
+}
+
 NACRE_DEVICE_TEST(Executor, ForEachVisitsEveryElementOnce)
 NACRE_DEVICE_TEST(Executor, ScanAddsWhatComesBefore)
 NACRE_DEVICE_TEST(Executor, SortOrdersKeys)
 NACRE_DEVICE_TEST(Executor, ReduceMergesEveryElement)
 NACRE_DEVICE_TEST(Executor, NothingRunsOnceStopped)
 NACRE_DEVICE_TEST(Executor, StagesAreTimed)
+NACRE_DEVICE_TEST(Executor, ResultsStayOnTheDevice)
+NACRE_DEVICE_TEST(Executor, APartCanBeRepeated)
+NACRE_DEVICE_TEST(Executor, NothingIsReadBackInsideOfIt)
+NACRE_DEVICE_TEST(Executor, ARepeatedPartCanBeStopped)
 
 }  // namespace nacre::test

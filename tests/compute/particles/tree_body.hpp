@@ -163,6 +163,21 @@ void ErrorsGrowWithTheta(Executor<Backend>& exec) {
   }
 }
 
+struct CopyLeaf {
+  const std::uint32_t* from;
+  std::uint32_t* to;
+  NACRE_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
+};
+
+template <class Backend>
+std::vector<std::uint32_t> leaves_of(TreeRun<Backend>& run) {
+  Arena::Scope scope(run.exec.arena());
+  const Tree& tree = run.solver.tree();
+  Array<std::uint32_t> to = run.exec.arena().template temporary<std::uint32_t>(std::size_t(tree.leaf_count()));
+  run.exec.for_each(tree.leaf_count(), CopyLeaf{tree.leaves(), to.data()});
+  return to.download();
+}
+
 struct CopyNode {
   const TreeNode* from;
   TreeNode* to;
@@ -231,9 +246,19 @@ void CoincidentParticlesDoNoHarm(Executor<Backend>& exec) {
   EXPECT_EQ(none.solver.forces(exec, none.view, 2, 0.5f, 0), 0);
 }
 
+/// Crowds of 25 at one place: each is a chain of nodes down to the last level, more than there is room for.
+template <class Backend>
+void TooManyNodesAreAnError(Executor<Backend>& exec) {
+  TreeCase c;
+  for (const Vec3f& p : scattered_on_sphere(12, 4000, 5))
+    for (int k = 0; k < 25; ++k) add_particle(c, p, normalized(p), 0);
+  EXPECT_THROW(TreeRun<Backend>(exec, c), Error);
+}
+
 NACRE_DEVICE_TEST(Tree, WithoutThetaTheWalkMissesNothing)
 NACRE_DEVICE_TEST(Tree, ErrorsGrowWithTheta)
 NACRE_DEVICE_TEST(Tree, NodesHoldTheirParticles)
 NACRE_DEVICE_TEST(Tree, CoincidentParticlesDoNoHarm)
+NACRE_DEVICE_TEST(Tree, TooManyNodesAreAnError)
 
 }  // namespace nacre::test

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "compute/device/error.hpp"
@@ -65,9 +66,7 @@ struct TreeSolverRun {
   template <class Ground>
   double step(const Ground& ground, int of_order) {
     solver.rebuild(exec);
-    const double energy = solver.forces(exec, view, of_order, rule.theta, solver.movers(exec, view, of_order));
-    solver.move(exec, ground, view, of_order, rule);
-    return energy;
+    return solver.iterate(exec, ground, view, of_order, rule, solver.movers(exec, view, of_order));
   }
 
   std::size_t count() const { return std::size_t(solver.particles().count); }
@@ -80,6 +79,29 @@ struct TreeSolverRun {
 template <class Backend>
 TreeSolverRun<Backend> one_surface(Executor<Backend>& exec, std::int64_t capacity) {
   return {exec, capacity, {2}, {{0}}};
+}
+
+template <class Backend>
+void AnIterationIsForcesAndAMove(Executor<Backend>& exec) {
+  const AnalyticGround<Plane> ground{{1}};
+  std::vector<Vec3f> points;
+  for (int k = 0; k < 500; ++k) points.push_back({20 + 0.7f * float(k % 25), 20 + 0.9f * float(k / 25), 0});
+  const std::vector<std::uint32_t> interface(points.size(), 0);
+  TreeSolverRun<Backend> at_once = one_surface(exec, 600), apart = one_surface(exec, 600);
+  at_once.seed(ground, points, interface);
+  apart.seed(ground, points, interface);
+  for (int k = 0; k < 4; ++k) {
+    if (k != 2) at_once.solver.rebuild(exec), apart.solver.rebuild(exec);
+    const double energy = at_once.solver.iterate(exec, ground, at_once.view, 2, at_once.rule, 500);
+    EXPECT_EQ(energy, apart.solver.forces(exec, apart.view, 2, apart.rule.theta, 500)) << k;
+    apart.solver.move(exec, ground, apart.view, 2, apart.rule);
+    const auto bytes = [](const std::vector<Float4>& v) {
+      return std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(Float4));
+    };
+    EXPECT_EQ(bytes(at_once.places()), bytes(apart.places())) << k;
+    EXPECT_EQ(bytes(at_once.directions()), bytes(apart.directions())) << k;
+    EXPECT_NE(bytes(at_once.velocities()), std::string(500 * sizeof(Float4), 0)) << k;
+  }
 }
 
 /// Two particles on a plane: the Newton step along the line between them, half of it for the stiffness that two directions
@@ -365,6 +387,7 @@ void IslandsKeepTheirParticlesAndRulesAreKept(Executor<Backend>& exec) {
   EXPECT_THROW(control_once(full, ball, PopulationRule(), 1), Error) << "there is no room for them";
 }
 
+NACRE_DEVICE_TEST(TreeSolver, AnIterationIsForcesAndAMove)
 NACRE_DEVICE_TEST(TreeSolver, APairStepsApartAsTheFormulaSays)
 NACRE_DEVICE_TEST(TreeSolver, NobodyStepsOverTheRim)
 NACRE_DEVICE_TEST(TreeSolver, RandomParticlesSpreadEvenlyOnASphere)
