@@ -1,4 +1,4 @@
-// Nacre: every table of `nacre bench` at the smallest scale: rows, quantities beside the source's, sums, plots.
+// Nacre: the tables of `nacre bench` at the smallest scale: rows, quantities beside the source's, sums, plots.
 #include "compute/device/device.hpp"
 #include "tests/app/program.hpp"
 
@@ -9,7 +9,7 @@ using nlohmann::json;
 
 const Words tiny_bench = {"bench", "--tiny", "--quiet", "--threads", "2", "--set", "iterations=2"};
 
-/// What a run of all tables wrote.
+/// What a run of some tables wrote.
 class BenchTables : public AppTest {
  protected:
   void run(const Words& more) {
@@ -120,28 +120,21 @@ void BenchTables::expect_flow_tables() const {
     EXPECT_NEAR(ours(fine, "sparseness, %"), 100 * (1 - ours(fine, "voxels") / (128.0 * 128 * 128)), 1e-9);
     EXPECT_GT(ours(fine, "voxels"), ours(fine, "bricks: voxels")) << "the source's radius is twice ours";
   }
-  row("6.2", "train 128", 0);
   for (const char* name : {"figure-6.8a.svg", "figure-6.8b.svg", "figure-6.8c.svg"})
     expect_plot(name, {"train, octree", "train, bricks", "delta-wing, octree", "64", "128"});
-  row("grid-octree", "train 64", 0);
-  for (const char* picture : {"plots/methods-train.png", "plots/methods-aircraft.png"}) EXPECT_TRUE(exists(picture));
 }
 
-TEST_F(BenchTables, AllOfThemStandBesideTheSourceAndAreMissedOneByOne) {
-  const json last = {
-      {"small", true},
-      {"tiny", true},
-      {"set", {{"iterations", "2"}}},
-      {"device", {{"backend", "cpu"}, {"threads", 2}}},
-      {"tables",
-       {{{"name", "9.9"},
-         {"rows", {{{"name", "gone"}, {"values", {{"a / b", {{"ours", 2.0}, {"better", "higher"}}}}}}}}}}}};
-  run({"--device", "cpu", "--plots", path("plots"), "--against", write("last.json", last.dump())});
-  EXPECT_EQ(status_, 1) << "all tables were asked for, and one of the last run's is gone";
-  EXPECT_TRUE(contains(errors_, "Table 9.9, gone")) << errors_;
-  EXPECT_EQ(report_["tables"].size(), 14u);
+TEST_F(BenchTables, ParticlesAndMeshes) {
+  run({"--device", "cpu", "3.1", "3.2", "3.3", "3.4", "gathering", "4.1", "4.2", "4.3", "--plots", path("plots")});
+  ASSERT_EQ(status_, 0) << errors_;
+  EXPECT_EQ(report_["tables"].size(), 8u);
   expect_scalar_tables();
   expect_material_tables();
+}
+
+TEST_F(BenchTables, Flow) {
+  run({"--device", "cpu", "5.1", "6.1", "--plots", path("plots")});
+  ASSERT_EQ(status_, 0) << errors_;
   expect_flow_tables();
 }
 
