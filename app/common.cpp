@@ -75,7 +75,7 @@ void add_common_options(CLI::App& command, CommonOptions& options, const CommonW
       ->expected(1)  // and no more: a FILE may follow
       ->allow_extra_args(false)
       ->take_all();
-  command.add_flag("--quiet", options.quiet, "say nothing but results and errors");
+  command.add_flag("--quiet", options.quiet, "say nothing but results, what is wrong with them, and errors");
 }
 
 void add_save_session(CLI::App& command, CommonOptions& options) {
@@ -147,8 +147,10 @@ void say(const CommonOptions& options, const std::string& line) {
 }
 
 void warn(const CommonOptions& options, const std::string& line) {
-  if (!options.quiet) fmt::print(stderr, "warning: {}\n", line);
+  if (!options.quiet) warn_of_result(line);
 }
+
+void warn_of_result(const std::string& line) { fmt::print(stderr, "warning: {}\n", line); }
 
 Progress::Progress(bool quiet) : on_(!quiet && isatty(STDERR_FILENO)), started_(now()) {}
 

@@ -77,6 +77,8 @@ void catch_interrupts();
 /// A line on stderr, unless --quiet.
 void say(const CommonOptions& options, const std::string& line);
 void warn(const CommonOptions& options, const std::string& line);
+/// The same where a result is not what was asked for: also with --quiet, which silences the way there.
+void warn_of_result(const std::string& line);
 
 /// A bar with the time left on stderr where that is a terminal; nothing otherwise.
 class Progress {

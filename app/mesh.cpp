@@ -102,6 +102,10 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   pipeline.load(volume);
   pipeline.build_fields();
   bar.clear();
+  if (const int crowded = pipeline.info().crowded_cells; crowded > 0)
+    warn(options.common, fmt::format("in {} cells of the embedding more than 8 materials or 64 junctions lie together: "
+                                     "some junctions are left out; --merge or --materials makes fewer",
+                                     crowded));
   say_how_many(options, pipeline.info(), settings.mesh);
   try {
     pipeline.relax();
@@ -161,7 +165,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
     report["seconds"] = seconds;
     write_report(options.common, std::move(report), outputs);
   }
-  for (const std::string& flaw : mesh_flaws(input.labels, result.topology)) warn(options.common, flaw);
+  for (const std::string& flaw : mesh_flaws(input.labels, result.topology)) warn_of_result(flaw);
   say(options.common, mesh_summary(input, pipeline->info(), result, seconds));
   print_outputs(outputs);
   if (result.interrupted) throw Interrupted();

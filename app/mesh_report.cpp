@@ -51,6 +51,7 @@ json fields_json(const MeshInfo& info) {
           {"curves", info.curves},
           {"points", info.points},
           {"crowded_points", info.crowded_points},
+          {"crowded_cells", info.crowded_cells},
           {"constrained_voxels", info.constrained_voxels},
           {"smallest_size_voxels", info.smallest_size},
           {"largest_size_voxels", info.largest_size},
@@ -122,6 +123,7 @@ json mesh_json(const MeshInput& input, const MeshResult& r) {
           {"duplicate_triangles", r.topology.duplicate_triangles},
           {"degenerate_triangles", r.topology.degenerate_triangles},
           {"sound", r.topology.sound()},
+          {"lost_labels", lost_labels(input.labels, r.topology)},
           {"radius_ratio", ratio_json(all)},
           {"angle_degrees", angles_json(all)},
           {"share_under_25_degrees", all.share_under_25},
@@ -162,15 +164,14 @@ void add_mesh_report(json& report, const MeshInput& input, const Settings& setti
 
 std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds) {
   const TopologyReport& t = result.topology;
-  std::size_t open = 0, lost = 0;
-  for (std::size_t m = 1; m < t.materials.size(); ++m) {
-    lost += t.materials[m].facets == 0;
-    open += t.materials[m].facets > 0 && !t.materials[m].closed;
-  }
+  const std::size_t lost = lost_labels(input.labels, t).size();
+  std::size_t open = 0;
+  for (std::size_t m = 1; m < t.materials.size(); ++m) open += t.materials[m].facets > 0 && !t.materials[m].closed;
   const std::size_t materials = input.labels.size() - 1;
-  const std::string state = open > 0   ? fmt::format("{} not closed", open)
-                            : lost > 0 ? fmt::format("{} lost", lost)
-                                       : "all closed";
+  const std::string state = open > 0    ? fmt::format("{} not closed", open)
+                            : lost > 0  ? fmt::format("{} lost", lost)
+                            : t.sound() ? "all closed"
+                                        : "all closed, not sound";
   std::string text = fmt::format("{} particles, {} triangles around {} material{}, {}\n", info.final, t.triangles,
                                  materials, materials == 1 ? "" : "s", state);
   text += fmt::format("radius ratio {:.3f} mean, {:.3f} min; triangles {:.3f} voxels off the interface on average",

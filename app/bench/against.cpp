@@ -24,12 +24,19 @@ const json* find_named(const json& list, const std::string& name) {
 std::string made_how(const json& report) {
   const json& device = report.at("device");
   const int threads = device.at("threads").get<int>();
-  std::string how = fmt::format("{} on {}, {} thread{}", report.at("small").get<bool>() ? "--small" : "the whole",
-                                device.at("backend").get<std::string>(), threads, threads == 1 ? "" : "s");
+  const char* size = report.contains("tiny") ? "--tiny" : report.at("small").get<bool>() ? "--small" : "the whole";
+  std::string how = fmt::format("{} on {}, {} thread{}", size, device.at("backend").get<std::string>(), threads,
+                                threads == 1 ? "" : "s");
   if (report.contains("set"))
     for (const auto& [knob, value] : report.at("set").items())
       how += fmt::format(", {} {}", knob, value.get<std::string>());
   return how;
+}
+
+bool has_ratios(const json& row) {
+  for (const json& value : row.at("values"))
+    if (value.contains("better") && value.contains("ours")) return true;
+  return false;
 }
 
 void compare_rows(const std::string& table, const json& now, const json& last, Comparison& result) {
@@ -69,16 +76,17 @@ void check_shape(const json& report) {
 
 }  // namespace
 
-Comparison compare_runs(const json& now, const json& last) {
+Comparison compare_runs(const json& now, const json& last, bool all_tables) {
   Comparison result;
   for (const json& table : last.at("tables")) {
     const std::string name = table.at("name");
     const json* same = find_named(now.at("tables"), name);
-    if (!same) continue;  // not asked for this time
+    if (!same && !all_tables) continue;
     for (const json& row : table.at("rows")) {
-      if (const json* found = find_named(same->at("rows"), row.at("name")))
+      const json* found = same ? find_named(same->at("rows"), row.at("name")) : nullptr;
+      if (found)
         compare_rows(name, *found, row, result);
-      else
+      else if (has_ratios(row))
         result.missing.push_back(fmt::format("Table {}, {}", name, row.at("name").get<std::string>()));
     }
   }

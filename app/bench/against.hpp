@@ -14,12 +14,13 @@ inline constexpr double tolerated_loss = 0.30;
 struct Comparison {
   int compared = 0;
   std::vector<std::string> losses;   ///< sentences that name table, row and quantity
-  std::vector<std::string> missing;  ///< ratios of the last run that this one lacks, though it ran their table
+  std::vector<std::string> missing;  ///< ratios of the last run, or rows or tables with some, that this one lacks
 };
 
 /// Compares the ratios (quantities that say which way is better) of the rows that both have. A loss: higher is better and
-/// `now` is under 70% of `last`, or lower is better and `last` is under 70% of `now`.
-Comparison compare_runs(const nlohmann::json& now, const nlohmann::json& last);
+/// `now` is under 70% of `last`, or lower is better and `last` is under 70% of `now`. Tables that `now` has not are missing
+/// where all of them were asked for (`all_tables`); else they count as not asked for.
+Comparison compare_runs(const nlohmann::json& now, const nlohmann::json& last, bool all_tables);
 
 /// Reads what --json wrote. Throws Error where the file is no such thing.
 nlohmann::json read_bench(const std::filesystem::path& file);

@@ -14,22 +14,33 @@
 
 namespace nacre {
 
+/// How large the data of the tables are. Tiny is for tests: figures are there, and mean nothing.
+enum class BenchScale { whole, small, tiny };
+
 /// One run of the command: what it works with, and what it has found out so far.
 class Bench {
  public:
-  Bench(Device& on, const CommonOptions& words, bool small_one)
-      : device(on), small(small_one), meshes(on), flows(on), common_(words) {
+  Bench(Device& on, const CommonOptions& words, BenchScale size)
+      : device(on), scale(size), small(size != BenchScale::whole), meshes(on), flows(on), common_(words) {
     meshes.repeats = flows.repeats = 3;
   }
 
   Device& device;
-  const bool small;
+  const BenchScale scale;
+  const bool small;             ///< or tiny
   std::filesystem::path plots;  ///< where pictures go; empty: nowhere
   MeshRuns meshes;              ///< several tables look at the same runs
   FlowRuns flows;
   std::vector<std::string> outputs;
 
   const std::deque<BenchTable>& tables() const { return tables_; }
+
+  /// Of a phantom: its own, or `small_one`, or two thirds of that.
+  int detail(int small_one) const { return pick(0, small_one, small_one * 2 / 3); }
+  /// The one for this run's scale.
+  int pick(int whole, int small_one, int tiny_one) const {
+    return scale == BenchScale::whole ? whole : scale == BenchScale::small ? small_one : tiny_one;
+  }
 
   /// Begins a table and prints what stands above its rows; `differs`: from the source, beside the hardware.
   BenchTable& begin(std::string name, std::string title, std::vector<std::string> differs);

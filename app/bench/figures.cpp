@@ -69,7 +69,8 @@ void add_shares(Figures& figures, const json& report) {
   const json* table = find_table(report, "4.3");
   if (!table) return;
   StackedBars plot{"Fig. 4.5: shares of the time to extract a mesh", "share", {}, {}};
-  plot.parts = {{"distance volume", {}}, {"sizing field", {}}, {"particles", {}}, {"extract", {}}};
+  plot.parts = {
+      {"distance volume", {}}, {"sizing field", {}}, {"closest point", {}}, {"particles", {}}, {"extract", {}}};
   for (const json& row : table->at("rows"))
     for (const char* whose : {"source", "ours"})
       for (const char* solver : {"serial", "red-black", "tree"}) {
@@ -78,8 +79,9 @@ void add_shares(Figures& figures, const json& report) {
         plot.bars.push_back(fmt::format("{}, {}, {}", row.at("name").get<std::string>(), solver, whose));
         plot.parts[0].values.push_back(figure(row, "distance volume, s", whose));
         plot.parts[1].values.push_back(figure(row, "sizing field, s", whose));
-        plot.parts[2].values.push_back(particles);
-        plot.parts[3].values.push_back(figure(row, "extract, s", whose));
+        plot.parts[2].values.push_back(figure(row, "closest point, s", whose));
+        plot.parts[3].values.push_back(particles);
+        plot.parts[4].values.push_back(figure(row, "extract, s", whose));
       }
   if (!plot.bars.empty()) figures.emplace_back("figure-4.5.svg", svg_stacked_bars(plot));
 }

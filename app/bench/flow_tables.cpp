@@ -100,7 +100,7 @@ void bench_grid_flow(Bench& bench) {
     FlowJob job;
     job.sample = c.sample;
     job.detail = bench.small ? small_flow_detail : 0;
-    job.resolution = bench.small ? c.resolution / 4 : c.resolution;
+    job.resolution = c.resolution / bench.pick(1, 4, 16);
     job.refine = c.refine;
     flow_row(bench, table, c.row, {job}, [&](BenchRow& row) {
       const FlowRun& run = bench.flows.run(job);
@@ -125,7 +125,7 @@ void bench_octree_flow(Bench& bench) {
        "voxels, build and step: the source's octree, radius 5; bricks: Nacre's own, which needs 2.24"});
   for (const char* sample : {"train", "aircraft", "delta-wing"}) {
     const int coarsest = bench.small ? 64 : 512;
-    const int finest = bench.small ? 256 : std::string(sample) == "delta-wing" ? 8192 : 4096;
+    const int finest = bench.pick(std::string(sample) == "delta-wing" ? 8192 : 4096, 256, 128);
     for (int resolution = coarsest; resolution <= finest; resolution *= 2) octree_row(bench, table, sample, resolution);
   }
 }
@@ -133,7 +133,8 @@ void bench_octree_flow(Bench& bench) {
 void bench_neighbour_index(Bench& bench) {
   BenchTable& table = bench.begin("6.2", "Flow on the sparse octree with neighbour index, ttl 2",
                                   {"source: Quadro K6000; simulation of a train", "source's octree, radius 5"});
-  for (int resolution = bench.small ? 128 : 512; resolution <= (bench.small ? 512 : 2048); resolution *= 2) {
+  const int finest = bench.pick(2048, 512, 128);
+  for (int resolution = bench.pick(512, 128, 64); resolution <= finest; resolution *= 2) {
     const FlowJob with = octree_job(bench, "train", resolution, true),
                   without = octree_job(bench, "train", resolution, false);
     flow_row(bench, table, fmt::format("train {}", resolution), {with, without}, [&](BenchRow& row) {

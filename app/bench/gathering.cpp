@@ -68,7 +68,7 @@ void bench_gathering(Bench& bench) {
                   {"source: Tesla C2070; \"less than 4%\" of the run-time", "a turn: relax, over its iterations"});
   MeshJob job;
   job.sample = "ribcage";
-  job.detail = bench.small ? 56 : 0;
+  job.detail = bench.detail(56);
   if (bench.device.backend() != "cpu")
     return bench.leave_out(table, "ribcage", "phantom ribcage", "measured on the CPU only; use --device cpu");
   bench.row(table, "ribcage", "phantom ribcage", [&](BenchRow& row) {

@@ -49,16 +49,24 @@ MeshParameters MeshRuns::parameters(const MeshJob& job, bool own_settings) const
   return mesh;
 }
 
+/// The serial solver moves one particle at a time: it knows no device but the CPU.
+Device& MeshRuns::device_of(const MeshSolve& solve) {
+  if (solve.solver != "serial" || device_.backend() == "cpu") return device_;
+  if (!cpu_) cpu_ = make_cpu_device();
+  return *cpu_;
+}
+
 /// Makes the fields of `job`, unless they are those that are there.
-void MeshRuns::open(const MeshJob& job, bool own_settings) {
+void MeshRuns::open(const MeshJob& job, bool own_settings, Device& device) {
   const bool same_job = !(job < job_) && !(job_ < job);
-  if (pipeline_ && same_job && own_settings == own_settings_) return;
+  if (pipeline_ && same_job && own_settings == own_settings_ && opened_on_ == &device) return;
   release();
+  opened_on_ = &device;
   job_ = job;
   own_settings_ = own_settings;
   volume_ = std::make_unique<MeshVolume>(make_volume(job));
   if (interrupt_flag()) throw Interrupted();
-  pipeline_ = make_mesh_pipeline(device_);
+  pipeline_ = make_mesh_pipeline(device);
   pipeline_->watch(&interrupt_flag());
   pipeline_->parameters = parameters(job, own_settings);
   try {
@@ -73,7 +81,7 @@ void MeshRuns::open(const MeshJob& job, bool own_settings) {
 const MeshFields& MeshRuns::fields(const MeshJob& job) {
   const auto known = fields_.find(job);
   if (known != fields_.end()) return known->second;
-  open(job, false);
+  open(job, false, device_);
   const StageTimers& timers = pipeline_->timers();
   MeshFields fields;
   fields.dims = volume_->dims;
@@ -123,7 +131,7 @@ const MeshRun& MeshRuns::run(const MeshJob& job, const MeshSolve& solve) {
   if (known != runs_.end()) return known->second;
   const bool own = solve.solver == "own";
   if (!own) fields(job);
-  open(job, own);
+  open(job, own, device_of(solve));
   MeshRun best = run_once(solve);
   double spent = best.seconds;
   for (int k = 1; k < repeats && spent < long_enough; ++k) {
@@ -137,7 +145,7 @@ const MeshRun& MeshRuns::run(const MeshJob& job, const MeshSolve& solve) {
 }
 
 MeshParticles MeshRuns::particles(const MeshJob& job, const MeshSolve& solve) {
-  open(job, solve.solver == "own");
+  open(job, solve.solver == "own", device_of(solve));
   place(solve);
   MeshParticles particles = pipeline_->particles();
   const double voxel = std::min({volume_->spacing.x, volume_->spacing.y, volume_->spacing.z});

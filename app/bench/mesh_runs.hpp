@@ -66,7 +66,7 @@ class MeshRuns {
   /// The user's knobs, over the source's constants and Nacre's own; what a job or a solve says comes over them.
   std::function<void(Settings&)> turn;
 
-  /// Throws Error where the memory does not do, and Interrupted.
+  /// Throws Error where the memory does not do, and Interrupted. The serial solver runs on the CPU whatever the device is.
   const MeshFields& fields(const MeshJob& job);
   const MeshRun& run(const MeshJob& job, const MeshSolve& solve);
   /// The particles of `run`, which is done again; lengths in voxels.
@@ -75,13 +75,16 @@ class MeshRuns {
   void release();
 
  private:
-  void open(const MeshJob& job, bool own_settings);
+  Device& device_of(const MeshSolve& solve);
+  void open(const MeshJob& job, bool own_settings, Device& device);
   MeshParameters parameters(const MeshJob& job, bool own_settings) const;
   void place(const MeshSolve& solve);
   MeshRun run_once(const MeshSolve& solve);
 
   Device& device_;
+  std::unique_ptr<Device> cpu_;  // where `device_` is none
   MeshJob job_;
+  Device* opened_on_ = nullptr;
   bool own_settings_ = false;
   std::unique_ptr<MeshVolume> volume_;
   std::unique_ptr<MeshPipeline> pipeline_;

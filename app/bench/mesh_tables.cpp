@@ -28,13 +28,17 @@ constexpr std::array<Case, 2> material_cases{{{"torso (pig)", "torso", 28}, {"he
 MeshJob job_of(const Bench& bench, const Case& c) {
   MeshJob job;
   job.sample = c.sample;
-  job.detail = bench.small ? c.small_detail : 0;
+  job.detail = bench.detail(c.small_detail);
   return job;
 }
 
-std::string input_text(const MeshJob& job, const MeshFields& fields) {
+/// What a row was run on, and where its solvers did not all run on the bench's device.
+std::string input_text(Bench& bench, const MeshJob& job) {
+  const MeshFields& fields = bench.meshes.fields(job);
   const std::string materials = fields.materials > 1 ? fmt::format(", {} materials", fields.materials) : "";
-  return fmt::format("phantom {}, {}x{}x{}{}", job.sample, fields.dims.x, fields.dims.y, fields.dims.z, materials);
+  const char* serial = bench.device.backend() == "cpu" ? "" : "; serial on the CPU";
+  return fmt::format("phantom {}, {}x{}x{}{}{}", job.sample, fields.dims.x, fields.dims.y, fields.dims.z, materials,
+                     serial);
 }
 
 std::string same_work() {
@@ -95,7 +99,7 @@ void solver_rows(Bench& bench, BenchTable& table, const std::array<Case, n>& cas
     bench.row(table, c.row, c.sample, [&](BenchRow& row) {
       const MeshJob job = job_of(bench, c);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
-      row.input = input_text(job, bench.meshes.fields(job));
+      row.input = input_text(bench, job);
       add_solvers(table, row, runs);
       if (table.name == "4.2") add_source_costs(row);
     });
@@ -118,7 +122,7 @@ void quality_rows(Bench& bench, BenchTable& table, const std::array<Case, n>& ca
       const MeshJob job = job_of(bench, c);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
       const MeshRun own = bench.meshes.run(job, {"own", 0, true});
-      row.input = input_text(job, bench.meshes.fields(job));
+      row.input = input_text(bench, job);
       for (std::size_t k = 0; k < solvers.size(); ++k) add_quality(table, row, solvers[k].name, runs[k], counts);
       add_quality(table, row, "own settings", own, counts);
     });
@@ -147,8 +151,8 @@ void bench_synthetic(Bench& bench) {
     bench.row(table, std::to_string(seeds), job.sample, [&](BenchRow& row) {
       const int asked = int(seeds * share);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, asked, false);
-      row.input = input_text(job, bench.meshes.fields(job));
-      table.add(row, "seeds", asked);
+      row.input = input_text(bench, job);
+      table.add(row, "seeds", double(runs[0].seeded));
       add_solvers(table, row, runs);
     });
 }
@@ -168,7 +172,7 @@ void bench_sizing(Bench& bench) {
       job.delta = rows[k][1];
       job.min_size = 0.75;
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, false);
-      row.input = input_text(job, bench.meshes.fields(job));
+      row.input = input_text(bench, job);
       add_solvers(table, row, runs);
     });
   }
@@ -189,18 +193,19 @@ void bench_material_stages(Bench& bench) {
   BenchTable& table = bench.begin(
       "4.3", "Time of the stages before and after the particles",
       {hardware_4, "the source's distance volume and sizing field are BioMesh3D's, on one thread of its CPU",
-       "total: distance volume, sizing field and extract, as the source adds them; extract: of the tree's particles"});
+       "total: distance volume, sizing field, closest point and extract; the source's leaves closest point out",
+       "extract: of the tree's particles"});
   for (const Case& c : material_cases)
     bench.row(table, c.row, c.sample, [&](BenchRow& row) {
       const MeshJob job = job_of(bench, c);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
       const MeshFields& fields = bench.meshes.fields(job);
-      row.input = input_text(job, fields);
+      row.input = input_text(bench, job);
       table.add(row, "distance volume, s", fields.distance);
       table.add(row, "sizing field, s", fields.sizing);
       table.add(row, "closest point, s", fields.embed);
       table.add(row, "extract, s", runs[2].extract);
-      table.add(row, "total, s", fields.distance + fields.sizing + runs[2].extract);
+      table.add(row, "total, s", fields.distance + fields.sizing + fields.embed + runs[2].extract);
       for (std::size_t k = 0; k < solvers.size(); ++k)  // for figure 4.5; the source's are those of Table 4.2
         table.add(row, fmt::format("particles, {}, s", solvers[k].name), runs[k].seconds, Better::neither,
                   find_source_figure("4.2", c.row, fmt::format("{}: s", solvers[k].name))->value);

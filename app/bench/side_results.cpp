@@ -102,8 +102,8 @@ void bench_arena(Bench& bench) {
       bench.begin("arena", "Memory kept in an arena against memory made on the fly (sec. 5.3)",
                   {"source: GeForce GTX 780; \"can more than double the runtime\", of UFLIC on the grid"});
   arena_turns(bench, table);
-  FlowJob job = train(bench.small ? 256 : 1024);
-  if (bench.small) job.detail = small_flow_detail;
+  FlowJob job = train(bench.pick(1024, 256, 64));
+  job.detail = bench.small ? small_flow_detail : 0;
   const std::string input = fmt::format("sample train, {} cells: embed, start, one step", job.resolution);
   bench.row(table, "embedding", input, [&](BenchRow& row) {
     const double kept = bench.flows.embed_and_step(job, false, 3), anew = bench.flows.embed_and_step(job, true, 3);
@@ -118,8 +118,8 @@ void bench_grid_octree(Bench& bench) {
       "grid-octree", "Grid against octree: build, and the finest resolution that the estimates allow (sec. 6.3.2)",
       {"source: grid on a GTX 780 (0.03 s at 2048, closest points 512x58x69), octree on a K6000 (1.12 s at "
        "512); there the grid ends at 1024"});
-  for (const int resolution : {512, 1024, 2048}) {
-    if (bench.small && resolution > 512) break;
+  const int finest = bench.pick(2048, 512, 64);
+  for (int resolution = std::min(512, finest); resolution <= finest; resolution *= 2) {
     const std::string name = fmt::format("train {}", resolution);
     bench.row(table, name, "sample train, radii as each needs them", [&](BenchRow& row) {
       const std::array<FlowJob, 3> jobs = three_methods(bench, "train", resolution);
@@ -141,11 +141,11 @@ void bench_grid_octree(Bench& bench) {
     const std::string name = fmt::format("{}, finest", sample);
     bench.row(table, name, "estimates", [&](BenchRow& row) {
       const std::array<FlowJob, 3> jobs = three_methods(bench, sample, 64);
-      std::array<double, 3> finest{};
-      for (std::size_t k = 0; k < jobs.size(); ++k) finest[k] = bench.flows.largest_resolution(jobs[k]);
+      std::array<double, 3> cells{};
+      for (std::size_t k = 0; k < jobs.size(); ++k) cells[k] = bench.flows.largest_resolution(jobs[k]);
       row.input += fmt::format(", within 1%, for {:.1f} GiB of memory", bench.flows.available() / (1 << 30));
       for (std::size_t k = 0; k < jobs.size(); ++k)
-        table.add(row, fmt::format("{}: cells per axis", method_names[k]), finest[k]);
+        table.add(row, fmt::format("{}: cells per axis", method_names[k]), cells[k]);
     });
   }
 }
@@ -153,7 +153,7 @@ void bench_grid_octree(Bench& bench) {
 void bench_methods(Bench& bench) {
   BenchTable& table = bench.begin("methods", "Grid and octrees side by side, as pictures (sec. 6.3.1)",
                                   {"source: Figs. 6.5 and 6.6, octree 1024^3; ours go to the folder of --plots"});
-  const int resolution = bench.small ? 256 : 1024;
+  const int resolution = bench.pick(1024, 256, 64);
   for (const char* sample : {"train", "aircraft"}) {
     const std::string input = fmt::format("sample {}, {} cells per axis, ttl 4", sample, resolution);
     if (bench.plots.empty()) {

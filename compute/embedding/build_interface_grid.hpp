@@ -21,6 +21,7 @@ struct InterfaceGrid {
   std::vector<Float4> points;       ///< junction points: place in voxels, sizing field
   std::vector<Junction> point_junction;
   int crowded_points = 0;  ///< of the points, those where more than four materials meet
+  int crowded_cells = 0;   ///< coarse cells with more junctions than were told apart
   std::int64_t bricks = 0;
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
   Array<EmbeddedCell> cell;
@@ -254,6 +255,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   Array<std::uint64_t> keys;
   Arena::Scope scope(arena);
   const JunctionSearch search = find_junctions(exec, b, grid.coarse, grid.cells_per_voxel);
+  grid.crowded_cells = search.crowded_cells;
   if (search.table.empty()) throw Error("no interface in the volume", "it holds one material only");
   if (search.table.size() > 65000)
     throw Error("too many interfaces", std::to_string(search.table.size()) + " pairs and triples of materials meet",

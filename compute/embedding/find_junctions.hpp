@@ -26,6 +26,7 @@ struct JunctionSearch {
   Array<FoundJunction> found;
   std::int64_t count = 0;
   std::vector<Junction> table;
+  int crowded_cells = 0;  ///< coarse cells with more materials or junctions than are told apart: some are left out
 };
 
 namespace detail {
@@ -36,12 +37,16 @@ struct CellJunctions {
   Junction junction[capacity];
   std::uint32_t window[capacity];
   int count = 0;
+  bool complete = true;  // nothing was left out, neither a junction nor a material that could have made some
 
   NACRE_HD void add(const Junction& j, const Int3& cell) {
     int k = 0;
     while (k < count && !(junction[k] == j)) ++k;
     if (k == count) {
-      if (count == capacity) return;
+      if (count == capacity) {
+        complete = false;
+        return;
+      }
       junction[count++] = j;
       window[k] = pack(cell, cell);
       return;
@@ -108,7 +113,7 @@ struct SearchCoarseCell {
   NACRE_HD void search(const Vec3f& p, const Int3& local, CellJunctions& result) const {
     if (!field.inside(p, 3)) return;
     std::uint32_t material[most];
-    int count = materials_around(p, material);
+    int count = materials_around(p, material, result.complete);
     if (count < 2) return;
     const CubicStencil stencil(field, p);
     FieldSample f[most];
@@ -165,26 +170,31 @@ struct SearchCoarseCell {
   }
 
   /// Materials around a point, ascending: of its eight voxels, and where those are of two or more and there are more in
-  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels.
-  NACRE_HD int materials_around(const Vec3f& p, std::uint32_t* material) const {
+  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels. `complete` becomes
+  /// false where there are more than `most`.
+  NACRE_HD int materials_around(const Vec3f& p, std::uint32_t* material, bool& complete) const {
     const Int3 low = voxel(p);
     int count = 0;
-    collect(low, 2, material, count);
+    collect(low, 2, material, count, complete);
     if (count < 2) return count;
     const std::int64_t block = field.block_at(p);
     if (field.block_start[block + 1] - field.block_start[block] > std::uint32_t(count))
-      collect(low - Int3(1), 4, material, count);
+      collect(low - Int3(1), 4, material, count, complete);
     return count;
   }
 
-  NACRE_HD void collect(const Int3& low, int width, std::uint32_t* material, int& count) const {
+  NACRE_HD void collect(const Int3& low, int width, std::uint32_t* material, int& count, bool& complete) const {
     for (int z = low.z; z < low.z + width; ++z)
       for (int y = low.y; y < low.y + width; ++y)
         for (int x = low.x; x < low.x + width; ++x) {
           const std::uint32_t m = field.voxel_material[field.voxel_number(x, y, z)];
           int place = 0;
           while (place < count && material[place] < m) ++place;
-          if ((place < count && material[place] == m) || count == most) continue;
+          if (place < count && material[place] == m) continue;
+          if (count == most) {
+            complete = false;
+            continue;
+          }
           for (int j = count; j > place; --j) material[j] = material[j - 1];
           material[place] = m;
           ++count;
@@ -195,10 +205,12 @@ struct SearchCoarseCell {
 struct CountJunctions {
   SearchCoarseCell search;
   std::uint32_t* count;
+  std::uint32_t* crowded;  // 1 where something was left out
   NACRE_HD void operator()(std::int64_t c) const {
     CellJunctions junctions;
     search(c, junctions);
     count[c] = std::uint32_t(junctions.count);
+    crowded[c] = junctions.complete ? 0 : 1;
   }
 };
 
@@ -270,7 +282,12 @@ JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, 
   JunctionSearch result;
   Array<std::uint32_t> start = arena.temporary<std::uint32_t>(cells + 1);
   start.fill_bytes(0);
-  exec.for_each(cells, detail::CountJunctions{search, start.data()});
+  {
+    Arena::Scope scope(arena);
+    Array<std::uint32_t> crowded = arena.temporary<std::uint32_t>(cells);
+    exec.for_each(cells, detail::CountJunctions{search, start.data(), crowded.data()});
+    result.crowded_cells = int(exec.exclusive_scan(crowded.data(), crowded.data(), cells));
+  }
   result.count = exec.exclusive_scan(start.data(), start.data(), cells + 1);
   result.found = arena.temporary<FoundJunction>(result.count);
   Array<std::uint64_t> packed = arena.temporary<std::uint64_t>(result.count);

@@ -122,6 +122,7 @@ void MeshPipelineOf<Backend>::describe_fields() {
   for (const Junction& j : grid_.junctions) ++(j.order() == 2 ? info_.surfaces : info_.curves);
   info_.points = int(grid_.points.size());
   info_.crowded_points = grid_.crowded_points;
+  info_.crowded_cells = grid_.crowded_cells;
   info_.expected_particles = info_.points;
   for (const int order : {1, 2}) info_.expected_particles += expected_particles(exec_, grid_, order_.data(), order);
 }

@@ -72,7 +72,8 @@ struct MeshVolume {
 
 /// What became of the fields and particles, for the report.
 struct MeshInfo {
-  Int3 blocks{};  ///< of 8^3 voxels
+  Int3 blocks{};          ///< of 8^3 voxels
+  int crowded_cells = 0;  ///< of 4^3 cells of the embedding, those where more materials meet than are told apart
   std::int64_t field_bytes = 0, embedding_bytes = 0, embedding_cells = 0;
   int surfaces = 0, curves = 0;                ///< interfaces of two materials, junction curves of three
   int points = 0;                              ///< junction points of four materials

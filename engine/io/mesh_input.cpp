@@ -2,6 +2,7 @@
 #include "engine/io/mesh_input.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -11,6 +12,34 @@
 #include "engine/scene/phantoms.hpp"
 
 namespace nacre {
+namespace {
+
+constexpr const char* smaller_sizes = "smaller --min-size and --max-size";
+
+/// The first dozen of a list.
+std::string some_of(const std::vector<std::int64_t>& labels) {
+  const std::size_t shown = std::min<std::size_t>(labels.size(), 12);
+  return fmt::format("{}{}", fmt::join(labels.begin(), labels.begin() + std::ptrdiff_t(shown), ", "),
+                     shown < labels.size() ? ", ..." : "");
+}
+
+/// What TopologyReport::sound() asks for and does not find, counted.
+std::string defects_of(const TopologyReport& t) {
+  std::vector<std::string> found;
+  const auto count = [&](std::int64_t n, const char* one, const char* many) {
+    if (n > 0) found.push_back(fmt::format("{} {}", n, n == 1 ? one : many));
+  };
+  count(t.boundary_edges, "boundary edge", "boundary edges");
+  count(t.nonmanifold_edges, "non-manifold edge", "non-manifold edges");
+  count(t.nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices");
+  count(t.inconsistent_edges, "edge with facets turned against each other",
+        "edges with facets turned against each other");
+  count(t.duplicate_triangles, "duplicate triangle", "duplicate triangles");
+  count(t.degenerate_triangles, "triangle without area", "triangles without area");
+  return fmt::format("{}", fmt::join(found, ", "));
+}
+
+}  // namespace
 
 std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atomic<bool>* stop,
                                       const WarningSink& warn) {
@@ -58,15 +87,28 @@ EdgeLength longest_edge(double max_cell, const Vec3d& spacing) {
   return [longest](std::span<const Vec3d> points) { return std::vector<float>(points.size(), longest); };
 }
 
+std::vector<std::int64_t> lost_labels(std::span<const std::int64_t> labels, const TopologyReport& topology) {
+  std::vector<std::int64_t> lost;
+  for (std::size_t m = 1; m < topology.materials.size(); ++m)
+    if (topology.materials[m].facets == 0) lost.push_back(labels[m]);
+  return lost;
+}
+
 std::vector<std::string> mesh_flaws(std::span<const std::int64_t> labels, const TopologyReport& topology) {
   std::vector<std::string> flaws;
-  for (std::size_t m = 1; m < topology.materials.size(); ++m) {
-    const MaterialTopology& material = topology.materials[m];
-    if (material.facets == 0)
-      flaws.push_back(fmt::format("label {} has no surface: it is lost", labels[m]));
-    else if (!material.closed)
-      flaws.push_back(fmt::format("the surface of label {} is not closed", labels[m]));
-  }
+  const std::vector<std::int64_t> lost = lost_labels(labels, topology);
+  if (lost.size() == 1)
+    flaws.push_back(
+        fmt::format("label {} has no surface: it is lost; {}, or less --tighten, may keep it", lost[0], smaller_sizes));
+  if (lost.size() > 1)
+    flaws.push_back(fmt::format("{} labels have no surface: they are lost ({}); {}, or less --tighten, may keep them",
+                                lost.size(), some_of(lost), smaller_sizes));
+  std::vector<std::int64_t> open;
+  for (std::size_t m = 1; m < topology.materials.size(); ++m)
+    if (topology.materials[m].facets > 0 && !topology.materials[m].closed) open.push_back(labels[m]);
+  if (!open.empty()) flaws.push_back(fmt::format("the surface of label {} is not closed", some_of(open)));
+  if (const std::string defects = defects_of(topology); !defects.empty())
+    flaws.push_back(fmt::format("the mesh is not sound: {}; {} may help", defects, smaller_sizes));
   return flaws;
 }
 

@@ -151,6 +151,24 @@ TEST_F(BenchTest, LossesFailAndNameTheirRow) {
   EXPECT_TRUE(contains(gained.out, "none lost more than 30%")) << gained.out;
 }
 
+TEST_F(BenchTest, ARowWithRatiosThatIsMissingFailsWithItsName) {
+  const json report = arena_report();
+  json last = report;
+  json& rows = last["tables"][0]["rows"];
+  rows.push_back({{"name", "gone"}, {"values", {{"a / b", {{"ours", 2.0}, {"better", "higher"}}}}}});
+  const Outcome gone = compare(last);
+  EXPECT_EQ(gone.status, 1);
+  EXPECT_TRUE(contains(gone.err, "Table arena, gone")) << gone.err;
+  rows.back()["values"]["a / b"].erase("better");  // nothing in it is compared
+  EXPECT_EQ(compare(last).status, 0);
+  last["tables"].push_back({{"name", "3.1"}, {"rows", rows}});  // not asked for
+  last["tables"][1]["rows"][0]["values"]["a / b"] = {{"ours", 2.0}, {"better", "higher"}};
+  EXPECT_EQ(compare(last).status, 0);
+  last = report;
+  last["tables"][0]["rows"][0]["values"]["a / b"] = {{"ours", 2.0}, {"better", "lower"}};
+  EXPECT_TRUE(contains(compare(last).err, "Table arena, arrays of a turn, a / b"));
+}
+
 TEST_F(BenchTest, OnlyRunsOfOneKindAreCompared) {
   json report = {{"small", false}, {"device", {{"backend", "cpu"}, {"threads", 1}}}, {"tables", json::array()}};
   EXPECT_EQ(compare(report).status, 1);

@@ -78,6 +78,28 @@ TEST_F(MeshReport, ParametersAreTheKnobsAsSet) {
   EXPECT_EQ(p["solver"], "tree");
 }
 
+TEST_F(MeshReport, ALostLabelIsNamedAlsoWithQuiet) {
+  const std::string file = write("a.nrrd", nrrd<int>({20, 20, 20}, "uchar", unit_spacing, [](int i, int j, int k) {
+                                   if (j == 10 && k == 10 && (i == 6 || i == 10)) return i;  // single voxels
+                                   const double x = i - 9.5, y = j - 9.5, z = k - 9.5;
+                                   return x * x + y * y + z * z < 49 ? 1 : 0;
+                                 }));
+  EXPECT_EQ(mesh(file)["mesh"]["lost_labels"], json::array())
+      << "at sizes of a voxel all are there, and nothing is said";
+  const Outcome run =
+      nacre({"mesh", file, "--quiet", "--min-size", "5", "--max-size", "5", "--report", path("r.json")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  const json m = read_json("r.json")["mesh"];
+  json lost = json::array();
+  for (const json& material : m["materials"])
+    if (material["triangles"] == 0) lost.push_back(material["label"]);
+  EXPECT_EQ(m["lost_labels"], lost);
+  ASSERT_GE(lost.size(), 1u);
+  EXPECT_EQ(lines_with(run.err, "warning: "), 1) << run.err;
+  EXPECT_TRUE(contains(run.err, "lost") && contains(run.err, lost[0].dump()) && contains(run.err, "--min-size"))
+      << run.err;
+}
+
 TEST_F(MeshReport, LabelsAreTheFilesOwn) {
   const std::string file = write("a.nrrd", nrrd<int>({16, 16, 16}, "short", unit_spacing, [](int i, int j, int k) {
                                    return !ball(i, j, k) ? 0 : i < 8 ? -5 : 700;

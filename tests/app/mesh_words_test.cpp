@@ -104,6 +104,9 @@ TEST(MeshWords, TheSourcesPresetGivesWayToWhatIsSaid) {
   EXPECT_EQ(preset["add_below"], 0.75);
   EXPECT_EQ(preset["delete_above"], 1.35);
   EXPECT_EQ(preset["mesh_subcells"], 3);
+  EXPECT_EQ(preset["smooth"], 0);
+  EXPECT_EQ(preset["mend"], 0);
+  EXPECT_EQ(preset["by_density"], false);
   EXPECT_EQ(preset["kernel"], "catmull-rom");
   EXPECT_EQ(preset["ideal_energy"], 0);
   EXPECT_EQ(knobs(labels + Words{"--theta", "0.4"})["theta"], 0.4);

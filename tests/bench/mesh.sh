@@ -9,7 +9,7 @@ begin_bench mesh "$@"
 
 # row NAME INPUT...: one run and its line of the table; a run that fails is a line that says so.
 row() {
-  local name=$1 report="$out/mesh-$1.json" stage
+  local name=$1 report="$out/mesh-$1.json" stage sound=no
   shift
   [[ -z ${NACRE_BENCH_CASES:-} || " $NACRE_BENCH_CASES " == *" $name "* ]] || return 0
   if [[ $1 != --sample && ! -e $1 ]]; then
@@ -25,18 +25,24 @@ row() {
   for stage in read materials tighten distance sizing embed seed relax population triangulate smooth mend quality write; do
     values+=("$stage=$(stage_seconds "$report" "$stage")")
   done
+  [[ $(report_value "$report" mesh.sound) != true ]] || sound=yes
   printf '%s\n' "${values[@]}" | awk -F= -v name="$name" \
     -v particles="$(report_value "$report" particles.final)" -v iterations="$(report_value "$report" particles.iterations)" \
     -v triangles="$(report_value "$report" mesh.triangles)" -v mean="$(report_value "$report" mesh.radius_ratio.mean)" \
     -v least="$(report_value "$report" mesh.radius_ratio.min)" \
     -v away="$(report_value "$report" mesh.away_from_junctions.radius_ratio.min)" \
-    -v off="$(report_value "$report" mesh.nonmanifold_edges)" -v memory="$(report_value "$report" memory.peak_bytes)" '
+    -v under="$(report_value "$report" mesh.away_from_junctions.share_under_25_degrees)" \
+    -v facets="$(report_value "$report" mesh.surface_distance_voxels.facet_mean)" \
+    -v off="$(report_value "$report" mesh.nonmanifold_edges)" -v open="$(report_value "$report" mesh.boundary_edges)" \
+    -v lost="$(report_list "$report" mesh.lost_labels | wc -l)" -v sound="$sound" \
+    -v memory="$(report_value "$report" memory.peak_bytes)" '
     { s[$1] = $2; total += $2 }
     END {
       fields = s["materials"] + s["tighten"] + s["distance"] + s["sizing"] + s["embed"]
-      printf "| %s | %d | %d | %d | %.1f | %.1f | %.1f | %.1f | %.1f | %.2f | %.3f | %.3f | %.3f | %d | %.2f |\n",
+      printf "| %s | %d | %d | %d | %.1f | %.1f | %.1f | %.1f | %.1f | %.2f | %.3f | %.3f | %.3f | %.5f | %.3f | %d | %d | %d | %s | %.2f |\n",
         name, particles, triangles, iterations, total, fields, s["relax"] + s["population"] + s["seed"], s["triangulate"],
-        s["smooth"] + s["mend"], particles * iterations / total / 1e6, mean, least, away, off, memory / 1e9
+        s["smooth"] + s["mend"], particles * iterations / total / 1e6, mean, least, away, 100 * under, facets, off, open,
+        lost, sound, memory / 1e9
     }'
 }
 
@@ -44,8 +50,9 @@ machine
 echo
 printf '| data | particles | triangles | iterations | whole command, s | fields, s | particles, s | triangulate, s | smooth and mend, s |'
 printf ' million particle-iterations per second of the whole | radius ratio mean | min | min away from junctions |'
-printf ' non-manifold edges | peak memory, GB |\n'
-printf '|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n'
+printf ' under 25 degrees away from junctions, %% | facet centres off the interface, voxels | non-manifold edges |'
+printf ' boundary edges | lost labels | sound | peak memory, GB |\n'
+printf '|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---|---:|\n'
 for sample in torso heart lungs ribcage head; do
   row "$sample" --sample "$sample"
 done

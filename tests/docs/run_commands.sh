@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Nacre: runs every command that the README, the guide and the viewer's page show. Usage: run_commands.sh PROGRAM [ROOT];
+# Nacre: runs every command that the README, the guide, the page of figures and the viewer's page show. Usage: run_commands.sh PROGRAM [ROOT];
 # the fenced ```sh blocks of each page run in order, as one script, in an empty folder, where `nacre` is PROGRAM. Blocks
 # that begin with ./dev are the repository's own commands and are only checked to exist. Fails at the first command that
 # fails, and where a page has no command.
@@ -48,7 +48,7 @@ run_page() {
   done < <(expected_files "$script")
 }
 
-pages=("$root/README.md" "$root/docs/guide.md")
+pages=("$root/README.md" "$root/docs/guide.md" "$root/docs/performance.md")
 if "$program" view --offscreen --sample sphere --detail 24 --resolution 32 --frames-count 1 --quiet 2>/dev/null; then
   pages+=("$root/docs/viewer.md")
 else

@@ -13,17 +13,19 @@ version() { grep -qxF "$*" "$out/versions.txt" || echo "$*" >>"$out/versions.txt
 row() {
   awk -v peer="$1" -v work="$2" -v measure="$3" -v a="$4" -v b="$5" 'BEGIN {
     ratio = (a == 0 || a == "" || b == "") ? "-" : sprintf("%.3g", b / a)
-    printf "%s\t%s\t%s\t%.6g\t%.6g\t%s\n", peer, work, measure, a, b, ratio }' >>"$out/rows.tsv"
+    printf "%s\t%s\t%s\t%.9g\t%.9g\t%s\n", peer, work, measure, a, b, ratio }' >>"$out/rows.tsv"
 }
 
-# print_table: everything so far. The ratio is theirs / ours.
+# print_table: everything so far. The ratio is theirs / ours. Shares get more digits: what matters is how far off 1 they are.
 print_table() {
   echo "$(machine); medians of $runs pairs"
   sed 's/^/- /' "$out/versions.txt"
   echo
   echo '| peer | same work | measure | ours | theirs | theirs / ours |'
   echo '|---|---|---|---:|---:|---:|'
-  awk -F'\t' '{ printf "| %s | %s | %s | %.4g | %.4g | %s |\n", $1, $2, $3, $4, $5, $6 }' "$out/rows.tsv"
+  awk -F'\t' '{
+    format = ($3 ~ /^share/ && ($4 > 0.5 || $5 > 0.5)) ? "%.7g" : "%.4g"
+    printf "| %s | %s | %s | " format " | " format " | %s |\n", $1, $2, $3, $4, $5, $6 }' "$out/rows.tsv"
 }
 
 # write_json: the same for programs.

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Nacre: malformed and odd files through the program. Usage: run.sh BINARY [--fraction N] [--jobs N]
-# Every file (or every Nth) goes through `nacre info` and `nacre flow`. Good is: status 0, 1 or 2; where it is not 0
-# exactly one line that begins "nacre:"; no sanitizer report; no file left behind, and a picture only where all went
-# well. Prints a table of counts and every offender; fails if there is one.
+# Every file (or every Nth) goes through `nacre info` and `nacre flow`, and the malformed and the small ones (where one mesh
+# takes a moment) through `nacre mesh`. Good is: status 0, 1 or 2; where it is not 0 exactly one line that begins "nacre:";
+# no sanitizer report; no file left behind, and a picture or mesh only where all went well. Prints a table of counts and
+# every offender; fails if there is one.
 set -euo pipefail
 
 fail() {
@@ -42,11 +43,11 @@ for ((i = 0; i < ${#files[@]}; i += fraction)); do chosen+=("${files[i]}"); done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# judge STATUS ERRORS FOLDER PICTURE: why this result is not good; nothing where it is.
+# judge STATUS ERRORS FOLDER RESULT: why this result is not good; nothing where it is. RESULT: the file that success writes.
 judge() {
-  local status=$1 errors=$2 folder=$3 picture=$4 lines left
+  local status=$1 errors=$2 folder=$3 result=$4 lines left
   lines=$(grep -ac '^nacre:' "$errors") || true
-  left=$(find "$folder" -mindepth 1 ! -name picture.png | head -n 1)
+  left=$(find "$folder" -mindepth 1 ! -name "$result" | head -n 1)
   if grep -aqE 'Sanitizer|runtime error:' "$errors"; then
     grep -aE 'SUMMARY|runtime error:' "$errors" | head -n 1
   elif ((status == 124 || status == 137)); then
@@ -55,10 +56,10 @@ judge() {
     echo "ended with status $status: $(tail -n 1 "$errors")"
   elif ((status > 0 && lines != 1)); then
     echo "failed with $lines lines that begin 'nacre:'"
-  elif ((status > 0)) && [[ -e $folder/picture.png ]]; then
-    echo "failed and left a picture"
-  elif ((status == 0)) && [[ $picture == yes && ! -s $folder/picture.png ]]; then
-    echo "succeeded without a picture"
+  elif ((status > 0)) && [[ $result != none && -e $folder/$result ]]; then
+    echo "failed and left $result"
+  elif ((status == 0)) && [[ $result != none && ! -s $folder/$result ]]; then
+    echo "succeeded without $result"
   elif [[ -n $left ]]; then
     echo "left ${left##*/} behind"
   fi
@@ -66,33 +67,41 @@ judge() {
 
 # one COMMAND FILE: runs it and prints COMMAND, STATUS, FILE and why it is not good, separated by tabs.
 one() {
-  local command=$1 file=$2 folder status=0 picture=no words
+  local command=$1 file=$2 folder status=0 result=none words
   folder=$(mktemp -d "$work/run-XXXXXX")
   mkdir "$folder/out" "$folder/tmp"
   words=(info "$file")
   if [[ $command == flow ]]; then
     words=(flow "$file" --vectors @swirl --resolution 48 --steps 1 --size 96x72 --image "$folder/out/picture.png" --quiet)
-    picture=yes
+    result=picture.png
+  elif [[ $command == mesh ]]; then
+    words=(mesh "$file" --min-size 3 --max-size 3 --iterations 3 --set smooth=1 --set mend=1 --out "$folder/out/mesh.ply" --quiet)
+    result=mesh.ply
   fi
   TMPDIR=$folder/tmp timeout -k 5 60 "$program" "${words[@]}" >"$folder/stdout" 2>"$folder/stderr" </dev/null || status=$?
-  printf '%s\t%s\t%s\t%s\n' "$command" "$status" "$file" "$(judge "$status" "$folder/stderr" "$folder/out" $picture | tr '\t' ' ')"
+  printf '%s\t%s\t%s\t%s\n' "$command" "$status" "$file" "$(judge "$status" "$folder/stderr" "$folder/out" $result | tr '\t' ' ')"
   rm -rf "$folder"
 }
 export -f one judge
 export program work
 
-for file in "${chosen[@]}"; do printf 'info\0%s\0flow\0%s\0' "$file" "$file"; done |
-  xargs -0 -n 2 -P "$jobs" bash -c 'one "$@"' _ >"$work/results"
+for file in "${chosen[@]}"; do
+  printf 'info\0%s\0flow\0%s\0' "$file" "$file"
+  # Atlases would take longer than all the rest.
+  [[ $file != */malformed/* && -n $(find -L "$file" -size +99k) ]] || printf 'mesh\0%s\0' "$file"
+done >"$work/runs"
+xargs -0 -n 2 -P "$jobs" bash -c 'one "$@"' _ <"$work/runs" >"$work/results"
 
 awk -F '\t' -v files="${#chosen[@]}" '
   { runs[$1]++; if ($4 != "") bad[$1]++; else good[$1, $2]++ }
   END {
     printf "%d files\n%-8s %6s %6s %6s %6s %6s\n", files, "", "runs", "done", "failed", "words", "BAD"
-    for (c = 1; c <= 2; c++) {
-      name = c == 1 ? "info" : "flow"
+    for (c = 1; c <= 3; c++) {
+      name = c == 1 ? "info" : c == 2 ? "flow" : "mesh"
       printf "%-8s %6d %6d %6d %6d %6d\n", name, runs[name], good[name, 0], good[name, 1], good[name, 2], bad[name]
     }
   }' "$work/results"
 awk -F '\t' '$4 != "" { printf "BAD %s %s: %s\n", $1, $3, $4; bad = 1 } END { exit bad }' "$work/results"
-expected=$((2 * ${#chosen[@]}))
+expected=$(tr -dc '\0' <"$work/runs" | wc -c)
+expected=$((expected / 2))
 (($(wc -l <"$work/results") == expected)) || fail "fewer results than runs"

@@ -109,7 +109,32 @@ void SpheresAtSeveralResolutions(Executor<Backend>& exec) {
   expect_sphere(exec, 4, 0.03);
 }
 
+/// A cylinder along z in so many equal wedges: they and the outside are the materials.
+inline MeshVolume wedges(int count) {
+  return label_volume({30, 30, 30}, count + 1, [count](const Vec3d& p) {
+    const Vec3d r = p - Vec3d(14.4, 14.6, 14.5);
+    if (std::hypot(r.x, r.y) > 10 || std::fabs(r.z) > 9) return 0;
+    return 1 + std::min(count - 1, int((std::atan2(r.y, r.x) / (2 * M_PI) + 0.5) * count));
+  });
+}
+
+/// More than eight materials lie around a sample near the wedges' edges: that is not passed over in silence. All of the
+/// wedges' walls are found all the same.
+template <class Backend>
+void WhereTooManyMaterialsMeetIsCounted(Executor<Backend>& exec) {
+  EXPECT_EQ(embedding_of(exec, sectors()).grid.crowded_cells, 0);
+  EXPECT_EQ(embedding_of(exec, wedges(4)).grid.crowded_cells, 0);
+  const Embedding e = embedding_of(exec, wedges(12));
+  EXPECT_GE(e.grid.crowded_cells, 9) << "one for two voxels of the axis";
+  EXPECT_LE(e.grid.crowded_cells, 10 * 5 * 5) << "near the axis only";
+  for (std::uint32_t k = 1; k <= 12; ++k) {
+    EXPECT_NE(e.number_of(Junction(std::min(k, k % 12 + 1), std::max(k, k % 12 + 1))), none) << k;
+    EXPECT_NE(e.number_of(Junction(0, k)), none) << k;
+  }
+}
+
 NACRE_DEVICE_TEST(InterfaceGrid, JunctionsAreFoundAndNamed)
+NACRE_DEVICE_TEST(InterfaceGrid, WhereTooManyMaterialsMeetIsCounted)
 NACRE_DEVICE_TEST(InterfaceGrid, PlanesAndTheirRims)
 NACRE_DEVICE_TEST(InterfaceGrid, CurvesAndTheirTangents)
 NACRE_DEVICE_TEST(InterfaceGrid, SpheresAtSeveralResolutions)

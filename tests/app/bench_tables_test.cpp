@@ -1,0 +1,152 @@
+// Nacre: the tables of `nacre bench` at the smallest scale: rows, quantities beside the source's, sums, plots.
+#include "compute/device/device.hpp"
+#include "tests/app/program.hpp"
+
+namespace nacre::test {
+namespace {
+
+using nlohmann::json;
+
+const Words tiny_bench = {"bench", "--tiny", "--quiet", "--threads", "2", "--set", "iterations=2"};
+
+/// What a run of some tables wrote.
+class BenchTables : public AppTest {
+ protected:
+  void run(const Words& more) {
+    const Outcome run = nacre(tiny_bench + Words{"--json", path("bench.json")} + more);
+    status_ = run.status;
+    errors_ = run.err;
+    ASSERT_TRUE(exists("bench.json")) << run.err;
+    report_ = read_json("bench.json");
+  }
+
+  /// A row that must be there, with as many figures of the source as it has for it, and one of ours beside each.
+  json row(const std::string& table, const std::string& name, int from_source) const {
+    for (const json& one : report_["tables"])
+      for (const json& found : one["rows"])
+        if (one["name"] == table && found["name"] == name) {
+          int count = 0;
+          for (const auto& [quantity, value] : found["values"].items()) {
+            count += value.contains("source");
+            EXPECT_TRUE(value.contains("ours")) << table << ", " << name << ", " << quantity;
+          }
+          EXPECT_EQ(count, from_source) << table << ", " << name;
+          return found["values"];
+        }
+    ADD_FAILURE() << "no row " << name << " in table " << table;
+    return json::object();
+  }
+
+  static double ours(const json& values, const std::string& quantity) {
+    EXPECT_TRUE(values.contains(quantity)) << quantity;
+    return values.contains(quantity) ? values[quantity].value("ours", -1.0) : -1.0;
+  }
+
+  void expect_plot(const std::string& name, const Words& texts) const {
+    const std::string plot = exists("plots/" + name) ? content("plots/" + name) : "";
+    for (const std::string& text : texts) EXPECT_TRUE(contains(plot, ">" + text + "<")) << name << ": " << text;
+  }
+
+  void expect_scalar_tables() const;
+  void expect_material_tables() const;
+  void expect_flow_tables() const;
+
+  json report_;
+  int status_ = -1;
+  std::string errors_;
+};
+
+void BenchTables::expect_scalar_tables() const {
+  for (const char* name : {"heart", "lungs", "ribcage"}) {
+    const json quality = row("3.1", name, 4), times = row("3.2", name, 5);
+    for (const std::string who : {"serial", "red-black", "tree", "own settings"}) {
+      EXPECT_LE(ours(quality, who + ": mean ratio"), 1) << name;
+      EXPECT_GT(ours(quality, who + ": mean ratio"), ours(quality, who + ": smallest ratio")) << name;
+    }
+    EXPECT_GT(ours(quality, "own settings: mean ratio"), 0.9) << "smoothed and mended, however short the run";
+    EXPECT_NEAR(ours(times, "serial / tree"), ours(times, "serial: s") / ours(times, "tree: s"), 1e-9);
+  }
+  double before = 0;
+  for (const int asked : {60000, 180000, 300000}) {
+    const json values = row("3.3", std::to_string(asked), 6);
+    const double seeds = ours(values, "seeds"), expected = asked * 37.0 * 37 / (268 * 268);
+    EXPECT_LT(seeds, 1.1 * expected);
+    EXPECT_GT(seeds, 0.3 * expected) << "as many as there is room for";
+    EXPECT_GT(seeds, before);
+    for (const std::string solver : {"serial", "red-black", "tree"}) {
+      EXPECT_LE(ours(values, solver + ": particles"), 1.05 * seeds) << "none are added";
+      EXPECT_GT(ours(values, solver + ": particles"), 0.2 * seeds);
+    }
+    before = seeds;
+  }
+  row("3.4", "8, 2", 5);
+  const json gathering = row("gathering", "ribcage", 1);
+  EXPECT_NEAR(ours(gathering, "copying, % of a turn"),
+              100 * ours(gathering, "copying, ms") / ours(gathering, "a turn, ms"), 1e-9);
+  expect_plot("figure-3.9.svg", {"serial, ours", "tree, ours", "red-black, source"});
+  expect_plot("figure-3.10.svg", {"serial, ours", "tree, ours", "red-black, source"});
+}
+
+void BenchTables::expect_material_tables() const {
+  for (const char* name : {"torso (pig)", "head"}) {
+    const json quality = row("4.1", name, 9), times = row("4.2", name, 9), stages = row("4.3", name, 8);
+    for (const std::string who : {"serial", "red-black", "tree", "own settings"}) {
+      EXPECT_GT(ours(quality, who + ": seeds"), 100);
+      EXPECT_GT(ours(quality, who + ": particles"), 100);
+      EXPECT_LE(ours(quality, who + ": mean ratio"), 1);
+    }
+    EXPECT_NEAR(ours(times, "red-black / tree"), ours(times, "red-black: s") / ours(times, "tree: s"), 1e-9);
+    double sum = 0;
+    for (const char* part : {"distance volume, s", "sizing field, s", "closest point, s", "extract, s"}) {
+      EXPECT_GT(ours(stages, part), 0) << part;
+      sum += ours(stages, part);
+    }
+    EXPECT_NEAR(ours(stages, "total, s"), sum, 1e-9) << "all that is not particles, our embedding too";
+    EXPECT_EQ(ours(stages, "particles, tree, s"), ours(times, "tree: s"));
+  }
+  expect_plot("figure-4.5.svg", {"distance volume", "sizing field", "closest point", "particles", "extract"});
+}
+
+void BenchTables::expect_flow_tables() const {
+  for (const char* name : {"train", "aircraft (F6)", "cylinder"}) {
+    const json values = row("5.1", name, 3);
+    EXPECT_NEAR(ours(values, "million surface cells / s"),
+                ours(values, "surface cells") / 1e6 / ours(values, "UFLIC step, s"), 1e-9);
+  }
+  for (const std::string sample : {"train", "aircraft", "delta-wing"}) {
+    const json coarse = row("6.1", sample + " 64", 0), fine = row("6.1", sample + " 128", 0);
+    EXPECT_FALSE(coarse.contains("growth of voxels"));
+    EXPECT_NEAR(ours(fine, "growth of voxels"), ours(fine, "voxels") / ours(coarse, "voxels"), 1e-9);
+    EXPECT_NEAR(ours(fine, "sparseness, %"), 100 * (1 - ours(fine, "voxels") / (128.0 * 128 * 128)), 1e-9);
+    EXPECT_GT(ours(fine, "voxels"), ours(fine, "bricks: voxels")) << "the source's radius is twice ours";
+  }
+  for (const char* name : {"figure-6.8a.svg", "figure-6.8b.svg", "figure-6.8c.svg"})
+    expect_plot(name, {"train, octree", "train, bricks", "delta-wing, octree", "64", "128"});
+}
+
+TEST_F(BenchTables, ParticlesAndMeshes) {
+  run({"--device", "cpu", "3.1", "3.2", "3.3", "3.4", "gathering", "4.1", "4.2", "4.3", "--plots", path("plots")});
+  ASSERT_EQ(status_, 0) << errors_;
+  EXPECT_EQ(report_["tables"].size(), 8u);
+  expect_scalar_tables();
+  expect_material_tables();
+}
+
+TEST_F(BenchTables, Flow) {
+  run({"--device", "cpu", "5.1", "6.1", "--plots", path("plots")});
+  ASSERT_EQ(status_, 0) << errors_;
+  expect_flow_tables();
+}
+
+TEST_F(BenchTables, TheSerialSolversRowsAreOfTheCpuBesideAGpu) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  run({"--device", "cuda", "3.1", "3.2", "3.3", "3.4", "4.1", "4.2", "4.3", "--plots", path("plots")});
+  ASSERT_EQ(status_, 0) << errors_;
+  for (const json& table : report_["tables"])
+    for (const json& one : table["rows"]) EXPECT_TRUE(contains(one["input"], "serial on the CPU")) << one;
+  EXPECT_GT(ours(row("3.2", "heart", 5), "serial: s"), 0);
+  expect_material_tables();
+}
+
+}  // namespace
+}  // namespace nacre::test
