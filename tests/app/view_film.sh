@@ -28,7 +28,7 @@ xdotool mousemove 500 200
 film filming
 sleep 1
 xdotool windowunmap "$window" # without a window manager that is what minimising does
-sleep 1
+sleep 2
 xdotool windowmap "$window"
 sleep 0.5
 film filmed

@@ -86,7 +86,7 @@ const std::vector<Change>& changes() {
       {"stairs", [](P& p) { p.stairs = 8; }, all},
       {"tighten, none", [](P& p) { p.tighten = 0; }, all},
       {"stairs, where nothing is tightened", [](P& p) { p.stairs = 0; }, {}},
-      {"a coarser lattice", [](P& p) { p.min_size = 3, p.max_size = 4; }, distances},
+      {"a coarser lattice", [](P& p) { p.min_size = 1.2, p.max_size = 1.4; }, distances},
       {"subcells, limited by the sizes", [](P& p) { p.subcells = 8; }, {"embed"}},
       {"subcells, as limited as before", [](P& p) { p.subcells = 7; }, {}},
       {"all back", [](P& p) { p = few_iterations(); }, all},
