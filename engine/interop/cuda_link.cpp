@@ -77,7 +77,9 @@ bool cuda_draws_here() {
 }
 
 std::unique_ptr<CudaLink> link_cuda(Device& device, unsigned gl_buffer) {
-  return std::make_unique<RegisteredBuffer>(dynamic_cast<CudaDevice&>(device).stream(), gl_buffer);
+  auto* cuda = dynamic_cast<CudaDevice*>(&device);
+  if (!cuda) throw Error("CUDA cannot write into a buffer of OpenGL", "the device is " + device.name());
+  return std::make_unique<RegisteredBuffer>(cuda->stream(), gl_buffer);
 }
 
 std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes) { return std::make_unique<PinnedBlock>(bytes); }
