@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -9,7 +10,18 @@
 
 namespace nacre {
 
-constexpr int most_further = 4;  // rounds of an attempt after its first
+inline constexpr int most_further = 4;  ///< rounds of an attempt after its first
+
+/// How an attempt changes what is around bad points.
+struct AttemptWay {
+  int turns;    ///< of smoothing; 0: none
+  bool shakes;  ///< they begin at random places
+  bool mends;   ///< particles that spoil triangles go, others come
+};
+/// One after the other: as it is done at first; by less, where that made particles flip to and fro; without moving others;
+/// from elsewhere.
+inline constexpr std::array<AttemptWay, 4> attempt_ways{
+    {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
 
 template <class Backend>
 auto MeshPipelineOf<Backend>::triangulate_once(Delaunay& delaunay) -> Triangulated {
@@ -99,9 +111,7 @@ bool MeshPipelineOf<Backend>::improve(MeshRounds& rounds, Triangulated& made) {
   return attempt(rounds, made, bad);
 }
 
-/// Changes what is around the points `bad`, each time in another of four ways: the particles there move and those that spoil
-/// triangles go; they move by less, where the last way made them flip to and fro; those go without moving others; as the
-/// first, from places chosen at random. False where nothing is to be changed in any way.
+/// Changes what is around the points `bad`, each time in the next of the ways. False where none changes anything.
 template <class Backend>
 bool MeshPipelineOf<Backend>::attempt(MeshRounds& rounds, Triangulated& made, std::span<const std::uint8_t> bad) {
   rounds.before = download_particles();
@@ -110,11 +120,12 @@ bool MeshPipelineOf<Backend>::attempt(MeshRounds& rounds, Triangulated& made, st
   rounds.attempt.emplace(rounds.before.interface.size(), Attempt::View{made.mesh, made.point_of, facts.order, touching},
                          bad, worst_defects);
   rounds.further = 0;
-  for (int tried = 0; tried < 4; ++tried) {
-    const std::uint32_t way = std::uint32_t(rounds.attempts++);
-    const SmoothingRule rule{way % 4 == 1 ? 2 : 6, way % 4 == 3 ? way : 0};
-    const bool moved = way % 4 != 2 && parameters.smooth > 0 && smooth(rounds, made, bad, rule) > 0;
-    const bool mended = way % 4 != 1 && mend(made, worst_defects, &*rounds.attempt);
+  for (std::size_t tried = 0; tried < attempt_ways.size(); ++tried) {
+    const std::uint32_t number = std::uint32_t(rounds.attempts++);
+    const AttemptWay& way = attempt_ways[number % attempt_ways.size()];
+    const bool moves = way.turns > 0 && parameters.smooth > 0;
+    const bool moved = moves && smooth(rounds, made, bad, {way.turns, way.shakes ? number : 0}) > 0;
+    const bool mended = way.mends && mend(made, worst_defects, &*rounds.attempt);
     if (moved || mended) return true;
   }
   rounds.attempt.reset();
