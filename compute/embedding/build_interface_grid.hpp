@@ -50,7 +50,7 @@ struct BricksAround {
   NACRE_HD void operator()(std::int64_t i, const Visit& visit) const {
     const FoundJunction f = found[i];
     if (f.junction.order() == 0) return;
-    const std::uint64_t interface = number_of(f.junction);
+    const std::uint64_t interface = junction_number(table, table_size, f.junction);
     const Int3 c{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
     for (int z = f.low(2) < 3 ? -1 : 0; z <= (f.high(2) > 0 ? 1 : 0); ++z)
       for (int y = f.low(1) < 3 ? -1 : 0; y <= (f.high(1) > 0 ? 1 : 0); ++y)
@@ -60,18 +60,6 @@ struct BricksAround {
               unsigned(d.z) < unsigned(coarse.z))
             visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);
         }
-  }
-
-  NACRE_HD std::uint32_t number_of(const Junction& j) const {
-    std::uint32_t low = 0, high = table_size;
-    while (high - low > 1) {
-      const std::uint32_t middle = (low + high) / 2;
-      if (table[middle].packed <= j.packed)
-        low = middle;
-      else
-        high = middle;
-    }
-    return low;
   }
 };
 

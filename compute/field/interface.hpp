@@ -32,6 +32,19 @@ struct Junction {
   NACRE_HD constexpr bool operator==(const Junction& other) const { return packed == other.packed; }
 };
 
+/// Position of a junction in an ascending table that holds it; if it does not, of another one.
+NACRE_HD inline std::uint32_t junction_number(const Junction* table, std::uint32_t size, const Junction& j) {
+  std::uint32_t low = 0, high = size;
+  while (high - low > 1) {
+    const std::uint32_t middle = (low + high) / 2;
+    if (table[middle].packed <= j.packed)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 /// A point on a junction and what holds there.
 struct JunctionPoint {
   Vec3f p;

@@ -6,7 +6,6 @@
 
 #include "compute/field/boundary_area.hpp"
 #include "compute/field/tighten.hpp"
-#include "compute/particles/seed.hpp"
 #include "compute/pipeline/mesh_pipeline_impl.hpp"
 
 namespace nacre {
@@ -124,7 +123,7 @@ void MeshPipelineOf<Backend>::describe_fields() {
   info_.crowded_points = grid_.crowded_points;
   info_.crowded_cells = grid_.crowded_cells;
   info_.expected_particles = info_.points;
-  for (const int order : {1, 2}) info_.expected_particles += expected_particles(exec_, grid_, order_.data(), order);
+  for (const int order : {1, 2}) info_.expected_particles += expected_particles(exec_, embedding_seeds(order));
 }
 
 /// Which interfaces bound which, and the kinds of junction points as interfaces of their own.

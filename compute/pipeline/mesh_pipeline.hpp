@@ -43,6 +43,7 @@ struct MeshParameters {
   int control_every = 10;              ///< iterations between two controls of the population
   int smooth = 2;                      ///< rounds of moving particles within the triangles around them
   int mend = 12;                       ///< rounds of mending bad triangles after the first triangulation, at most
+  std::string seeds = "auto";          ///< embedding, marching-cubes; auto: the former for tree, the latter for others
   int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };

@@ -11,6 +11,7 @@
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/repair.hpp"
+#include "compute/particles/embedding_seeds.hpp"
 #include "compute/particles/ring_smoothing.hpp"
 #include "compute/particles/solver_state.hpp"
 #include "compute/particles/tree_solver.hpp"
@@ -89,6 +90,7 @@ class MeshPipelineOf : public MeshPipeline {
   double require_room_for(double particles, const std::string& why);
   void make_solver();
   void add_points();
+  bool by_marching_cubes() const;
   void seed_order(int order);
   void relax_order(int order, double from, double to);
   void relax_by_tree(int order, double from, double to);
@@ -118,6 +120,7 @@ class MeshPipelineOf : public MeshPipeline {
   void upload_particles(const HostParticles& particles);
   std::int64_t change_particles(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
+  EmbeddingSeeds embedding_seeds(int order) const { return {grid_, order_.data(), order}; }
   FieldGround field_ground() const { return {bricks_.view(), junction_.data(), size_.view()}; }
   EmbeddedGround embedded_ground() const { return {grid_.view(), field_ground()}; }
   TreeRule tree_rule() const {

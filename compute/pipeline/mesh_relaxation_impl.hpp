@@ -6,8 +6,8 @@
 
 #include "compute/particles/control.hpp"
 #include "compute/particles/field_surface.hpp"
+#include "compute/particles/marching_cubes_seeds.hpp"
 #include "compute/particles/redblack.hpp"
-#include "compute/particles/seed.hpp"
 #include "compute/particles/serial.hpp"
 #include "compute/pipeline/mesh_pipeline_impl.hpp"
 
@@ -63,7 +63,7 @@ void MeshPipelineOf<Backend>::make_solver() {
   exec_.arena().rewind(mark_[field_stages]);
   double expected = info_.expected_particles;
   if (parameters.particles > 0)  // of the surfaces; junctions have theirs as ever
-    expected = parameters.particles + info_.points + expected_particles(exec_, grid_, order_.data(), 1);
+    expected = parameters.particles + info_.points + expected_particles(exec_, embedding_seeds(1));
   const double capacity =
       require_room_for(expected, parameters.particles > 0 ? "--particles asks, with the junctions, for "
                                                           : "the sizing field asks for about ");
@@ -195,16 +195,28 @@ std::int64_t MeshPipelineOf<Backend>::change_particles(std::span<const std::uint
   return std::int64_t(kept);
 }
 
+/// Ch. 3 begins from marching cubes, ch. 4 from the embedding; so do curves, which marching cubes do not have.
+template <class Backend>
+bool MeshPipelineOf<Backend>::by_marching_cubes() const {
+  return parameters.seeds == "auto" ? parameters.solver != "tree" : parameters.seeds == "marching-cubes";
+}
+
 /// Puts the seeds of an order behind the particles of lower ones, which stay where they are from now on.
 template <class Backend>
 void MeshPipelineOf<Backend>::seed_order(int order) {
   auto stage = exec_.stage("seed");
   ParticleSet& set = solver_->particles();
   set.fixed = set.count;
-  double scale = 1;
-  if (order == 2 && parameters.particles > 0)
-    scale = parameters.particles / std::max(1.0, expected_particles(exec_, grid_, order_.data(), 2));
-  const std::int64_t seeds = seed_particles(exec_, grid_, order_.data(), order, scale, set, solver_->velocity());
+  Arena::Scope scope(exec_.arena());
+  const auto put = [&](const auto& source) {
+    double scale = 1;
+    if (order == 2 && parameters.particles > 0)
+      scale = parameters.particles / std::max(1.0, expected_particles(exec_, source));
+    return seed_particles(exec_, source, scale, parameters.seed, set, solver_->velocity());
+  };
+  const std::int64_t seeds = order == 2 && by_marching_cubes()
+                                 ? put(marching_cubes(exec_, bricks_, size_, grid_.junction))
+                                 : put(embedding_seeds(order));
   info_.seeded += seeds;
   if (order == 2) info_.seeded_on_surfaces = seeds;
 }

@@ -12,7 +12,7 @@ auto of_fields(const MeshParameters& p) {
 
 auto of_relax(const MeshParameters& p) {
   return std::tie(p.solver, p.iterations, p.stagnation, p.ideal_energy, p.add_below, p.delete_above, p.control_every,
-                  p.particles, p.seed);
+                  p.seeds, p.particles, p.seed);
 }
 
 auto of_tree(const MeshParameters& p) { return std::tie(p.theta, p.step, p.momentum); }

@@ -1,7 +1,7 @@
 // Nacre: test bodies for the sizing field: slope, medial balls, clamps, counts.
 #pragma once
 
-#include "compute/particles/seed.hpp"
+#include "compute/particles/embedding_seeds.hpp"
 #include "tests/compute/field/field_cases.hpp"
 
 namespace nacre::test {
@@ -150,7 +150,7 @@ double expected_of(Executor<Backend>& exec, const MeshVolume& volume, const Sizi
   std::vector<std::uint8_t> order;
   for (const Junction& j : grid.junctions) order.push_back(std::uint8_t(j.order()));
   const Array<std::uint8_t> orders = exec.arena().template permanent_copy<std::uint8_t>(order);
-  const double expected = expected_particles(exec, grid, orders.data(), 2);
+  const double expected = expected_particles(exec, EmbeddingSeeds(grid, orders.data(), 2));
   exec.arena().rewind(mark);
   return expected;
 }

@@ -5,27 +5,48 @@
 #include <cmath>
 #include <tuple>
 
-#include "compute/particles/seed.hpp"
+#include "compute/particles/embedding_seeds.hpp"
+#include "compute/particles/marching_cubes_seeds.hpp"
 #include "compute/particles/solver_state.hpp"
 #include "tests/compute/embedding/embedding_cases.hpp"
 
 namespace nacre::test {
 
+enum class SeedsFrom { embedding, marching_cubes };
+inline constexpr SeedsFrom both_sources[] = {SeedsFrom::embedding, SeedsFrom::marching_cubes};
+
+/// What comes of a source of seeds.
+struct SeededPlaces {
+  double expected = 0;
+  std::vector<Float4> place, direction;
+  std::vector<std::uint32_t> interface;
+};
+
 /// Seeds of one junction order on a volume's interfaces.
 template <class Backend>
-std::vector<Float4> seeds_of(Executor<Backend>& exec, const Embedding& e, int order, double scale, double& expected,
-                             std::vector<std::uint32_t>* interface = nullptr) {
+SeededPlaces seeds_of(Executor<Backend>& exec, const Embedding& e, SeedsFrom from, int order, double scale,
+                      std::uint32_t random = 1) {
   Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  SeededPlaces result;
+  const auto put = [&](const auto& source) {
+    result.expected = expected_particles(exec, source);
+    ParticleSet set = make_particle_set(exec, std::int64_t(2 * scale * result.expected) + 100);
+    Array<Float4> velocity = arena.template permanent<Float4>(std::size_t(set.capacity()));
+    const std::int64_t n = seed_particles(exec, source, scale, random, set, velocity);
+    EXPECT_EQ(n, set.count);
+    result.place = set.place.download(0, std::size_t(n));
+    result.direction = set.direction.download(0, std::size_t(n));
+    result.interface = set.interface.download(0, std::size_t(n));
+  };
   std::vector<std::uint8_t> orders;
   for (const Junction& j : e.grid.junctions) orders.push_back(std::uint8_t(j.order()));
   const Array<std::uint8_t> on_device = arena.template permanent_copy<std::uint8_t>(orders);
-  expected = expected_particles(exec, e.grid, on_device.data(), order);
-  ParticleSet set = make_particle_set(exec, std::int64_t(2 * scale * expected) + 100);
-  Array<Float4> velocity = arena.template permanent<Float4>(std::size_t(set.capacity()));
-  const std::int64_t n = seed_particles(exec, e.grid, on_device.data(), order, scale, set, velocity);
-  EXPECT_EQ(n, set.count);
-  if (interface) *interface = set.interface.download(0, std::size_t(n));
-  return set.place.download(0, std::size_t(n));
+  if (from == SeedsFrom::embedding)
+    put(EmbeddingSeeds(e.grid, on_device.data(), order));
+  else
+    put(marching_cubes(exec, e.bricks, e.size, e.grid.junction));
+  return result;
 }
 
 template <class Backend>
@@ -34,19 +55,21 @@ void AsManyAsTheSizingFieldAsksFor(Executor<Backend>& exec) {
   SizingRule rule;
   rule.min_size = rule.max_size = 0.8f;
   const Embedding e = embedding_of(exec, scalar_volume({27, 26, 27}, ball(c, 8.3)), rule);
-  for (const double scale : {1.0, 0.5, 1.5, 20.0}) {  // at last, far more than there are cells
-    double expected = 0;
-    const std::vector<Float4> seeds = seeds_of(exec, e, 2, scale, expected);
-    EXPECT_NEAR(double(seeds.size()), scale * expected, 0.01 * scale * expected);
-    double above = 0;
-    for (const Float4& p : seeds) {
-      const Vec3f r = Vec3f(p.x, p.y, p.z) - in_fields(c);
-      ASSERT_NEAR(length(r), 8.3, 0.05);
-      ASSERT_NEAR(p.w, 0.8, 1e-3);
-      above += r.x + r.y > 0 ? 1 : 0;
+  const double wanted = 4 * M_PI * 8.3 * 8.3 * hexagonal_density / (0.8 * 0.8);
+  for (const SeedsFrom from : both_sources)
+    for (const double scale : {1.0, 0.5, 1.5, 20.0}) {  // at last, far more than there are cells
+      const SeededPlaces seeds = seeds_of(exec, e, from, 2, scale);
+      EXPECT_NEAR(seeds.expected, wanted, 0.03 * wanted) << int(from);
+      EXPECT_NEAR(double(seeds.place.size()), scale * seeds.expected, 0.01 * scale * seeds.expected);
+      double above = 0;
+      for (const Float4& p : seeds.place) {
+        const Vec3f r = Vec3f(p.x, p.y, p.z) - in_fields(c);
+        ASSERT_NEAR(length(r), 8.3, 0.05);
+        ASSERT_NEAR(p.w, 0.8, 1e-3);
+        above += r.x + r.y > 0 ? 1 : 0;
+      }
+      EXPECT_NEAR(above / double(seeds.place.size()), 0.5, 0.03);  // spread evenly
     }
-    EXPECT_NEAR(above / double(seeds.size()), 0.5, 0.03);  // spread evenly
-  }
 }
 
 template <class Backend>
@@ -60,33 +83,47 @@ void EveryComponentGetsParticles(Executor<Backend>& exec) {
   SizingRule rule;
   rule.min_size = 1, rule.max_size = 2;
   const Embedding e = embedding_of(exec, volume, rule);
-  double expected = 0;
-  const std::vector<Float4> seeds = seeds_of(exec, e, 2, 1, expected);
-  for (const Vec3d& i : islands) {
-    const Vec3f at = in_fields(i);
-    const auto there = std::count_if(seeds.begin(), seeds.end(),
-                                     [&](const Float4& p) { return length(Vec3f(p.x, p.y, p.z) - at) < 1.2f; });
-    EXPECT_GE(there, 6) << i.x << ' ' << i.y << ' ' << i.z;
+  for (const SeedsFrom from : both_sources) {
+    const SeededPlaces seeds = seeds_of(exec, e, from, 2, 1);
+    for (const Vec3d& i : islands) {
+      const Vec3f at = in_fields(i);
+      const auto there = std::count_if(seeds.place.begin(), seeds.place.end(),
+                                       [&](const Float4& p) { return length(Vec3f(p.x, p.y, p.z) - at) < 1.2f; });
+      EXPECT_GE(there, 6) << int(from) << ": " << i.x << ' ' << i.y << ' ' << i.z;
+    }
   }
 }
 
 template <class Backend>
 void CurvesAreSeededByTheirLength(Executor<Backend>& exec) {
   const Embedding e = embedding_of(exec, sectors());
-  double expected = 0;
-  std::vector<std::uint32_t> interface;
-  const std::vector<Float4> seeds = seeds_of(exec, e, 1, 1, expected, &interface);
-  EXPECT_NEAR(double(seeds.size()), expected, 2);
+  const auto [expected, place, direction, interface] = seeds_of(exec, e, SeedsFrom::embedding, 1, 1);
+  EXPECT_NEAR(double(place.size()), expected, 2);
   const std::uint32_t axis = e.number_of(Junction(1, 2, 3));
   double covered = 0;
-  for (std::size_t k = 0; k < seeds.size(); ++k) {
+  for (std::size_t k = 0; k < place.size(); ++k) {
     EXPECT_EQ(e.grid.junctions[interface[k]].order(), 1);
     if (interface[k] != axis) continue;
-    const Vec3f r = Vec3f(seeds[k].x, seeds[k].y, seeds[k].z) - in_fields(sector_centre);
+    const Vec3f r = Vec3f(place[k].x, place[k].y, place[k].z) - in_fields(sector_centre);
     EXPECT_LT(std::hypot(r.x, r.y), 0.02);
-    covered += seeds[k].w;  // h apart
+    covered += place[k].w;  // h apart
   }
   EXPECT_NEAR(covered, 2 * sector_radius, 0.06 * 2 * sector_radius);
+}
+
+/// Places are the same, but particles do not stand at the same points: another seed is another mesh.
+template <class Backend>
+void AnotherSeedIsAnotherStart(Executor<Backend>& exec) {
+  const Embedding e = embedding_of(exec, sectors());
+  const auto places = [&](std::uint32_t random) { return seeds_of(exec, e, SeedsFrom::embedding, 2, 1, random).place; };
+  const std::vector<Float4> one = places(1), two = places(2), again = places(1);
+  ASSERT_EQ(one.size(), two.size());
+  std::size_t alike = 0;
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    EXPECT_EQ(one[k].x, again[k].x);
+    alike += one[k].x == two[k].x;
+  }
+  EXPECT_LT(alike, one.size() / 10);
 }
 
 /// Cells on both sides of a flat interface have the same closest points; particles at one place would never part.
@@ -96,18 +133,46 @@ void NoTwoAtOnePlaceOfAFlatInterface(Executor<Backend>& exec) {
   SizingRule rule;
   rule.min_size = rule.max_size = 0.6f;
   const Embedding e = embedding_of(exec, volume, rule);
-  double expected = 0;
-  std::vector<Float4> seeds = seeds_of(exec, e, 2, 1, expected);
   const auto along_x = [](const Float4& a, const Float4& b) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   };
-  std::sort(seeds.begin(), seeds.end(), along_x);
-  ASSERT_GT(seeds.size(), 6000u);
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    for (std::size_t k = i + 1; k < seeds.size() && seeds[k].x - seeds[i].x < 1e-3f; ++k)
-      ASSERT_GT(std::hypot(seeds[k].y - seeds[i].y, seeds[k].z - seeds[i].z), 1e-3f);
+  for (const SeedsFrom from : both_sources) {
+    std::vector<Float4> place = seeds_of(exec, e, from, 2, 1).place;
+    std::sort(place.begin(), place.end(), along_x);
+    ASSERT_GT(place.size(), 4000u) << int(from);
+    for (std::size_t i = 0; i < place.size(); ++i)
+      for (std::size_t k = i + 1; k < place.size() && place[k].x - place[i].x < 1e-3f; ++k)
+        ASSERT_GT(std::hypot(place[k].y - place[i].y, place[k].z - place[i].z), 1e-3f);
+  }
 }
 
+/// Vertices of marching cubes are on their own interfaces, each of which has some; with the anisotropic voxels of a CT, too.
+template <class Backend>
+void CubesFindEveryInterface(Executor<Backend>& exec) {
+  MeshVolume volume = label_volume({26, 24, 12}, 4, [](const Vec3d& p) {
+    const Vec3d r = p - Vec3d(12.5, 11.5, 5.5);
+    const double distance = std::hypot(r.x, r.y, 2.5 * r.z);
+    return distance > 10 ? 0 : distance < 5 ? 3 : r.x < 0 ? 1 : 2;
+  });
+  volume.spacing = {1, 1, 2.5};
+  SizingRule rule;
+  rule.min_size = rule.max_size = 1;
+  const Embedding e = embedding_of(exec, volume, rule);
+  const SeededPlaces seeds = seeds_of(exec, e, SeedsFrom::marching_cubes, 2, 1);
+  const SeededPlaces before = seeds_of(exec, e, SeedsFrom::embedding, 2, 1);
+  std::vector<double> count(e.grid.junctions.size()), other = count;
+  for (const std::uint32_t i : seeds.interface) ++count[i];
+  for (const std::uint32_t i : before.interface) ++other[i];
+  for (const Junction j : {Junction(0, 1), Junction(0, 2), Junction(1, 2), Junction(1, 3), Junction(2, 3)}) {
+    const std::uint32_t k = e.number_of(j);
+    ASSERT_NE(k, none);
+    EXPECT_NEAR(count[k], other[k], 0.15 * other[k] + 8) << j.material(0) << ' ' << j.material(1);
+  }
+  for (const Float4& d : seeds.direction) EXPECT_NEAR(std::hypot(d.x, d.y, d.z), 1, 1e-4);
+}
+
+NACRE_DEVICE_TEST(Seed, CubesFindEveryInterface)
+NACRE_DEVICE_TEST(Seed, AnotherSeedIsAnotherStart)
 NACRE_DEVICE_TEST(Seed, NoTwoAtOnePlaceOfAFlatInterface)
 NACRE_DEVICE_TEST(Seed, AsManyAsTheSizingFieldAsksFor)
 NACRE_DEVICE_TEST(Seed, EveryComponentGetsParticles)
