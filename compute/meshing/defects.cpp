@@ -88,8 +88,8 @@ bool on_small_body(const SurfaceMesh& mesh, const VertexTable& facets_at, std::u
   return false;
 }
 
-/// Where points are too few to take one away, another one splits the longest edge of a bad triangle.
-void split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size, std::uint32_t t,
+/// Where points are too few to take one away, another one splits the longest edge of a bad triangle, if it is long.
+bool split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size, std::uint32_t t,
            MeshDefects& defects) {
   const Triangle& c = mesh.triangles[t];
   const auto p = corners(mesh, t);
@@ -97,9 +97,10 @@ void split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::sp
   for (int k = 1; k < 3; ++k)
     if (length(p[(k + 1) % 3] - p[k]) > length(p[(longest + 1) % 3] - p[longest])) longest = k;
   const std::uint32_t a = c[longest], b = c[(longest + 1) % 3];
-  if (order[a] == 2 && order[b] == 2 &&
-      length(mesh.points[b] - mesh.points[a]) > long_edge * std::min(size[a], size[b]))
-    defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t], a});
+  if (order[a] != 2 || order[b] != 2) return false;
+  if (length(mesh.points[b] - mesh.points[a]) <= long_edge * std::min(size[a], size[b])) return false;
+  defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t], a});
+  return true;
 }
 
 /// Points of a surface that have facets of several pairs of materials.
@@ -149,10 +150,10 @@ void choose(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<con
   std::vector<std::uint8_t> blocked(mesh.points.size(), 0);
   for (const Wish& w : wishes) {
     if (blocked[w.point]) continue;
-    if (on_small_body(mesh, facets_at, w.point, w.few))
-      split(mesh, order, size, w.triangle, defects);
-    else
+    if (!on_small_body(mesh, facets_at, w.point, w.few))
       defects.remove.push_back(w.point);
+    else if (!split(mesh, order, size, w.triangle, defects))
+      continue;  // another wish for the point may be stronger
     for (const std::uint32_t corner : facets_at.corners(w.point))
       for (int k = 0; k < 3; ++k) blocked[mesh.triangles[corner / 3][k]] = 1;
   }

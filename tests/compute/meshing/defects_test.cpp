@@ -171,6 +171,20 @@ TEST(Defects, SmallBodiesKeepAllOfTheirs) {
   }
 }
 
+/// That a small body needs its points says nothing about one that all but coincides with another.
+TEST(Defects, AnIntruderOnASmallBodyGoesWhereItIsOneTooMany) {
+  Ball ball(test::points_on_sphere(400, 1));
+  const double near = 0.01;
+  ball.mesh.points = {{-1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0.5 * near, near, 0}};
+  ball.mesh.triangles = {{0, 1, 5}, {1, 2, 5}, {0, 5, 3}, {5, 2, 3}, {1, 0, 4}, {2, 1, 4}};
+  ball.mesh.materials = {{0, 1}, {0, 1}, {0, 1}, {0, 1}, {1, 2}, {1, 2}};
+  ball.order = {1, 2, 1, 2, 2, 1};
+  ball.size.assign(6, 1);
+  EXPECT_EQ(ball.defects(worst_defects).remove, Points{1});
+  ball.mesh.points[5] = {0, 0.5, 0};
+  EXPECT_TRUE(ball.defects(worst_defects).remove.empty()) << "an intruder, but the body has no other";
+}
+
 TEST(Defects, FurtherRoundsCareForTheWorstOnly) {
   // A thin triangle, but not the worst: two points at 0.35 of a size.
   std::vector<Vec3d> points = test::points_on_sphere(400, 1);
