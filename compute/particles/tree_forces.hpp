@@ -98,6 +98,7 @@ struct LeafForces {
                        bool by_normal, detail::Candidates& c, ForceSum* sums) const {
     int count = 0;
     const auto compute = [&] {
+      if (count == 0) return;  // most often on a rim, which is near few leaves
       team.each(targets, [&](int t) {
         const Float4 p = tree.place[from + t], n = tree.direction[from + t];
         // A curve's tangents may point either way; its particles, and those of a rim, concern each other fully.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "compute/device/error.hpp"
@@ -36,15 +37,25 @@ std::vector<PointShare> share_out(const PreparedSurface& surface, std::span<cons
   return shares;
 }
 
-/// The smallest speed such that `fraction` of the weight is no faster. (speed, weight) pairs, reordered.
+/// The smallest speed such that `fraction` of the weight is no faster. (speed, weight) pairs, reordered: halves are left out
+/// until one pair remains.
 double weighted_percentile(std::vector<std::pair<double, double>>& speeds, double fraction) {
-  std::sort(speeds.begin(), speeds.end());
-  double total = 0;
-  for (const auto& [speed, weight] : speeds) total += weight;
-  double below = 0;
-  for (const auto& [speed, weight] : speeds)
-    if ((below += weight) >= fraction * total) return speed;
-  return speeds.empty() ? 0 : speeds.back().first;
+  if (speeds.empty()) return 0;
+  const auto weight = [](auto from, auto to) {
+    return std::accumulate(from, to, 0.0, [](double sum, const auto& pair) { return sum + pair.second; });
+  };
+  auto first = speeds.begin(), last = speeds.end();
+  double wanted = fraction * weight(first, last);
+  while (last - first > 1) {
+    const auto middle = first + (last - first) / 2;
+    std::nth_element(first, middle, last);
+    const double below = weight(first, middle);
+    if (below >= wanted)
+      last = middle;
+    else
+      wanted -= below, first = middle;
+  }
+  return first->first;
 }
 
 }  // namespace

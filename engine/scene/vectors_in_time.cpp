@@ -1,6 +1,8 @@
 // Nacre: vectors and colours of a series at any time.
 #include "engine/scene/vectors_in_time.hpp"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -165,26 +167,37 @@ void VectorsInTime::survey(bool vectors_too) {
   double low = 1e300, high = -1e300;
   const bool scalars = color_ != "none" && color_ != "speed";
   VectorStatistics all = statistics_;
-  std::vector<Vec3f> v(surface_.points.size());
   const std::size_t moments = analytic_ && series_.steps() == 1 && end_ > start_ ? 8 : series_.steps();
-  for (std::size_t k = 0; k < moments && (vectors_too || scalars); ++k) {
+  std::vector<Vec3f> now(surface_.points.size()), next = now;
+  const auto look_at = [&](std::size_t k) {
     if (stop_ && *stop_) throw Interrupted();
     const double t = moments == series_.steps() ? series_.times[k] : start_ + (end_ - start_) * double(k) / 8;
-    if (vectors_too) {
-      vectors(t, v);
-      const VectorStatistics s = vector_statistics(surface_, v);
-      if (k == 0)
-        all = s;
-      else
-        all.percentile_98 += s.percentile_98;
-      all.max_speed = std::max(all.max_speed, s.max_speed);
-      all.zero_share = std::min(all.zero_share, s.zero_share);
-    }
-    if (!scalars) continue;
+    if (vectors_too) vectors(t, next);
+    if (!scalars) return;
     for (float x : scalar(t)) {
       low = std::min(low, double(x));
       high = std::max(high, double(x));
     }
+  };
+  const bool any = vectors_too || scalars;
+  if (any) look_at(0);
+  for (std::size_t k = 0; any && k < moments; ++k) {  // the next one is read while this one is judged
+    std::swap(now, next);
+    VectorStatistics s;
+    tbb::parallel_invoke(
+        [&] {
+          if (vectors_too) s = vector_statistics(surface_, now);
+        },
+        [&] {
+          if (k + 1 < moments) look_at(k + 1);
+        });
+    if (!vectors_too) continue;
+    if (k == 0)
+      all = s;
+    else
+      all.percentile_98 += s.percentile_98;
+    all.max_speed = std::max(all.max_speed, s.max_speed);
+    all.zero_share = std::min(all.zero_share, s.zero_share);
   }
   if (vectors_too) all.percentile_98 /= double(moments);
   statistics_ = all;

@@ -4,7 +4,8 @@
 //
 // Prints JSON: bytes a second of a copy (read and written) and of reads alone in order, 64-byte lines a second at random
 // places of an array far larger than the caches (as many under way as the processor likes, and one after another),
-// single-precision multiply-adds a second in vectors and one by one. The best of five runs each.
+// single-precision multiply-adds a second in vectors and one by one, and additions of whole numbers a second. The best of
+// five runs each.
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -103,14 +104,23 @@ int main(int argc, char** argv) {
     }
     sums[std::size_t(t) * 16] += double(a + b + c + d + e + f + g + h);
   });
+  const double whole = seconds_of(threads, [&](int t) {
+    std::uint64_t a = std::uint64_t(t), b = 1, c = 2, d = 3, e = 4, f = 5, g = 6, h = 7;
+    for (int i = 0; i < rounds * 8; ++i) {
+      a += 3, b += 5, c += 7, d += 9, e += 11, f += 13, g += 15, h += 17;
+      __asm__ volatile("" : "+r"(a), "+r"(b), "+r"(c), "+r"(d), "+r"(e), "+r"(f), "+r"(g), "+r"(h));
+    }
+    sums[std::size_t(t) * 16] += double(a + b + c + d + e + f + g + h);
+  });
   for (const double s : sums) kept = kept + s;
 
   const double n = threads;
   std::printf(
       "{\"threads\": %d,\n \"copy_bytes_per_second\": %.4g,\n \"read_bytes_per_second\": %.4g,\n"
       " \"random_lines_per_second\": %.4g,\n \"chained_lines_per_second\": %.4g,\n"
-      " \"vector_multiply_adds_per_second\": %.4g,\n \"single_multiply_adds_per_second\": %.4g}\n",
+      " \"vector_multiply_adds_per_second\": %.4g,\n \"single_multiply_adds_per_second\": %.4g,\n"
+      " \"whole_additions_per_second\": %.4g}\n",
       threads, 2 * double(share) * n * sizeof(double) / copy, double(share) * n * sizeof(double) / read,
       n * double(reads) / scattered, n * double(reads / 4) / chained, n * double(rounds) * wide / vectors,
-      n * 64.0 * rounds / single);
+      n * 64.0 * rounds / single, n * 64.0 * rounds / whole);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Nacre: where the time of the four main runs goes, and what bounds it. Usage: profile.sh NACRE [CEILINGS]
+# Nacre: where the time of the four main runs goes; what bounds it: bounds.sh. Usage: profile.sh NACRE [CEILINGS]
 # CEILINGS is the program bench_ceilings (cmake --build ... --target bench_ceilings). Prints, for flow on the grid and on
 # the octree and for meshing one and several materials: the stages' shares; nanoseconds of one processor for a cell (a
 # particle) in data that fits the caches and in data that does not, which are alike where memory is not the bound; and,
