@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <semaphore.h>
+#include <sys/ioctl.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <unistd.h>
@@ -62,11 +63,21 @@ void wait_for_second_press() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+int columns_of_terminal() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
+}
+
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options, const CommonWords& words) {
   command.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
-  command.add_option("--threads", options.threads, "worker threads (0: all)")->check(CLI::Range(0, 4096));
+  command
+      .add_option_function<int>(
+          "--threads",
+          [&options](int threads) { options.threads = std::min(threads, tbb::info::default_concurrency()); },
+          "worker threads, at most one for each processor (0: all)")
+      ->check(CLI::Range(0, 4096));
   command.add_option(words.report_names, options.report, words.report_help);
   command.add_option("--session", options.session, words.session_help);
   command
@@ -160,9 +171,16 @@ void Progress::update(std::string_view what, double fraction) {
   if (!on_ || (now() - last_ < 0.1 && fraction < 1)) return;
   last_ = now();
   const double left = fraction > 0.02 ? (last_ - started_) * (1 - fraction) / fraction : 0;
-  const int filled = int(30 * fraction);
-  fmt::print(stderr, "\r\033[K{:<10} [{:#<{}}{:.<{}}] {:3.0f}%{}", what, "", filled, "", 30 - filled, 100 * fraction,
-             left > 0 ? fmt::format("  {:.0f} s left", left) : "");
+  std::string line = fmt::format("{:<10} ", what);
+  const std::string end =
+      fmt::format(" {:3.0f}%{}", 100 * fraction, left > 0 ? fmt::format("  {:.0f} s left", left) : "");
+  const int room = columns_of_terminal() - 1;  // a line that went on in the next could not be drawn over
+  if (const int bar = std::min(30, room - int(line.size() + end.size()) - 2); bar >= 5) {
+    const int filled = int(bar * fraction);
+    line += fmt::format("[{:#<{}}{:.<{}}]", "", filled, "", bar - filled);
+  }
+  line += end;
+  fmt::print(stderr, "\r\033[K{}", line.substr(0, std::size_t(room)));
   std::fflush(stderr);
   drawn_ = true;
 }

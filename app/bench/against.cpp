@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <optional>
 #include <sstream>
@@ -76,12 +77,12 @@ void check_shape(const json& report) {
 
 }  // namespace
 
-Comparison compare_runs(const json& now, const json& last, bool all_tables) {
+Comparison compare_runs(const json& now, const json& last, const std::vector<std::string>& asked) {
   Comparison result;
   for (const json& table : last.at("tables")) {
     const std::string name = table.at("name");
     const json* same = find_named(now.at("tables"), name);
-    if (!same && !all_tables) continue;
+    if (!same && !asked.empty() && std::find(asked.begin(), asked.end(), name) == asked.end()) continue;
     for (const json& row : table.at("rows")) {
       const json* found = same ? find_named(same->at("rows"), row.at("name")) : nullptr;
       if (found)

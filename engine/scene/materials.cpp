@@ -76,10 +76,10 @@ bool looks_like_labels(const Volume& volume, const Notes& notes) {
       otsu_threshold(volume), statistics.integral ? "; where they are labels after all, --labels" : "");
 }
 
-void check_inside(const MeshVolume& volume, const std::string& name) {
+void check_inside(const MeshVolume& volume, const std::string& name, const char* advice) {
   const auto inside = [](std::uint16_t material) { return material != 0; };
   if (volume.materials() < 2 || std::none_of(volume.material.begin(), volume.material.end(), inside))
-    throw Error(fmt::format("{} has nothing to mesh", name), "no voxel is inside a material", "choose other materials");
+    throw Error(fmt::format("{} has nothing to mesh", name), "no voxel is inside a material", advice);
 }
 
 }  // namespace
@@ -142,7 +142,7 @@ double otsu_threshold(const Volume& volume) {
     weighted += b * counts[b];
   }
   double below = 0, below_weighted = 0, best = -1;
-  int cut = 0;
+  int first = 0, last = 0;  // of the cuts that are as good: all those within a gap
   for (int b = 0; b + 1 < bins; ++b) {
     below += counts[b];
     below_weighted += b * counts[b];
@@ -151,10 +151,11 @@ double otsu_threshold(const Volume& volume) {
     const double between = below * (all - below) * difference * difference;
     if (between > best) {
       best = between;
-      cut = b;
+      first = b;
     }
+    if (between == best) last = b;
   }
-  return statistics.min + (cut + 1) * width;
+  return statistics.min + (0.5 * (first + last) + 1) * width;
 }
 
 MissingIsovalue::MissingIsovalue(const std::string& name, const std::string& why, double proposal,
@@ -180,7 +181,7 @@ MeshVolume make_mesh_volume(std::span<const Volume> volumes, const MaterialOptio
   else
     fail_without_isovalue(first);
   if (options.min_component > 1) drop_small_components(result, options.min_component, notes);
-  check_inside(result, first.name);
+  check_inside(result, first.name, options.min_component > 1 ? "lower --min-component" : "choose other materials");
   return result;
 }
 

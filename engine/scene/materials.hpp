@@ -59,7 +59,7 @@ class MissingIsovalue : public Error {
 };
 
 /// The iso-value that splits the values best into two groups (Otsu: largest variance between them), from a histogram
-/// of 256 bins.
+/// of 256 bins; in the middle of a gap.
 double otsu_threshold(const Volume& volume);
 
 }  // namespace nacre

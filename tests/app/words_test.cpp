@@ -1,5 +1,6 @@
 // Nacre: tests of the words of a command line, exit statuses, and who may write where.
 #include <sstream>
+#include <thread>
 
 #include "tests/app/program.hpp"
 
@@ -56,6 +57,16 @@ TEST(Words, CommonOptionsAreThoseOfEveryCommand) {
     expect_failure(nacre({command, "--set", "rsolution=3"}), 2, {"did you mean resolution"});
     expect_failure(nacre({command, "--seed", "-1"}), 2, {"--seed"});
   }
+}
+
+TEST(Words, NoMoreThreadsThanProcessors) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "r.json").string();
+  const Outcome run = nacre(small_flow + Words{"--device", "cpu", "--threads", "4096", "--report", file});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.err, "") << "oneTBB complains where it is asked for more";
+  EXPECT_LE(nlohmann::json::parse(read_all(file))["device"]["threads"],
+            std::max(1u, std::thread::hardware_concurrency()));
 }
 
 TEST(Words, CommonOptionsOfSampleAndInfo) {

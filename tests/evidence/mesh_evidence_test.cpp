@@ -88,15 +88,19 @@ PlaceFunction torus(const Vec3d& centre, double major, double minor) {
   };
 }
 
-TEST(MeshEvidence, TorusGivenAsDistances) {
-  const auto f = torus(middle, 9.6, 4.4);
+std::vector<Vec3d> on_torus(const Vec3d& centre, double major, double minor) {
   std::vector<Vec3d> points;
   for (int i = 0; i < 60; ++i)
     for (int j = 0; j < 25; ++j) {
-      const double u = i * M_PI / 30, v = j * 2 * M_PI / 25, r = 9.6 + 4.4 * std::cos(v);
-      points.push_back(middle + Vec3d(r * std::cos(u), r * std::sin(u), 4.4 * std::sin(v)));
+      const double u = i * M_PI / 30, v = j * 2 * M_PI / 25, r = major + minor * std::cos(v);
+      points.push_back(centre + Vec3d(r * std::cos(u), r * std::sin(u), minor * std::sin(v)));
     }
-  const MeshRun run = expect_exact("torus", scalar_volume(cube, f), {0, 0}, {{0, 1, f, points}});
+  return points;
+}
+
+TEST(MeshEvidence, TorusGivenAsDistances) {
+  const auto f = torus(middle, 9.6, 4.4);
+  const MeshRun run = expect_exact("torus", scalar_volume(cube, f), {0, 0}, {{0, 1, f, on_torus(middle, 9.6, 4.4)}});
   EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.97);
 }
 
@@ -223,19 +227,49 @@ TEST(MeshEvidence, PlateOneVoxelThin) {
   print_quality("plate", run);
 }
 
-TEST(MeshEvidence, BallGivenAsLabelsShowsNoStairs) {
-  const double radius = 20;
-  const Vec3d centre(25.3, 24.8, 25.1);
-  const auto f = ball(centre, radius);
-  const MeshRun run = mesh_of(label_volume({51, 51, 51}, 2, [&](const Vec3d& p) { return f(p) > 0 ? 1 : 0; }));
-  expect_topology(run.mesh, {2, 2});
-  const InterfaceError error = interface_error(run.mesh, {0, 1, f, on_sphere(centre, radius)});
-  std::printf("ball as labels: distance mean %.4f max %.4f, from exact %.4f, normals %.2f degrees\n",
-              error.to_exact_mean, error.to_exact_max, error.from_exact_max, error.normal_median);
-  EXPECT_LE(error.to_exact_mean, 0.25);
-  EXPECT_LE(error.normal_median, 5);
-  print_quality("ball as labels", run);
-  EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.97);
+/// Bodies with exact answers, given as binary labels.
+struct LabelledBody {
+  const char* name;
+  PlaceFunction distance;  ///< signed, positive inside
+  std::vector<Vec3d> points;
+  std::int64_t euler;
+};
+
+std::vector<LabelledBody> labelled_bodies() {
+  const Vec3d centre(25.3, 24.8, 25.1), semi(20, 15, 11.5);
+  std::vector<LabelledBody> bodies;
+  bodies.push_back({"ball", ball(centre, 20), on_sphere(centre, 20), 2});
+  bodies.push_back({"ellipsoid", ellipsoid(centre, semi), {}, 2});
+  for (const Vec3d& d : even_directions(1500)) bodies.back().points.push_back(centre + d * semi);
+  bodies.push_back({"torus", torus(centre, 14.5, 7), on_torus(centre, 14.5, 7), 0});
+  return bodies;
+}
+
+/// The cube between eight voxel centres that holds a point has corners of both materials: its voxel shell.
+bool in_shell(const MeshVolume& volume, const Vec3d& p) {
+  bool found[2] = {};
+  for (int k = 0; k < 8; ++k) {
+    const Int3 v(int(std::floor(p.x)) + (k & 1), int(std::floor(p.y)) + (k >> 1 & 1), int(std::floor(p.z)) + (k >> 2));
+    found[volume.material[(std::size_t(v.z) * volume.dims.y + v.y) * volume.dims.x + v.x]] = true;
+  }
+  return found[0] && found[1];
+}
+
+TEST(MeshEvidence, BodiesGivenAsLabelsShowNoStairs) {
+  for (const LabelledBody& body : labelled_bodies()) {
+    SCOPED_TRACE(body.name);
+    const MeshVolume volume = label_volume({51, 51, 51}, 2, [&](const Vec3d& p) { return body.distance(p) > 0; });
+    const MeshRun run = mesh_of(volume);
+    for (const Vec3d& p : run.mesh.points) EXPECT_TRUE(in_shell(volume, p)) << p.x << " " << p.y << " " << p.z;
+    expect_topology(run.mesh, {body.euler, body.euler});
+    const InterfaceError error = interface_error(run.mesh, {0, 1, body.distance, body.points});
+    std::printf("%s as labels: distance mean %.4f max %.4f, from exact %.4f, normals %.2f degrees\n", body.name,
+                error.to_exact_mean, error.to_exact_max, error.from_exact_max, error.normal_median);
+    EXPECT_LE(error.to_exact_mean, 0.25);
+    EXPECT_LE(error.normal_median, 5);
+    print_quality(body.name, run);
+    EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.97);
+  }
 }
 
 /// One smooth closed surface at uniform size.
@@ -279,6 +313,42 @@ TEST(MeshEvidence, EnergyFallsAndCountsConverge) {
   const auto [least, most] = std::minmax_element(count.begin() + std::ptrdiff_t(half), count.end());
   EXPECT_LE(double(*most - *least), 0.01 * double(count.back()));
   for (std::size_t k = half + 1; k < energy.size(); ++k) EXPECT_LE(energy[k], energy[k - 1] * 1.01) << k;
+}
+
+/// From iteration to iteration, but where control has just changed the particles; a rise of `overshoot` of it is borne, of
+/// all iterations between two controls together none is.
+void expect_falling(const std::vector<double>& energy, const std::vector<std::int64_t>& count, double overshoot) {
+  ASSERT_EQ(energy.size(), count.size());
+  std::size_t controlled = 0;
+  for (std::size_t k = 1; k < energy.size(); ++k) {
+    if (count[k] != count[k - 1]) {
+      controlled = k;
+      continue;
+    }
+    EXPECT_LE(energy[k], energy[k - 1] * (1 + overshoot)) << k;
+    if (k + 1 == energy.size() || count[k + 1] != count[k]) {
+      EXPECT_LT(energy[k], energy[controlled]) << controlled << " to " << k;
+    }
+  }
+}
+
+TEST(MeshEvidence, EnergyFallsAmongJunctionsForEverySolver) {
+  for (const auto& [solver, overshoot] : {std::pair{"serial", 0.001}, {"redblack", 0.001}, {"tree", 0.01}}) {
+    SCOPED_TRACE(solver);
+    MeshParameters parameters;
+    parameters.solver = solver;
+    const MeshRun run = mesh_of(three_balls(), parameters);
+    EXPECT_EQ(run.info.surfaces, 6);
+    EXPECT_EQ(run.info.curves, 4);
+    EXPECT_EQ(run.info.points, 2);
+    expect_topology(run.mesh, {2, 2, 2, 2});
+    EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.93);
+    const auto& energy = run.info.energy;
+    ASSERT_GT(energy.size(), 20u);
+    EXPECT_LT(energy.back(), 0.75 * energy.front());
+    expect_falling(energy, run.info.count, overshoot);  // the tree's heavy ball goes a little too far
+    print_quality(solver, run);
+  }
 }
 
 }  // namespace

@@ -131,6 +131,7 @@ TEST(SmallComponents, NothingLeft) {
   MaterialOptions options;
   options.min_component = 2;
   EXPECT_TRUE(contains(refusal(volume_of({5, 5, 5}, values), options), "nothing to mesh"));
+  EXPECT_TRUE(contains(refusal(volume_of({5, 5, 5}, values), options), "lower --min-component"));
 }
 
 }  // namespace
