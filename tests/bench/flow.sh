@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Nacre: the speed table of docs/performance.md: drivaer and the built-in train at 256 to 2048 texture cells.
+# Nacre: the speed table of docs/performance/flow.md: drivaer and the built-in train at 256 to 2048 texture cells.
 # Usage: flow.sh BINARY [nacre flow's words, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_RESOLUTIONS, NACRE_BENCH_STEPS (default 10), NACRE_DATA (folder that holds drivaer.pvd).
 set -euo pipefail

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Nacre: the meshing tables of docs/performance.md: the phantoms, real volumes where they are, and the three solvers.
+# Nacre: the meshing tables of docs/performance/meshing.md: the phantoms, real volumes where they are, and the three solvers.
 # Usage: mesh.sh BINARY [words of nacre mesh, e.g. --device cuda]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_CASES (names, default all; `solvers` is the second table), NACRE_DATA (folder that holds
 # labels/ and scalar/), NACRE_BENCH_PARTICLES and NACRE_BENCH_ITERATIONS (of the second table).

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Nacre: the octree tables of docs/performance.md, or those named in NACRE_BENCH_CASES (default: all):
+# Nacre: the octree tables of docs/performance/flow.md, or those named in NACRE_BENCH_CASES (default: all):
 #   table   train, aircraft and delta-wing at NACRE_BENCH_RESOLUTIONS (default 512 to 4096), NACRE_BENCH_STEPS steps
 #           (default 2) of the samples NACRE_BENCH_SAMPLES
 #   large   train at 6000 (64.9 million cells), delta-wing and train at 8192, one step

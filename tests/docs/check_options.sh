@@ -53,7 +53,7 @@ check_line() {
 }
 
 count=0
-for page in "$root/README.md" "$root"/docs/*.md "$root"/docs/method/*.md; do
+for page in "$root/README.md" "$root"/docs/*.md "$root"/docs/method/*.md "$root"/docs/performance/*.md; do
   while read -r line; do
     read -ra words <<<"$line"
     check_line "${page#"$root/"}" "${words[@]}"
