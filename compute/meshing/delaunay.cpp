@@ -221,10 +221,16 @@ std::vector<std::int32_t> canonical_order(const std::vector<Cell>& vertices, std
   return order;
 }
 
+void check_stop(const std::atomic<bool>* stop) {
+  if (stop && stop->load(std::memory_order_relaxed)) throw Interrupted();
+}
+
 /// The same cells in canonical order, with their circumcentres.
-DelaunayCells sorted(const DelaunayCells& raw, std::span<const Vec3d> points) {
+DelaunayCells sorted(const DelaunayCells& raw, std::span<const Vec3d> points, const std::atomic<bool>* stop) {
+  check_stop(stop);
   const std::size_t count = raw.vertices.size();
   const std::vector<std::int32_t> order = canonical_order(raw.vertices, points.size());
+  check_stop(stop);
   std::vector<std::int32_t> rank(count);
   tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) { rank[order[i]] = std::int32_t(i); });
   DelaunayCells cells;
@@ -303,7 +309,7 @@ DelaunayCells Delaunay::cells(std::span<const Vec3d> points, const std::atomic<b
     held->triangulate(points, may_thread && arena.max_concurrency() > 1, stop);
     const DelaunayCells raw = copy_cells(held->triangulation);
     held_ = std::move(held);
-    return sorted(raw, points);
+    return sorted(raw, points, stop);
   });
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "compute/device/error.hpp"
 #include "compute/meshing/cell_rings.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/interface_facets.hpp"
@@ -44,8 +45,9 @@ struct Change {
 
 class Repair {
  public:
-  Repair(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label)
-      : points_(points), cells_(cells), label_(label), rings_(cells), left_(std::size_t(0x10000)) {
+  Repair(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label,
+         const std::atomic<bool>* stop)
+      : points_(points), cells_(cells), label_(label), stop_(stop), rings_(cells), left_(std::size_t(0x10000)) {
     for (const std::uint16_t m : label) ++left_[m];
   }
 
@@ -70,6 +72,7 @@ class Repair {
   std::vector<Place> work_off(int steps) {
     std::vector<Place> stuck;
     while (!waiting_.empty()) {
+      if (stop_ && stop_->load(std::memory_order_relaxed)) throw Interrupted();
       const Place place = waiting_.front();
       waiting_.pop_front();
       if (excess(place) > 0 && !improve(place, steps)) stuck.push_back(place);
@@ -385,6 +388,7 @@ class Repair {
   std::span<const Vec3d> points_;
   const DelaunayCells& cells_;
   std::vector<std::uint16_t>& label_;
+  const std::atomic<bool>* stop_;
   CellRings rings_;
   UmbrellaCounter counter_;
   std::vector<UmbrellaCounter::Facet> facets_;
@@ -397,9 +401,9 @@ class Repair {
 
 }  // namespace
 
-LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells,
-                          std::vector<std::uint16_t>& label) {
-  return Repair(points, cells, label).run();
+LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label,
+                          const std::atomic<bool>* stop) {
+  return Repair(points, cells, label, stop).run();
 }
 
 }  // namespace nacre

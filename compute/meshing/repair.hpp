@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,6 +25,8 @@ struct LabelRepair {
 /// to three more, lowers the number of such edges and vertices around it and takes the smallest cells that do. None
 /// removes a connected component of a material, unless that is one flat cell, or a crumb that touches more of its
 /// material at an edge or a vertex. Looks at facets between labels only. The result depends on its arguments alone.
-LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label);
+/// Interrupted soon after `*stop` is set.
+LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label,
+                          const std::atomic<bool>* stop = nullptr);
 
 }  // namespace nacre

@@ -30,8 +30,9 @@ auto MeshPipelineOf<Backend>::triangulate_once(Delaunay& delaunay) -> Triangulat
   const DelaunayCells cells = delaunay.cells(points, stop_);
   std::vector<std::uint16_t> label = material_at(cells.circumcentres);
   Triangulated made;
-  made.repair = repair_labels(points, cells, label);
+  made.repair = repair_labels(points, cells, label, stop_);
   made.mesh = extract_interfaces(points, cells, label, &made.point_of);
+  if (stop_ && stop_->load(std::memory_order_relaxed)) throw Interrupted();
   made.fitness = -double(made.repair.places.size());
   if (made.repair.places.empty()) made.fitness = fitness(made.mesh, point_facts(made).order, worst_defects);
   return made;
