@@ -42,7 +42,8 @@ Session asked_session(const CommonOptions& options, const InputWords& words, con
 std::unique_ptr<Device> open_device(const CommonOptions& options) {
   limit_threads(options.threads);
   std::unique_ptr<Device> device = make_device(options.device, options.threads);
-  say(options, fmt::format("device: {} ({}, {} threads)", device->backend(), device->name(), device->threads()));
+  say(options, fmt::format("device: {} ({}, {} thread{})", device->backend(), device->name(), device->threads(),
+                           device->threads() == 1 ? "" : "s"));
   return device;
 }
 

@@ -65,7 +65,8 @@ TEST(Words, NoMoreThreadsThanProcessors) {
   const Outcome run = nacre(small_flow + Words{"--device", "cpu", "--threads", "4096", "--report", file});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "") << "oneTBB complains where it is asked for more";
-  EXPECT_LE(nlohmann::json::parse(read_all(file))["device"]["threads"], std::max(1u, std::thread::hardware_concurrency()));
+  EXPECT_LE(nlohmann::json::parse(read_all(file))["device"]["threads"],
+            std::max(1u, std::thread::hardware_concurrency()));
 }
 
 TEST(Words, CommonOptionsOfSampleAndInfo) {

@@ -9,7 +9,6 @@
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/quality.hpp"
-#include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 
