@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Nacre: the meshing tables of docs/performance/meshing.md: the phantoms, real volumes where they are, and the three solvers.
 # Usage: mesh.sh BINARY [words of nacre mesh, e.g. --device cuda]. Reports go to $OUT where it is set.
-# Environment: NACRE_BENCH_CASES (names, default all; `solvers` is the second table), NACRE_DATA (folder that holds
+# Environment: NACRE_BENCH_CASES (names, default all; `solvers` is the second table, `tetrahedra` the third), NACRE_DATA (folder that holds
 # labels/ and scalar/), NACRE_BENCH_PARTICLES and NACRE_BENCH_ITERATIONS (of the second table).
 set -euo pipefail
 source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/begin.sh"
@@ -107,5 +107,37 @@ if [[ -z ${NACRE_BENCH_CASES:-} || " $NACRE_BENCH_CASES " == *" solvers "* ]]; t
   printf ' s for %d iterations | energy then | radius ratio mean then |\n' "$iterations"
   printf '|---|---:|---:|---:|---:|---:|---:|---:|---:|\n'
   for solver in serial redblack tree; do solver_row "$solver" || failed=1; done
+fi
+
+# fill_row NAME INPUT...: tetrahedra of one input.
+fill_row() {
+  local name=$1 report="$out/mesh-fill-$1.json"
+  shift
+  if [[ $1 != --sample && ! -e $1 ]]; then
+    echo "mesh.sh: tetrahedra of $name left out: no $1" >&2
+    return 0
+  fi
+  if ! "$nacre" mesh "$@" "${words[@]}" --quiet --out "$out/mesh-$name.vtu" --report "$report" >/dev/null 2>"$out/mesh-fill.err"; then
+    printf '| %s | failed: %s |\n' "$name" "$(head -n 1 "$out/mesh-fill.err")"
+    failed=1
+    return
+  fi
+  awk -v name="$name" -v triangles="$(report_value "$report" mesh.triangles)" -v cells="$(report_value "$report" tetrahedra.cells)" \
+    -v inverted="$(report_value "$report" tetrahedra.inverted)" -v seconds="$(stage_seconds "$report" tetrahedra)" \
+    -v least="$(report_value "$report" tetrahedra.dihedral_degrees.min)" \
+    -v most="$(report_value "$report" tetrahedra.dihedral_degrees.max)" \
+    -v within="$(report_value "$report" tetrahedra.share_within_10_160_degrees)" 'BEGIN {
+      printf "| %s | %d | %d | %d | %.1f | %.1f | %.1f | %.5f |\n", name, triangles, cells, inverted, seconds, least, most, 100 * within }'
+}
+
+if [[ -z ${NACRE_BENCH_CASES:-} || " $NACRE_BENCH_CASES " == *" tetrahedra "* ]]; then
+  printf '\n| data | triangles | tetrahedra | inverted | s | least dihedral angle, degrees | largest | within 10 to 160 degrees, %% |\n'
+  printf '|---|---:|---:|---:|---:|---:|---:|---:|\n'
+  fill_row torso-96 --sample torso --detail 96
+  fill_row mickey "$data/labels/cleaver/mickey.nrrd"
+  fill_row liver-coarse "$data/labels/junctions/liver.inr.gz" --min-size 4.1 --max-size 4.1
+  fill_row frog-coarse "$data/labels/frog/frogtissue.mhd" --min-size 1.9 --max-size 1.9
+  fill_row abdomen "$data/labels/abdomen/example_seg_fast_force_split.nii.gz"
+  fill_row nested-head "$data/labels/nested-head/standard_seg.nrrd" --min-size 2 --max-size 2
 fi
 exit $failed
