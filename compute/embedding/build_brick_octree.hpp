@@ -53,12 +53,6 @@ struct BrickOctree {
 
 namespace detail {
 
-struct FrameTriangle {
-  const Corners* corners;
-  TriangleFrame* frame;
-  NACRE_HD void operator()(std::int64_t i) const { frame[i] = triangle_frame(corners[i]); }
-};
-
 NACRE_HD_INLINE std::uint32_t cells_of(const CellMask& mask) {
   int n = 0;
   for (int z = 0; z < 8; ++z) n += count_bits(mask.word[z]);

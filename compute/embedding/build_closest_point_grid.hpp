@@ -1,6 +1,7 @@
 // Nacre: the closest-point grid from triangles (sec. 5.1.1, Alg. 5.1, corrected as the notes in docs/method.md say).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -9,6 +10,7 @@
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/embedding/clusters.hpp"
+#include "compute/embedding/octet_search.hpp"
 #include "compute/embedding/sorted_pairs.hpp"
 
 namespace nacre {
@@ -71,16 +73,13 @@ struct BrickStart {
   }
 };
 
-/// Exact closest points of an octet (2^3 cells) among the clusters of its brick. The octet keeps the few clusters that
-/// can hold a closest point of any of its cells, then each cell looks at those only.
+/// Exact closest points of an octet (2^3 cells) among the clusters of its brick, of which it keeps the few that can hold
+/// one of any of its cells.
 struct ClosestOfOctet {
-  static constexpr int room = 96;  // clusters kept; with more than that every cell looks at the whole list
+  static constexpr int room = 96;  // clusters kept; with more than that the octet looks at the whole list
 
-  MeshView mesh;
   ClosestPointGridView grid;
-  const std::uint32_t* order;
-  const std::uint32_t* cluster_start;
-  const ClusterBound* bound;
+  ClusterView clusters;
   const std::uint64_t* list_start;
   const std::uint64_t* list;  // keys: the low half is the cluster
   Float4* offset;
@@ -93,70 +92,53 @@ struct ClosestOfOctet {
     const auto brick = std::uint32_t(i / (n * n * n));
     const int o = int(i % (n * n * n));
     const Int3 corner{2 * (o % n), 2 * (o / n % n), 2 * (o / (n * n))};
-    const Int3 origin = morton_cell(grid.brick_code[brick]) * Int3(grid.sub);
-    const std::uint64_t first = list_start[brick], last = list_start[brick + 1];
-    std::uint32_t kept[room];
-    const int count = keep(Vec3f(origin + corner) + Vec3f(1.0f), first, last, kept);
+    const Vec3d centre(morton_cell(grid.brick_code[brick]) * Int3(grid.sub) + corner + Int3(1));
+    const std::uint64_t* all = list + list_start[brick];
+    const auto count = int(list_start[brick + 1] - list_start[brick]);
+    const float near = distance(Vec3f(centre), all, count);
+    std::uint32_t kept[room + 1];
+    const int few = keep(Vec3f(centre), near, all, count, kept);
+    const float farthest =
+        near + 2 * cell_diagonal;  // more than any cell is from the surface: all have a closest point
+    OctetSearch search(clusters, centre, near, farthest, OctetSearch::all_touched);
+    if (few <= room)
+      search.search(few, [&](std::uint64_t k) { return kept[k]; });
+    else
+      search.search(count, [&](std::uint64_t k) { return std::uint32_t(all[k]); });
     for (int k = 0; k < 8; ++k) {
       const Int3 local = corner + Int3(k & 1, k >> 1 & 1, k >> 2);
       if (local.x >= grid.sub || local.y >= grid.sub || local.z >= grid.sub) continue;
       const std::uint32_t at = brick * grid.cells_per_brick() + (local.z * grid.sub + local.y) * grid.sub + local.x;
-      const Vec3d x = Vec3d(origin + local) + Vec3d(0.5);
-      if (count <= room)
-        search(at, x, std::uint64_t(count), [&](std::uint64_t c) { return kept[c]; });
-      else
-        search(at, x, last - first, [&](std::uint64_t c) { return std::uint32_t(list[first + c]); });
+      offset[at] = search.offset(k);
+      triangle[at] = search.triangle(k);
     }
   }
 
-  /// Clusters that may hold a closest point of a cell of the octet around `centre`; more than `room`: none are kept.
-  NACRE_HD int keep(const Vec3f& centre, std::uint64_t first, std::uint64_t last, std::uint32_t* kept) const {
-    const float half = 0.8661f;  // from the octet's centre to that of a cell
+  /// How far the surface is from `centre`, at most: the clusters' centres lie on it.
+  NACRE_HD float distance(const Vec3f& centre, const std::uint64_t* all, int count) const {
     float nearest = 1e30f;
-    for (std::uint64_t k = first; k < last; ++k) {
-      const float d = bound[std::uint32_t(list[k])].upper(centre);
-      nearest = d < nearest ? d : nearest;
+    for (int k = 0; k < count; ++k) {
+      const Vec3f d = clusters.bound[std::uint32_t(all[k])].centre - centre;
+      const float square = dot(d, d);
+      nearest = square < nearest ? square : nearest;
     }
-    const float reach = nearest + 2 * half + 1e-2f;
-    int count = 0;
-    for (std::uint64_t k = first; k < last && count <= room; ++k) {
-      const auto c = std::uint32_t(list[k]);
-      if (bound[c].lower(centre) > reach) continue;
-      if (count < room) kept[count] = c;
-      ++count;
-    }
-    return count;
+    return std::sqrt(nearest) + clusters.rounding + 1e-3f;
   }
 
-  template <class Candidate>
-  NACRE_HD void search(std::uint32_t at, const Vec3d& x, std::uint64_t count, const Candidate& candidate) const {
-    const Vec3f centre(x);
-    float reach = 1e30f;
-    for (std::uint64_t k = 0; k < count; ++k) {
-      const float d = bound[candidate(k)].upper(centre);
-      reach = d < reach ? d : reach;
+  /// Lists the clusters whose balls come near enough to hold a closest point of a cell of the octet around `centre`, from
+  /// which the surface is at most `near` away; returns how many there are.
+  NACRE_HD int keep(const Vec3f& centre, float near, const std::uint64_t* all, int count, std::uint32_t* kept) const {
+    const float reach = near + 2 * cell_diagonal + clusters.rounding + 1e-3f;  // to a cell and back
+    int few = 0;
+    for (int k = 0; k < count; ++k) {
+      const auto c = std::uint32_t(all[k]);
+      const ClusterBound& b = clusters.bound[c];
+      const Vec3f d = b.centre - centre;
+      const float farthest = reach + b.radius;
+      kept[few < room ? few : room] = c;
+      few += int(dot(d, d) <= farthest * farthest);
     }
-    reach += 1e-2f;
-    double best = double(reach) * reach;
-    Vec3d closest{};
-    std::uint32_t winner = none;
-    for (std::uint64_t k = 0; k < count; ++k) {
-      const std::uint32_t c = candidate(k);
-      if (bound[c].lower(centre) > reach) continue;
-      for (std::uint32_t j = cluster_start[c]; j < cluster_start[c + 1]; ++j) {
-        const std::uint32_t t = order[j];
-        const Vec3d p = nacre::closest_point(mesh.corners(t), x);
-        const double d = dot(p - x, p - x);
-        if (d > best || (d == best && t > winner)) continue;
-        best = d;
-        closest = p;
-        winner = t;
-        reach = float(std::sqrt(best)) + 1e-2f;
-      }
-    }
-    const Vec3f o(closest - x);
-    offset[at] = {o.x, o.y, o.z, float(std::sqrt(best))};
-    triangle[at] = winner;
+    return few;
   }
 };
 
@@ -202,11 +184,16 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
                                                    list_start.data(), grid.brick_code.data(), grid.brick_index.data()});
     grid.offset = arena.permanent<Float4>(grid.cells);
     grid.triangle = arena.permanent<std::uint32_t>(grid.cells);
+    Array<TriangleFrame> frame = arena.temporary<TriangleFrame>(triangles);
+    exec.for_each(triangles, detail::FrameTriangle{clusters.corners.data(), frame.data()});
+    const Int3 dims = bricks * Int3(sub);
+    const detail::ClusterView view{clusters.order.data(), clusters.start.data(),
+                                   clusters.bound.data(), clusters.corners.data(),
+                                   frame.data(),          float(std::max({dims.x, dims.y, dims.z})) * 1.1e-7f};
     const int octets = detail::ClosestOfOctet::octets(sub);
-    exec.for_each(
-        std::int64_t(grid.brick_count) * octets * octets * octets,
-        detail::ClosestOfOctet{mesh, grid.view(), clusters.order.data(), clusters.start.data(), clusters.bound.data(),
-                               list_start.data(), pairs.data(), grid.offset.data(), grid.triangle.data()});
+    exec.for_each(std::int64_t(grid.brick_count) * octets * octets * octets,
+                  detail::ClosestOfOctet{grid.view(), view, list_start.data(), pairs.data(), grid.offset.data(),
+                                         grid.triangle.data()});
   }
   Arena::Scope scope(arena);
   const Array<std::uint64_t> pairs = sorted_pairs(exec, triangles, detail::CellsTouched{mesh, grid.view()});

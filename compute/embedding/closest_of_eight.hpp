@@ -40,9 +40,10 @@ NACRE_HD_INLINE bool closest_of_eight(const Corners& t, const Vec3d& centre, dou
   v = at_c ? zero : v, w = at_c ? zero + 1 : w;
   v = at_b ? zero + 1 : v, w = at_b ? zero : w;
   v = at_a ? zero : v, w = at_a ? zero : w;
-  found.x = ab.x * v + ac.x * w - at_corners(p.x, half, 0.0, 0.0);
-  found.y = ab.y * v + ac.y * w - at_corners(p.y, 0.0, half, 0.0);
-  found.z = ab.z * v + ac.z * w - at_corners(p.z, 0.0, 0.0, half);
+  // By way of the point itself, whose rounding hides that of the weights: most triangles that share it tie.
+  found.x = (ab.x * v + ac.x * w + t.a.x) - at_corners(centre.x, half, 0.0, 0.0);
+  found.y = (ab.y * v + ac.y * w + t.a.y) - at_corners(centre.y, 0.0, half, 0.0);
+  found.z = (ab.z * v + ac.z * w + t.a.z) - at_corners(centre.z, 0.0, 0.0, half);
   found.squared = found.x * found.x + found.y * found.y + found.z * found.z;
   return true;
 }

@@ -20,6 +20,12 @@ NACRE_HD_INLINE int lowest_bit(unsigned bits) {
 #endif
 }
 
+struct FrameTriangle {
+  const Corners* corners;
+  TriangleFrame* frame;
+  NACRE_HD void operator()(std::int64_t i) const { frame[i] = triangle_frame(corners[i]); }
+};
+
 /// Clusters of triangles with what their distances are computed from.
 struct ClusterView {
   const std::uint32_t* order;
@@ -63,13 +69,16 @@ constexpr float cell_diagonal = 0.8660256f;  ///< half of it: a triangle that to
 /// The eight cells of an octet (2^3 cells) and their closest points so far.
 class OctetSearch {
  public:
-  /// `near`: the surface is no farther from the octet's centre.
-  NACRE_HD OctetSearch(const ClusterView& clusters, const Vec3d& centre, float near, float radius)
+  static constexpr unsigned all_touched = 0xff;
+
+  /// `near`: the surface is no farther from the octet's centre; `touched`: cells of which that need not be found out.
+  NACRE_HD OctetSearch(const ClusterView& clusters, const Vec3d& centre, float near, float radius, unsigned touched = 0)
       : clusters_(clusters),
         centre_(centre),
         at_(centre),
         radius_(radius),
-        slack_(clusters.rounding + 1e-4f + 1e-6f * radius) {
+        slack_(clusters.rounding + 1e-4f + 1e-6f * radius),
+        touched_(touched) {
     const float bound = near + (cell_diagonal + 1e-4f);
     nearest_ = eight(bound * bound);
     for (int k = 0; k < 8; ++k) best_[k] = 1e300, winner_[k] = none, x_[k] = y_[k] = z_[k] = 0;
@@ -107,6 +116,10 @@ class OctetSearch {
     return bits;
   }
   NACRE_HD unsigned touched() const { return touched_; }
+
+  /// The closest point of a cell minus its centre, and its distance; the triangle that it lies on.
+  NACRE_HD Float4 offset(int k) const { return {float(x_[k]), float(y_[k]), float(z_[k]), float(std::sqrt(best_[k]))}; }
+  NACRE_HD std::uint32_t triangle(int k) const { return std::uint32_t(winner_[k]); }
 
   /// Writes the closest points of the cells in `bits` to to(0) .. to(7).
   template <class To>
@@ -232,7 +245,7 @@ class OctetSearch {
   float slack_;      // of distances from clusters
   float error_ = 0;  // of those from triangles
   int pending_ = 0;
-  unsigned touched_ = 0;
+  unsigned touched_;
   Eight nearest_;  // squared: the surface is no farther
   Eight reach_;
   Doubles best_;  // squared

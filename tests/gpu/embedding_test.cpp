@@ -22,7 +22,7 @@ class Embedding : public EachBackend {
     ASSERT_EQ(found.place, expected.place) << "surface cells";
     expect_near(found.offset, expected.offset, "closest points");
     expect_near(found.seed, expected.seed, "seeds");
-    EXPECT_LE(differing_share(found.triangle, expected.triangle), 0.01);  // either of two that share an edge
+    EXPECT_LE(differing_share(found.triangle, expected.triangle), 0.03);  // either of two that share an edge
     EXPECT_LE(differing_share(found.texel, expected.texel), 1e-4);        // a float may fall on either side of a cell
     EXPECT_LE(differing_share(found.neighbour, expected.neighbour), 1e-4);
   }
