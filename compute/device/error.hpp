@@ -1,6 +1,7 @@
-// Nacre: the one exception that a user may see.
+// Nacre: the one exception that a user may see, and the user's wish to stop.
 #pragma once
 
+#include <atomic>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,5 +35,13 @@ class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}
 };
+
+/// Has the user asked to stop? `stop` is set by a signal handler or another thread; null: nobody can ask.
+inline bool is_set(const std::atomic<bool>* stop) { return stop && stop->load(std::memory_order_relaxed); }
+
+/// Throws Interrupted where the user has asked to stop.
+inline void check_stop(const std::atomic<bool>* stop) {
+  if (is_set(stop)) throw Interrupted();
+}
 
 }  // namespace nacre

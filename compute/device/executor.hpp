@@ -37,10 +37,8 @@ class ExecutorBase {
 
   /// Set from a signal handler or another thread; the next launch throws Interrupted.
   void watch(const std::atomic<bool>* stop) { stop_ = stop; }
-  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
-  void check_stop() const {
-    if (stopped()) throw Interrupted();
-  }
+  bool stopped() const { return is_set(stop_); }
+  void check_stop() const { nacre::check_stop(stop_); }
 
  protected:
   /// At the head of every launch.

@@ -52,7 +52,8 @@ void check_points(std::span<const Vec3d> points) {
   const std::string what = "the particles cannot be triangulated";
   if (points.size() >= std::size_t(std::numeric_limits<std::int32_t>::max()) / 8)
     throw Error(what, "there are more than 268 million", "choose a larger --min-size");
-  if (points.size() < 4) throw Error(what, "there are fewer than four", "choose a smaller --max-size, or more --particles");
+  if (points.size() < 4)
+    throw Error(what, "there are fewer than four", "choose a smaller --max-size, or more --particles");
   for (const Vec3d& p : points)
     if (!is_finite(p)) throw Error(what, "one of them is not at a finite place");
 }
@@ -102,11 +103,11 @@ class Insertion {
           insert_locked(order_[i], hints.local());
       });
     }
-    if (stopped()) throw Interrupted();
+    check_stop(stop_);
   }
 
  private:
-  bool stopped() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+  bool stopped() const { return is_set(stop_); }
 
   bool insert(std::size_t point, Vertex& hint, bool* could_lock) {
     const Vertex vertex = triangulation_.insert(points_[point], hint, could_lock);
@@ -219,10 +220,6 @@ std::vector<std::int32_t> canonical_order(const std::vector<Cell>& vertices, std
   tbb::parallel_for(std::size_t(0), points,
                     [&](std::size_t p) { std::sort(order.begin() + begin[p], order.begin() + begin[p + 1], before); });
   return order;
-}
-
-void check_stop(const std::atomic<bool>* stop) {
-  if (stop && stop->load(std::memory_order_relaxed)) throw Interrupted();
 }
 
 /// The same cells in canonical order, with their circumcentres.

@@ -40,7 +40,7 @@ class Improvement {
       if (round_ == 1) result_.bad_before = std::int64_t(worst.size());
       const std::int64_t steps = result_.flips + result_.moves;
       for (const std::int32_t cell : worst) {
-        if (stop_ && stop_->load(std::memory_order_relaxed)) throw Interrupted();
+        check_stop(stop_);
         if (is_bad(cell) && may_help(cell) && !flip(cell)) move_corners(cell);
       }
       if (result_.flips + result_.moves == steps) break;

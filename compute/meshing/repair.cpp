@@ -72,7 +72,7 @@ class Repair {
   std::vector<Place> work_off(int steps) {
     std::vector<Place> stuck;
     while (!waiting_.empty()) {
-      if (stop_ && stop_->load(std::memory_order_relaxed)) throw Interrupted();
+      check_stop(stop_);
       const Place place = waiting_.front();
       waiting_.pop_front();
       if (excess(place) > 0 && !improve(place, steps)) stuck.push_back(place);

@@ -22,10 +22,6 @@ constexpr double facet_clearance = 1.1;   // balls of facets that lattice points
 constexpr double vertex_clearance = 0.6;  // around the surface's vertices, by the edges there
 constexpr int attempts = 5;
 
-void check_stop(const std::atomic<bool>* stop) {
-  if (stop && stop->load(std::memory_order_relaxed)) throw Interrupted();
-}
-
 [[noreturn]] void cannot_fill(const char* why, const char* advice = "") {
   throw Error("the surface cannot be filled", why, advice);
 }

@@ -49,7 +49,7 @@ std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atom
     volumes.push_back(read_volume(file));
     if (warn)
       for (const std::string& warning : volumes.back().warnings) warn(warning);
-    if (stop && *stop) throw Interrupted();
+    check_stop(stop);
   }
   return volumes;
 }

@@ -42,7 +42,7 @@ struct PhantomGrid {
   template <class F>
   void for_each(const Int3& low, const Int3& high, const F& f) const {
     tbb::parallel_for(low.z, high.z + 1, [&](int k) {
-      if (stop && *stop) throw Interrupted();
+      check_stop(stop);
       for (int j = low.y; j <= high.y; ++j)
         for (int i = low.x; i <= high.x; ++i) f(index(i, j, k), centre(i, j, k));
     });

@@ -170,7 +170,7 @@ void VectorsInTime::survey(bool vectors_too) {
   const std::size_t moments = analytic_ && series_.steps() == 1 && end_ > start_ ? 8 : series_.steps();
   std::vector<Vec3f> now(surface_.points.size()), next = now;
   const auto look_at = [&](std::size_t k) {
-    if (stop_ && *stop_) throw Interrupted();
+    check_stop(stop_);
     const double t = moments == series_.steps() ? series_.times[k] : start_ + (end_ - start_) * double(k) / 8;
     if (vectors_too) vectors(t, next);
     if (!scalars) return;
