@@ -6,6 +6,7 @@
 
 #include "compute/field/build_material_bricks.hpp"
 #include "compute/field/sizing.hpp"
+#include "compute/field/voxel_edges.hpp"
 #include "compute/grid/morton.hpp"
 #include "compute/particles/seed.hpp"
 
@@ -13,33 +14,8 @@ namespace nacre {
 
 namespace detail {
 
-/// The edges from the voxels of a row of one block to the next ones along x, y and z.
-struct CubeEdges {
-  MaterialBricksView field;
-
-  /// visit(voxel, axis) for those between different materials.
-  template <class Visit>
-  NACRE_HD void operator()(std::int64_t row, const Visit& visit) const {
-    const std::int64_t block = row / (block_size * block_size);
-    if (field.block_start[block] == field.block_start[block + 1]) return;
-    const int in_block = int(row % (block_size * block_size));
-    const Int3 n = field.voxels();
-    const Int3 low = Int3(int(block % field.blocks.x), int(block / field.blocks.x % field.blocks.y),
-                          int(block / field.blocks.x / field.blocks.y)) *
-                         Int3(block_size) +
-                     Int3(0, in_block % block_size, in_block / block_size);
-    const std::int64_t step[] = {1, n.x, std::int64_t(n.x) * n.y};
-    for (int k = 0; k < block_size; ++k) {
-      const Int3 v = low + Int3(k, 0, 0);
-      const std::uint16_t* at = field.voxel_material + field.voxel_number(v.x, v.y, v.z);
-      for (int axis = 0; axis < 3; ++axis)
-        if (v[axis] + 1 < n[axis] && *at != at[step[axis]]) visit(v, axis);
-    }
-  }
-};
-
 struct CountCubeEdges {
-  CubeEdges edges;
+  VoxelEdges edges;
   std::uint32_t* count;
   NACRE_HD void operator()(std::int64_t i) const {
     std::uint32_t n = 0;
@@ -54,7 +30,7 @@ struct CubeEdge {
 };
 
 struct ListCubeEdges {
-  CubeEdges edges;
+  VoxelEdges edges;
   const std::uint32_t* start;
   CubeEdge* edge;
   NACRE_HD void operator()(std::int64_t i) const {
@@ -157,8 +133,8 @@ MarchingCubesSeeds marching_cubes(Executor<Backend>& exec, const MaterialBricks&
                                   const Array<Junction>& table) {
   if (table.size() == 0) return {nullptr, 0};
   Arena& arena = exec.arena();
-  const std::int64_t rows = b.voxel_count() / block_size;
-  const detail::CubeEdges edges{b.view()};
+  const VoxelEdges edges{b.view()};
+  const std::int64_t rows = edges.rows();
   Array<std::uint32_t> start = arena.temporary<std::uint32_t>(rows);
   exec.for_each(rows, detail::CountCubeEdges{edges, start.data()});
   const std::int64_t n = exec.exclusive_scan(start.data(), start.data(), rows);
