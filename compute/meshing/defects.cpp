@@ -103,20 +103,12 @@ bool split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::sp
   return true;
 }
 
-/// Points of a surface that have facets of several pairs of materials.
+/// Points of a surface that have come into a junction.
 std::vector<std::uint32_t> in_junctions(const SurfaceMesh& mesh, std::span<const std::uint8_t> order) {
-  std::vector<std::array<std::uint16_t, 2>> pair(mesh.points.size());
-  std::vector<std::uint8_t> seen(mesh.points.size(), 0), several(mesh.points.size(), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t v = mesh.triangles[t][k];
-      if (!seen[v]) pair[v] = mesh.materials[t];
-      several[v] |= pair[v] != mesh.materials[t];
-      seen[v] = 1;
-    }
+  const std::vector<std::uint8_t> at_junction = junction_points(mesh);
   std::vector<std::uint32_t> found;
-  for (std::uint32_t v = 0; v < several.size(); ++v)
-    if (several[v] && order[v] == 2) found.push_back(v);
+  for (std::uint32_t v = 0; v < at_junction.size(); ++v)
+    if (at_junction[v] && order[v] == 2) found.push_back(v);
   return found;
 }
 
@@ -241,6 +233,12 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
   fill_in(mesh, facets_at, order, size, touching, !rule.fills, defects);
   for (const Cap& cap : caps) fill_before_rim(mesh, facets_at, size, cap.triangle, cap.flat, defects);
   return defects;
+}
+
+void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order) {
+  const std::vector<std::uint8_t> at_junction = junction_points(mesh);
+  for (std::size_t v = 0; v < order.size(); ++v)
+    if (!at_junction[v]) order[v] = 2;
 }
 
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,

@@ -45,9 +45,14 @@ struct MeshDefects {
 /// nearer than 0.2 sizes; there a new point splits the longest edge, if it is long. `touching` are edges (two points), or
 /// vertices (one point twice), where a surface touches itself: off the junctions that shows that it is too coarsely sampled,
 /// and new points go into the middle of the facets there; as a last resort at junctions, too. `order` (2 surface, 1 curve,
-/// 0 point) and `size` (world units) are per point of the mesh.
+/// 0 point) and `size` (world units) are per point of the mesh; see lift_off_junctions for
+/// the former.
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
+
+/// A point of a junction counts as a surface's where the mesh has no junction: too little of a third material comes there for
+/// a cell of its own. So triangles are judged by what the mesh shows. `order` is per point of the mesh.
+void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order);
 
 /// How far a triangle is above the least ratio of `rule`, as a multiple of it; below 1 where it is bad.
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,

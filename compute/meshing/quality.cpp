@@ -71,24 +71,6 @@ class Tally {
   TriangleQuality sum_;
 };
 
-/// Per point whether three or more materials meet there.
-std::vector<char> crowded_points(const SurfaceMesh& mesh) {
-  constexpr std::uint16_t none = 0xffff;
-  std::vector<std::array<std::uint16_t, 2>> seen(mesh.points.size(), {none, none});
-  std::vector<char> crowded(mesh.points.size());
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t p = mesh.triangles[i][k];
-      for (const std::uint16_t m : mesh.materials[i]) {
-        if (seen[p][0] == none) seen[p][0] = m;
-        if (seen[p][0] == m) continue;
-        if (seen[p][1] == none) seen[p][1] = m;
-        if (seen[p][1] != m) crowded[p] = 1;
-      }
-    }
-  return crowded;
-}
-
 }  // namespace
 
 double radius_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c) { return ratio_of(Shape(a, b, c)); }
@@ -109,15 +91,28 @@ std::array<double, 6> dihedral_angles(const std::array<Vec3d, 4>& p) {
   return angles;
 }
 
+std::vector<std::uint8_t> junction_points(const SurfaceMesh& mesh) {
+  constexpr std::uint16_t none = 0xffff;
+  std::vector<std::array<std::uint16_t, 2>> seen(mesh.points.size(), {none, none});
+  std::vector<std::uint8_t> at_junction(mesh.points.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t p = mesh.triangles[i][k];
+      if (seen[p][0] == none) seen[p] = mesh.materials[i];
+      at_junction[p] |= mesh.materials[i] != seen[p];
+    }
+  return at_junction;
+}
+
 SurfaceQuality surface_quality(const SurfaceMesh& mesh) {
-  const std::vector<char> crowded = crowded_points(mesh);
+  const std::vector<std::uint8_t> at_junction = junction_points(mesh);
   Tally all, away;
   for (const Triangle& t : mesh.triangles) {
     const Shape shape(mesh.points[t.a], mesh.points[t.b], mesh.points[t.c]);
     const double ratio = ratio_of(shape);
     const std::array<double, 3> angles = angles_of(shape);
     all.add(ratio, angles);
-    if (!crowded[t.a] && !crowded[t.b] && !crowded[t.c]) away.add(ratio, angles);
+    if (!at_junction[t.a] && !at_junction[t.b] && !at_junction[t.c]) away.add(ratio, angles);
   }
   return {all.result(), away.result()};
 }

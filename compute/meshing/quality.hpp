@@ -19,6 +19,9 @@ std::array<double, 3> triangle_angles(const Vec3d& a, const Vec3d& b, const Vec3
 /// The six dihedral angles of a tetrahedron, degrees, at the edges 01 02 03 12 13 23; its volume's sign plays no part.
 std::array<double, 6> dihedral_angles(const std::array<Vec3d, 4>& corners);
 
+/// Marks the points of a mesh where three or more materials meet.
+std::vector<std::uint8_t> junction_points(const SurfaceMesh& mesh);
+
 /// Of a set of triangles; zeros where it is empty. Angles in degrees.
 struct TriangleQuality {
   std::int64_t triangles = 0;
@@ -31,7 +34,7 @@ struct TriangleQuality {
 
 struct SurfaceQuality {
   TriangleQuality all;
-  TriangleQuality away_from_junctions;  ///< triangles without a corner where three or more materials meet
+  TriangleQuality away_from_junctions;  ///< triangles without a corner on a junction
 };
 
 /// Shape of the triangles of `mesh`, whose corners are points.

@@ -32,7 +32,7 @@ auto MeshPipelineOf<Backend>::triangulate_once(Delaunay& delaunay) -> Triangulat
   Triangulated made;
   made.repair = repair_labels(points, cells, label, stop_);
   made.mesh = extract_interfaces(points, cells, label, &made.point_of);
-  if (stop_ && stop_->load(std::memory_order_relaxed)) throw Interrupted();
+  check_stop(stop_);
   made.fitness = -double(made.repair.places.size());
   if (made.repair.places.empty()) made.fitness = fitness(made.mesh, point_facts(made).order, worst_defects);
   return made;
@@ -228,6 +228,7 @@ auto MeshPipelineOf<Backend>::point_facts(const Triangulated& made) const -> Poi
     facts.order.push_back(std::uint8_t(junctions_[particles.interface[i]].order()));
     facts.size.push_back(particles.place[i].w * float(frame_.unit));
   }
+  lift_off_junctions(made.mesh, facts.order);
   return facts;
 }
 

@@ -59,7 +59,7 @@ class MeshPipelineOf : public MeshPipeline {
     double fitness = 0;  ///< see there; below 0: it touches itself at so many places
   };
   struct PointFacts {
-    std::vector<std::uint8_t> order;  ///< of junction
+    std::vector<std::uint8_t> order;  ///< of the junction that the mesh has there
     std::vector<float> size;          ///< world units
   };
   /// What has been done for the triangles.

@@ -225,6 +225,20 @@ TEST(Defects, PlacesThatTouchGetNewPointsUnlessTheyAreCrowded) {
   EXPECT_EQ(ball.defects(worst_defects, {{t.a, t.a}}).insert.size(), facets) << "at last, there too";
 }
 
+TEST(Defects, PointsOfAJunctionCountAsASurfacesWhereTheMeshHasNone) {
+  Ball ball(with_a_twin(400));
+  for (std::uint8_t& o : ball.order) o = 1;
+  lift_off_junctions(ball.mesh, ball.order);
+  EXPECT_EQ(ball.order, std::vector<std::uint8_t>(ball.order.size(), 2)) << "two materials only";
+  EXPECT_NEAR(fitness(ball.mesh, ball.order, worst_defects), ball.worst() / worst_defects.ratio, 1e-9);
+  for (std::uint8_t& o : ball.order) o = 0;
+  ball.mesh.materials[50] = {0, 2};
+  lift_off_junctions(ball.mesh, ball.order);
+  EXPECT_EQ(std::count(ball.order.begin(), ball.order.end(), 0), 3);
+  const Triangle t = ball.mesh.triangles[50];
+  EXPECT_TRUE(ball.order[t.a] == 0 && ball.order[t.b] == 0 && ball.order[t.c] == 0) << "three materials meet there";
+}
+
 TEST(Defects, FitnessIsTheLeastRatioByWhatIsAsked) {
   Ball ball(with_a_twin(400));
   const double worst = ball.worst();

@@ -47,6 +47,7 @@ TEST(Quality, SurfaceSumsUpAndLooksAwayFromJunctions) {
                  {10, 9, 9}, {9, 10, 9}};
   mesh.triangles = {{0, 1, 2}, {0, 4, 3}, {5, 6, 7}};
   mesh.materials = {{0, 1}, {1, 2}, {0, 1}};  // three materials at point 0
+  EXPECT_EQ(junction_points(mesh), (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0, 0, 0}));
   const SurfaceQuality q = surface_quality(mesh);
   EXPECT_EQ(q.all.triangles, 3);
   const double isosceles = 2 * (std::sqrt(2.) - 1);
