@@ -44,12 +44,25 @@ json input_json(const MeshInput& input) {
           {"warnings", input.warnings}};
 }
 
-json fields_json(const MeshInfo& info) {
+/// The labels that meet on each surface and curve, and at each kind of junction point.
+json junctions_json(const MeshInput& input, const MeshInfo& info) {
+  json junctions = json::array();
+  for (const auto& materials : info.junctions) {
+    json labels = json::array();
+    for (const std::uint16_t m : materials)
+      if (m < input.labels.size()) labels.push_back(input.labels[m]);
+    junctions.push_back(labels);
+  }
+  return junctions;
+}
+
+json fields_json(const MeshInput& input, const MeshInfo& info) {
   return {{"blocks", vector_json(info.blocks)},
           {"bytes", info.field_bytes},
           {"surfaces", info.surfaces},
           {"curves", info.curves},
           {"points", info.points},
+          {"junctions", junctions_json(input, info)},
           {"crowded_points", info.crowded_points},
           {"crowded_cells", info.crowded_cells},
           {"constrained_voxels", info.constrained_voxels},
@@ -156,7 +169,7 @@ void add_mesh_report(json& report, const MeshInput& input, const Settings& setti
   report["input"] = input_json(input);
   report["parameters"] = knob_values(settings);
   report["embedding"] = {{"kind", "interfaces"}, {"cells", info.embedding_cells}, {"bytes", info.embedding_bytes}};
-  report["fields"] = fields_json(info);
+  report["fields"] = fields_json(input, info);
   report["particles"] = particles_json(info, result.interrupted);
   report["mesh"] = mesh_json(input, result);
   if (result.cells) report["tetrahedra"] = cells_json(input, result);

@@ -1,6 +1,7 @@
 // Nacre: where two, three or four materials meet: surfaces, junction curves, junction points, and how to get onto them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "compute/field/material_bricks.hpp"
@@ -22,6 +23,11 @@ struct Junction {
   NACRE_HD constexpr int order() const { return 4 - materials(); }
   NACRE_HD constexpr bool has(std::uint32_t m) const {
     return material(0) == m || material(1) == m || material(2) == m || material(3) == m;
+  }
+  /// All four; 0xffff where there are fewer.
+  std::array<std::uint16_t, 4> all() const {
+    return {std::uint16_t(material(0)), std::uint16_t(material(1)), std::uint16_t(material(2)),
+            std::uint16_t(material(3))};
   }
   /// This is `other`, or a part of its rim (the curve where surface `other` ends, a point where curve `other` ends).
   NACRE_HD constexpr bool bounds(const Junction& other) const {

@@ -134,6 +134,8 @@ void MeshPipelineOf<Backend>::relate_interfaces() {
   std::sort(points.begin(), points.end(), [](const Junction& a, const Junction& b) { return a.packed < b.packed; });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   junctions_.insert(junctions_.end(), points.begin(), points.end());
+  info_.junctions.clear();
+  for (const Junction& j : junctions_) info_.junctions.push_back(j.all());
   std::vector<std::uint32_t> start{0}, related;
   std::vector<std::uint8_t> order;
   for (std::size_t k = 0; k < junctions_.size(); ++k) {

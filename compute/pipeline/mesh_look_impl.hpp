@@ -116,9 +116,7 @@ MeshParticles MeshPipelineOf<Backend>::particles() const {
     result.energy.push_back(direction[i].w);
     result.normal.push_back(frame_.direction_to_world({direction[i].x, direction[i].y, direction[i].z}));
     result.order.push_back(std::uint8_t(j.order()));
-    std::array<std::uint16_t, 4> materials;
-    for (int k = 0; k < 4; ++k) materials[k] = std::uint16_t(j.material(k));
-    result.materials.push_back(materials);
+    result.materials.push_back(j.all());
   }
   return result;
 }

@@ -27,6 +27,7 @@ TEST_F(MeshReport, HasEveryKeyOfTheContract) {
   EXPECT_GT(r["fields"]["expected_particles"], 100);
   EXPECT_EQ(r["fields"]["surfaces"], 3);
   EXPECT_EQ(r["fields"]["curves"], 1);
+  EXPECT_EQ(r["fields"]["junctions"], json({{0, 1, 2}, {0, 1}, {0, 2}, {1, 2}}));
   EXPECT_GT(r["particles"]["seeded"], 100);
   EXPECT_GT(r["particles"]["final"], 100);
   EXPECT_EQ(r["particles"]["energy"].size(), r["particles"]["iterations"]);

@@ -127,8 +127,17 @@ TEST(MeshData, NestedHead) {  // shells that touch in a few places at most
   const MeshVolume volume = read({"nested-head/standard_seg.nrrd"});
   const MeshRun run = mesh_of(volume, "nested head", parameters);
   EXPECT_GE(run.info.surfaces, 3);
-  EXPECT_TRUE(check_topology(run.mesh, volume.materials()).sound());
-  EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.95);
+  expect_good_shapes(run);
+}
+
+/// A CT volume and an iso-value, at the default's sizes.
+TEST(MeshData, Skull) {
+  NEEDS_DATA("../scalar/skull_2.9.inr");
+  MaterialOptions options;
+  options.isovalues = {2.9};
+  const MeshRun run = mesh_of(read({"../scalar/skull_2.9.inr"}, options), "skull");
+  EXPECT_NEAR(double(run.mesh.triangles.size()), 42800, 2000);
+  expect_good_shapes(run, 0.97);
 }
 
 }  // namespace

@@ -101,6 +101,18 @@ TEST_F(Vti, PointsInTheFilesType) {
   EXPECT_EQ(values_of(large)[0], 16777217);
 }
 
+TEST_F(
+    Vti,
+    DirectionTurnsTheAxes) {  // a third of a turn: x goes to y, y to z, z to x; rows of the matrix are the world's axes
+  const Volume volume = read("a.vti", vti("Spacing=\"1 2 3\" Origin=\"4 5 6\" Direction=\"0 0 1 1 0 0 0 1 0\"",
+                                          "<PointData>" + array("UInt8", "v", twelve) + "</PointData>"));
+  expect_near(volume.axes[0], {0, 1, 0});
+  expect_near(volume.axes[1], {0, 0, 1});
+  expect_near(volume.axes[2], {1, 0, 0});
+  expect_near(volume.spacing, {1, 2, 3});
+  expect_near(volume.origin, {4, 5, 6});
+}
+
 TEST_F(Vti, CellsLieBetweenThePoints) {
   std::string content =
       vti("Spacing=\"1 2 3\"", "<CellData>" + array("UInt8", "labels", "1 2 3 4 5 6 7 8") + "</CellData>");
