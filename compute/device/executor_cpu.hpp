@@ -15,6 +15,17 @@
 
 namespace nacre {
 
+namespace detail {
+
+/// Scratch of this thread's team, of which there is one at a time; kept from launch to launch.
+inline unsigned char* team_scratch(std::size_t bytes) {
+  thread_local std::vector<unsigned char> scratch;
+  if (scratch.size() < bytes) scratch.resize(bytes);
+  return scratch.data();
+}
+
+}  // namespace detail
+
 template <>
 class Executor<Cpu> : public ExecutorBase {
  public:
@@ -36,8 +47,7 @@ class Executor<Cpu> : public ExecutorBase {
     begin_launch();
     run(n, [&](std::int64_t first, std::int64_t last) {
       const Kernel local = kernel;
-      std::vector<unsigned char> scratch(Team::sum_bytes + local.scratch_bytes());
-      Team team(scratch.data());
+      Team team(detail::team_scratch(Team::sum_bytes + local.scratch_bytes()));
       for (std::int64_t i = first; i < last; ++i) local(team, i);
     });
   }
