@@ -1,5 +1,6 @@
 // Nacre: the tables of `nacre bench` at the smallest scale: rows, quantities beside the source's, sums, plots.
 #include "compute/device/device.hpp"
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
 
 namespace nacre::test {
@@ -50,6 +51,7 @@ class BenchTables : public AppTest {
   void expect_scalar_tables() const;
   void expect_material_tables() const;
   void expect_flow_tables() const;
+  void expect_side_results() const;
 
   json report_;
   int status_ = -1;
@@ -79,7 +81,9 @@ void BenchTables::expect_scalar_tables() const {
     }
     before = seeds;
   }
-  row("3.4", "8, 2", 5);
+  const json coarse = row("3.4", "8, 2", 5), fine = row("3.4", "0.125, 0.125", 5);
+  for (const std::string solver : {"serial", "red-black", "tree"})
+    EXPECT_GT(ours(fine, solver + ": particles"), ours(coarse, solver + ": particles")) << "smaller epsilon and delta";
   const json gathering = row("gathering", "ribcage", 1);
   EXPECT_NEAR(ours(gathering, "copying, % of a turn"),
               100 * ours(gathering, "copying, ms") / ours(gathering, "a turn, ms"), 1e-9);
@@ -103,8 +107,30 @@ void BenchTables::expect_material_tables() const {
     }
     EXPECT_NEAR(ours(stages, "total, s"), sum, 1e-9) << "all that is not particles, our embedding too";
     EXPECT_EQ(ours(stages, "particles, tree, s"), ours(times, "tree: s"));
+    EXPECT_NEAR(ours(stages, "serial particles / extract"), ours(times, "serial: s") / ours(stages, "extract, s"),
+                1e-9);
   }
   expect_plot("figure-4.5.svg", {"distance volume", "sizing field", "closest point", "particles", "extract"});
+}
+
+void BenchTables::expect_side_results() const {
+  const json both = row("grid-octree", "train 64", 0);
+  for (const std::string what : {"build", "step"}) {
+    const double source = ours(both, "octree, source: " + what + ", s");
+    EXPECT_NEAR(ours(both, what + ", octree of the source / grid"), source / ours(both, "grid: " + what + ", s"), 1e-9);
+    EXPECT_NEAR(ours(both, what + ", octree of the source / bricks"),
+                source / ours(both, "octree, bricks: " + what + ", s"), 1e-9);
+  }
+  for (const char* sample : {"train", "delta-wing"}) {
+    const json finest = row("grid-octree", std::string(sample) + ", finest", 0);
+    EXPECT_GT(ours(finest, "octree, bricks: cells per axis"), ours(finest, "grid: cells per axis"));
+  }
+  for (const std::string sample : {"train", "aircraft"}) {
+    EXPECT_GT(ours(row("methods", sample, 0), "octree, source: embed, steps, picture, s"), 0);
+    const Image picture = read_png(path("plots/methods-" + sample + ".png"));
+    EXPECT_EQ(picture.width, 3 * 256 + 2 * 8) << "three beside each other";
+    EXPECT_GT(picture.height, 192);
+  }
 }
 
 void BenchTables::expect_flow_tables() const {
@@ -133,9 +159,10 @@ TEST_F(BenchTables, ParticlesAndMeshes) {
 }
 
 TEST_F(BenchTables, Flow) {
-  run({"--device", "cpu", "5.1", "6.1", "--plots", path("plots")});
+  run({"--device", "cpu", "5.1", "6.1", "grid-octree", "methods", "--plots", path("plots")});
   ASSERT_EQ(status_, 0) << errors_;
   expect_flow_tables();
+  expect_side_results();
 }
 
 TEST_F(BenchTables, TheSerialSolversRowsAreOfTheCpuBesideAGpu) {
