@@ -21,9 +21,9 @@ begin_bench bounds "$@"
 #   comparison are one each. A projection by WENO4 is 2776 (84 lanes of 30, 256 to make places of offsets; 3400 where cells
 #   are packed, with what is interpolated at the result), a velocity 56 (120 between two times; on the octree 56 a time), a
 #   pair of particles 57, a material's function 190 (250 for the difference of two, 130 without gradient).
-#   How often: counted once with counters in the kernels. A particle of the grid takes 16 velocities a step, half of them
-#   between two times, 4 projections and 15 cells of lines; of the octree 16 velocities and 15 cells. A particle of `relax`
-#   has 108 pairs (heart) or 142 (torso) and one projection.
+#   How often: counted once with counters in the kernels. A particle of the grid takes 16 velocities in its life (ttl 4, as
+#   by default), half of them between two times, 4 projections and 15 cells of lines; of the octree 16 velocities and 15
+#   cells. A particle of `relax` has 108 pairs (heart) or 142 (torso) and one projection an iteration.
 # - Instructions, all of them, are what valgrind counted in the stage's kernels (--tool=callgrind, one thread, built with
 #   NACRE_MARCH=haswell since it knows no AVX-512; flow of 256 cells, the small meshes of profile.sh). 0: not counted, where
 #   such runs are unlike the large ones (few cells for a triangle, few voxels far from all boundaries). Lines of the Delaunay

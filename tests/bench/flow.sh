@@ -32,7 +32,7 @@ echo "Median of $steps steps, ttl 2; $(machine)"
 echo
 printf '| data | resolution | surface cells | embed, s | refine, s | step, s | picture 1024x768, s | peak memory, GB |'
 printf ' million surface cells per second |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|\n'
-drivaer=$(find "$data" -name drivaer.pvd 2>/dev/null | sort | head -n 1)
+drivaer=$({ find "$data" -name drivaer.pvd 2>/dev/null || true; } | sort | head -n 1)  # the folder need not be there
 for resolution in "${resolutions[@]}"; do
   [[ -z $drivaer ]] || row drivaer "$resolution" "$drivaer"
 done
