@@ -2,6 +2,7 @@
 #include "app/bench/mesh_runs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <span>
 
@@ -83,13 +84,19 @@ const MeshFields& MeshRuns::fields(const MeshJob& job) {
   if (known != fields_.end()) return known->second;
   open(job, false, device_);
   const StageTimers& timers = pipeline_->timers();
-  MeshFields fields;
-  fields.dims = volume_->dims;
-  fields.materials = volume_->materials() - 1;
-  fields.distance = timers.seconds("tighten") + timers.seconds("distance");
-  fields.sizing = timers.seconds("sizing");
-  fields.embed = timers.seconds("embed");
-  return fields_[job] = fields;
+  const auto spent = [&] {
+    return std::array{timers.seconds("tighten") + timers.seconds("distance"), timers.seconds("sizing"),
+                      timers.seconds("embed")};
+  };
+  std::array<double, 3> best = spent(), before = best;
+  for (int k = 1; k < repeats && before[0] + before[1] + before[2] < long_enough; ++k) {
+    pipeline_->load(*volume_);
+    pipeline_->build_fields();
+    const std::array<double, 3> after = spent();
+    for (std::size_t i = 0; i < best.size(); ++i) best[i] = std::min(best[i], after[i] - before[i]);
+    before = after;
+  }
+  return fields_[job] = {volume_->dims, volume_->materials() - 1, best[0], best[1], best[2]};
 }
 
 void MeshRuns::place(const MeshSolve& solve) {
