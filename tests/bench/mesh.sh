@@ -82,7 +82,7 @@ row spheres "$data"/labels/cleaver/spheres{1,2,3,4}.nrrd
 row liver "$data/labels/junctions/liver.inr.gz"
 row liver-coarse "$data/labels/junctions/liver.inr.gz" --min-size 4.1 --max-size 4.1
 row frog-coarse "$data/labels/frog/frogtissue.mhd" --min-size 1.9 --max-size 1.9
-row frog "$data/labels/frog/frogtissue.mhd" --min-size 1.75 --max-size 1.75
+row frog "$data/labels/frog/frogtissue.mhd" --min-size 1.48 --max-size 1.48
 row colin27 "$data/labels/atlases/colin27.nrrd"
 row usc195 "$data/labels/atlases/usc195.nrrd"
 row digimouse "$data/labels/atlases/digimouse.nrrd"
