@@ -45,8 +45,7 @@ struct MeshDefects {
 /// nearer than 0.2 sizes; there a new point splits the longest edge, if it is long. `touching` are edges (two points), or
 /// vertices (one point twice), where a surface touches itself: off the junctions that shows that it is too coarsely sampled,
 /// and new points go into the middle of the facets there; as a last resort at junctions, too. `order` (2 surface, 1 curve,
-/// 0 point) and `size` (world units) are per point of the mesh; see lift_off_junctions for
-/// the former.
+/// 0 point; of a junction that the mesh has: lift_off_junctions) and `size` (world units) are per point of the mesh.
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
 

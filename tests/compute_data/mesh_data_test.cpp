@@ -9,7 +9,7 @@
 #include "compute/meshing/topology.hpp"
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/materials.hpp"
-#include "tests/compute/pipeline/mesh_volumes.hpp"
+#include "tests/evidence/mesh_measures.hpp"
 
 namespace nacre::test {
 namespace {
@@ -49,15 +49,6 @@ MeshVolume read(const std::vector<std::string>& files, const MaterialOptions& op
 
 #define NEEDS_DATA(folder) \
   if (!std::filesystem::exists(data / folder)) GTEST_SKIP() << "no " << (data / folder)
-
-/// What the issue asks of shapes: away from junctions no small angle in 99.9% and no small ratio; no sliver anywhere.
-void expect_good_shapes(const MeshRun& run, double mean = 0.95) {
-  const SurfaceQuality q = surface_quality(run.mesh);
-  EXPECT_GE(q.all.radius_ratio_mean, mean);
-  EXPECT_GE(q.all.radius_ratio_min, 0.15);
-  EXPECT_GE(q.away_from_junctions.radius_ratio_min, 0.3);
-  EXPECT_LE(q.away_from_junctions.share_under_25, 0.001);
-}
 
 /// Images of 2 x 2 x 2 voxels around which curves of three materials end in points of four, or do not.
 TEST(MeshData, TinyImagesHaveTheirJunctions) {

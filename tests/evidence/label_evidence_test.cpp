@@ -39,11 +39,7 @@ TEST(LabelEvidence, NestedShells) {
     return r < 6.2 ? 3 : r < 9.1 ? 2 : r < 12.4 ? 1 : 0;
   }));
   expect_topology(run.mesh, {2, 4, 4, 2});
-  std::uint16_t inner = 0;
-  for (const double r : {12.4, 9.1, 6.2}) {
-    ++inner;
-    expect_no_stairs("nested shells", run, {{std::uint16_t(inner - 1), inner, ball(middle, r), on_sphere(middle, r)}});
-  }
+  expect_no_stairs("nested shells", run, nested_shells());
   print_quality("nested shells", run);
   EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.95);
 }

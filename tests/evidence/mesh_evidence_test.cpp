@@ -57,11 +57,7 @@ TEST(MeshEvidence, TorusGivenAsDistances) {
 
 TEST(MeshEvidence, NestedShellsGivenAsDistances) {
   const auto f = [](const Vec3d& p) { return -length(p - middle); };
-  std::vector<ExactInterface> interfaces;
-  for (const double r : {12.4, 9.1, 6.2})
-    interfaces.push_back({std::uint16_t(interfaces.size()), std::uint16_t(interfaces.size() + 1), ball(middle, r),
-                          on_sphere(middle, r)});
-  expect_exact("nested shells", scalar_volume(cube, f, {-12.4f, -9.1f, -6.2f}), {2, 4, 4, 2}, interfaces);
+  expect_exact("nested shells", scalar_volume(cube, f, {-12.4f, -9.1f, -6.2f}), {2, 4, 4, 2}, nested_shells());
 }
 
 TEST(MeshEvidence, TwoSpheresMeetInACircle) {
@@ -200,8 +196,7 @@ TEST(MeshEvidence, TheHeartEndsNearItsCount) {
   options.isovalues = {phantom_isovalue};
   const MeshRun run = mesh_of(make_mesh_volume(std::vector{make_phantom("heart")}, options));
   EXPECT_NEAR(double(run.mesh.points.size()), 80000, 0.05 * 80000);
-  expect_good_shapes(run);
-  EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.97);
+  expect_good_shapes(run, 0.97);
 }
 
 }  // namespace

@@ -93,6 +93,15 @@ inline void expect_topology(const SurfaceMesh& mesh, const std::vector<std::int6
   }
 }
 
+/// Triangles away from junctions have no small angle (99.9%) and no small ratio; near them none is a sliver.
+inline void expect_good_shapes(const MeshRun& run, double mean = 0.95) {
+  const SurfaceQuality q = surface_quality(run.mesh);
+  EXPECT_GE(q.all.radius_ratio_mean, mean);
+  EXPECT_GE(q.all.radius_ratio_min, 0.15);
+  EXPECT_GE(q.away_from_junctions.radius_ratio_min, 0.3);
+  EXPECT_LE(q.away_from_junctions.share_under_25, 0.001);
+}
+
 inline void print_quality(const char* what, const MeshRun& run) {
   const SurfaceQuality q = surface_quality(run.mesh);
   std::printf(
