@@ -70,8 +70,9 @@ struct MarkSurface {
   std::uint32_t* texel;
   NACRE_HD void operator()(std::int64_t t) const {
     const Int3 dims = texture.grid.dims() * Int3(texture.refine);
+    TextureCursor cursor(texture);
     for_cells_near(mesh.corners(std::uint32_t(t)) * double(texture.refine), 0.0, dims, [&](const Int3& cell) {
-      const std::uint32_t at = texture.entry(cell);
+      const std::uint32_t at = cursor.entry(cell);
       if (at != none) relaxed_store(texel + at, 1);
     });
   }
@@ -117,7 +118,11 @@ struct NumberSurface {
     if (at == none) return;
     for (std::uint32_t k = grid.touch_start[at]; k < grid.touch_start[at + 1]; ++k) {
       const std::uint32_t t = grid.touch_triangle[k];
-      const Vec3d o = closest_point(mesh.corners(t), centre) - centre;
+      const Corners corners = mesh.corners(t);
+      const Vec3d low = min(corners.a, min(corners.b, corners.c)), high = max(corners.a, max(corners.b, corners.c));
+      const Vec3d to_box = max(low, min(high, centre)) - centre;
+      if (dot(to_box, to_box) > best) continue;
+      const Vec3d o = closest_point(corners, centre) - centre;
       const double d = dot(o, o);
       if (d < best || (d == best && t < seed_triangle[s])) {
         best = d;
@@ -130,46 +135,80 @@ struct NumberSurface {
 };
 
 /// Tells the cells beside the surface which surface cell holds their closest point, interpolated linearly (its error is
-/// far below a texture cell where the surface is smooth) and snapped to the nearest surface cell where it is not.
+/// far below a texture cell where the surface is smooth) and snapped to the nearest surface cell where it is not. A team
+/// looks up what lies around a block once for all of its cells; coordinates count from the block's corner.
 struct ExtendSurface {
   RefinedGridView texture;
   std::uint32_t* texel;
 
-  NACRE_HD bool is_surface(const Int3& cell, std::uint32_t& value) const {
-    const std::uint32_t at = texture.entry(cell);
-    if (at == none) return false;
-    value = texel[at];
-    return (value & RefinedGridView::extended) == 0;
+  struct Scratch {
+    Int3 corner;
+    Float4 offset[27];  // of the closest-point cells around, the block's own in the middle; w missing where there is none
+    std::uint32_t block[27];
+  };
+  static constexpr float missing = 1e30f;
+  std::size_t scratch_bytes() const { return sizeof(Scratch); }
+
+  NACRE_HD void operator()(Team& team, std::int64_t b) const {
+    Scratch& around = *reinterpret_cast<Scratch*>(team.scratch());
+    const ClosestPointGridView& grid = texture.grid;
+    const Int3 middle = grid.cell(texture.block_cell[b]);
+    team.each(27, [&](int k) {
+      const std::uint32_t at = grid.address(middle + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+      around.offset[k] = at == none ? Float4{0, 0, 0, missing} : grid.offset[at];
+      around.block[k] = at == none ? none : texture.block[at];
+      if (k == 0) around.corner = middle * Int3(texture.refine);
+    });
+    team.each(texture.cells_per_block(), [&](int k) {
+      std::uint32_t& value = texel[b * texture.cells_per_block() + k];
+      if (value != none) return;
+      const int row = texture.divide(k), z = texture.divide(row);
+      const std::uint32_t found = closest(around, {k - row * texture.refine, row - z * texture.refine, z});
+      if (found != none) relaxed_store(&value, found | RefinedGridView::extended);
+    });
   }
 
-  NACRE_HD void operator()(std::int64_t i) const {
-    if (texel[i] != none) return;
-    const Vec3f centre = cell_centre(texture.texel_cell(std::uint32_t(i)));
-    const float scale = float(texture.refine);
-    const ClosestPointGridView& grid = texture.grid;
-    const std::uint32_t at = texture.block_cell[std::uint32_t(i) / texture.cells_per_block()];
-    if (grid.offset[at].w * scale > extension_reach + 0.8661f * scale) return;
-    Lanes offset;
-    if (!interpolate_linear(grid, grid.offset, centre / scale, offset)) return;
-    const Vec3f away = xyz(offset) * scale;
-    if (dot(away, away) > extension_reach * extension_reach) return;
+ private:
+  /// The surface cell that holds the closest point of a cell of the block, or the nearest one to that; `none` out of reach.
+  NACRE_HD std::uint32_t closest(const Scratch& around, const Int3& cell) const {
+    const Vec3f centre = cell_centre(cell), f = centre * texture.inverse_refine - Vec3f(0.5f);
+    const Int3 first{f.x < 0 ? 0 : 1, f.y < 0 ? 0 : 1, f.z < 0 ? 0 : 1};
+    LinearCells cells;
+    cells.f = f + Vec3f(Int3(1) - first);
+    for (int k = 0; k < 8; ++k)
+      cells.at[k] = std::uint32_t(((k >> 2) + first.z) * 9 + ((k >> 1 & 1) + first.y) * 3 + (k & 1) + first.x);
+    const Float4 offset = store(cells.interpolate(around.offset) * float(texture.refine));
+    const Vec3f away{offset.x, offset.y, offset.z};
+    if (offset.w > 1e-3f * missing || dot(away, away) > extension_reach * extension_reach) return none;
     const Vec3f p = centre + away;
     const Int3 home = floor_cell(p);
     std::uint32_t found = none;
-    if (!is_surface(home, found)) {
-      float best = 1e30f;
-      std::uint32_t nearest = none;
-      for (int k = 0; k < 27; ++k) {
-        const Int3 cell = home + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-        const Vec3f d = cell_centre(cell) - p;
-        if (dot(d, d) < best && is_surface(cell, found)) {
-          best = dot(d, d);
-          nearest = found;
-        }
+    if (is_surface(around, home, found)) return found;
+    float best = 1e30f;
+    std::uint32_t nearest = none;
+    for (int k = 0; k < 27; ++k) {
+      const Int3 beside = home + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const Vec3f d = cell_centre(beside) - p;
+      if (dot(d, d) < best && is_surface(around, beside, found)) {
+        best = dot(d, d);
+        nearest = found;
       }
-      found = nearest;
     }
-    if (found != none) relaxed_store(texel + i, found | RefinedGridView::extended);
+    return nearest;
+  }
+
+  NACRE_HD bool is_surface(const Scratch& around, const Int3& cell, std::uint32_t& value) const {
+    const Int3 outer = texture.outer(cell), place = outer + Int3(1);
+    std::uint32_t at = none;
+    if (unsigned(place.x) < 3 && unsigned(place.y) < 3 && unsigned(place.z) < 3) {
+      const std::uint32_t b = around.block[(place.z * 3 + place.y) * 3 + place.x];
+      if (b != none) at = texture.entry_in(b, cell, outer);
+    } else {
+      at = texture.entry(around.corner + cell);  // a block of few cells
+    }
+    if (at == none) return false;
+    value = texel[at];
+    return (value & RefinedGridView::extended) == 0;
   }
 };
 
@@ -180,10 +219,11 @@ struct FindNeighbours {
   NACRE_HD void operator()(std::int64_t i) const {
     const auto s = std::uint32_t(i);
     const Int3 cell = texture.cell(s);
+    TextureCursor cursor(texture);
     for (int k = 0; k < 6; ++k) {
       Int3 next = cell;
       next[k / 2] += k % 2 ? 1 : -1;
-      const std::uint32_t n = texture.surface_cell(next);
+      const std::uint32_t n = cursor.surface_cell(next);
       neighbour[6 * i + k] = n == none ? s : n;
     }
   }
@@ -221,7 +261,7 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
   fine.seed_triangle = arena.permanent<std::uint32_t>(fine.surface_cells);
   exec.for_each(fine.cells, detail::NumberSurface{mesh, fine.view(grid), number.data(), fine.texel.data(),
                                                   fine.place.data(), fine.seed.data(), fine.seed_triangle.data()});
-  exec.for_each(fine.cells, detail::ExtendSurface{fine.view(grid), fine.texel.data()});
+  exec.for_each_team(blocks, detail::ExtendSurface{fine.view(grid), fine.texel.data()});
   fine.neighbour = arena.permanent<std::uint32_t>(6 * std::size_t(fine.surface_cells));
   exec.for_each(fine.surface_cells, detail::FindNeighbours{fine.view(grid), fine.neighbour.data()});
   return fine;
