@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compute/device/executor.hpp"
+#include "compute/field/distance_creases.hpp"
 #include "compute/field/material_bricks.hpp"
 
 namespace nacre {
@@ -299,19 +300,24 @@ inline float indicator_range(const Int3& dims, std::span<const std::uint16_t> ma
   return most > 0 ? float(most) : 1.0f;
 }
 
-/// Functions of the layers between the levels of a scalar volume, divided by `scale`.
+/// Functions of the layers between the levels of a scalar volume, divided by `scale`. Where the values are a signed distance
+/// with this `slope` (0: they are not) and there is one level, its creases are taken out; returns in how many voxels.
 template <class Backend>
-void fill_scalar(Executor<Backend>& exec, MaterialBricks& b, std::span<const float> values,
-                 std::span<const float> levels, float scale) {
+std::int64_t fill_scalar(Executor<Backend>& exec, MaterialBricks& b, std::span<const float> values,
+                         std::span<const float> levels, float scale, float slope) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
   Array<float> from = arena.temporary<float>(values.size()), cuts = arena.temporary<float>(levels.size());
   from.upload(values);
   cuts.upload(levels);
+  const Vec3f cells = b.cells_per_unit, spacing{1 / cells.x, 1 / cells.y, 1 / cells.z};
+  const std::int64_t creased =
+      slope > 0 && levels.size() == 1 ? smooth_creases(exec, b.dims, spacing, from, levels[0], slope) : 0;
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 1});
   const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
   exec.for_each((b.bricks - 2) * brick_voxels,
                 detail::FillScalar{voxels, from.data(), cuts.data(), int(levels.size()), 1 / scale, b.value.data()});
+  return creased;
 }
 
 }  // namespace nacre

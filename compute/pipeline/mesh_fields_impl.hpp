@@ -35,7 +35,9 @@ void MeshPipelineOf<Backend>::load(const MeshVolume& volume) {
   } else if (volume.kind == MeshVolume::Kind::scalar) {
     float scale = 0;
     for (const float v : volume.values.at(0)) scale = std::max(scale, std::fabs(v));
-    fill_scalar(exec_, bricks_, volume.values[0], volume.levels, scale > 0 ? scale : 1);
+    const float slope =
+        distance_slope(volume.dims, Vec3f(frame_.relative_spacing()), volume.values[0], volume.levels[0]);
+    info_.creased_voxels = fill_scalar(exec_, bricks_, volume.values[0], volume.levels, scale > 0 ? scale : 1, slope);
   }
   least_area_ = least_boundary_area(exec_, bricks_);
   info_.blocks = bricks_.blocks;

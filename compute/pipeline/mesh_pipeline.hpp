@@ -76,12 +76,13 @@ struct MeshInfo {
   Int3 blocks{};          ///< of 8^3 voxels
   int crowded_cells = 0;  ///< of 4^3 cells of the embedding, those where more materials meet than are told apart
   std::int64_t field_bytes = 0, embedding_bytes = 0, embedding_cells = 0;
-  int surfaces = 0, curves = 0;                ///< interfaces of two materials, junction curves of three
-  int points = 0;                              ///< junction points of four materials
-  int crowded_points = 0;                      ///< of these, where more than four materials meet
+  int surfaces = 0, curves = 0;  ///< interfaces of two materials, junction curves of three
+  int points = 0;                ///< junction points of four materials
+  int crowded_points = 0;        ///< of these, where more than four materials meet
   /// Materials that meet (0xffff: none) on each surface and curve, ascending, then at each kind of junction point.
   std::vector<std::array<std::uint16_t, 4>> junctions;
-  std::int64_t constrained_voxels = 0;         ///< where tightening was held back to keep a voxel on its side
+  std::int64_t constrained_voxels = 0;  ///< where tightening was held back to keep a voxel on its side
+  std::int64_t creased_voxels = 0;      ///< of a signed distance, where a crease near the interface was taken out
   double smallest_size = 0, largest_size = 0;  ///< of the sizing field on the interfaces, voxels
   double expected_particles = 0;               ///< from area and sizing field
   std::int64_t seeded = 0, final = 0;

@@ -29,7 +29,7 @@ MaterialBricks bricks_of(Executor<Backend>& exec, const MeshVolume& volume, doub
   } else if (volume.kind == MeshVolume::Kind::indicators) {
     fill_indicators(exec, b, volume.material, volume.values, range);
   } else {
-    fill_scalar(exec, b, volume.values[0], volume.levels, 1);
+    fill_scalar(exec, b, volume.values[0], volume.levels, 1, 0);
   }
   return b;
 }
