@@ -89,7 +89,7 @@ struct MeasureCrease {
   static constexpr float unknown = 1e30f;
   static constexpr float band = 3;                 ///< voxels from the interface: no stencil there reaches farther
   static constexpr float wide = 4, wide_from = 3;  ///< voxels: creases farther apart than half of it do no harm
-  static constexpr float opposed_from = 0.7f, opposed = 0.9f;  ///< walls of a wedge are left alone
+  static constexpr float opposed_from = 0.7f, opposed = 0.9f;  ///< a wide wedge's are left alone
 
   DistanceSamples samples;
   float level;

@@ -23,3 +23,10 @@ begin_bench() {
 
 # machine: one line.
 machine() { echo "$(nproc) processors, $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)"; }
+
+# main_runs: how large the four main runs are, divided by $NACRE_BENCH_SCALE: cells (flow), heart and torso (detail; the
+# heart's own is 268).
+main_runs() {
+  local scale=${NACRE_BENCH_SCALE:-1}
+  cells=$((1024 / scale)) heart=$((268 / scale)) torso=$((96 / scale))
+}

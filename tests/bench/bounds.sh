@@ -2,11 +2,12 @@
 # Nacre: what bounds the stages of the four main runs. Usage: bounds.sh NACRE CEILINGS
 # CEILINGS is the program bench_ceilings (cmake --build ... --target bench_ceilings). Prints a row for each stage that takes
 # 4% of its run or more: how long it took, what it works on, what it must move and compute, and which share that is of what
-# the machine does at most. Needs no hardware counters: how many elements there are is read from the reports, what one of them
+# the machine does at most. NACRE_BENCH_SCALE divides the runs' resolutions, to try the script. Needs no hardware counters: how many elements there are is read from the reports, what one of them
 # takes stands in the table below.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/begin.sh"
 begin_bench bounds "$@"
+main_runs
 ((${#words[@]} == 1)) || { echo "usage: bounds.sh NACRE CEILINGS" >&2; exit 2; }
 
 # The stages. Run, stage, how often it goes over its elements (a number, `calls` or `launches` of the stage, or a value of
@@ -105,7 +106,7 @@ echo
 echo "| run | stage | seconds | works on | GB at least | of copies, % | of random lines, % | of arithmetic in vectors, % |" \
   "instructions an element | of additions, % | bound by |"
 echo "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|---|"
-rows grid flow --sample train --resolution 1024 --steps 6
-rows octree flow --method octree --sample train --resolution 1024 --steps 4
-rows single mesh --sample heart
-rows multi mesh --sample torso --detail 96
+rows grid flow --sample train --resolution "$cells" --steps 6
+rows octree flow --method octree --sample train --resolution "$cells" --steps 4
+rows single mesh --sample heart --detail "$heart"
+rows multi mesh --sample torso --detail "$torso"

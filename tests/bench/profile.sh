@@ -3,10 +3,11 @@
 # CEILINGS is the program bench_ceilings (cmake --build ... --target bench_ceilings). Prints, for flow on the grid and on
 # the octree and for meshing one and several materials: the stages' shares; nanoseconds of one processor for a cell (a
 # particle) in data that fits the caches and in data that does not, which are alike where memory is not the bound; and,
-# where perf is installed, the functions that most time is spent in.
+# where perf is installed, the functions that most time is spent in. NACRE_BENCH_SCALE divides the large runs' resolutions.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/begin.sh"
 begin_bench profile "$@"
+main_runs
 threads=$(nproc)
 echo "$(machine), $(date -u +%F)"
 ((${#words[@]} == 0)) || "${words[0]}"
@@ -54,8 +55,8 @@ profile() {
     awk '!/^#/ && NF && n++ < 12' | cut -c1-110
 }
 
-profile grid "flow --sample train --resolution 160 --steps 60" "flow --sample train --resolution 1024 --steps 6"
+profile grid "flow --sample train --resolution 160 --steps 60" "flow --sample train --resolution $cells --steps 6"
 profile octree "flow --method octree --sample train --resolution 160 --steps 40" \
-  "flow --method octree --sample train --resolution 1024 --steps 4"
-profile single "mesh --sample heart --detail 40" "mesh --sample heart"
-profile multi "mesh --sample torso --detail 24" "mesh --sample torso --detail 96"
+  "flow --method octree --sample train --resolution $cells --steps 4"
+profile single "mesh --sample heart --detail 40" "mesh --sample heart --detail $heart"
+profile multi "mesh --sample torso --detail 24" "mesh --sample torso --detail $torso"

@@ -97,7 +97,9 @@ TEST(MeshEvidence, ShellOneVoxelThinGivenAsDistances) {
   const auto f = [](const Vec3d& p) { return 0.5 - std::fabs(length(p - middle) - 10.2); };
   std::vector<Vec3d> points = on_sphere(middle, 9.7);
   for (const Vec3d& p : on_sphere(middle, 10.7)) points.push_back(p);
-  expect_exact("thin shell, distances", scalar_volume(cube, f), {4, 4}, {{0, 1, f, points}});
+  const MeshRun run = expect_exact("thin shell, distances", scalar_volume(cube, f), {4, 4}, {{0, 1, f, points}});
+  const double volume = 4 * M_PI / 3 * (std::pow(10.7, 3) - std::pow(9.7, 3));
+  EXPECT_NEAR(check_topology(run.mesh, 2).materials[1].volume, volume, 0.01 * volume);
 }
 
 /// One smooth closed surface at uniform size.
