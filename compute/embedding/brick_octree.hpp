@@ -4,17 +4,10 @@
 #include <cstdint>
 
 #include "compute/embedding/band.hpp"
+#include "compute/grid/bits.hpp"
 #include "compute/grid/morton.hpp"
 
 namespace nacre {
-
-NACRE_HD_INLINE int count_bits(std::uint64_t v) {
-#if defined(__CUDA_ARCH__)
-  return __popcll(v);
-#else
-  return __builtin_popcountll(v);
-#endif
-}
 
 /// Which cells of a brick are there, and the number of the first one. Bit 8 y + x of word z is cell (x, y, z); the cells
 /// of a brick are numbered in that order, and so are those that the surface passes through, by themselves.

@@ -5,6 +5,7 @@
 #include "compute/embedding/build_closest_point_grid.hpp"
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/refined_grid.hpp"
+#include "compute/grid/bits.hpp"
 
 namespace nacre {
 
@@ -78,58 +79,92 @@ struct MarkSurface {
   }
 };
 
-/// Numbers the surface cells and finds each one's exact closest point among the triangles in reach.
+/// How many surface cells a block has.
+struct CountSurface {
+  int cells;  // of a block
+  const std::uint32_t* texel;
+  std::uint32_t* count;
+  std::size_t scratch_bytes() const { return 0; }
+  NACRE_HD void operator()(Team& team, std::int64_t b) const {
+    const std::uint32_t n = team.sum(cells, 0u, [&](int k) { return texel[b * cells + k]; });
+    if (team.first()) count[b] = n;
+  }
+};
+
+/// Numbers the surface cells of a block and finds each one's exact closest point among the triangles in reach.
 struct NumberSurface {
   MeshView mesh;
   RefinedGridView texture;
-  const std::uint32_t* number;
+  const std::uint32_t* first;  // per block: number of its first surface cell
   std::uint32_t* texel;
   std::uint32_t* place;
   Float4* seed;
   std::uint32_t* seed_triangle;
 
-  NACRE_HD void operator()(std::int64_t i) const {
-    if (texel[i] == 0) {
-      texel[i] = none;
-      return;
-    }
-    const std::uint32_t s = number[i];
-    texel[i] = s;
-    place[s] = std::uint32_t(i);
-    const double scale = 1.0 / texture.refine;
-    const Vec3d centre = (Vec3d(texture.texel_cell(std::uint32_t(i))) + Vec3d(0.5)) * scale;
-    const double reach = 0.8661 * scale;  // the surface passes through the cell
-    const Int3 home = floor_cell(Vec3f(centre));
-    double best = reach * reach;
-    search(home, centre, s, best);
-    const Int3 first = floor_cell(Vec3f(centre - Vec3d(reach))), last = floor_cell(Vec3f(centre + Vec3d(reach)));
-    for (int z = first.z; z <= last.z; ++z)
-      for (int y = first.y; y <= last.y; ++y)
-        for (int x = first.x; x <= last.x; ++x) {
-          const Int3 cell{x, y, z};
-          const Vec3d low(cell), away = max(low, min(low + Vec3d(1.0), centre)) - centre;
-          if (!(cell == home) && dot(away, away) < best) search(cell, centre, s, best);
-        }
+  static constexpr int words = 8 * 8 * 8 / 64;
+  std::size_t scratch_bytes() const { return words * sizeof(std::uint64_t); }
+
+  NACRE_HD void operator()(Team& team, std::int64_t b) const {
+    auto* const mask = reinterpret_cast<std::uint64_t*>(team.scratch());
+    const int cells = texture.cells_per_block();
+    const auto begin = std::uint32_t(b) * std::uint32_t(cells);
+    team.each((cells + 63) / 64, [&](int w) {
+      mask[w] = 0;
+      for (int k = 0; k < 64 && 64 * w + k < cells; ++k) mask[w] |= std::uint64_t(texel[begin + 64 * w + k]) << k;
+    });
+    team.each(cells, [&](int k) {
+      const std::uint64_t own = mask[k / 64], bit = std::uint64_t(1) << k % 64;
+      texel[begin + k] = none;
+      if (!(own & bit)) return;
+      std::uint32_t s = first[b] + count_bits(own & (bit - 1));
+      for (int w = 0; w < k / 64; ++w) s += count_bits(mask[w]);
+      texel[begin + k] = s;
+      place[s] = begin + k;
+      find_seed(s);
+    });
   }
 
-  NACRE_HD void search(const Int3& cell, const Vec3d& centre, std::uint32_t s, double& best) const {
+ private:
+  struct Nearest {
+    double squared;
+    Vec3d offset;
+    std::uint32_t triangle = none;
+  };
+
+  NACRE_HD void find_seed(std::uint32_t s) const {
+    const double scale = 1.0 / texture.refine;
+    const Vec3d centre = (Vec3d(texture.cell(s)) + Vec3d(0.5)) * scale;
+    const double reach = 0.8661 * scale;  // the surface passes through the cell
+    const Int3 home = floor_cell(Vec3f(centre));
+    Nearest nearest{reach * reach, {}};
+    search(home, centre, nearest);
+    const Int3 low = floor_cell(Vec3f(centre - Vec3d(reach))), high = floor_cell(Vec3f(centre + Vec3d(reach)));
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+          const Int3 cell{x, y, z};
+          const Vec3d corner(cell), away = max(corner, min(corner + Vec3d(1.0), centre)) - centre;
+          if (!(cell == home) && dot(away, away) < nearest.squared) search(cell, centre, nearest);
+        }
+    const Vec3f offset(nearest.offset * double(texture.refine));
+    seed[s] = {offset.x, offset.y, offset.z, 0};
+    seed_triangle[s] = nearest.triangle;
+  }
+
+  NACRE_HD void search(const Int3& cell, const Vec3d& centre, Nearest& nearest) const {
     const ClosestPointGridView& grid = texture.grid;
     const std::uint32_t at = grid.address(cell);
     if (at == none) return;
     for (std::uint32_t k = grid.touch_start[at]; k < grid.touch_start[at + 1]; ++k) {
       const std::uint32_t t = grid.touch_triangle[k];
+      if (t == nearest.triangle) continue;
       const Corners corners = mesh.corners(t);
       const Vec3d low = min(corners.a, min(corners.b, corners.c)), high = max(corners.a, max(corners.b, corners.c));
       const Vec3d to_box = max(low, min(high, centre)) - centre;
-      if (dot(to_box, to_box) > best) continue;
+      if (dot(to_box, to_box) > nearest.squared) continue;
       const Vec3d o = closest_point(corners, centre) - centre;
       const double d = dot(o, o);
-      if (d < best || (d == best && t < seed_triangle[s])) {
-        best = d;
-        const Vec3f offset(o * double(texture.refine));
-        seed[s] = {offset.x, offset.y, offset.z, 0};
-        seed_triangle[s] = t;
-      }
+      if (d < nearest.squared || (d == nearest.squared && t < nearest.triangle)) nearest = {d, o, t};
     }
   }
 };
@@ -143,7 +178,8 @@ struct ExtendSurface {
 
   struct Scratch {
     Int3 corner;
-    Float4 offset[27];  // of the closest-point cells around, the block's own in the middle; w missing where there is none
+    Float4
+        offset[27];  // of the closest-point cells around, the block's own in the middle; w missing where there is none
     std::uint32_t block[27];
   };
   static constexpr float missing = 1e30f;
@@ -218,12 +254,14 @@ struct FindNeighbours {
   std::uint32_t* neighbour;
   NACRE_HD void operator()(std::int64_t i) const {
     const auto s = std::uint32_t(i);
-    const Int3 cell = texture.cell(s);
-    TextureCursor cursor(texture);
+    const std::uint32_t own = texture.place[s] / texture.cells_per_block();
+    const Int3 cell = texture.cell(s), home = texture.outer(cell);
     for (int k = 0; k < 6; ++k) {
       Int3 next = cell;
       next[k / 2] += k % 2 ? 1 : -1;
-      const std::uint32_t n = cursor.surface_cell(next);
+      const Int3 outer = texture.outer(next);
+      const std::uint32_t b = outer == home ? own : texture.block_of(outer);
+      const std::uint32_t n = b == none ? none : texture.surface_cell_at(texture.entry_in(b, next, outer));
       neighbour[6 * i + k] = n == none ? s : n;
     }
   }
@@ -254,13 +292,14 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
   fine.texel.fill_bytes(0);
   exec.for_each(triangles, detail::MarkSurface{mesh, fine.view(grid), fine.texel.data()});
   Arena::Scope scope(arena);
-  Array<std::uint32_t> number = arena.temporary<std::uint32_t>(fine.cells);
-  fine.surface_cells = exec.exclusive_scan(fine.texel.data(), number.data(), fine.cells);
+  Array<std::uint32_t> first = arena.temporary<std::uint32_t>(blocks);
+  exec.for_each_team(blocks, detail::CountSurface{refine * refine * refine, fine.texel.data(), first.data()});
+  fine.surface_cells = exec.exclusive_scan(first.data(), first.data(), blocks);
   fine.place = arena.permanent<std::uint32_t>(fine.surface_cells);
   fine.seed = arena.permanent<Float4>(fine.surface_cells);
   fine.seed_triangle = arena.permanent<std::uint32_t>(fine.surface_cells);
-  exec.for_each(fine.cells, detail::NumberSurface{mesh, fine.view(grid), number.data(), fine.texel.data(),
-                                                  fine.place.data(), fine.seed.data(), fine.seed_triangle.data()});
+  exec.for_each_team(blocks, detail::NumberSurface{mesh, fine.view(grid), first.data(), fine.texel.data(),
+                                                   fine.place.data(), fine.seed.data(), fine.seed_triangle.data()});
   exec.for_each_team(blocks, detail::ExtendSurface{fine.view(grid), fine.texel.data()});
   fine.neighbour = arena.permanent<std::uint32_t>(6 * std::size_t(fine.surface_cells));
   exec.for_each(fine.surface_cells, detail::FindNeighbours{fine.view(grid), fine.neighbour.data()});

@@ -8,17 +8,10 @@
 #include "compute/embedding/closest_of_eight.hpp"
 #include "compute/embedding/clusters.hpp"
 #include "compute/embedding/triangle_frame.hpp"
+#include "compute/grid/bits.hpp"
 #include "compute/grid/eight.hpp"
 
 namespace nacre::detail {
-
-NACRE_HD_INLINE int lowest_bit(unsigned bits) {
-#if defined(__CUDA_ARCH__)
-  return __ffs(bits) - 1;
-#else
-  return __builtin_ctz(bits);
-#endif
-}
 
 struct FrameTriangle {
   const Corners* corners;

@@ -52,7 +52,11 @@ struct RefinedGridView {
   /// Surface cell at `cell`, or the one that holds its closest point, or `none`.
   NACRE_HD std::uint32_t surface_cell(const Int3& cell) const {
     const std::uint32_t at = entry(cell);
-    if (at == none) return none;
+    return at == none ? none : surface_cell_at(at);
+  }
+
+  /// The same by the cell's entry of `texel`.
+  NACRE_HD std::uint32_t surface_cell_at(std::uint32_t at) const {
     const std::uint32_t value = texel[at];
     return value == none ? none : value & ~extended;
   }
@@ -89,9 +93,7 @@ class TextureCursor {
 
   NACRE_HD std::uint32_t surface_cell(const Int3& cell) {
     const std::uint32_t at = entry(cell);
-    if (at == none) return none;
-    const std::uint32_t value = texture_.texel[at];
-    return value == none ? none : value & ~RefinedGridView::extended;
+    return at == none ? none : texture_.surface_cell_at(at);
   }
 
  private:

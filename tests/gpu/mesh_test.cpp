@@ -61,7 +61,8 @@ struct Case {
   MeshParameters parameters;
 };
 
-/// A ball in a lopsided shell as labels; three balls that meet in two points; a torus with graded sizes.
+/// A ball in a lopsided shell as labels; three balls that meet in two points; a torus with graded sizes; a shell one voxel
+/// thick, given as distances.
 std::vector<Case> cases() {
   const Vec3d c(20.2, 19.7, 20.4);
   std::vector<Case> all;
@@ -85,6 +86,10 @@ std::vector<Case> cases() {
                                        return 2.5 + 0.15 * r.x - std::hypot(std::hypot(r.x, r.y) - 12, r.z);
                                      }),
                  graded});
+  all.push_back(
+      {"distances",
+       test::scalar_volume({41, 40, 41}, [=](const Vec3d& p) { return 0.5 - std::fabs(length(p - c) - 11.2); }),
+       {}});
   return all;
 }
 
@@ -102,6 +107,7 @@ void expect_alike(const char* what, const MeshOnDevice& a, const MeshOnDevice& b
   EXPECT_EQ(a.info.surfaces, b.info.surfaces);
   EXPECT_EQ(a.info.curves, b.info.curves);
   EXPECT_EQ(a.info.points, b.info.points);
+  EXPECT_NEAR(double(b.info.creased_voxels), double(a.info.creased_voxels), 0.01 * double(a.info.creased_voxels));
   EXPECT_NEAR(b.info.expected_particles, a.info.expected_particles, 0.002 * a.info.expected_particles);
   EXPECT_LT(std::fabs(count), 0.01);
   EXPECT_LT(std::fabs(ratio), 0.005);
