@@ -71,9 +71,8 @@ struct MarkSurface {
   std::uint32_t* texel;
   NACRE_HD void operator()(std::int64_t t) const {
     const Int3 dims = texture.grid.dims() * Int3(texture.refine);
-    TextureCursor cursor(texture);
     for_cells_near(mesh.corners(std::uint32_t(t)) * double(texture.refine), 0.0, dims, [&](const Int3& cell) {
-      const std::uint32_t at = cursor.entry(cell);
+      const std::uint32_t at = texture.entry(cell);
       if (at != none) relaxed_store(texel + at, 1);
     });
   }

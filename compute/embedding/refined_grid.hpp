@@ -77,23 +77,18 @@ struct RefinedGridView {
   }
 };
 
-/// `entry` and `surface_cell` for cells near each other: remembers the block of the last one.
-class TextureCursor {
+/// `surface_cell` for cells near each other: remembers the block of the last one.
+class SurfaceCellCursor {
  public:
-  NACRE_HD explicit TextureCursor(const RefinedGridView& texture) : texture_(texture) {}
+  NACRE_HD explicit SurfaceCellCursor(const RefinedGridView& texture) : texture_(texture) {}
 
-  NACRE_HD std::uint32_t entry(const Int3& cell) {
+  NACRE_HD std::uint32_t find(const Int3& cell) {
     const Int3 outer = texture_.outer(cell);
     if (!(outer == outer_)) {
       outer_ = outer;
       block_ = texture_.block_of(outer);
     }
-    return block_ == none ? none : texture_.entry_in(block_, cell, outer);
-  }
-
-  NACRE_HD std::uint32_t surface_cell(const Int3& cell) {
-    const std::uint32_t at = entry(cell);
-    return at == none ? none : texture_.surface_cell_at(at);
+    return block_ == none ? none : texture_.surface_cell_at(texture_.entry_in(block_, cell, outer));
   }
 
  private:
@@ -107,10 +102,10 @@ NACRE_HD inline float sample(const RefinedGridView& texture, const float* values
   const Int3 first = floor_cell(p - Vec3f(0.5f));
   const Vec3f f = p - cell_centre(first);
   float sum = 0, weight = 0;
-  TextureCursor cursor(texture);
+  SurfaceCellCursor cursor(texture);
   for (int k = 0; k < 8; ++k) {
     const int x = k & 1, y = k >> 1 & 1, z = k >> 2;
-    const std::uint32_t s = cursor.surface_cell(first + Int3(x, y, z));
+    const std::uint32_t s = cursor.find(first + Int3(x, y, z));
     if (s == none) continue;
     const float w = (x ? f.x : 1 - f.x) * (y ? f.y : 1 - f.y) * (z ? f.z : 1 - f.z);
     sum += w * values[s];

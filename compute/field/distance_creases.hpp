@@ -20,7 +20,7 @@ struct LevelSide {
   float scale;  ///< 1 or -1 over the slope of the values
 };
 
-/// A scalar volume whose values grow like a distance from each of its levels.
+/// A scalar volume whose values grow like a distance from a level.
 struct DistanceSamples {
   const float* value;
   Int3 dims;

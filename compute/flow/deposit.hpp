@@ -42,9 +42,9 @@ NACRE_HD_INLINE int deposit_line(const RefinedGridView& texture, std::uint64_t* 
   const int z = cells.z < 0 ? -cells.z : cells.z, xy = x > y ? x : y, n = xy > z ? xy : z;
   const float step = 1.0f / float(n > 0 ? n : 1);
   int hits = 0;
-  TextureCursor cursor(texture);
+  SurfaceCellCursor cursor(texture);
   for (int i = 1; i <= n; ++i) {
-    const std::uint32_t cell = cursor.surface_cell(floor_cell(a + d * (float(i) * step)));
+    const std::uint32_t cell = cursor.find(floor_cell(a + d * (float(i) * step)));
     if (cell == none) continue;
     atomic_add(sums + cell, Deposit::pack(value16));
     ++hits;

@@ -34,7 +34,7 @@ table() {
 run    stage       times      elements  bytes                                 lines lanes instructions, bound
 grid   read        24         points    220*points                            0   0     2770  one by one
 grid   embed       1          coarse    66*coarse,250*triangles               0   0     0     one by one
-grid   refine      1          cells     32*cells,48*surface,64*coarse         0   0     0     one by one
+grid   refine      1          cells     24*cells,48*surface,64*coarse         0   0     0     one by one
 grid   velocity    calls      coarse    36*coarse,84*triangles                0   0     190   one by one
 grid   advect      calls      surface   88*surface,100*coarse,4*cells         0   12500 14500 one by one
 grid   filter      calls      surface   64*surface,68*coarse,4*cells          0   60    935   one by one
