@@ -79,6 +79,14 @@ class ExecutorBase {
 template <class Backend>
 class Executor;
 
+/// What `reduce` sums up with.
+struct Add {
+  template <class T>
+  NACRE_HD T operator()(const T& a, const T& b) const {
+    return a + b;
+  }
+};
+
 /// Adds to memory that many threads add to; exact, so the order does not matter.
 NACRE_HD_INLINE void atomic_add(std::uint64_t* to, std::uint64_t value) {
 #if defined(__CUDA_ARCH__)

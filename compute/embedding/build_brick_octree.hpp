@@ -201,8 +201,7 @@ class BrickOctreeBuilder {
 
   /// Triangles of millions of cells squared would be walked for hours before it shows that they do not fit.
   void require_room(const ClusterView& clusters, std::uint32_t count) {
-    const std::uint64_t bricks =
-        exec_.reduce(count, std::uint64_t(0), BricksUnder{clusters, tree_.levels}, AddNumbers{});
+    const std::uint64_t bricks = exec_.reduce(count, std::uint64_t(0), BricksUnder{clusters, tree_.levels}, Add{});
     const std::uint64_t needed = 12 * bricks;  // a pair of brick and cluster
     if (needed > exec_.arena().free_bytes())
       throw Error("the band around the surface does not fit into memory",

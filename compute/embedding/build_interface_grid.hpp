@@ -56,8 +56,7 @@ struct BricksAround {
       for (int y = f.low(1) < 3 ? -1 : 0; y <= (f.high(1) > 0 ? 1 : 0); ++y)
         for (int x = f.low(0) < 3 ? -1 : 0; x <= (f.high(0) > 0 ? 1 : 0); ++x) {
           const Int3 d = c + Int3(x, y, z);
-          if (unsigned(d.x) < unsigned(coarse.x) && unsigned(d.y) < unsigned(coarse.y) &&
-              unsigned(d.z) < unsigned(coarse.z))
+          if (is_within(d, coarse))
             visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);
         }
   }

@@ -175,10 +175,9 @@ struct ExtendSurface {
   RefinedGridView texture;
   std::uint32_t* texel;
 
-  struct Scratch {
+  struct Scratch {  // of the 27 closest-point cells around, the block's own in the middle
     Int3 corner;
-    Float4
-        offset[27];  // of the closest-point cells around, the block's own in the middle; w missing where there is none
+    Float4 offset[27];  // w: `missing` where there is no cell
     std::uint32_t block[27];
   };
   static constexpr float missing = 1e30f;

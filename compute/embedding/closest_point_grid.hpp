@@ -66,10 +66,7 @@ struct ClosestPointGridView {
 
   NACRE_HD int cells_per_brick() const { return sub * sub * sub; }
   NACRE_HD Int3 dims() const { return bricks * Int3(sub); }
-  NACRE_HD bool inside(const Int3& cell) const {
-    const Int3 d = dims();
-    return unsigned(cell.x) < unsigned(d.x) && unsigned(cell.y) < unsigned(d.y) && unsigned(cell.z) < unsigned(d.z);
-  }
+  NACRE_HD bool inside(const Int3& cell) const { return is_within(cell, dims()); }
 
   NACRE_HD std::uint32_t brick(int bx, int by, int bz) const {
     return brick_index[(std::int64_t(bz) * bricks.y + by) * bricks.x + bx];

@@ -99,10 +99,7 @@ struct InterfaceBricks {
   NACRE_HD static int divide(int i) { return i >> 2; }
   NACRE_HD static int cells_per_brick() { return sub * sub * sub; }
   NACRE_HD Int3 dims() const { return grid.dims(); }
-  NACRE_HD bool inside(const Int3& cell) const {
-    const Int3 d = dims();
-    return unsigned(cell.x) < unsigned(d.x) && unsigned(cell.y) < unsigned(d.y) && unsigned(cell.z) < unsigned(d.z);
-  }
+  NACRE_HD bool inside(const Int3& cell) const { return is_within(cell, dims()); }
   NACRE_HD std::uint32_t brick(int bx, int by, int bz) const {
     const std::int64_t c = grid.coarse_number({bx, by, bz});
     for (std::uint32_t k = grid.brick_start[c]; k < grid.brick_start[c + 1]; ++k)

@@ -88,10 +88,6 @@ struct WriteRun {
   }
 };
 
-struct AddNumbers {
-  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-};
-
 }  // namespace detail
 
 /// The runs among `n` sorted codes, whose places are the codes without their lowest `shift` bits; 16 bytes a run in
@@ -102,7 +98,7 @@ CodeRuns runs_of(Executor<Backend>& exec, const std::uint64_t* code, std::uint64
   CodeRuns runs;
   if (n == 0) return runs;
   const detail::RunHead head{code, shift};
-  const std::uint64_t count = exec.reduce(std::int64_t(n), std::uint64_t(0), head, detail::AddNumbers{});
+  const std::uint64_t count = exec.reduce(std::int64_t(n), std::uint64_t(0), head, Add{});
   if (count >= none) throw Error("the grid is too fine", "over 2^32 bricks", "lower the resolution");
   runs.count = std::uint32_t(count);
   runs.place = arena.temporary<std::uint64_t>(count);

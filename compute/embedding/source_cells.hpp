@@ -222,10 +222,6 @@ struct IsTouched {
   NACRE_HD std::uint64_t operator()(std::int64_t i) const { return touched[i >> 5] >> (i & 31) & 1; }
 };
 
-struct AddTouched {
-  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-};
-
 /// Log2 of the sub-grids' edge: the wish, or the fast one; smaller where memory or the domain is.
 inline int subgrid_bits(const Arena& arena, int levels, int edge) {
   int bits = SourceSubgrids::fast_bits;
@@ -320,8 +316,7 @@ class SubgridBuilder {
     for (const CellChunk& c : chunks_)
       exec_.for_each(c.local.size(),
                      GatherCells{c.base, c.first, c.local.data(), cells.code.data(), cells.touched.data()});
-    cells.touched_count =
-        exec_.reduce(std::int64_t(total_), std::uint64_t(0), IsTouched{cells.touched.data()}, AddTouched{});
+    cells.touched_count = exec_.reduce(std::int64_t(total_), std::uint64_t(0), IsTouched{cells.touched.data()}, Add{});
     return cells;
   }
 

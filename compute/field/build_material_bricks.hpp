@@ -50,9 +50,7 @@ struct PaddedVolume {
   NACRE_HD Int3 voxel(std::int64_t i) const {
     return Int3(int(i % padded.x), int(i / padded.x % padded.y), int(i / padded.x / padded.y)) - Int3(volume_padding);
   }
-  NACRE_HD bool inside(const Int3& v) const {
-    return unsigned(v.x) < unsigned(dims.x) && unsigned(v.y) < unsigned(dims.y) && unsigned(v.z) < unsigned(dims.z);
-  }
+  NACRE_HD bool inside(const Int3& v) const { return is_within(v, dims); }
   NACRE_HD std::int64_t number(const Int3& v) const { return (std::int64_t(v.z) * dims.y + v.y) * dims.x + v.x; }
   NACRE_HD std::int64_t nearest(Int3 v) const {
     for (int axis = 0; axis < 3; ++axis) v[axis] = v[axis] < 0 ? 0 : v[axis] >= dims[axis] ? dims[axis] - 1 : v[axis];

@@ -30,9 +30,7 @@ struct Lattice {
     return {int(i % cells.x), int(i / cells.x % cells.y), int(i / cells.x / cells.y)};
   }
   NACRE_HD Vec3f centre(const Int3& c) const { return Vec3f(c.x + 0.5f, c.y + 0.5f, c.z + 0.5f) * spacing; }
-  NACRE_HD bool holds(const Int3& c) const {
-    return unsigned(c.x) < unsigned(cells.x) && unsigned(c.y) < unsigned(cells.y) && unsigned(c.z) < unsigned(cells.z);
-  }
+  NACRE_HD bool holds(const Int3& c) const { return is_within(c, cells); }
   /// The cell of a point; the nearest one for points outside.
   NACRE_HD Int3 cell_at(const Vec3f& p) const {
     Int3 c;

@@ -27,9 +27,7 @@ struct DistanceSamples {
   Vec3f spacing;  ///< per axis, in units of the smallest
   float slope;    ///< of the values
 
-  NACRE_HD bool inside(const Int3& v) const {
-    return unsigned(v.x) < unsigned(dims.x) && unsigned(v.y) < unsigned(dims.y) && unsigned(v.z) < unsigned(dims.z);
-  }
+  NACRE_HD bool inside(const Int3& v) const { return is_within(v, dims); }
   NACRE_HD std::int64_t number(const Int3& v) const { return (std::int64_t(v.z) * dims.y + v.y) * dims.x + v.x; }
   NACRE_HD Int3 voxel(std::int64_t i) const {
     return {int(i % dims.x), int(i / dims.x % dims.y), int(i / dims.x / dims.y)};
@@ -37,9 +35,9 @@ struct DistanceSamples {
   NACRE_HD float largest() const { return max(spacing.x, max(spacing.y, spacing.z)); }
   NACRE_HD float at(const Int3& v, const LevelSide& side) const { return (value[number(v)] - side.level) * side.scale; }
 
-  /// Gradient of the distance at voxel `v`, from those of its neighbours that lie on the same side of a
-  /// crease: in the octant that falls most. Of second order where that is nearer to the slope of a distance. False at the
-  /// volume's faces and where the neighbours are no such octant.
+  /// Gradient of the distance at voxel `v`, from those of its neighbours that lie on the same side of a crease: in the octant
+  /// that falls most. Of second order where that is nearer to the slope of a distance. False at the volume's faces and where
+  /// the neighbours are no such octant.
   NACRE_HD bool gradient(const Int3& v, const LevelSide& side, Vec3f& g) const {
     if (!inside(v - Int3(1)) || !inside(v + Int3(1))) return false;
     Int3 down;
@@ -194,19 +192,16 @@ struct IsCreased {
   }
 };
 
-struct AddCreased {
-  NACRE_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
-};
+/// The upper one of the two in the middle; changes their order.
+inline float median(std::vector<float>& values) {
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
-}  // namespace detail
-
-/// Slope of a scalar volume that is a signed distance, of either sign and in any unit, near a level: per smallest
-/// spacing. 0 if it is none: if the values beside it do not grow alike there and over two voxels (within a fifth, in
-/// four fifths of the voxels), as those of scanners do not, nor distances that were made soft. `spacing` per axis, in units
-/// of the smallest.
-inline float distance_slope(const Int3& dims, const Vec3f& spacing, std::span<const float> values, float level) {
-  detail::DistanceSamples samples{values.data(), dims, spacing, 1};
-  std::vector<Int3> crossings;  // voxels before which the level lies, along any axis
+/// Voxels before which the level lies, along any axis.
+inline std::vector<Int3> level_crossings(const Int3& dims, std::span<const float> values, float level) {
+  std::vector<Int3> crossings;
   const std::array<std::int64_t, 3> ahead{1, dims.x, std::int64_t(dims.x) * dims.y};
   std::int64_t i = 0;
   for (int z = 0; z < dims.z; ++z)
@@ -218,51 +213,69 @@ inline float distance_slope(const Int3& dims, const Vec3f& spacing, std::span<co
             (z + 1 < dims.z && (values[i + ahead[2]] < level) != below))
           crossings.push_back({x, y, z});
       }
-  if (crossings.empty()) return 0;
-  const auto median = [](std::vector<float>& x) {
-    std::nth_element(x.begin(), x.begin() + std::ptrdiff_t(x.size() / 2), x.end());
-    return x[x.size() / 2];
-  };
-  std::vector<float> slopes;
-  for (const Int3& v : crossings) {
-    Vec3f steepest;
-    for (int k = 0; k < 6; ++k) {
-      Int3 next = v;
-      float& most = steepest[k / 2];
-      next[k / 2] += k % 2 ? 1 : -1;
-      if (samples.inside(next))
-        most = std::max(most, std::fabs(samples.at(next, {level, 1}) - samples.at(v, {level, 1})) / spacing[k / 2]);
-    }
-    slopes.push_back(length(steepest));
+  return crossings;
+}
+
+/// Slope at a voxel by the larger one of the two differences along each axis, which does not reach across a crease.
+inline float steepest_slope(const DistanceSamples& samples, const Int3& v) {
+  Vec3f steepest;
+  for (int k = 0; k < 6; ++k) {
+    const int axis = k / 2;
+    Int3 next = v;
+    next[axis] += k % 2 ? 1 : -1;
+    if (!samples.inside(next)) continue;
+    const float rise = samples.value[samples.number(next)] - samples.value[samples.number(v)];
+    steepest[axis] = std::max(steepest[axis], std::fabs(rise) / samples.spacing[axis]);
   }
-  samples.slope = median(slopes);
-  if (!(samples.slope > 0)) return 0;
-  struct Slopes {
-    float here, downhill;  ///< downhill: over the next two voxels
-  };
-  std::vector<Slopes> both;
-  for (const Int3& v : crossings) {
+  return length(steepest);
+}
+
+/// Slopes at a voxel and over the next two voxels downhill, on either side of the level; false where there is no gradient.
+inline bool slopes_downhill(const DistanceSamples& samples, const Int3& v, float level, float& here, float& downhill) {
+  for (const float sign : {1.0f, -1.0f}) {
+    const LevelSide side{level, sign / samples.slope};
     Vec3f g;
-    detail::LevelSide side{level, 1 / samples.slope};
-    if (!samples.gradient(v, side, g)) {
-      side.scale = -side.scale;
-      if (!samples.gradient(v, side, g)) continue;
-    }
-    const float slope = length(g);
+    if (!samples.gradient(v, side, g)) continue;
+    here = length(g);
     Int3 step;
-    for (int axis = 0; axis < 3; ++axis) step[axis] = int(std::lround(-2 * g[axis] / slope));
-    if (!samples.inside(v + step)) continue;
+    for (int axis = 0; axis < 3; ++axis) step[axis] = int(std::lround(-2 * g[axis] / here));
+    if (!samples.inside(v + step)) return false;
     const float fall = samples.at(v, side) - samples.at(v + step, side);
-    both.push_back({slope, -fall * slope / dot(g, Vec3f(step) * spacing)});
+    downhill = -fall * here / dot(g, Vec3f(step) * samples.spacing);
+    return true;
   }
-  if (2 * both.size() < crossings.size()) return 0;  // the others are at the volume's faces, or on a crease
-  slopes.clear();
-  for (const Slopes& s : both) slopes.push_back(s.here);
-  const float usual = median(slopes);
-  const auto alike = std::count_if(both.begin(), both.end(), [&](const Slopes& s) {
-    return std::fabs(s.here - usual) <= 0.2f * usual && std::fabs(s.downhill - usual) <= 0.2f * usual;
-  });
-  return double(alike) >= 0.8 * double(both.size()) ? usual * samples.slope : 0;
+  return false;
+}
+
+}  // namespace detail
+
+/// Slope of a scalar volume that is a signed distance, of either sign and in any unit, near a level: per smallest
+/// spacing. 0 if it is none: if the values beside it do not grow alike there and over two voxels (within a fifth, in
+/// four fifths of the voxels), as those of scanners do not, nor distances that were made soft. `spacing` per axis, in units
+/// of the smallest.
+inline float distance_slope(const Int3& dims, const Vec3f& spacing, std::span<const float> values, float level) {
+  const std::vector<Int3> crossings = detail::level_crossings(dims, values, level);
+  if (crossings.empty()) return 0;
+  detail::DistanceSamples samples{values.data(), dims, spacing, 1};
+  std::vector<float> slopes;
+  for (const Int3& v : crossings) slopes.push_back(detail::steepest_slope(samples, v));
+  samples.slope = detail::median(slopes);
+  if (!(samples.slope > 0)) return 0;
+  std::vector<float> here, downhill;
+  for (const Int3& v : crossings) {
+    float a = 0, b = 0;
+    if (!detail::slopes_downhill(samples, v, level, a, b)) continue;
+    here.push_back(a);
+    downhill.push_back(b);
+  }
+  const std::size_t measured = here.size();
+  if (2 * measured < crossings.size()) return 0;  // the others are at the volume's faces, or on a crease
+  slopes = here;
+  const float usual = detail::median(slopes);
+  std::size_t alike = 0;
+  for (std::size_t k = 0; k < measured; ++k)
+    alike += std::fabs(here[k] - usual) <= 0.2f * usual && std::fabs(downhill[k] - usual) <= 0.2f * usual;
+  return double(alike) >= 0.8 * double(measured) ? usual * samples.slope : 0;
 }
 
 /// Makes `value`, a signed distance on the device with this `slope`, readable between voxels where two parts of a surface
@@ -276,7 +289,7 @@ std::int64_t smooth_creases(Executor<Backend>& exec, const Int3& dims, const Vec
   const auto n = std::int64_t(value.size());
   exec.for_each(n, detail::MeasureCrease{samples, level, crease.data()});
   exec.for_each(n, detail::SmoothCrease{samples, level, crease.data(), value.data()});
-  return exec.reduce(n, std::int64_t(0), detail::IsCreased{crease.data()}, detail::AddCreased{});
+  return exec.reduce(n, std::int64_t(0), detail::IsCreased{crease.data()}, Add{});
 }
 
 }  // namespace nacre

@@ -207,10 +207,6 @@ struct JoinSizeRanges {
   }
 };
 
-struct AddCounts {
-  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-};
-
 }  // namespace detail
 
 struct SizingField {
@@ -245,7 +241,7 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   for (int k = 0; k < 10; ++k) {
     const float middle = 0.5f * (low + high);
     const std::uint64_t smaller =
-        exec.reduce(points, std::uint64_t(0), detail::CountSmaller{at_point.data(), middle}, detail::AddCounts{});
+        exec.reduce(points, std::uint64_t(0), detail::CountSmaller{at_point.data(), middle}, Add{});
     (smaller * 10 > std::uint64_t(points) ? high : low) = middle;
   }
   field.small = low;

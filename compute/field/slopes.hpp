@@ -81,10 +81,7 @@ struct LabelSlopes {
   }
 
   NACRE_HD std::uint16_t label(const Int3& v) const { return field.voxel_material[field.voxel_number(v.x, v.y, v.z)]; }
-  NACRE_HD bool inside(const Int3& v) const {
-    const Int3 n = field.voxels();
-    return unsigned(v.x) < unsigned(n.x) && unsigned(v.y) < unsigned(n.y) && unsigned(v.z) < unsigned(n.z);
-  }
+  NACRE_HD bool inside(const Int3& v) const { return is_within(v, field.voxels()); }
 
   /// The first voxel along a direction that is not of the tread, and how many steps away it is; 0 where none is within reach.
   NACRE_HD int leave(Tread& tread, const Int3& direction, float voxel) const {

@@ -115,9 +115,7 @@ struct SmoothBrick {
     const Int3 b{int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)};
     team.each(27, [&](int k) {
       const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      const bool inside =
-          unsigned(c.x) < unsigned(n.x) && unsigned(c.y) < unsigned(n.y) && unsigned(c.z) < unsigned(n.z);
-      around[k] = inside ? source.brick(source.block_number(c.x, c.y, c.z), source.brick_material[brick])
+      around[k] = is_within(c, n) ? source.brick(source.block_number(c.x, c.y, c.z), source.brick_material[brick])
                   : source.brick_material[brick] == 0 ? 1
                                                       : 0;
     });

@@ -88,6 +88,12 @@ NACRE_HD bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
+/// Whether a cell is one of 0 .. dims - 1 along each axis.
+NACRE_HD_INLINE constexpr bool is_within(const Vec3<int>& cell, const Vec3<int>& dims) {
+  return unsigned(cell.x) < unsigned(dims.x) && unsigned(cell.y) < unsigned(dims.y) &&
+         unsigned(cell.z) < unsigned(dims.z);
+}
+
 /// What stands for no index.
 inline constexpr std::uint32_t none = 0xffffffffu;
 

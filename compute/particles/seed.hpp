@@ -123,18 +123,12 @@ struct SumShares {
   }
 };
 
-struct AddShares {
-  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-};
-
 }  // namespace detail
 
 /// How many particles the sizing field asks for on the interfaces of a source of seeds.
 template <class Backend, class Source>
 double expected_particles(Executor<Backend>& exec, const Source& source) {
-  return double(
-             exec.reduce(source.places(), std::uint64_t(0), detail::SumShares<Source>{source}, detail::AddShares{})) /
-         16777216.0;
+  return double(exec.reduce(source.places(), std::uint64_t(0), detail::SumShares<Source>{source}, Add{})) / 16777216.0;
 }
 
 /// Puts seeds behind the particles of a set; returns how many. `scale`: times as many as the sizing field asks for; `random`:

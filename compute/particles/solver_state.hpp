@@ -60,10 +60,6 @@ struct MovingEnergy {
   NACRE_HD std::int64_t operator()(std::int64_t i) const { return std::int64_t(direction[i].w * 1048576.0f + 0.5f); }
 };
 
-struct AddWhole {
-  NACRE_HD std::int64_t operator()(std::int64_t a, std::int64_t b) const { return a + b; }
-};
-
 /// The sizing field may have changed since the particles were put there.
 template <class Surface>
 struct ReadSize {
@@ -92,7 +88,7 @@ double mean_energy(Executor<Backend>& exec, const ParticleSet& set) {
   const std::int64_t moving = set.count - set.fixed;
   if (moving <= 0) return 0;
   const std::int64_t sum =
-      exec.reduce(moving, std::int64_t(0), detail::MovingEnergy{set.direction.data() + set.fixed}, detail::AddWhole{});
+      exec.reduce(moving, std::int64_t(0), detail::MovingEnergy{set.direction.data() + set.fixed}, Add{});
   return double(sum) / 1048576 / double(moving);
 }
 

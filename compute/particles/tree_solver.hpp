@@ -393,10 +393,8 @@ class TreeSolver {
                   std::to_string(total) + " of at most " + std::to_string(from.capacity()),
                   "raise --min-size or --epsilon");
     IterationResult result;
-    result.added =
-        std::int64_t(exec.reduce(n, std::uint64_t(0), detail::CountOf{copies.data(), 2}, detail::AddCounts{}));
-    result.deleted =
-        std::int64_t(exec.reduce(n, std::uint64_t(0), detail::CountOf{copies.data(), 0}, detail::AddCounts{}));
+    result.added = std::int64_t(exec.reduce(n, std::uint64_t(0), detail::CountOf{copies.data(), 2}, Add{}));
+    result.deleted = std::int64_t(exec.reduce(n, std::uint64_t(0), detail::CountOf{copies.data(), 0}, Add{}));
     exec.for_each(
         n, detail::CopyPopulation{copies.data(), start.data(), from.place.data(), from.direction.data(),
                                   from.interface.data(), velocity_[0].data(), child.data(), child_direction.data(),
@@ -410,7 +408,7 @@ class TreeSolver {
   template <class Backend>
   std::int64_t movers(Executor<Backend>& exec, const RelatedView& related, int order) {
     return std::int64_t(exec.reduce(set_[0].count, std::uint64_t(0),
-                                    detail::IsOfOrder{related, set_[0].interface.data(), order}, detail::AddCounts{}));
+                                    detail::IsOfOrder{related, set_[0].interface.data(), order}, Add{}));
   }
 
  private:
@@ -420,7 +418,7 @@ class TreeSolver {
     exec.for_each_team(tree_.leaf_count(), LeafForces{view(theta), related, set.interface.data(), tree_.leaves(), order,
                                                       gradient_.data(), energy_.data()});
     exec.reduce_into(energy_sum_.data(), set.count, std::uint64_t(0),
-                     detail::EnergyOf{related, set.interface.data(), energy_.data(), order}, detail::AddCounts{});
+                     detail::EnergyOf{related, set.interface.data(), energy_.data(), order}, Add{});
   }
 
   double mean_energy(std::int64_t movers) const {

@@ -11,10 +11,15 @@ struct CreasedBody {
   std::vector<Vec3d> points;
 };
 
-/// A wall between two planes, turned out of the axes.
+/// Three directions at right angles, none along an axis.
+struct Turned {
+  Vec3d n = normalized(Vec3d(0.5, 0.7, 0.3)), s = normalized(cross(n, Vec3d(0, 0, 1))), t = cross(n, s);
+};
+
+/// A wall between two planes.
 inline CreasedBody wall(double width) {
-  const Vec3d n = normalized(Vec3d(0.5, 0.7, 0.3)), s = normalized(cross(n, Vec3d(0, 0, 1))), t = cross(n, s);
-  CreasedBody body{[=](const Vec3d& p) { return width / 2 - std::fabs(dot(p, n)); }, {}};
+  const auto [n, s, t] = Turned();
+  CreasedBody body{[=, n = n](const Vec3d& p) { return width / 2 - std::fabs(dot(p, n)); }, {}};
   for (int i = -25; i <= 25; ++i)
     for (int j = -25; j <= 25; ++j)
       for (const double side : {-0.5, 0.5}) body.points.push_back(s * (0.31 * i) + t * (0.31 * j) + n * (width * side));
@@ -29,8 +34,8 @@ inline CreasedBody shell(double radius, double width) {
 }
 
 inline CreasedBody rod(double radius) {
-  const Vec3d n = normalized(Vec3d(0.5, 0.7, 0.3)), s = normalized(cross(n, Vec3d(0, 0, 1))), t = cross(n, s);
-  CreasedBody body{[=](const Vec3d& p) { return radius - length(p - n * dot(p, n)); }, {}};
+  const auto [n, s, t] = Turned();
+  CreasedBody body{[=, n = n](const Vec3d& p) { return radius - length(p - n * dot(p, n)); }, {}};
   for (int k = 0; k < 4000; ++k)
     body.points.push_back(n * (0.002 * k - 4) + (s * std::cos(0.7 * k) + t * std::sin(0.7 * k)) * radius);
   return body;

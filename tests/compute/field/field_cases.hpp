@@ -100,13 +100,9 @@ struct StrayVoxels {
   }
 };
 
-struct AddStrays {
-  NACRE_HD std::uint64_t operator()(std::uint64_t a, std::uint64_t b) const { return a + b; }
-};
-
 template <class Backend>
 std::uint64_t stray_voxels(Executor<Backend>& exec, const MaterialBricks& b) {
-  return exec.reduce(b.voxel_count(), std::uint64_t(0), StrayVoxels{b.view()}, AddStrays{});
+  return exec.reduce(b.voxel_count(), std::uint64_t(0), StrayVoxels{b.view()}, Add{});
 }
 
 /// A point brought onto an interface; direction zero where that failed.
