@@ -165,15 +165,17 @@ struct SmoothCrease {
   NACRE_HD void operator()(std::int64_t i) const {
     const float f = (value[i] - level) / samples.slope, voxel = samples.largest();
     if (f == 0 || std::fabs(f) >= MeasureCrease::band * voxel) return;
-    const float k = crease[i] == MeasureCrease::unknown ? around(samples.voxel(i)) : crease[i];
+    const float k = around(samples.voxel(i), crease[i]);
     const float most = farthest * voxel, bend = min(k * f, 0.5f);  // no more: the voxel stays on its side
     value[i] -= bend * f * min(1.0f, most * most / (f * f)) * samples.slope;
   }
 
  private:
-  /// Of a voxel that lies on a crease itself, or at the rim of one: what its neighbours know.
-  NACRE_HD float around(const Int3& v) const {
-    float sum = 0, known = 0;
+  /// The mean of what a voxel and its six neighbours know: one that lies on a crease itself knows nothing, at the rim of a
+  /// crease few do, and what a single one measures is rough.
+  NACRE_HD float around(const Int3& v, float own) const {
+    const bool knows = own != MeasureCrease::unknown;
+    float sum = knows ? own : 0, known = knows ? 1 : 0;
     for (int k = 0; k < 6; ++k) {
       Int3 other = v;
       other[k / 2] += k % 2 ? 1 : -1;
@@ -181,7 +183,7 @@ struct SmoothCrease {
       const float c = crease[samples.number(other)];
       if (c != MeasureCrease::unknown) sum += c, ++known;
     }
-    return known == 0 ? 0 : sum / max(known, 3.0f);
+    return known == 0 ? 0 : sum / (knows ? known : max(known, 3.0f));
   }
 };
 

@@ -114,18 +114,18 @@ void SheetsThatFaceEachOther(Executor<Backend>& exec) {
   check_body(exec, "wall of 1", wall(1), 0.01);
   check_body(exec, "wall of 0.6", wall(0.6), 0.01);
   check_body(exec, "wall of 1.7", wall(1.7), 0.01);
-  check_body(exec, "shell of 1", shell(10.2, 1), 0.03);
+  check_body(exec, "shell of 1", shell(10.2, 1), 0.02);
   check_body(exec, "shell of 2", shell(10.2, 2), 0.02);
-  check_body(exec, "rod of 0.7", rod(0.7), 0.04);
-  check_body(exec, "rod of 1.1", rod(1.1), 0.03);
-  check_body(exec, "balls 0.8 apart", two_balls(6.87, 0.8), 0.08);
+  check_body(exec, "rod of 0.7", rod(0.7), 0.03);
+  check_body(exec, "rod of 1.1", rod(1.1), 0.015);
+  check_body(exec, "balls 0.8 apart", two_balls(6.87, 0.8), 0.07);
   check_body(exec, "balls 0.6 apart", two_balls(12, 0.6), 0.06);
 }
 
 template <class Backend>
 void VoxelsOfOtherShapes(Executor<Backend>& exec) {
-  check_body(exec, "wall of 1 in flat voxels", wall(1), 0.08, {1, 1, 1.6});
-  check_body(exec, "shell of 1.5 in flat voxels", shell(10.2, 1.5), 0.1, {1, 1.3, 1.6});
+  check_body(exec, "wall of 1 in flat voxels", wall(1), 0.01, {1, 1, 1.6});
+  check_body(exec, "shell of 1.5 in flat voxels", shell(10.2, 1.5), 0.04, {1, 1.3, 1.6});
 }
 
 /// A gap is what a wall is on the other side; a file may count in any unit.
