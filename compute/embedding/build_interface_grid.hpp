@@ -12,6 +12,8 @@
 
 namespace nacre {
 
+inline constexpr std::size_t most_interfaces = 65000;  ///< the tree's keys have 16 bits for them
+
 /// The interfaces of a volume and their embedding, in permanent memory.
 struct InterfaceGrid {
   Int3 coarse{};
@@ -225,7 +227,7 @@ struct BorrowClosestPoint {
 }  // namespace detail
 
 /// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where there
-/// are none, or more than 65,000.
+/// are none, or more than `most_interfaces`.
 template <class Backend>
 InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b, const DistanceField& distance,
                                const SizingField& size, double cells_per_voxel) {
@@ -244,7 +246,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   const JunctionSearch search = find_junctions(exec, b, grid.coarse, grid.cells_per_voxel);
   grid.crowded_cells = search.crowded_cells;
   if (search.table.empty()) throw Error("no interface in the volume", "it holds one material only");
-  if (search.table.size() > 65000)
+  if (search.table.size() > most_interfaces)
     throw Error("too many interfaces", std::to_string(search.table.size()) + " pairs and triples of materials meet",
                 "merge materials with --merge or keep fewer with --materials");
   grid.junctions = search.table;

@@ -17,18 +17,6 @@ struct alignas(16) ClusterBound {
   float radius;
   Vec3f normal;
   float thickness;
-
-  /// How far `x` is from the centre: the surface is no farther than that.
-  NACRE_HD float upper(const Vec3f& x) const { return length(x - centre); }
-
-  /// How far `x` is from the cylinder: no triangle of the cluster is nearer than that.
-  NACRE_HD float lower(const Vec3f& x) const {
-    const Vec3f d = x - centre;
-    const float along = dot(d, normal);
-    const float across2 = dot(d, d) - along * along;
-    const float h = std::fabs(along) - thickness, r = std::sqrt(across2 > 0 ? across2 : 0) - radius;
-    return std::sqrt((h > 0 ? h * h : 0) + (r > 0 ? r * r : 0));
-  }
 };
 
 /// Clusters of triangles whose centroids lie in one cell; a triangle that reaches farther than a cell from its centroid

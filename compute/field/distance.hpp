@@ -295,7 +295,7 @@ inline Lattice lattice_over(const MaterialBricks& b, float spacing) {
   for (int axis = 0; axis < 3; ++axis) {
     lattice.spacing[axis] = std::max(spacing, 1 / b.cells_per_unit[axis]);
     const double extent = double(b.blocks[axis] * block_size) / b.cells_per_unit[axis];
-    lattice.cells[axis] = std::max(1, int(std::ceil(extent / lattice.spacing[axis] - 1e-3)));
+    lattice.cells[axis] = std::max(2, int(std::ceil(extent / lattice.spacing[axis] - 1e-3)));  // for interpolation
   }
   return lattice;
 }

@@ -59,10 +59,17 @@ namespace detail {
 /// by points seen under less than 75 degrees from its centre goes on growing: noise and wide wedges make no medial axis.
 struct MedialRadius {
   DistanceFieldView distance;
-  float most;       ///< no ball is larger
+  float most;       ///< no ball is larger: the field knows what is near the centre of one that large
+  float free;       ///< what stands for the radius of one that nothing makes smaller
   float tolerance;  ///< voxels
 
   NACRE_HD float operator()(const Vec3f& p, const Vec3f& towards) const {
+    const float r = shrink(p, towards);
+    return r < most ? r : free;
+  }
+
+ private:
+  NACRE_HD float shrink(const Vec3f& p, const Vec3f& towards) const {
     float r = most;
     for (int k = 0; k < 16; ++k) {
       const Vec3f centre = p + towards * r;
@@ -219,7 +226,7 @@ struct SizingField {
 
 /// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball (with
 /// `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On the
-/// lattice of `distance`, whose reach bounds the medial balls.
+/// lattice of `distance`; a body that its reach does not see across counts as wide.
 template <class Backend>
 SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule) {
   Arena& arena = exec.arena();
@@ -231,8 +238,9 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   const DistanceFieldView view = distance.view();
   Array<float> at_point = arena.temporary<float>(points);
   const Vec3f& s = field.lattice.spacing;
-  exec.for_each(points, detail::SizeAtInterface{
-                            {view, rule.reach() + 0.5f, 0.1f * std::max({s.x, s.y, s.z})}, rule, at_point.data()});
+  const float free = rule.reach() + 0.5f, most = std::min(free, distance.reach - 1.5f);
+  exec.for_each(points,
+                detail::SizeAtInterface{{view, most, free, 0.1f * std::max({s.x, s.y, s.z})}, rule, at_point.data()});
   const detail::SizeRange range =
       exec.reduce(points, detail::SizeRange{}, detail::SizeRangeAt{at_point.data()}, detail::JoinSizeRanges{});
   field.smallest = range.low;

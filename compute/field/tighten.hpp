@@ -209,7 +209,6 @@ struct HoldVoxels {
 struct TightenResult {
   std::int64_t held = 0;  ///< most voxels that had to be held in one round
   std::int64_t left = 0;  ///< of the last round: still off by more than nothing
-  int rounds = 0;
 };
 
 /// Fills the bricks of a label volume. Whitaker 2000 moves the binary boundary by its curvature and holds it in the shell
@@ -252,7 +251,7 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
   const GaussianTaps<narrow_reach> narrow(0.6);
   const float gain = 0.9f / (narrow.tap[narrow_reach] * narrow.tap[narrow_reach] * narrow.tap[narrow_reach]);
-  for (result.rounds = 1; result.rounds <= 60; ++result.rounds) {
+  for (int round = 0; round < 60; ++round) {
     source.fill_bytes(0);
     changed.fill_bytes(0);
     held.fill_bytes(0);

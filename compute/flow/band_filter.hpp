@@ -121,7 +121,9 @@ struct EqualiseBand {
   Local moments;
   const TextureSpread* whole;  ///< of all of `value` and `ahead`
   float local, contrast;
-  float *shown, *detail;
+  float* shown;
+  float* output;  ///< the same, for whoever draws it; null: nobody does
+  float* detail;
 
   NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& place, typename View::Cursor& cursor) const {
     const Vec3f m = moments.at(view, place, cursor);
@@ -133,7 +135,9 @@ struct EqualiseBand {
       shift = local * (local_mean - all.mean);
       spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
     }
-    shown[s] = clamp01(0.5f + contrast * (value[s] - all.mean - shift) / spread);
+    const float frame = clamp01(0.5f + contrast * (value[s] - all.mean - shift) / spread);
+    shown[s] = frame;
+    if (output) output[s] = frame;
     detail[s] = (ahead[s] - all.ahead_mean - shift) / (spread * all.ratio);
   }
 };

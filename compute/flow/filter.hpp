@@ -125,6 +125,7 @@ struct Equalise {
   const TextureSpread* whole;  ///< of the whole of `value` and `ahead`
   float local, contrast;
   float* shown;
+  float* output;  ///< the same, for whoever draws it; null: nobody does
   float* detail;
   NACRE_HD void operator()(std::int64_t i) const {
     const Vec3f p = cell_centre(texture.cell(std::uint32_t(i))) * texture.inverse_refine;
@@ -139,7 +140,9 @@ struct Equalise {
       shift = local * (local_mean - all.mean);
       spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
     }
-    shown[i] = clamp01(0.5f + contrast * (value[i] - all.mean - shift) / spread);
+    const float frame = clamp01(0.5f + contrast * (value[i] - all.mean - shift) / spread);
+    shown[i] = frame;
+    if (output) output[i] = frame;
     detail[i] = (ahead[i] - all.ahead_mean - shift) / (spread * all.ratio);
   }
 };

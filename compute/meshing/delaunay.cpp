@@ -255,7 +255,7 @@ struct Delaunay::Held {
 
   /// Takes out the points that are not in `now`; the numbers of those that are to be put in, ascending. All, where building
   /// anew costs less: then all of this is as new.
-  std::vector<std::uint32_t> keep(std::span<const Vec3d> now) {
+  std::vector<std::uint32_t> keep(std::span<const Vec3d> now, const std::atomic<bool>* stop) {
     const PlaceTable known(points);
     std::vector<Vertex> at(now.size());
     std::vector<std::uint32_t> fresh;
@@ -270,7 +270,10 @@ struct Delaunay::Held {
       if (!stays[i] && known.find(points[i]) == i) gone.push_back(vertices[i]);  // others share the vertex of the first
     vertices = std::move(at);
     if (gone.size() <= now.size() / dear_removal) {
-      for (const Vertex vertex : gone) triangulation.remove(vertex);
+      for (const Vertex vertex : gone) {
+        check_stop(stop);
+        triangulation.remove(vertex);
+      }
       return fresh;
     }
     triangulation.clear();
@@ -280,7 +283,7 @@ struct Delaunay::Held {
   }
 
   void triangulate(std::span<const Vec3d> now, bool threaded, const std::atomic<bool>* stop) {
-    const std::vector<std::uint32_t> fresh = keep(now);
+    const std::vector<std::uint32_t> fresh = keep(now, stop);
     std::unique_ptr<LockGrid> locks;
     if (threaded && fresh.size() > few_points) locks = std::make_unique<LockGrid>(box_of(now), lock_cells);
     points.assign(now.begin(), now.end());

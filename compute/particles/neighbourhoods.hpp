@@ -146,12 +146,6 @@ class NearInNeighbourhood {
     return over_lists(team, 0.0f, [&] { return pair_energy_sum(team, list_, at); });
   }
 
-  /// Calls visit(list) for each list of near particles; most often there is one.
-  template <class Visit>
-  NACRE_HD void each_list(Team& team, const Visit& visit) const {
-    over_lists(team, 0, [&] { return visit(list_), 0; });
-  }
-
  private:
   template <class T, class Sum>
   NACRE_HD T over_lists(Team& team, T total, const Sum& sum) const {

@@ -54,9 +54,15 @@ NACRE_HD inline Fate population_fate(const PopulationRule& rule, const Populatio
 
 /// What is decided for the particles of a set before any is added or deleted; fixed ones have no entry that counts.
 struct PopulationPlan {
-  std::uint32_t* copies;  ///< per particle: how many there will be in its place, 0 to 4
+  std::uint32_t* copies;  ///< per particle: how many there will be in its place, and which companions (see below)
   Float4* child_place;    ///< of the second, where there are two; more than two have places of their own (spread_place)
   Float4* child_direction;
+
+  /// Of an entry of `copies`: 0 to 4.
+  NACRE_HD static std::uint32_t count(std::uint32_t entry) { return entry & 0xff; }
+  /// Whether it asks for companion k of a lonely particle: decided once, since two kernels may round differently.
+  NACRE_HD static bool has_companion(std::uint32_t entry, int k) { return entry >> (8 + k) & 1; }
+  NACRE_HD static std::uint32_t with_companion(std::uint32_t entry, int k) { return (entry + 1) | 1u << (8 + k); }
 };
 
 namespace detail {
@@ -108,7 +114,7 @@ NACRE_HD inline void plan_particle(const PopulationPlan& plan, Fate fate, const 
   for (int k = 0; fate == Fate::spread && k < 3; ++k)
     if (detail::spread_place(surface, table[interface], interface, place, direction, k, to, to_direction)) {
       plan.child_place[i] = to, plan.child_direction[i] = to_direction;  // counts where it is the only one
-      ++copies;
+      copies = PopulationPlan::with_companion(copies, k);
     }
   plan.copies[i] = copies;
 }
@@ -122,7 +128,7 @@ struct Population {
 struct PopulationOf {
   const std::uint32_t* copies;
   NACRE_HD Population operator()(std::int64_t i) const {
-    const std::int64_t n = copies[i];
+    const std::int64_t n = PopulationPlan::count(copies[i]);
     return {n > 1 ? n - 1 : 0, n == 0 ? 1 : 0};
   }
 };
@@ -140,7 +146,7 @@ struct CopiesInOrder {
   std::uint32_t* start;
   NACRE_HD void operator()(std::int64_t k) const {
     const std::int64_t i = order ? std::int64_t(order[k]) : k;
-    start[k] = i < fixed ? 0 : copies[i];
+    start[k] = i < fixed ? 0 : PopulationPlan::count(copies[i]);
   }
 };
 
@@ -164,17 +170,19 @@ struct WritePopulation {
 
   NACRE_HD void operator()(std::int64_t k) const {
     const std::int64_t i = order ? std::int64_t(order[k]) : k;
-    const std::uint32_t copies = i < fixed ? 1 : plan.copies[i];
+    const std::uint32_t entry = i < fixed ? 1 : plan.copies[i], copies = PopulationPlan::count(entry);
     if (copies == 0) return;
     std::int64_t at = i < fixed ? i : fixed + start[k];
     const Float4 place = from.place[i], direction = from.direction[i];
     const std::uint32_t interface = from.interface[i];
     write(at, place, direction, interface, from.carried[i]);
     if (copies == 2) write(at + 1, plan.child_place[i], plan.child_direction[i], interface, fresh);
-    Float4 child, child_direction;
-    for (int c = 0; copies > 2 && c < 3; ++c)
-      if (spread_place(surface, table[interface], interface, place, direction, c, child, child_direction))
-        write(++at, child, child_direction, interface, fresh);
+    for (int c = 0; copies > 2 && c < 3; ++c) {
+      if (!PopulationPlan::has_companion(entry, c)) continue;
+      Float4 child = plan.child_place[i], child_direction = plan.child_direction[i];
+      spread_place(surface, table[interface], interface, place, direction, c, child, child_direction);
+      write(++at, child, child_direction, interface, fresh);
+    }
   }
 
  private:

@@ -70,6 +70,13 @@ struct ReadSize {
 
 }  // namespace detail
 
+/// As if the particles had no history.
+template <class Backend>
+void forget(Executor<Backend>& exec, SolverState& state, const SolverParameters& parameters) {
+  state.step = 0;
+  exec.for_each(state.damping.size(), detail::SetDamping{parameters.first_damping, state.damping.data()});
+}
+
 /// State for a set that has no history; `set.capacity()` bounds the number of particles from now on.
 template <class Backend>
 SolverState make_solver_state(Executor<Backend>& exec, const ParticleSet& set,
@@ -78,7 +85,7 @@ SolverState make_solver_state(Executor<Backend>& exec, const ParticleSet& set,
   state.spare = make_particle_set(exec, set.capacity());
   state.damping = exec.arena().template permanent<float>(set.capacity());
   state.spare_damping = exec.arena().template permanent<float>(set.capacity());
-  exec.for_each(set.capacity(), detail::SetDamping{parameters.first_damping, state.damping.data()});
+  forget(exec, state, parameters);
   return state;
 }
 

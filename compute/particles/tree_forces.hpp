@@ -136,9 +136,9 @@ struct LeafForces {
   }
 };
 
-/// Energy and force at a place that need not be a particle's: one walk for one point. `skip`: a particle to leave out.
+/// Energy and force at a place that need not be a particle's: one walk for one point.
 NACRE_HD inline ForceSum force_at(const TreeView& tree, const RelatedView& related, std::uint32_t group, const Vec3f& p,
-                                  float h, const Vec3f& n, std::uint32_t skip) {
+                                  float h, const Vec3f& n) {
   ForceSum sum;
   const bool surface = related.order[group] == 2;
   for (std::uint32_t k = related.start[group]; k < related.start[group + 1]; ++k) {
@@ -156,8 +156,7 @@ NACRE_HD inline ForceSum force_at(const TreeView& tree, const RelatedView& relat
     tree.walk(
         root, p, p, support * h,
         [&](std::uint32_t first, std::uint32_t last) {
-          for (std::uint32_t q = first; q < last; ++q)
-            if (q != skip) add(tree.place[q], tree.direction[q], 1);
+          for (std::uint32_t q = first; q < last; ++q) add(tree.place[q], tree.direction[q], 1);
         },
         [&](const TreeNode& node) { add(node.centre, node.normal, node.mass()); });
   }

@@ -171,7 +171,7 @@ struct JudgeParticle {
     const Vec3f r = on.p - p;
     if (dot(r, r) < 0.16f * at.w * at.w) return;
     // Only where there is room: its energy there must not be that of a crowd.
-    const ForceSum there = force_at(tree, related, group, on.p, on.h, order == 2 ? on.direction : Vec3f(), none);
+    const ForceSum there = force_at(tree, related, group, on.p, on.h, order == 2 ? on.direction : Vec3f());
     if (there.energy > crowded * rule.ideal_energy) return;
     child[i] = {on.p.x, on.p.y, on.p.z, on.h};
     child_direction[i] = {on.direction.x, on.direction.y, on.direction.z, there.energy};

@@ -40,7 +40,7 @@ class FlowMethodOn : public FlowMethod {
   FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters) : exec_(exec), parameters_(parameters) {}
 
   void step() override {
-    if (!started_) throw Error("step before start");
+    require_started();
     advance(step_);
     ++step_;
   }
@@ -56,6 +56,9 @@ class FlowMethodOn : public FlowMethod {
 
   void require_embedded() const {
     if (!embedded_) throw Error("no surface embedded");
+  }
+  void require_started() const {
+    if (!started_) throw Error("no flow started");
   }
 
   /// Empties the arena and takes the mesh up, in cells of the domain.
@@ -78,7 +81,9 @@ class FlowMethodOn : public FlowMethod {
   /// Gives the last run's arrays back. `texel` is the edge of a texture cell in cells of the domain.
   void begin_flow(const FlowVectors& vectors, double texel) {
     require_embedded();
+    started_ = false;
     vectors_ = vectors;
+    seed_ = parameters_.seed;
     texel_ = texel;
     ttl_ = std::clamp(parameters_.ttl, 1, max_ttl);
     steady_ = !(vectors.end > vectors.start);
@@ -187,7 +192,8 @@ class FlowMethodOn : public FlowMethod {
   double texel_ = 1;  ///< edge of a texture cell in cells of the domain
   std::uint32_t triangles_ = 0;
   std::size_t embedding_mark_ = 0;
-  float* output_ = nullptr;  ///< where the shown values go; null: the method's own array
+  std::uint32_t seed_ = 0;
+  float* output_ = nullptr;  ///< where the shown values go, too, besides the method's own array; null: nowhere
 
   std::vector<Vec3d> points_;  ///< in cells of the domain
   MeshView mesh_{};

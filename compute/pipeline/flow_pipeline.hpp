@@ -143,8 +143,8 @@ class FlowPipeline {
   virtual double time() const = 0;                     ///< of the frame that is shown
   virtual std::vector<float> shown()
       const = 0;  ///< per surface cell (source octree: per cell), 0..1, contrast stretched
-  /// From the next step on, shown values go to `memory` of the device: one float per value of `shown`; null: to the
-  /// pipeline's own array, as after `start`.
+  /// From the next step on, shown values go to `memory` of the device, too, for whoever draws them: one float per value of
+  /// `shown`; null: no more, as after `start`. Nothing is read from there.
   virtual void show_into(float* memory) = 0;
   virtual FlowLookup lookup() const = 0;
   virtual FlowBoxes boxes() const = 0;

@@ -69,8 +69,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
       moments.fill_bytes(0);  // blurring never writes the cells without a block
     }
     shown_ = arena.permanent<float>(n);
-    for (Array<float>* noise : {&carried_, &value_, &ahead_})
-      exec_.for_each(n, FillNoise{parameters_.seed, noise->data()});
+    for (Array<float>* noise : {&carried_, &value_, &ahead_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
     this->warm_up();
     show();
     for (int k = first_; k < 0; ++k) advance(k);
@@ -88,7 +87,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
  private:
   using Base = FlowMethodOn<Backend>;
   using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
-  using Base::launched_, Base::output_, Base::steady_, Base::triangles_, Base::ttl_;
+  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
 
   void describe() {
     info_ = {};
@@ -151,9 +150,9 @@ class GridFlow final : public FlowMethodOn<Backend> {
     const TextureSpread* whole = measure_spread(exec_, n, value_.data(), ahead_.data());
     const Float4* moments = gather_moments(texture);
     exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, whole, float(parameters_.equalise),
-                               float(parameters_.contrast), display(), detail_.data()});
+                               float(parameters_.contrast), shown_.data(), output_, detail_.data()});
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
-                                       parameters_.seed, std::uint32_t(++launched_), carried_.data()});
+                                       seed_, std::uint32_t(++launched_), carried_.data()});
   }
 
   /// Local moments of `value_` over a window of about a dozen texture cells, in one of two buffers.
@@ -173,8 +172,6 @@ class GridFlow final : public FlowMethodOn<Backend> {
                                                   otherwise.data(), share, value.data()});
   }
 
-  float* display() const { return output_ ? output_ : shown_.data(); }
-
   int refine_ = 4;
   ClosestPointGrid coarse_;
   RefinedGrid fine_;
@@ -188,8 +185,9 @@ class GridFlow final : public FlowMethodOn<Backend> {
 
 template <class Backend>
 std::vector<float> GridFlow<Backend>::shown() const {
+  this->require_started();
   std::vector<float> host(fine_.surface_cells);
-  exec_.device().copy_to_host(host.data(), display(), host.size() * sizeof(float));
+  exec_.device().copy_to_host(host.data(), shown_.data(), host.size() * sizeof(float));
   return host;
 }
 
@@ -200,12 +198,13 @@ std::vector<std::uint8_t> GridFlow<Backend>::render(const RenderOptions& options
   RenderPixel<GridTarget> pixel;
   pixel.scene.target.grid = coarse_.view();
   pixel.scene.target.texels = fine_.view(coarse_.view());
-  pixel.scene.shown = started_ && options.texture ? display() : nullptr;
+  pixel.scene.shown = started_ && options.texture ? shown_.data() : nullptr;
   return this->draw(pixel, options, Vec3d(domain_.bricks * Int3(coarse_.sub)));
 }
 
 template <class Backend>
 FlowValues GridFlow<Backend>::values() const {
+  this->require_started();
   const std::size_t n = fine_.surface_cells;
   FlowValues values(n);
   values.value = value_.download();
@@ -228,6 +227,7 @@ FlowValues GridFlow<Backend>::values() const {
 
 template <class Backend>
 std::vector<float> GridFlow<Backend>::sample_shown(std::span<const Vec3d> points) {
+  this->require_started();
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<Vec3f> host;
@@ -236,7 +236,7 @@ std::vector<float> GridFlow<Backend>::sample_shown(std::span<const Vec3d> points
   places.upload(host);
   Array<float> value = arena.temporary<float>(host.size());
   exec_.for_each(std::int64_t(host.size()),
-                 detail::SampleShown{fine_.view(coarse_.view()), display(), places.data(), value.data()});
+                 detail::SampleShown{fine_.view(coarse_.view()), shown_.data(), places.data(), value.data()});
   return value.download();
 }
 

@@ -33,11 +33,12 @@ void MeshPipelineOf<Backend>::load(const MeshVolume& volume) {
     fill_indicators(exec_, bricks_, volume.material, volume.values,
                     indicator_range(volume.dims, volume.material, volume.values));
   } else if (volume.kind == MeshVolume::Kind::scalar) {
+    const std::vector<float>& values = volume.values.at(0);
     float scale = 0;
-    for (const float v : volume.values.at(0)) scale = std::max(scale, std::fabs(v));
-    const float slope =
-        distance_slope(volume.dims, Vec3f(frame_.relative_spacing()), volume.values[0], volume.levels[0]);
-    info_.creased_voxels = fill_scalar(exec_, bricks_, volume.values[0], volume.levels, scale > 0 ? scale : 1, slope);
+    for (const float v : values) scale = std::max(scale, std::fabs(v));
+    const Vec3f spacing(frame_.relative_spacing());
+    const float slope = volume.levels.size() == 1 ? distance_slope(volume.dims, spacing, values, volume.levels[0]) : 0;
+    info_.creased_voxels = fill_scalar(exec_, bricks_, values, volume.levels, scale > 0 ? scale : 1, slope);
   }
   least_area_ = least_boundary_area(exec_, bricks_);
   info_.blocks = bricks_.blocks;
@@ -136,15 +137,22 @@ void MeshPipelineOf<Backend>::relate_interfaces() {
   std::sort(points.begin(), points.end(), [](const Junction& a, const Junction& b) { return a.packed < b.packed; });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   junctions_.insert(junctions_.end(), points.begin(), points.end());
+  if (junctions_.size() > most_interfaces)
+    throw Error("too many interfaces",
+                std::to_string(junctions_.size()) + " pairs, triples and quadruples of materials meet",
+                "merge materials with --merge or keep fewer with --materials");
   info_.junctions.clear();
   for (const Junction& j : junctions_) info_.junctions.push_back(j.all());
   std::vector<std::uint32_t> start{0}, related;
   std::vector<std::uint8_t> order;
+  std::vector<std::vector<std::uint32_t>> with(0x10000);  // per material: its curves and points
+  for (std::size_t l = 0; l < junctions_.size(); ++l)
+    for (int m = 0; junctions_[l].order() < 2 && m < junctions_[l].materials(); ++m)
+      with[junctions_[l].material(m)].push_back(std::uint32_t(l));
   for (std::size_t k = 0; k < junctions_.size(); ++k) {
     related.push_back(std::uint32_t(k));
-    for (std::size_t l = 0; l < junctions_.size(); ++l)
-      if (l != k && junctions_[l].order() < junctions_[k].order() && junctions_[l].bounds(junctions_[k]))
-        related.push_back(std::uint32_t(l));
+    for (const std::uint32_t l : with[junctions_[k].material(0)])
+      if (junctions_[l].order() < junctions_[k].order() && junctions_[l].bounds(junctions_[k])) related.push_back(l);
     start.push_back(std::uint32_t(related.size()));
     order.push_back(std::uint8_t(junctions_[k].order()));
   }

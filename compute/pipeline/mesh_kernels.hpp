@@ -13,6 +13,7 @@ namespace nacre::detail {
 /// Puts the particles onto the fields themselves after the last move, and marks those that have no interface nearby.
 struct PolishParticle {
   MaterialBricksView field;
+  SizingFieldView size;
   const Junction* junction;
   const std::uint32_t* interface;
   Float4* place;
@@ -28,7 +29,7 @@ struct PolishParticle {
     if (!project(field, j, {at.x, at.y, at.z}, 0.7f, on)) return;
     if (junction_margin(field, j, on.p, on.steepness) < -0.02f) return;
     lost[i] = 0;
-    place[i] = {on.p.x, on.p.y, on.p.z, at.w};
+    place[i] = {on.p.x, on.p.y, on.p.z, at.w > 0 ? at.w : size(on.p)};
     direction[i] = {on.direction.x, on.direction.y, on.direction.z, direction[i].w};
   }
 };

@@ -54,6 +54,7 @@ std::vector<Vec3d> MeshPipelineOf<Backend>::particle_places() const {
 template <class Backend>
 SurfaceMesh MeshPipelineOf<Backend>::triangulate() {
   if (!solver_) throw Error("no particles");
+  finish_relaxing();
   begin_unmended();
   Delaunay delaunay(exec_.device().threads());
   MeshRounds rounds;

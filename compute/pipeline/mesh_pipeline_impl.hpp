@@ -95,6 +95,7 @@ class MeshPipelineOf : public MeshPipeline {
   void relax_order(int order, double from, double to);
   void relax_by_tree(int order, double from, double to);
   void relax_by_turns(int order, double from, double to);
+  void finish_relaxing();
   void note_iteration(int order, double energy, std::int64_t movers);
   void spread_seeds();
   void measure_energy();
@@ -143,6 +144,8 @@ class MeshPipelineOf : public MeshPipeline {
   Array<std::uint32_t> related_start_, related_;
   Array<std::uint8_t> order_;
   std::unique_ptr<TreeSolver> solver_;    ///< holds the particles, whichever solver moves them
+  int seeded_order_ = 0;                  ///< 1: curves have particles, 2: surfaces, too
+  bool unfinished_ = false;               ///< moving them was interrupted
   SolverState turns_;                     ///< of the serial and the red-black solver
   std::optional<HostParticles> relaxed_;  ///< as they were before the first mending
   FieldRecipe recipe_;

@@ -13,19 +13,6 @@
 
 namespace nacre {
 
-/// While it lives, nobody can stop the launches.
-class Unwatched {
- public:
-  Unwatched(ExecutorBase& exec, const std::atomic<bool>* stop) : exec_(exec), stop_(stop) { exec.watch(nullptr); }
-  ~Unwatched() { exec_.watch(stop_); }
-  Unwatched(const Unwatched&) = delete;
-  Unwatched& operator=(const Unwatched&) = delete;
-
- private:
-  ExecutorBase& exec_;
-  const std::atomic<bool>* stop_;
-};
-
 template <class Backend>
 PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
   PopulationRule rule;
@@ -47,7 +34,9 @@ double MeshPipelineOf<Backend>::require_room_for(double particles, const std::st
   const std::size_t free = exec_.arena().free_bytes();
   // Crowded places relax to fewer, holes fill: half as many again has always been enough.
   const double capacity = 1.6 * particles + 20000;
-  const double bytes = capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3);
+  const double turns = parameters.solver == "tree" ? 0 : 2 * sizeof(Float4) + 3 * sizeof(float);  // SolverState
+  const double bytes =
+      capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3 + turns);
   if (capacity > 4e9 || bytes > double(free))
     throw Error("too many particles for the memory",
                 why + std::to_string(std::int64_t(particles)) + ", which take " +
@@ -67,9 +56,11 @@ void MeshPipelineOf<Backend>::make_solver() {
   const double capacity =
       require_room_for(expected, parameters.particles > 0 ? "--particles asks, with the junctions, for "
                                                           : "the sizing field asks for about ");
-  solver_ = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
-                                         float(frame_.extent()));
-  solver_->particles().count = 0;
+  auto solver = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
+                                             float(frame_.extent()));
+  solver->particles().count = 0;
+  if (parameters.solver != "tree") turns_ = make_solver_state(exec_, solver->particles());
+  solver_ = std::move(solver);
 }
 
 template <class Backend>
@@ -99,21 +90,25 @@ void MeshPipelineOf<Backend>::relax() {
   info_.iterations = 0;
   info_.seeded = info_.seeded_on_surfaces = 0;
   add_points();
-  int order = 1;
-  try {
-    relax_order(1, 0.18, 0.22);
-    order = 2;
-    relax_order(2, 0.22, 0.85);
-    measure_energy();
-  } catch (const Interrupted&) {
-    // What has been done so far can be triangulated, if every interface has its particles.
-    const Unwatched finish(exec_, stop_);
-    if (order == 1) seed_order(2), spread_seeds();
-    polish();
-    throw;
-  }
+  seeded_order_ = 0;
+  unfinished_ = true;
+  relax_order(1, 0.18, 0.22);
+  relax_order(2, 0.22, 0.85);
+  measure_energy();
   auto stage = exec_.stage("relax");
   polish();
+  unfinished_ = false;
+}
+
+/// What has been done before an interruption can be triangulated if every interface has its particles.
+template <class Backend>
+void MeshPipelineOf<Backend>::finish_relaxing() {
+  if (!unfinished_) return;
+  if (seeded_order_ < 1) seed_order(1);
+  if (seeded_order_ < 2) seed_order(2), spread_seeds();
+  auto stage = exec_.stage("relax");
+  polish();
+  unfinished_ = false;
 }
 
 /// A few steps of seeds that had no time to settle, so that they leave the rims to the particles there.
@@ -139,16 +134,17 @@ void MeshPipelineOf<Backend>::measure_energy() {
   info_.final_energy = solver_->forces(exec_, related, 2, 0, solver_->movers(exec_, related, 2));
 }
 
-/// Brings the particles from number `first` on onto the fields; those that have strayed from their interface are taken
-/// out.
+/// Brings the particles from number `first` on onto the fields; new ones get their size; those that have strayed from
+/// their interface are taken out.
 template <class Backend>
 void MeshPipelineOf<Backend>::polish(std::int64_t first) {
   const ParticleSet& set = solver_->particles();
   const std::int64_t count = set.count - first;
   Arena::Scope scope(exec_.arena());
   Array<std::uint8_t> lost = exec_.arena().template temporary<std::uint8_t>(count);
-  exec_.for_each(count, detail::PolishParticle{bricks_.view(), junction_.data(), set.interface.data() + first,
-                                               set.place.data() + first, set.direction.data() + first, lost.data()});
+  exec_.for_each(count,
+                 detail::PolishParticle{bricks_.view(), size_.view(), junction_.data(), set.interface.data() + first,
+                                        set.place.data() + first, set.direction.data() + first, lost.data()});
   std::vector<std::uint8_t> gone = lost.download();
   gone.insert(gone.begin(), std::size_t(first), 0);
   if (std::find(gone.begin(), gone.end(), 1) != gone.end()) change_particles(gone, {});
@@ -173,7 +169,7 @@ void MeshPipelineOf<Backend>::upload_particles(const HostParticles& particles) {
   solver_->velocity().upload(std::vector<Float4>(n, Float4{0, 0, 0, 0}));
 }
 
-/// Takes particles out and puts new ones in, behind those that stay; all then rest. How many stay.
+/// Takes particles out and puts new ones in, of size 0, behind those that stay; all then rest. How many stay.
 template <class Backend>
 std::int64_t MeshPipelineOf<Backend>::change_particles(std::span<const std::uint8_t> gone,
                                                        std::span<const MeshDefects::NewPoint> born) {
@@ -187,7 +183,7 @@ std::int64_t MeshPipelineOf<Backend>::change_particles(std::span<const std::uint
     const auto k = std::find(junctions_.begin(), junctions_.end(), Junction(p.materials[0], p.materials[1]));
     if (k == junctions_.end() || place.size() == std::size_t(solver_->particles().capacity())) continue;
     const Vec3d at = frame_.to_voxels(p.place);
-    place.push_back({float(at.x), float(at.y), float(at.z), float(parameters.min_size)});
+    place.push_back({float(at.x), float(at.y), float(at.z), 0});
     direction.push_back({0, 0, 0, 0});
     interface.push_back(std::uint32_t(k - junctions_.begin()));
   }
@@ -217,6 +213,7 @@ void MeshPipelineOf<Backend>::seed_order(int order) {
   const std::int64_t seeds = order == 2 && by_marching_cubes()
                                  ? put(marching_cubes(exec_, bricks_, size_, grid_.junction))
                                  : put(embedding_seeds(order));
+  seeded_order_ = order;
   info_.seeded += seeds;
   if (order == 2) info_.seeded_on_surfaces = seeds;
 }
@@ -288,7 +285,7 @@ void MeshPipelineOf<Backend>::relax_by_turns(int order, double from, double to) 
   ParticleSet& set = solver_->particles();
   SolverParameters rule;
   rule.population = population_rule(order);
-  turns_ = make_solver_state(exec_, set, rule);
+  forget(exec_, turns_, rule);
   const FieldSurface<SizingFieldView> surface{bricks_.view(), size_.view(), junction_.data()};
   const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
   const int last_control = every == 1 ? iterations : iterations - 2 * every;

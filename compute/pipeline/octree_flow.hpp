@@ -138,15 +138,16 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     shown_ = arena.permanent<float>(n);
     if constexpr (Band::local_contrast) moments_ = arena.permanent<Float4>(view.items());
     info_.flow_bytes = arena.mark() - mark;
-    for_each_surface_cell(exec_, view, FillBandNoise<View>{view, parameters_.seed, value_.data(), carried_.data()});
+    for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
     this->warm_up();
     show(value_.data(), sums_[0]);
     for (int k = first_; k < 0; ++k) advance(k);
   }
 
   std::vector<float> shown() const override {
+    this->require_started();
     std::vector<float> host(octree_.view().surface_cells);
-    exec_.device().copy_to_host(host.data(), display(), host.size() * sizeof(float));
+    exec_.device().copy_to_host(host.data(), shown_.data(), host.size() * sizeof(float));
     return host;
   }
   void show_into(float* memory) override { output_ = memory; }
@@ -162,9 +163,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
  private:
   using Base = FlowMethodOn<Backend>;
   using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
-  using Base::launched_, Base::output_, Base::steady_, Base::triangles_, Base::ttl_;
-
-  float* display() const { return output_ ? output_ : shown_.data(); }
+  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
 
   void describe() {
     const View view = octree_.view();
@@ -237,8 +236,8 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     const View view = octree_.view();
     for_each_surface_cell(
         exec_, view,
-        SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter),
-                          parameters_.seed, std::uint32_t(++launched_), carried_.data()});
+        SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter), seed_,
+                          std::uint32_t(++launched_), carried_.data()});
     exec_.fill(done, 0);
   }
 
@@ -251,7 +250,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     for_each_surface_cell(
         exec_, view,
         EqualiseBand<View, Local>{view, value_.data(), ahead, local, whole, float(parameters_.equalise),
-                                  float(parameters_.contrast), display(), detail});
+                                  float(parameters_.contrast), shown_.data(), output_, detail});
   }
 
   typename Band::Octree octree_;
@@ -269,7 +268,7 @@ std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions&
   auto stage = exec_.stage("render");
   RenderPixel<BandTarget<View>> pixel;
   pixel.scene.target.view = octree_.view();
-  pixel.scene.shown = started_ && options.texture ? display() : nullptr;
+  pixel.scene.shown = started_ && options.texture ? shown_.data() : nullptr;
   return this->draw(pixel, options, Vec3d(Int3(parameters_.resolution)));
 }
 
@@ -287,6 +286,7 @@ FlowLookup OctreeFlow<Backend, Band>::lookup() const {
 
 template <class Backend, class Band>
 FlowValues OctreeFlow<Backend, Band>::values() const {
+  this->require_started();
   const View view = octree_.view();
   const std::size_t n = view.surface_cells;
   Arena& arena = exec_.arena();
@@ -311,6 +311,7 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
 
 template <class Backend, class Band>
 std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d> points) {
+  this->require_started();
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<BandPoint> host;
@@ -319,7 +320,7 @@ std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d
   places.upload(host);
   Array<float> value = arena.template temporary<float>(host.size());
   exec_.for_each(std::int64_t(host.size()),
-                 detail::SampleBandAt<View>{octree_.view(), display(), places.data(), value.data()});
+                 detail::SampleBandAt<View>{octree_.view(), shown_.data(), places.data(), value.data()});
   return value.download();
 }
 

@@ -11,26 +11,25 @@ namespace nacre {
 /// how far the ray may go without meeting anything; in a cell that the surface passes through its triangles are tested.
 NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh, const Ray& ray, Hit& hit) {
   const Int3 dims = grid.dims();
-  const Vec3f origin(ray.origin), direction(ray.direction);  // the grid is small: single precision finds the cells
-  const Vec3f inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
-  const float speed = length(direction);
-  float t = 0, end = 1e30f;
+  double entry = 0, exit = 1e30;
   for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] == 0) {
-      if (origin[axis] < 0 || origin[axis] >= float(dims[axis])) return false;
+    const double at = ray.origin[axis], along = ray.direction[axis];
+    if (along == 0) {
+      if (at < 0 || at >= dims[axis]) return false;
       continue;
     }
-    float enter = -origin[axis] * inverse[axis], leave = (float(dims[axis]) - origin[axis]) * inverse[axis];
-    if (enter > leave) {
-      const float swap = enter;
-      enter = leave;
-      leave = swap;
-    }
-    t = enter > t ? enter : t;
-    end = leave < end ? leave : end;
+    const double low = -at / along, high = (dims[axis] - at) / along;
+    entry = max(entry, min(low, high));
+    exit = min(exit, max(low, high));
   }
-  const float nudge = 1e-3f / speed;
-  t += nudge;
+  if (!(entry < exit)) return false;
+  // From where it enters, however far away it began, single precision finds the cells: the grid is small.
+  const Vec3f origin(ray.at(entry)), direction(ray.direction);
+  const Vec3f inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
+  const float speed = length(direction), nudge = 1e-3f / speed;
+  const auto past = [&](float wall) { return wall + (nudge > 2.5e-7f * wall ? nudge : 2.5e-7f * wall); };
+  const auto end = float(exit - entry);
+  float t = past(0);
   // Where the ray, now at `t`, leaves the box of the grid with this lower corner.
   auto leave_box = [&](const Vec3f& low, float size) {
     float out = 1e30f;
@@ -52,19 +51,19 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     if (at == none) {
       const Int3 brick{grid.divide(cell.x), grid.divide(cell.y), grid.divide(cell.z)};
       const float out = leave_box(Vec3f(brick * Int3(grid.sub)), float(grid.sub));
-      t = out + nudge;
+      t = past(out);
       continue;
     }
     const float out = leave_box(Vec3f(cell), 1.0f);
     const std::uint32_t first = grid.touch_start[at], last = grid.touch_start[at + 1];
     if (first == last) {  // no surface here: the nearest is at least this far from anywhere in the cell
       const float skip = (grid.offset[at].w - 0.8661f) / speed;
-      t = (out > t + skip ? out : t + skip) + nudge;
+      t = past(out > t + skip ? out : t + skip);
       continue;
     }
     for (std::uint32_t k = first; k < last; ++k) intersect(mesh, grid.touch_triangle[k], ray, hit);
-    if (hit.triangle != none && hit.t <= out + nudge) return true;
-    t = out + nudge;
+    if (hit.triangle != none && hit.t - entry <= past(out)) return true;
+    t = past(out);
   }
   return hit.triangle != none;
 }

@@ -111,6 +111,25 @@ void AMedialBallFillsHalfASlab(Executor<Backend>& exec) {
   }
 }
 
+/// The field reaches 64 voxels, and the largest ball that would count 80: a thin slab is seen all the same.
+template <class Backend>
+void AThinSlabInAWideVolumeIsThin(Executor<Backend>& exec) {
+  const auto slab = [&](const Vec3d& p) { return 1.5 - std::fabs(p.z - 6.1); };
+  const Fields f = fields_of(exec, scalar_volume({12, 12, 170}, slab), sizing_rule(0.1f, 0.3f, 0.4f, 8));
+  const std::vector<float> h = sizes_at(exec, f.size, {in_fields({6, 6, 4.6}), in_fields({6, 6, 7.6})});
+  for (const float size : h) EXPECT_LT(size, 0.7f);  // 0.4, and what the lattice makes of it
+}
+
+/// Particles farther apart than the volume is wide: one cell of the lattice would not do for interpolation.
+template <class Backend>
+void SizesBeyondTheVolumeAreHeld(Executor<Backend>& exec) {
+  const Vec3d c(13.2, 12.7, 3.5);
+  const Fields f = fields_of(exec, scalar_volume({27, 26, 8}, ball(c, 3.1)), sizing_rule(0.5f, 0.4f, 60, 60));
+  std::vector<Vec3f> points;
+  for (const Vec3d& n : even_directions(20)) points.push_back(in_fields(c + n * 3.1));
+  for (const float h : sizes_at(exec, f.size, points)) EXPECT_NEAR(h, 60, 1e-3);
+}
+
 template <class Backend>
 void SizesAreClamped(Executor<Backend>& exec) {
   const Vec3d c(13.2, 12.7, 13.1);
@@ -185,6 +204,8 @@ void ExpectedParticlesAreAreaOverSize(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(Sizing, TheSlopeIsBounded)
 NACRE_DEVICE_TEST(Sizing, AMedialBallFillsASphere)
 NACRE_DEVICE_TEST(Sizing, AMedialBallFillsHalfASlab)
+NACRE_DEVICE_TEST(Sizing, AThinSlabInAWideVolumeIsThin)
+NACRE_DEVICE_TEST(Sizing, SizesBeyondTheVolumeAreHeld)
 NACRE_DEVICE_TEST(Sizing, SizesAreClamped)
 NACRE_DEVICE_TEST(Sizing, CurvatureAddsABound)
 NACRE_DEVICE_TEST(Sizing, SmallerEpsilonAndDeltaMeanMoreParticles)

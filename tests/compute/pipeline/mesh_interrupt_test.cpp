@@ -51,6 +51,7 @@ class MeshInterrupt : public ::testing::TestWithParam<std::string> {
     EXPECT_NEAR(report.materials[1].volume + report.materials[2].volume, 4 * M_PI / 3 * 7.2 * 7.2 * 7.2, 80);
     EXPECT_GT(report.junction_edges, 30);
     EXPECT_LT(pipeline_->surface_distance(mesh).vertex_max, 0.1);
+    for (const float size : pipeline_->particles().size) EXPECT_GT(size, 0.4f);  // of those that mending added, too
   }
 
   const std::unique_ptr<Device> device_ = make_cpu_device();
@@ -66,6 +67,15 @@ TEST_P(MeshInterrupt, WhileCurvesMoveSurfacesAreMadeOfTheirSeeds) {
   expect_whole(mesh);
   EXPECT_GT(pipeline_->info().curves_final, 30);
   EXPECT_GT(pipeline_->info().surfaces_final, 500);
+}
+
+/// Between the orders, when curves are at rest and surfaces have no seeds yet.
+TEST_P(MeshInterrupt, WhileSeedingTheRestIsSeeded) {
+  pipeline_->parameters.iterations = 20;
+  EXPECT_EQ(stop_at(20), 20);  // the next launch seeds surfaces
+  EXPECT_EQ(pipeline_->info().seeded_on_surfaces, 0);
+  expect_whole(pipeline_->triangulate());
+  EXPECT_GT(pipeline_->info().curves_final, 30);
 }
 
 TEST_P(MeshInterrupt, WhileSurfacesMoveTheyStayWhereTheyAre) {

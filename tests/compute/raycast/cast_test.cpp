@@ -77,6 +77,23 @@ TEST_F(RaysAtABox, DiagonalViewSeesAHexagon) {
   EXPECT_NEAR(coverage(*pipeline, camera, 200), 4 * std::sqrt(3.0) / 16, 0.006);
 }
 
+/// However far the eye is, in cells beyond what single precision counts one by one: no ray stands still or falls through.
+TEST_F(RaysAtABox, ADistantCameraSeesTheSame) {
+  for (const double distance : {20.0, 300.0, 1e4, 1e6}) {
+    Camera camera;
+    camera.eye = normalized(Vec3d(1, 1, 1)) * distance;
+    camera.target = {0, 0, 0};
+    camera.up = {0, 0, 1};
+    camera.height = 4;
+    for (const bool orthographic : {true, false}) {
+      camera.orthographic = orthographic;
+      EXPECT_NEAR(coverage(*pipeline, camera, 200), 4 * std::sqrt(3.0) / 16, orthographic ? 0.006 : 0.03) << distance;
+    }
+    camera.height = 4 * distance;  // and far away in the picture, too: the box is smaller than a pixel there
+    EXPECT_LT(coverage(*pipeline, camera, 50), 0.1) << distance;
+  }
+}
+
 TEST_F(RaysAtABox, ACameraInsideSeesTheSurfaceEverywhere) {
   Camera camera;
   camera.eye = {0, 0, 0.1};

@@ -1,0 +1,82 @@
+// Nacre: what the door to flow promises whoever draws its frames, on the grid and on both octrees.
+#include "compute/pipeline/flow_pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "compute/device/device.hpp"
+#include "compute/device/error.hpp"
+
+namespace nacre::test {
+namespace {
+
+struct Way {
+  const char *name, *method, *octree;
+};
+
+class FlowDoor : public ::testing::TestWithParam<Way> {
+ protected:
+  void SetUp() override {
+    pipeline_->parameters.method = GetParam().method;
+    pipeline_->parameters.octree = GetParam().octree;
+    pipeline_->parameters.resolution = 32;
+    pipeline_->embed({points_, triangles_, normals_});
+    vectors_.reference_speed = 1;
+    vectors_.at = [this](double, std::span<Vec3f> out) {
+      if (broken_) throw Error("no vectors");
+      std::fill(out.begin(), out.end(), Vec3f(1, 0.5f, 0));
+    };
+  }
+
+  const std::vector<Vec3d> points_{{0, 0, 0.1}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}};
+  const std::vector<Triangle> triangles_{{0, 1, 2}, {0, 2, 3}};
+  const std::vector<Vec3f> normals_ = std::vector<Vec3f>(6, Vec3f(0, 0, 1));
+  const std::unique_ptr<Device> device_ = make_cpu_device();
+  const std::unique_ptr<FlowPipeline> pipeline_ = make_flow_pipeline(*device_);
+  FlowVectors vectors_;
+  bool broken_ = false;
+};
+
+TEST_P(FlowDoor, NothingIsShownBeforeTheStart) {
+  const auto expect_nothing = [&] {
+    EXPECT_THROW(pipeline_->step(), Error);
+    EXPECT_THROW(pipeline_->shown(), Error);
+    EXPECT_THROW(pipeline_->values(), Error);
+    EXPECT_THROW(pipeline_->sample_shown(points_), Error);
+    RenderOptions options;
+    options.width = options.height = 16;
+    EXPECT_EQ(pipeline_->render(options).size(), 4u * 16 * 16) << "the plain surface";
+  };
+  expect_nothing();
+  pipeline_->start(vectors_);
+  pipeline_->step();
+  broken_ = true;
+  EXPECT_THROW(pipeline_->start(vectors_), Error);
+  expect_nothing();
+}
+
+TEST_P(FlowDoor, MemoryOfWhoDrawsIsWrittenAndNeverRead) {
+  pipeline_->start(vectors_);
+  std::vector<float> drawn(pipeline_->shown().size(), -1.0f);
+  pipeline_->show_into(drawn.data());
+  pipeline_->step();
+  const std::vector<float> shown = pipeline_->shown();
+  EXPECT_EQ(drawn, shown);
+  const std::vector<float> probed = pipeline_->sample_shown(points_);
+  std::fill(drawn.begin(), drawn.end(), 7.0f);  // given back: it may hold anything
+  EXPECT_EQ(pipeline_->shown(), shown);
+  EXPECT_EQ(pipeline_->sample_shown(points_), probed);
+  pipeline_->show_into(nullptr);
+  pipeline_->step();
+  EXPECT_NE(pipeline_->shown(), shown);
+  EXPECT_EQ(drawn, std::vector<float>(drawn.size(), 7.0f));
+}
+
+INSTANTIATE_TEST_SUITE_P(By, FlowDoor,
+                         ::testing::Values(Way{"grid", "grid", "brick"}, Way{"brick", "octree", "brick"},
+                                           Way{"source", "octree", "source"}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace nacre::test
