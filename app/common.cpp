@@ -10,7 +10,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <system_error>
@@ -19,6 +18,7 @@
 #include "compute/device/error.hpp"
 #include "engine/scene/knobs.hpp"
 #include "engine/system/child_process.hpp"
+#include "engine/system/extension.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
@@ -63,6 +63,17 @@ void wait_for_second_press() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
+/// Knobs that are on or off have a flag where a command line often wants the other one than the default.
+struct KnobFlag {
+  const char *knob, *option, *value, *help;
+};
+constexpr KnobFlag knob_flags[] = {
+    {"labels", "--labels", "true", "the values are labels, whatever they look like"},
+    {"curvature", "--curvature", "true", "bound the sizing field by curvature, too"},
+    {"legend", "--no-legend", "false", "no colour legend and axes"},
+    {"time_stamp", "--no-time", "false", "no time stamp"},
+};
+
 int columns_of_terminal() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
@@ -103,16 +114,23 @@ KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
   Settings defaults;
   for (const Knob& knob : knobs(defaults)) {
     if (!knob.concerns(command_name)) continue;
-    if (std::holds_alternative<bool*>(knob.value)) continue;  // commands give those as flags of their own
+    const std::string group = "Knobs: " + knob.group;
+    const auto* flag = std::find_if(std::begin(knob_flags), std::end(knob_flags),
+                                    [&](const KnobFlag& each) { return knob.name == each.knob; });
+    if (flag == std::end(knob_flags) && std::holds_alternative<bool*>(knob.value)) continue;  // by --set
     auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
+    if (flag != std::end(knob_flags)) {
+      command
+          .add_flag_callback(
+              flag->option, [flag, text = value.get()] { *text = flag->value; }, flag->help)
+          ->group(group);
+      continue;
+    }
     std::string help = knob.help;
     if (!knob.choices.empty() && help.find(knob.choices[0]) == help.npos)
       help += fmt::format(": {}", fmt::join(knob.choices, "|"));
     if (!knob.unit.empty()) help += " [" + knob.unit + "]";
-    command.add_option(knob.option(), *value, help)
-        ->default_str(knob.text())
-        ->take_last()
-        ->group("Knobs: " + knob.group);
+    command.add_option(knob.option(), *value, help)->default_str(knob.text())->take_last()->group(group);
   }
 }
 
@@ -225,14 +243,12 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
 void check_output(const std::string& file, const std::string& option, std::string_view extension) {
   if (file.empty()) return;
   const std::filesystem::path path = file;
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = char(std::tolower(static_cast<unsigned char>(c)));
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   const bool folder = std::filesystem::is_directory(status);
   const bool device = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) && !folder;
   const bool any_name = folder || (device && extension != ".png");  // of a folder the next says what is wrong
-  if (!any_name && !extension.empty() && ending != extension)
+  if (!any_name && !extension.empty() && lower_extension(path) != extension)
     throw UsageError(fmt::format("{} takes a {} file, not '{}'", option, extension, file));
   check_writable(path);
 }

@@ -28,15 +28,7 @@ struct FlowOptions {
   CommonOptions common;
   InputWords input;
   std::string image, frames, video, out;
-  bool no_legend = false, no_time = false;
 };
-
-Session make_session(const FlowOptions& options, const KnobOptions& knobs) {
-  Session session = asked_session(options.common, options.input, knobs, "flow");
-  if (options.no_legend) session.settings.legend = false;
-  if (options.no_time) session.settings.time_stamp = false;
-  return session;
-}
 
 /// Names that mean something without any file, and outputs: wrong ones are found before the work begins.
 void check_words(const FlowOptions& options, const Settings& settings) {
@@ -49,9 +41,11 @@ void check_words(const FlowOptions& options, const Settings& settings) {
   check_picture_words(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty() || !options.frames.empty(),
                      !options.video.empty());
+  if (!options.video.empty()) checked_words([&] { check_video_name(options.video); });
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", ".vtp");
   check_output(options.common.report, "--report", "");
+  check_output(options.common.save_session, "--save-session", "");
   for (const std::string& output : {options.image, options.frames, options.video, options.out, options.common.report})
     if (!output.empty()) return;
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
@@ -178,7 +172,7 @@ Films open_films(const FlowOptions& options, int fps, Progress& progress) {
     say(options.common, line);
   };
   if (!options.frames.empty()) films.frames = make_frame_folder(options.frames, tell);
-  if (!options.video.empty()) films.video = make_video(options.video, fps);
+  if (!options.video.empty()) films.video = make_video(options.video, fps, &interrupt_flag());
   return films;
 }
 
@@ -241,7 +235,7 @@ void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const F
 }
 
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
-  const Session session = make_session(options, knob_options);
+  const Session session = asked_session(options.common, options.input, knob_options, "flow");
   const Settings& settings = session.settings;
   check_words(options, settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
@@ -249,12 +243,12 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
   pipeline->watch(&interrupt_flag());
   pipeline->parameters = settings.flow;
+  Progress progress(options.common.quiet);
+  Films films = open_films(options, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
   Painter painter(*pipeline, input, session, span.frame_time);  // complains about camera and colours before the work
-  Progress progress(options.common.quiet);
-  Films films = open_films(options, settings.fps, progress);
 
   progress.update("embed", 0);
   pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
@@ -284,8 +278,6 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");
   command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
-  command->add_flag("--no-legend", options->no_legend, "no colour legend and axes");
-  command->add_flag("--no-time", options->no_time, "no time stamp");
   add_common_options(*command, options->common);
   add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "flow");

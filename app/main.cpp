@@ -4,7 +4,9 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include "app/commands.hpp"
@@ -19,14 +21,22 @@ namespace {
 enum Status { done = 0, failed = 1, usage = 2, interrupted = 130 };
 
 /// One line, whatever the text.
-int fail(Status status, std::string line) {
+Status fail(Status status, std::string line) {
   for (char& c : line)
     if (c == '\n') c = ' ';
   fmt::print(stderr, "nacre: {}\n", line);
   return status;
 }
 
-int run(int argc, char** argv) {
+/// `status`, unless what was printed has not arrived: a disk is full, a pipe is closed.
+Status flushed(Status status) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
+  const std::string why = errno != 0 ? fmt::format(" ({})", std::strerror(errno)) : "";
+  return fail(failed, "cannot write to the standard output" + why + "; send it to another place");
+}
+
+Status run(int argc, char** argv) {
   CLI::App program("Nacre: flow on surfaces, and meshes from volumes.", "nacre");
   program.set_version_flag("--version", std::string("nacre ") + nacre::version);
   bool knobs = false;
@@ -42,7 +52,8 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& success) {  // --help, --version
-    return program.exit(success);
+    program.exit(success);
+    return done;
   } catch (const CLI::ParseError& error) {
     return fail(usage, std::string(error.what()) + "; see nacre --help");
   }
@@ -64,7 +75,7 @@ int main(int argc, char** argv) {
   nacre::catch_interrupts();
   nacre::watch_vtk_child(&nacre::interrupt_flag());
   try {
-    return run(argc, argv);
+    return flushed(run(argc, argv));
   } catch (const nacre::Interrupted&) {
     nacre::remove_unfinished_files();
     return interrupted;

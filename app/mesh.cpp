@@ -36,10 +36,7 @@ Session make_session(const MeshOptions& options, const KnobOptions& knobs) {
   const auto preset = [&](Settings& settings) {
     if (options.preset == "source") apply_source_preset(settings);
   };
-  Session session = asked_session(options.common, options.input, knobs, "mesh", preset);
-  if (options.labels) session.settings.materials.labels = true;
-  if (options.curvature) session.settings.mesh.curvature = true;
-  return session;
+  return asked_session(options.common, options.input, knobs, "mesh", preset);
 }
 
 void check_words(const MeshOptions& options, const Session& session) {
@@ -180,8 +177,6 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run) {
                     "voxels along the sample's longest side (0: its own)");
   command->add_option("--preset", options->preset, "source: the constants of the dissertation")
       ->check(CLI::IsMember({"source"}));
-  command->add_flag("--labels", options->labels, "the values are labels, whatever they look like");
-  command->add_flag("--curvature", options->curvature, "bound the sizing field by curvature, too");
   command->add_option("--out", options->out,
                       "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu, .msh (and the surface)");
   command->add_flag("--surface-only", options->surface_only, "no tetrahedra in a .msh, only the triangles");

@@ -15,17 +15,12 @@
 #include "engine/picture/legend.hpp"
 #include "engine/picture/material_colours.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string extension_of(const std::string& file) {
-  std::string extension = fs::path(file).extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 bool has(const std::vector<std::string>& list, const std::string& one) {
   return std::find(list.begin(), list.end(), one) != list.end();
@@ -76,18 +71,16 @@ Image draw_mesh(const SurfaceMesh& mesh, const Session& session, bool cut_away) 
 }  // namespace
 
 bool wants_cells(const MeshOptions& options) {
-  return has(tetrahedral_mesh_extensions(), extension_of(options.out)) && !options.surface_only &&
+  return has(tetrahedral_mesh_extensions(), lower_extension(options.out)) && !options.surface_only &&
          !options.per_material;
 }
 
 void check_mesh_outputs(const MeshOptions& options) {
   if (!options.out.empty()) {
-    std::vector<std::string> known = surface_mesh_extensions();
-    for (const std::string& extension : tetrahedral_mesh_extensions())
-      if (!has(known, extension)) known.push_back(extension);
-    if (!has(known, extension_of(options.out)))
-      throw UsageError(fmt::format("cannot write {}; use one of {}", options.out, fmt::join(known, " ")));
-    if ((options.per_material || options.surface_only) && !has(surface_mesh_extensions(), extension_of(options.out)))
+    const std::string extension = lower_extension(options.out);
+    if (!has(mesh_extensions(), extension))
+      throw UsageError(fmt::format("cannot write {}; use one of {}", options.out, fmt::join(mesh_extensions(), " ")));
+    if ((options.per_material || options.surface_only) && !has(surface_mesh_extensions(), extension))
       throw UsageError(fmt::format("{} writes surfaces; use one of {}",
                                    options.per_material ? "--per-material" : "--surface-only",
                                    fmt::join(surface_mesh_extensions(), " ")));
@@ -98,6 +91,7 @@ void check_mesh_outputs(const MeshOptions& options) {
   check_output(options.particles_out, "--particles-out", ".vtp");
   check_output(options.image, "--image", ".png");
   check_output(options.common.report, "--report", "");
+  check_output(options.common.save_session, "--save-session", "");
 }
 
 std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Session& session, const MeshInput& input,

@@ -17,8 +17,7 @@ struct MeshOptions {
   CommonOptions common;
   InputWords input;
   std::string preset, out, particles_out, image;
-  bool labels = false, curvature = false, per_material = false, surface_only = false;
-  bool keep_on_interrupt = false, cut_away = false;
+  bool per_material = false, surface_only = false, keep_on_interrupt = false, cut_away = false;
 };
 
 struct MeshResult {

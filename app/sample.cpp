@@ -1,5 +1,8 @@
 // Nacre: `nacre sample`: the built-in data sets, listed or written to a file.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "app/commands.hpp"
 #include "app/run.hpp"
@@ -8,6 +11,7 @@
 #include "engine/io/surface_writer.hpp"
 #include "engine/scene/phantoms.hpp"
 #include "engine/scene/samples.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -38,15 +42,27 @@ void list_samples() {
                phantom.dims.z);
 }
 
-/// Returns what to say of it.
-std::string write_surface_sample(const std::string& name, int detail, const std::filesystem::path& out) {
-  const SurfaceSeries series = checked_words([&] { return make_sample(name, detail); });
-  if (out.extension() != ".pvd") {
-    write_surface(out, series.load(0), series.times[0]);
-    return out.string();
-  }
-  const auto files = write_series(out, series);
-  return fmt::format("{} ({} steps)", out.string(), files.size() - 1);
+/// Before the work. A name that is not known is told as such.
+void check_surface_output(const SampleWords& words) {
+  const std::vector<SampleInfo> all = samples();
+  if (std::none_of(all.begin(), all.end(), [&](const SampleInfo& s) { return s.name == words.name; })) return;
+  Files formats = surface_writer_extensions();
+  formats.push_back(".pvd");
+  if (std::find(formats.begin(), formats.end(), lower_extension(words.out)) == formats.end())
+    throw UsageError(fmt::format("cannot write {}; use one of {}", words.out, fmt::join(formats, " ")));
+  check_output(words.out, "--out", "");
+}
+
+/// Returns the files, that of the series last.
+Files write_surface_sample(const SampleWords& words) {
+  check_surface_output(words);
+  const SurfaceSeries series = checked_words([&] { return make_sample(words.name, words.detail); });
+  Files files;
+  if (lower_extension(words.out) == ".pvd")
+    for (const std::filesystem::path& file : write_series(words.out, series)) files.push_back(file.string());
+  else
+    write_surface(words.out, series.load(0), series.times[0]), files.push_back(words.out);
+  return files;
 }
 
 /// What the words ask for: a sample by its name, else that of the session.
@@ -59,20 +75,21 @@ SampleWords asked_sample(SampleWords words) {
   return words;
 }
 
-std::string write_sample(const SampleWords& words) {
-  if (!is_phantom(words.name)) return write_surface_sample(words.name, words.detail, words.out);
+Files write_sample(const SampleWords& words) {
+  if (!is_phantom(words.name)) return write_surface_sample(words);
+  check_output(words.out, "--out", ".nrrd");
   write_nrrd(words.out, checked_words([&] { return make_phantom(words.name, words.detail, &interrupt_flag()); }));
-  return words.out;
+  return {words.out};
 }
 
-void report_on(const SampleWords& words, const StageTimers& timers) {
+void report_on(const SampleWords& words, const StageTimers& timers, const Files& files) {
   if (words.common.report.empty()) return;
   nlohmann::json report = report_frame("sample", *make_cpu_device(words.common.threads), timers, 0);
   if (words.name.empty())
     report["samples"] = samples_json();
   else
     report["input"] = {{"sample", words.name}, {"detail", words.detail}};
-  write_report(words.common, std::move(report), words.name.empty() ? Files() : Files{words.out});
+  write_report(words.common, std::move(report), files);
 }
 
 /// Knobs turn nothing here (samples know no chance), but shall be knobs, since all commands may be given the same words.
@@ -85,15 +102,18 @@ void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
   if (words.name.empty() != words.out.empty())
     throw UsageError(words.name.empty() ? "which one? `nacre sample` lists them" : "where to? add --out FILE");
   StageTimers timers;
-  std::string result;
+  Files files;
   if (words.name.empty()) {
     list_samples();
   } else {
     StageTimers::Scope scope(timers, "write");
-    result = write_sample(words);
+    files = write_sample(words);
   }
-  report_on(words, timers);
-  if (!result.empty()) fmt::print("{}\n", result);
+  report_on(words, timers, files);
+  if (files.size() > 1)
+    fmt::print("{} ({} steps)\n", words.out, files.size() - 1);
+  else
+    print_outputs(files);
 }
 
 }  // namespace

@@ -89,6 +89,9 @@ void check_view_words(const ViewOptions& options) {
   if (!options.script.empty() && !options.common.session.empty())
     throw UsageError("--session or --script, not both: a script has inputs, knobs and camera, too");
   check_output(options.image, "--image", ".png");
+  check_output(options.out, "--out", "");
+  check_output(options.save_recording, "--save-recording", "");
+  check_output(options.common.save_session, "--save-session", "");
   check_output(options.common.report, "--report", "");
   if (options.panel && options.no_panel) throw UsageError("--panel or --no-panel, not both");
 }
@@ -136,14 +139,19 @@ bool is_frame_folder(const std::filesystem::path& record) {
 
 std::unique_ptr<FrameSink> make_record(const ViewOptions& options, int fps) {
   if (options.record.empty()) return nullptr;
-  if (!is_frame_folder(options.record)) return make_video(options.record, fps);
+  if (!is_frame_folder(options.record)) return make_video(options.record, fps, &interrupt_flag());
   return make_frame_folder(options.record, [&](const std::string& line) { say(options.common, line); });
 }
 
-/// Of the pictures and the film.
-void check_view_size(const ViewOptions& options, const Settings& settings) {
+/// What the session has to fit to: the sizes of the pictures and the film, and the formats of that and the result.
+void check_view_outputs(const ViewOptions& options, const Session& session) {
+  const Settings& settings = session.settings;
   const bool folder = is_frame_folder(options.record), video = !options.record.empty() && !folder;
   check_picture_size(settings.width, settings.height, folder || !options.image.empty(), video);
+  checked_words([&] {
+    if (video) check_video_name(options.record);
+    if (!options.out.empty()) require_format(result_formats(session), options.out);
+  });
 }
 
 nlohmann::json frame_report(const ViewerResult& result) {
@@ -212,7 +220,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.session = view_session(options, knobs);
   const Settings& settings = viewer.session.settings;
   check_all_names(viewer.session);
-  check_view_size(options, settings);
+  check_view_outputs(options, viewer.session);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
   viewer.open_device = [&] { return open_device(options.common); };
   viewer.offscreen = options.offscreen;

@@ -20,7 +20,6 @@ class FileDialog {
 
   bool is_open() const { return open_; }
   void close() { open_ = false; }
-  void set_folder(const std::filesystem::path& folder) { folder_ = folder; }
 
  private:
   struct Entry {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -27,9 +28,9 @@ class Film {
     return fmt::format("{} frame{}, {:.1f} s", frames, frames == 1 ? "" : "s", double(frames) / fps_);
   }
 
-  /// Throws Error as `make_video` does.
-  void begin(const std::filesystem::path& file, int fps) {
-    own_ = make_video(file, fps);
+  /// `stop` as `make_video`'s, and Errors.
+  void begin(const std::filesystem::path& file, int fps, const std::atomic<bool>* stop) {
+    own_ = make_video(file, fps, stop);
     file_ = file;
     fps_ = fps;
     before_ = frames_;

@@ -64,16 +64,17 @@ void FlowScene::set_settings(const Settings& settings) {
   worker_.set_settings(settings);
 }
 
-void FlowScene::write_result(const std::filesystem::path& file) { worker_.write(file); }
+void FlowScene::write_result(const std::filesystem::path& file) {
+  begin_write(file);
+  static const std::atomic<bool> never{false};
+  while (!written_)
+    if (std::optional<FlowEvent> event = worker_.wait(never)) take(*event);
+  if (const std::string why = *take_written(); !why.empty()) throw Error(why);
+}
 
-/// Values at the points of a surface are written within a step's time.
 void FlowScene::begin_write(const std::filesystem::path& file) {
-  written_ = "";
-  try {
-    worker_.write(file);
-  } catch (const Error& error) {
-    written_ = error.what();
-  }
+  written_.reset();
+  worker_.write(file);
 }
 
 bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy(); }
@@ -152,6 +153,7 @@ bool FlowScene::ask_boxes() {
 }
 
 bool FlowScene::begin_step(bool wait) {
+  if (!no_texture_.empty()) return failure_ = no_texture_, false;  // what is shown has no room for the newest values
   Texture* const texture = written();
   if (!texture || texture->values.writing() || !worker_.ready()) return false;
   void* memory = texture->values.begin_write(wait);
@@ -213,8 +215,14 @@ void FlowScene::take(FlowArrows& told) {
 }
 
 void FlowScene::take(FlowEmbedded& told) {
-  next_ = std::make_unique<Texture>(told, worker_.device());
   failure_.clear();
+  no_texture_.clear();
+  next_.reset();
+  try {
+    next_ = std::make_unique<Texture>(told, worker_.device());
+  } catch (const std::exception& error) {
+    no_texture_ = error.what();
+  }
 }
 
 void FlowScene::take(FlowBoxed& told) {

@@ -92,12 +92,14 @@ class FlowScene : public Scene {
   void take(FlowStarted& told);
   void take(FlowStepped& told);
   void take(FlowSampled& told) { sampled_ = told; }
+  void take(FlowWritten& told) { written_ = std::move(told.failure); }
   void take(FlowInterrupted& told);
   void take(FlowFailed& told) { failure_ = std::move(told.what); }
   bool wants_step() const { return settings_.look.play || stale_; }
   bool begin_step(bool wait);
   bool ask_boxes();
-  Texture* written() const { return next_ ? next_.get() : shown_.get(); }
+  /// That of the newest embedding; null: there is none.
+  Texture* written() const { return !no_texture_.empty() ? nullptr : next_ ? next_.get() : shown_.get(); }
   void show_colours(const std::vector<float>& scalar);
   void find_range();
   FlowCaption caption() const;
@@ -131,6 +133,7 @@ class FlowScene : public Scene {
   Range range_{0, 1};  ///< of the colour map
   std::vector<std::string> warnings_;
   std::string name_, failure_;
+  std::string no_texture_;              ///< why the newest embedding has none; empty: it has
   std::optional<std::string> written_;  ///< how the writing that was asked for went
   std::optional<FlowSampled> sampled_;
   std::optional<Vec3d> asked_;  ///< of the worker: the texture's value there, after that step

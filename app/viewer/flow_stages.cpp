@@ -5,6 +5,7 @@
 
 #include "app/viewer/flow_worker.hpp"
 #include "compute/device/error.hpp"
+#include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/scene/flow_input.hpp"
 #include "engine/scene/samples.hpp"
@@ -172,6 +173,12 @@ void FlowWorker::write_boxes(std::uint64_t* memory, int embedding) {
   if (embedding != embeddings_) return;
   pipeline_->show_boxes(memory);
   tell(FlowBoxed{embedding});
+}
+
+void FlowWorker::write_values(const std::filesystem::path& file) {
+  if (!has_values_) throw Error("there is no flow to write yet", "", "wait for the texture");
+  StageTimers::Scope scope(pipeline_->timers(), "write");
+  write_flow_values(*pipeline_, file, wrapped(pipeline_->time()));
 }
 
 double FlowWorker::wrapped(double time) const {

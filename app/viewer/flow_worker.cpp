@@ -2,16 +2,32 @@
 #include "app/viewer/flow_worker.hpp"
 
 #include <chrono>
-#include <future>
 #include <new>
 #include <utility>
 
 #include "compute/device/error.hpp"
-#include "engine/io/flow_values.hpp"
 #include "engine/system/faults.hpp"
 #include "engine/system/priority.hpp"
 
 namespace nacre {
+namespace {
+
+/// What went wrong in words; empty: nothing. Throws Interrupted.
+template <class Work>
+std::string failure_of(const Work& work) {
+  try {
+    work();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    return "out of memory; lower resolution";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
 
 FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loop, bool makes_way)
     : session_(std::move(session)),
@@ -105,22 +121,11 @@ void FlowWorker::show_boxes(std::uint64_t* memory, int embedding) {
 }
 
 void FlowWorker::write(const std::filesystem::path& file) {
-  std::promise<void> done;
   {
     std::scoped_lock lock(mutex_);
-    errand_ = [&] {
-      try {
-        if (!has_values_) throw Error("there is no flow to write yet", "", "wait for the texture");
-        StageTimers::Scope scope(pipeline_->timers(), "write");
-        write_flow_values(*pipeline_, file, wrapped(pipeline_->time()));
-        done.set_value();
-      } catch (...) {
-        done.set_exception(std::current_exception());
-      }
-    };
+    file_ = file;
   }
   wake_.notify_all();
-  done.get_future().get();
 }
 
 StageTimers FlowWorker::timers() const {
@@ -155,7 +160,7 @@ std::optional<FlowStage> FlowWorker::next() const {
   return {};
 }
 
-bool FlowWorker::has_work() const { return next() || errand_ || sample_ || boxes_ || step_; }
+bool FlowWorker::has_work() const { return next() || file_ || sample_ || boxes_ || step_; }
 
 void FlowWorker::run() {
   if (makes_way_) make_way();
@@ -166,26 +171,34 @@ void FlowWorker::run() {
     working_ = true;
     if (const std::optional<FlowStage> stage = next()) {
       perform(*stage, lock);
-    } else if (errand_ || sample_ || boxes_) {
-      const auto errand = std::exchange(errand_, nullptr);
-      const auto place = std::exchange(sample_, {});
-      const auto boxes = std::exchange(boxes_, {});
-      interrupt_ = false;  // it was meant for a stage
-      lock.unlock();
-      try {
-        if (errand) errand();
-        if (place) answer_sample(*place);
-        if (boxes) write_boxes(boxes->first, boxes->second);
-      } catch (const Interrupted&) {  // the end: nobody waits for answers any more
-      }
-      take_timers();
-      lock.lock();
+    } else if (file_ || sample_ || boxes_) {
+      run_errands(lock);
     } else {
       perform(FlowStage::step, lock);
     }
     working_ = false;
     told_.notify_all();
   }
+}
+
+/// What was asked for between two stages.
+void FlowWorker::run_errands(std::unique_lock<std::mutex>& lock) {
+  const auto file = std::exchange(file_, {});
+  const auto place = std::exchange(sample_, {});
+  const auto boxes = std::exchange(boxes_, {});
+  interrupt_ = false;  // it was meant for a stage
+  lock.unlock();
+  try {
+    if (file) tell(FlowWritten{failure_of([&] { write_values(*file); })});
+    const std::string failure = failure_of([&] {
+      if (place) answer_sample(*place);
+      if (boxes) write_boxes(boxes->first, boxes->second);
+    });
+    if (!failure.empty()) tell(FlowFailed{failure});
+  } catch (const Interrupted&) {  // the end: nobody waits for answers any more
+  }
+  take_timers();
+  lock.lock();
 }
 
 void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
@@ -202,14 +215,12 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
   bool interrupted = false;
   std::string failure;
   try {
-    if (fault_due("out-of-memory")) throw std::bad_alloc();
-    make(stage);
+    failure = failure_of([&] {
+      if (fault_due("out-of-memory")) throw std::bad_alloc();
+      make(stage);
+    });
   } catch (const Interrupted&) {  // for other knobs, or the end
     interrupted = true;
-  } catch (const std::bad_alloc&) {
-    failure = "out of memory; lower resolution";
-  } catch (const std::exception& error) {
-    failure = error.what();
   }
   take_timers();
   lock.lock();

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -91,6 +90,11 @@ struct FlowSampled {
   float value = 0;
 };
 
+/// What was asked to be written is written; else why not.
+struct FlowWritten {
+  std::string failure;
+};
+
 /// What was under way was dropped, for other knobs or for good: memory that was lent is not written any more.
 struct FlowInterrupted {};
 
@@ -100,7 +104,7 @@ struct FlowFailed {
 };
 
 using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowStarted,
-                               FlowStepped, FlowSampled, FlowInterrupted, FlowFailed>;
+                               FlowStepped, FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
@@ -108,7 +112,7 @@ inline SparseLookup sparse_lookup(const FlowLookup& l) {
 }
 
 /// Reads, embeds and starts by itself; then one step for each call of `step`. All calls come from one other thread, and
-/// none waits for compute but `wait`, `write` and the destructor.
+/// none waits for compute but `wait` and the destructor.
 class FlowWorker : public Worker<FlowEvent> {
  public:
   /// `loop`: after the last time comes the first again, without end; else it stands still there, as headless runs do.
@@ -142,7 +146,7 @@ class FlowWorker : public Worker<FlowEvent> {
   /// Asks for the boxes of an embedding in `memory` of the device; FlowBoxed answers. Memory for one that has been
   /// followed by another is not touched.
   void show_boxes(std::uint64_t* memory, int embedding);
-  /// Writes the values as `nacre flow --out` does, after what goes on. Waits. Throws Error.
+  /// Writes the values as `nacre flow --out` does, after what goes on; ends with FlowWritten.
   void write(const std::filesystem::path& file);
 
   StageTimers timers() const;  ///< of all stages so far
@@ -155,6 +159,7 @@ class FlowWorker : public Worker<FlowEvent> {
   bool has_work() const;
 
   void run();
+  void run_errands(std::unique_lock<std::mutex>& lock);
   void perform(FlowStage stage, std::unique_lock<std::mutex>& lock);
   void undo(FlowStage stage, const std::string& failure);
   void drop_step();
@@ -168,6 +173,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void make_step();
   void answer_sample(const Vec3d& place);
   void write_boxes(std::uint64_t* memory, int embedding);
+  void write_values(const std::filesystem::path& file);
   void take_timers();
   double wrapped(double time) const;
   std::vector<float> scalar(double time);
@@ -194,7 +200,7 @@ class FlowWorker : public Worker<FlowEvent> {
   std::optional<float*> step_;  ///< is to be made, into this memory
   std::optional<Vec3d> sample_;
   std::optional<std::pair<std::uint64_t*, int>> boxes_;  ///< where to, and of which embedding
-  std::function<void()> errand_;
+  std::optional<std::filesystem::path> file_;
   bool started_ = false, failed_ = false, cancelled_ = false, working_ = false;
   Settings wanted_;
   StageTimers timers_;

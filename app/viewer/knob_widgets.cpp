@@ -71,7 +71,7 @@ void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
   if (auto* const* whole = std::get_if<int*>(&knob.value)) whole_widget(**whole, knob);
   if (auto* const* real = std::get_if<double*>(&knob.value)) real_widget(**real, knob);
   if (auto* const* number = std::get_if<std::uint32_t*>(&knob.value)) {
-    ImGui::InputScalar("##value", ImGuiDataType_U32, *number);
+    let_go(**number, [](std::uint32_t& shown) { ImGui::InputScalar("##value", ImGuiDataType_U32, &shown); });
     if (knob.also) *knob.also = **number;
   }
   if (auto* const* words = std::get_if<std::string*>(&knob.value)) {

@@ -175,8 +175,9 @@ void MeshScene::take(RelaxBegun& told) {
   capacity_ = told.capacity;
   box_capacity_ = told.box_capacity;
   const std::size_t bytes = std::size_t(capacity_) * sizeof(Float4);
-  place_ = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RGBA32F);
+  auto place = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RGBA32F);
   direction_ = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RGBA32F);
+  place_ = std::move(place);  // with it the memory counts as there
 }
 
 void MeshScene::take(MeshIterated& told) {
@@ -257,12 +258,7 @@ std::optional<std::string> MeshScene::take_written() {
   return told;
 }
 
-std::vector<std::string> MeshScene::result_formats() const {
-  std::vector<std::string> formats = surface_mesh_extensions();
-  for (const std::string& extension : tetrahedral_mesh_extensions())
-    if (std::find(formats.begin(), formats.end(), extension) == formats.end()) formats.push_back(extension);
-  return formats;
-}
+std::vector<std::string> MeshScene::result_formats() const { return mesh_extensions(); }
 
 std::string MeshScene::title() const { return results_.volume ? results_.volume->input.name : ""; }
 

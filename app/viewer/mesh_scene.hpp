@@ -96,7 +96,6 @@ class MeshScene : public Scene {
   std::array<double, 2> slice_range(const std::vector<float>& values, MeshField field);
   void draw_particles(const View& view) const;
   void draw_triangles(const View& view) const;
-  void draw_volume(const View& view) const;
   bool particles_drawn() const;
   bool slice_has_legend() const { return slice_axis(settings_.look) >= 0 && slice_values_; }
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.look.triangles; }

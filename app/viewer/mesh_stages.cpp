@@ -9,6 +9,7 @@
 #include "compute/meshing/tetrahedra.hpp"
 #include "engine/io/mesh_writer.hpp"
 #include "engine/scene/materials.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -17,8 +18,7 @@ constexpr int slice_pixels = 512;         ///< along the longer side of a slice 
 constexpr std::size_t most_worst = 1000;  ///< triangles that can be told apart as the worst
 
 bool has_cells(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_extension(file);
   const std::vector<std::string> known = tetrahedral_mesh_extensions();
   return std::find(known.begin(), known.end(), extension) != known.end();
 }

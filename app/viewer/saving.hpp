@@ -19,7 +19,7 @@ class Saving {
   /// A mesh in the making is written when it is made. Throws Error where that cannot be, or another is being written.
   void begin(Scene& scene, const std::filesystem::path& file) {
     if (on()) throw Error(file.string() + " was not saved", name() + " is still being written", "wait for that");
-    require_format(scene, file);
+    require_format(scene.result_formats(), file);
     scene.begin_write(file);
     file_ = file;
   }

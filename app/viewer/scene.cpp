@@ -7,8 +7,10 @@
 #include <algorithm>
 
 #include "compute/device/error.hpp"
+#include "engine/io/mesh_writer.hpp"
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/phantoms.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 
@@ -16,9 +18,12 @@ bool is_mesh_input(const SessionInput& input) {
   return input.inputs.empty() ? is_phantom(input.sample) : is_volume_file(input.inputs.front());
 }
 
-void require_format(const Scene& scene, const std::filesystem::path& file) {
-  const std::vector<std::string> formats = scene.result_formats();
-  if (std::find(formats.begin(), formats.end(), file.extension()) == formats.end())
+std::vector<std::string> result_formats(const SessionInput& input) {
+  return is_mesh_input(input) ? mesh_extensions() : std::vector<std::string>{".vtp"};
+}
+
+void require_format(const std::vector<std::string>& formats, const std::filesystem::path& file) {
+  if (std::find(formats.begin(), formats.end(), lower_extension(file)) == formats.end())
     throw Error(fmt::format("cannot write {}", file.string()), "its extension says no format of this result",
                 fmt::format("use one of {}", fmt::join(formats, " ")));
 }

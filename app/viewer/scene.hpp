@@ -71,8 +71,7 @@ class Scene {
 
   /// Writes the result as the headless command would, in the format of the extension. Waits for the worker. Throws Error.
   virtual void write_result(const std::filesystem::path& file) = 0;
-  /// The same without waiting where that may take long. `take_written` then tells once how it went: an empty line, or what
-  /// did not work.
+  /// The same without waiting. `take_written` then tells once how it went: an empty line, or what did not work.
   virtual void begin_write(const std::filesystem::path& file) = 0;
   virtual std::optional<std::string> take_written() = 0;
   /// Extensions that `write_result` takes, e.g. ".vtp".
@@ -113,8 +112,11 @@ struct SceneOptions {
 std::unique_ptr<Scene> make_flow_scene(const Session& session, const SceneOptions& options);
 std::unique_ptr<Scene> make_mesh_scene(const Session& session, const SceneOptions& options);
 
-/// Throws Error where the scene cannot write a result of the file's extension.
-void require_format(const Scene& scene, const std::filesystem::path& file);
+/// Throws Error where a result of these formats (extensions) cannot be written to a file of that name.
+void require_format(const std::vector<std::string>& formats, const std::filesystem::path& file);
+
+/// The formats of an input's result: those of its scene.
+std::vector<std::string> result_formats(const SessionInput& input);
 
 /// Is the input a volume, to be meshed? Else it is a surface with a flow.
 bool is_mesh_input(const SessionInput& input);

@@ -49,7 +49,6 @@ class Viewer {
     if (recording_.has_file()) recording_.begin(session_, time_.fps(), 0);
     make_graphics();
     open();
-    if (!options.out.empty()) require_format(*scene_, options.out);
   }
 
   ~Viewer() { drop_graphics(); }
@@ -120,9 +119,8 @@ class Viewer {
   }
 
   bool done() const {
-    // A replay without an end of its own ends with the mesh.
-    const bool settled =
-        waits() && !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene_->settled();
+    // What has no window and no end of its own ends with the mesh.
+    const bool settled = !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene_->settled();
     const bool leaves = quit_ || (window_ && window_->should_close());
     return (leaves && !saving_.on()) || settled || (!window_ && player_->ended()) ||
            (options_.frames > 0 && counted_ >= options_.frames);
@@ -270,7 +268,9 @@ class Viewer {
     if (!window_) return action();
     try {
       action();
-    } catch (const Error& error) {
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const std::exception& error) {
       complain(error.what());
     }
   }
@@ -312,7 +312,7 @@ class Viewer {
       });
     if (wishes.film)
       attempt([&] {
-        film_.begin(*wishes.film, session_.settings.fps);
+        film_.begin(*wishes.film, session_.settings.fps, options_.stop);
         time_.set_fps(session_.settings.fps);
         scene_->set_lockstep(true);
       });

@@ -30,6 +30,7 @@ SharedBuffer::SharedBuffer(Device& device, std::size_t bytes, GLenum format, Pat
     : device_(device), bytes_(bytes), path_(path) {
   if (path == Path::mapped && device.backend() != "cpu")
     throw Error("the " + device.backend() + " device cannot write into memory of OpenGL that lies on the host");
+  if (fault_due("graphics-memory")) throw Error("the graphics device has no memory left");
   for (Half& half : halves_) {
     half.buffer = Buffer(bytes, path == Path::registered ? GLbitfield(0) : persistent);
     half.texture = BufferTexture(half.buffer, format);

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "compute/device/error.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -17,14 +18,6 @@ namespace fs = std::filesystem;
 
 // Text shrinks to a tenth, a smooth volume to a hundredth; far beyond this a packed file is a mistake or a trap.
 constexpr std::size_t unpacked_base = std::size_t(16) << 20;
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  if (!extension.empty()) extension.erase(0, 1);
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 std::string gunzip(const std::string& packed, std::size_t unpacked_ratio, const fs::path& path) {
   const std::size_t limit = unpacked_base + unpacked_ratio * packed.size();
@@ -104,8 +97,9 @@ std::string read_file(const fs::path& path, std::size_t unpacked_ratio) {
 }
 
 std::string format_extension(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension == "gz" ? lower_extension(path.stem()) : extension;
+  std::string extension = lower_extension(path);
+  if (extension == ".gz") extension = lower_extension(path.stem());
+  return extension.substr(std::min<std::size_t>(extension.size(), 1));
 }
 
 }  // namespace nacre

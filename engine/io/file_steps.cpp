@@ -11,6 +11,7 @@
 #include "engine/io/registry.hpp"
 #include "engine/io/vtk_child.hpp"
 #include "engine/io/vtk_xml.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -64,7 +65,7 @@ std::optional<double> own_time(const fs::path& path) {
 
 bool goes_through_vtk(const fs::path& path) {
   const std::string extension = format_extension(path);
-  return path.extension() != ".gz" && !find_format(extension) && vtk_child_reads("." + extension);
+  return lower_extension(path) != ".gz" && !find_format(extension) && vtk_child_reads("." + extension);
 }
 
 FileSteps find_steps(const fs::path& path) {

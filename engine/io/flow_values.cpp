@@ -13,17 +13,16 @@ namespace nacre {
 void write_flow_values(const FlowPipeline& pipeline, const std::filesystem::path& file, double time) {
   const FlowValues v = pipeline.values();
   const std::size_t n = v.value.size();
-  const auto vectors = [&](std::string name, const auto& from) {
+  const auto vectors = [&](std::string name, const std::vector<Vec3f>& from) {
     PointArray array{std::move(name), 3, std::vector<float>(3 * n)};
     for (std::size_t i = 0; i < n; ++i)
-      for (int k = 0; k < 3; ++k) array.values[3 * i + k] = float(from[i][k]);
+      for (int k = 0; k < 3; ++k) array.values[3 * i + k] = from[i][k];
     return array;
   };
-  const std::vector<PointArray> arrays{{"value", 1, v.value},
-                                       vectors("velocity", v.velocity),
-                                       vectors("normal", v.normal),
-                                       vectors("closest_point", v.closest_point)};
-  write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time);
+  const std::vector<PointArray> arrays{
+      {"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal)};
+  const PointPlaces closest{"closest_point", v.closest_point};
+  write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time, {}, "", std::span(&closest, 1));
 }
 
 }  // namespace nacre

@@ -9,6 +9,7 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/chunks.hpp"
+#include "engine/system/utf8.hpp"
 
 namespace nacre {
 namespace {
@@ -21,20 +22,13 @@ std::string quoted(const std::string& name) {
   return out + '"';
 }
 
-/// At most so many bytes of it, and no half character of UTF-8.
-std::string shortened(const std::string& name, std::size_t most) {
-  std::size_t end = std::min(most, name.size());
-  while (end < name.size() && end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
-  return name.substr(0, end);
-}
-
 /// A name as Gmsh takes it, that no other group has: readers such as meshio know groups by their names.
 std::string group_name(const GmshMesh::Group& group, std::set<std::string>& taken) {
   constexpr std::size_t most = 127;
-  std::string name = quoted(shortened(group.name, most));
+  std::string name = quoted(in_utf8(group.name, most));
   for (int times = 1; !taken.insert(name).second; ++times) {
     const std::string number = times == 1 ? fmt::format(" {}", group.tag) : fmt::format(" {}.{}", group.tag, times);
-    name = quoted(shortened(group.name, most - number.size()) + number);
+    name = quoted(in_utf8(group.name, most - number.size()) + number);
   }
   return name;
 }

@@ -6,15 +6,16 @@
 #include <charconv>
 #include <pugixml.hpp>
 
+#include "engine/system/utf8.hpp"
+
 namespace nacre {
 namespace {
 
 constexpr std::size_t most_names = 65536, longest_name = 120;
 
-/// One line that a table can show. A byte of UTF-8 is kept as it is.
+/// One line that a table can show.
 std::string in_one_line(std::string_view words) {
-  std::string line;
-  for (const char c : words.substr(0, longest_name)) line += static_cast<unsigned char>(c) < 32 || c == 127 ? ' ' : c;
+  std::string line = in_utf8(words, longest_name);
   while (!line.empty() && line.back() == ' ') line.pop_back();
   line.erase(0, std::min(line.find_first_not_of(' '), line.size()));
   return line;

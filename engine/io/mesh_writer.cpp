@@ -5,7 +5,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -18,6 +17,7 @@
 #include "engine/io/surface_writer.hpp"
 #include "engine/io/vtk_inline.hpp"
 #include "engine/io/vtp_writer.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -28,8 +28,7 @@ using Names = std::vector<std::string>;
 using Pair = std::array<std::uint16_t, 2>;
 
 std::string checked_extension(const fs::path& file, const std::vector<std::string>& known) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_extension(file);
   if (std::find(known.begin(), known.end(), extension) == known.end())
     throw Error(fmt::format("cannot write {}", file.string()),
                 extension.empty() ? "its name has no extension" : fmt::format("{} is not written", extension),
@@ -269,6 +268,13 @@ void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceM
 std::vector<std::string> surface_mesh_extensions() { return {".vtp", ".ply", ".msh", ".obj", ".off", ".stl"}; }
 
 std::vector<std::string> tetrahedral_mesh_extensions() { return {".vtu", ".msh"}; }
+
+std::vector<std::string> mesh_extensions() {
+  std::vector<std::string> all = surface_mesh_extensions();
+  for (const std::string& extension : tetrahedral_mesh_extensions())
+    if (std::find(all.begin(), all.end(), extension) == all.end()) all.push_back(extension);
+  return all;
+}
 
 void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
                         std::span<const std::string> names) {

@@ -41,5 +41,6 @@ void write_tetrahedral_mesh(const std::filesystem::path& file, const Tetrahedral
 /// Extensions, lower case, with dot.
 std::vector<std::string> surface_mesh_extensions();
 std::vector<std::string> tetrahedral_mesh_extensions();
+std::vector<std::string> mesh_extensions();  ///< those of both, each once
 
 }  // namespace nacre

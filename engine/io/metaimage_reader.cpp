@@ -164,6 +164,17 @@ Stored find_values(const Header& header, const fs::path& path) {
   return {file, skip < 0 ? std::size_t(-1) : std::size_t(skip)};
 }
 
+/// How many bytes the values take in their file.
+std::size_t stored_size(const Header& header, bool packed, std::size_t unpacked, const Stored& stored,
+                        const fs::path& path) {
+  if (!packed || stored.offset != std::size_t(-1)) return unpacked;
+  const std::int64_t size = header.integer("CompressedDataSize", 0);
+  if (size <= 0)
+    fail_reading(path, "it has HeaderSize = -1 and CompressedData = True, and no CompressedDataSize",
+                 "give the size of the data file's header in bytes");
+  return std::size_t(size);
+}
+
 /// From the offset to the file's end; its last `needed` bytes for the offset -1.
 std::string stored_bytes(const Stored& stored, std::size_t needed, const fs::path& path) {
   std::error_code code;
@@ -228,7 +239,7 @@ std::vector<T> read_values(const Header& header, std::size_t count, const fs::pa
   const bool packed = header.is_true({"CompressedData"}, false);
   const std::size_t needed = count * sizeof(T);
   const Stored stored = find_values(header, path);
-  const std::string bytes = stored_bytes(stored, needed, path);
+  const std::string bytes = stored_bytes(stored, stored_size(header, packed, needed, stored, path), path);
   if (!header.is_true({"BinaryData"}, true)) return parse_values<T>(bytes, count, path);
   check_stored(bytes.size(), needed, packed ? double(largest_gzip_ratio) : 1.0, path);
   std::vector<T> values(count);

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "compute/device/error.hpp"
+#include "engine/system/extension.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
@@ -68,10 +69,7 @@ class GzipWriter {
 }  // namespace
 
 void write_nrrd(const std::filesystem::path& file, const Volume& volume) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".nrrd")
+  if (lower_extension(file) != ".nrrd")
     throw Error("cannot write a volume to " + file.string(), "its extension is not .nrrd", "name it *.nrrd");
   std::visit(
       [&](const auto& values) {

@@ -29,7 +29,7 @@ std::vector<std::string> readable_extensions() {
   for (const std::string& extension : own_extensions()) extensions.push_back("." + extension);
   if (!vtk_child_available()) return extensions;
   for (const char* other : {".vtk", ".vts", ".vtr", ".vtm", ".vtmb", ".pvts", ".pvtr", ".case", ".encas", ".ex2",
-                            ".exo", ".e", ".g", ".foam", ".cgns", ".xyz"})
+                            ".exo", ".e", ".g", ".foam"})
     if (vtk_child_reads(other)) extensions.push_back(other);
   return extensions;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -16,18 +15,13 @@
 #include "compute/device/error.hpp"
 #include "engine/io/chunks.hpp"
 #include "engine/io/vtp_writer.hpp"
+#include "engine/system/extension.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lower_extension(const fs::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
 
 void write_obj(Chunks& out, const Surface& surface) {
   for (const Vec3d& p : surface.points) out.point(p, "v ");

@@ -12,6 +12,7 @@
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/volume_readers.hpp"
 #include "engine/io/vtk_child.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -46,8 +47,7 @@ const std::vector<VolumeFormat>& volume_formats() {
 
 const VolumeFormat* find_volume_format(const fs::path& path) {
   const std::string extension = format_extension(path);
-  const std::string last = path.extension().string();
-  const bool packed = last.size() == 3 && (last == ".gz" || last == ".GZ" || last == ".Gz");
+  const bool packed = lower_extension(path) == ".gz";
   for (const VolumeFormat& format : volume_formats()) {
     const auto& extensions = format.extensions;
     if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) continue;

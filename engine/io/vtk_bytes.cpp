@@ -114,7 +114,8 @@ class Unpacker {
     std::size_t packed_total = 0;
     for (std::size_t& size : packed_sizes) {
       size = read_count();
-      if (size > stream_.at_most() - packed_total) fail("is cut short");
+      const std::size_t left = stream_.at_most();  // less and less: the sizes themselves are of the stream
+      if (packed_total > left || size > left - packed_total) fail("is cut short");
       packed_total += size;
     }
     const std::size_t most = packed_total * zlib_ratio;

@@ -16,14 +16,16 @@
 #include <vector>
 
 #include "engine/system/output_file.hpp"
+#include "engine/system/utf8.hpp"
 
 namespace nacre {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
 
+/// Characters that XML may hold, and no markup.
 inline std::string xml_escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) {
+  for (const char c : in_utf8(text)) {
     if (c == '&')
       out += "&amp;";
     else if (c == '<')
@@ -32,8 +34,6 @@ inline std::string xml_escaped(const std::string& text) {
       out += "&gt;";
     else if (c == '"')
       out += "&quot;";
-    else if (static_cast<unsigned char>(c) < 32)
-      out += ' ';
     else
       out += c;
   }

@@ -31,24 +31,30 @@ std::string announce_cells(Inline& numbers, std::uint64_t points, std::span<cons
          "</Polys>\n";
 }
 
-std::string announce_arrays(Inline& numbers, std::span<const PointArray> arrays) {
+std::string announce_arrays(Inline& numbers, std::span<const PointArray> arrays, std::span<const PointPlaces> places) {
   std::string xml = "<PointData>\n";
   for (const PointArray& array : arrays)
     xml += numbers.announce(
         "Float32", array.name, array.components, array.values.size() * sizeof(float),
         [&array](Base64Text& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
+  for (const PointPlaces& each : places)
+    xml += numbers.announce("Float64", each.name, 3, each.values.size_bytes(),
+                            [&each](Base64Text& file) { file.write(each.values.data(), each.values.size_bytes()); });
   return xml + "</PointData>\n";
 }
 
 template <class Real>
 void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points, std::span<const Triangle> triangles,
            std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-           const std::string& field_data) {
-  for (const PointArray& array : arrays)
-    if (array.components < 1 || array.values.size() != points.size() * std::size_t(array.components))
+           const std::string& field_data, std::span<const PointPlaces> places) {
+  const auto check = [&](const std::string& name, std::size_t values, int components) {
+    if (components < 1 || values != points.size() * std::size_t(components))
       throw Error(fmt::format("cannot write {}", path.string()),
-                  fmt::format("array \"{}\" has {} values in tuples of {} for {} points", array.name,
-                              array.values.size(), array.components, points.size()));
+                  fmt::format("array \"{}\" has {} values in tuples of {} for {} points", name, values, components,
+                              points.size()));
+  };
+  for (const PointArray& array : arrays) check(array.name, array.values.size(), array.components);
+  for (const PointPlaces& each : places) check(each.name, 3 * each.values.size(), 3);
   Inline numbers;
   std::string xml =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
@@ -63,7 +69,7 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
       "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
       "NumberOfPolys=\"{}\">\n",
       points.size(), triangles.empty() ? points.size() : 0, triangles.size());
-  xml += announce_arrays(numbers, arrays) + announce_cell_data(numbers, triangles.size(), cells);
+  xml += announce_arrays(numbers, arrays, places) + announce_cell_data(numbers, triangles.size(), cells);
   xml += "<Points>\n" +
          numbers.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
                           [points](Base64Text& file) { file.write(points.data(), points.size_bytes()); }) +
@@ -79,13 +85,13 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-               const std::string& field_data) {
-  write<double>(file, points, triangles, arrays, time, cells, field_data);
+               const std::string& field_data, std::span<const PointPlaces> places) {
+  write<double>(file, points, triangles, arrays, time, cells, field_data, places);
 }
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time) {
-  write<float>(file, points, triangles, arrays, time, {}, "");
+  write<float>(file, points, triangles, arrays, time, {}, "", {});
 }
 
 }  // namespace nacre

@@ -12,14 +12,21 @@
 
 namespace nacre {
 
+/// A place per point, as exact as the points themselves.
+struct PointPlaces {
+  std::string name;
+  std::span<const Vec3d> values;
+};
+
 /// Writes `points`, `triangles` (empty: every point becomes a vertex cell) and `arrays` (one tuple per point each) as
 /// VTK XML PolyData: little-endian numbers in base64, 64-bit headers, no compression; coordinates keep their type.
 /// `time` becomes the field array TimeValue, or `field_data` is a whole <FieldData> element; `cells` are arrays on the
-/// triangles. Data go to the file as they are, never through a second copy.
+/// triangles, `places` more arrays on the points. Data go to the file as they are, never through a second copy.
 /// Throws Error where the file cannot be written, or an array's length is not that of the points.
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt,
-               std::span<const CellNumbers> cells = {}, const std::string& field_data = "");
+               std::span<const CellNumbers> cells = {}, const std::string& field_data = "",
+               std::span<const PointPlaces> places = {});
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt);
 

@@ -44,8 +44,8 @@ int widest(const std::vector<std::string>& labels, float font) {
 }
 
 /// False where the legend would be wider than a quarter of the image, or the image too small to letter.
-bool lay_out(const Image& image, const Ticks& ticks, float scale, Layout& out) {
-  out.font = lettering_size(image) * scale;
+bool lay_out(const Image& image, const Ticks& ticks, Layout& out) {
+  out.font = lettering_size(image);
   if (out.font <= 0) return false;
   const int margin = rounded(out.font), gap = bar_gap(out.font);
   out.line = std::max(1, rounded(out.font / 16));
@@ -101,16 +101,15 @@ void draw_title(Image& image, const Layout& at, const std::string& title, int ex
 
 }  // namespace
 
-void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title,
-                 const LegendStyle& style) {
+void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title) {
   if (min > max) std::swap(min, max);
   if (map.table.empty()) return;
-  const float font = lettering_size(image) * style.scale;
+  const float font = lettering_size(image);
   if (font <= 0) return;
   const int count = std::clamp(int(float(image.height) / 2 / (3 * font)), 2, 8);
   const Ticks ticks = nice_ticks(min, max, count);
   Layout layout;
-  if (!lay_out(image, ticks, style.scale, layout)) return;
+  if (!lay_out(image, ticks, layout)) return;
   const int left = image.width - image.width / 4;
   const Ink ink = ink_for(image, left, layout.bar_y - rounded(3 * font), image.width - left, layout.bar_height);
   draw_bar(image, layout, map, ink);

@@ -11,15 +11,10 @@
 
 namespace nacre {
 
-struct LegendStyle {
-  float scale = 1;  ///< of lettering and bar; 1 suits the image's size
-};
-
 /// A vertical colour bar at the right border with ticks at round numbers, `title` above it. `min` and `max` are the
 /// values at the bar's lower and upper end; numbers are left out where they are not finite. Sized by the image and
 /// never wider than a quarter of it: where it cannot be read at that size (about 200 pixels) it is left out.
-void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title,
-                 const LegendStyle& style = {});
+void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title);
 
 /// Where draw_legend draws in an image of that size: bar, numbers of six letters, and as much of a title as stands above
 /// these. Nothing where the image is too small for a legend.

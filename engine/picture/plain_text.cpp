@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/picture/utf8.hpp"
+#include "engine/system/utf8.hpp"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"

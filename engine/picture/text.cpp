@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/picture/plain_text.hpp"
-#include "engine/picture/utf8.hpp"
+#include "engine/system/utf8.hpp"
 
 #ifdef NACRE_HAS_FONT
 #define STBTT_STATIC
@@ -27,7 +27,6 @@ namespace nacre {
 namespace {
 
 constexpr float cap_height_of_em = 0.729f;
-constexpr float line_height_of_em = 1.2f;
 
 #ifdef NACRE_HAS_FONT
 
@@ -75,8 +74,6 @@ void draw_glyph(Image& image, const stbtt_fontinfo& face, int glyph, float scale
 #endif
 
 }  // namespace
-
-int text_height(float pixels) { return int(std::ceil(line_height_of_em * pixels)); }
 
 int text_cap_height(float pixels) { return int(std::lround(cap_height_of_em * pixels)); }
 

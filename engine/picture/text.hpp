@@ -13,8 +13,7 @@ namespace nacre {
 /// Control characters count as spaces, broken UTF-8 as U+FFFD.
 int text_width(std::string_view text, float pixels);
 
-/// Height in pixels of a line, and of the capitals and digits in it.
-int text_height(float pixels);
+/// Height in pixels of the capitals and digits in a line.
 int text_cap_height(float pixels);
 
 /// Draws one line of UTF-8 text: its left edge at `x`, the top of its capitals and digits at `y`. Cut at the borders.

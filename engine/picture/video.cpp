@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cassert>
-#include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -19,6 +19,7 @@
 #include "engine/picture/compose.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/system/child_process.hpp"
+#include "engine/system/extension.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
@@ -39,10 +40,15 @@ class FrameFolder : public FrameSink {
   FrameFolder(fs::path folder, std::function<void(const std::string&)> say)
       : folder_(std::move(folder)), say_(std::move(say)) {
     std::error_code failed;
-    fs::create_directories(folder_, failed);
+    made_ = fs::create_directories(folder_, failed);
     if (!fs::is_directory(folder_))
       throw Error("cannot make the folder " + folder_.string(), failed ? failed.message() : "a file has that name",
                   advice_on_writing(failed.value()));
+  }
+
+  ~FrameFolder() override {
+    std::error_code ignored;
+    if (made_ && count_ == 0) fs::remove(folder_, ignored);  // where it is empty
   }
 
   void write(const Image& frame) override {
@@ -71,6 +77,7 @@ class FrameFolder : public FrameSink {
 
   fs::path folder_;
   std::function<void(const std::string&)> say_;
+  bool made_ = false;
   int count_ = 0;
 };
 
@@ -82,9 +89,7 @@ struct Format {
 
 /// The texture is noise to an encoder: its usual quality would smear it, so ask for a finer one.
 Format format_of(const fs::path& file) {
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_extension(file);
   // HDTV's matrix, stated in the stream: players guess differently where it is not.
   const std::string yuv = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
   const Words tags = {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"};
@@ -104,9 +109,10 @@ Format format_of(const fs::path& file) {
 
 class Video : public FrameSink {
  public:
-  Video(const fs::path& file, int fps)
+  Video(const fs::path& file, int fps, const std::atomic<bool>* stop)
       : name_(file.string()),
         fps_(fps),
+        stop_(stop),
         format_(format_of(file)),
         program_(find_program("ffmpeg")),
         output_(file, OutputFile::Devices::refused) {
@@ -142,7 +148,7 @@ class Video : public FrameSink {
     words.insert(words.end(), format_.encoder.begin(), format_.encoder.end());
     // "file:" keeps a colon in the name from being taken for a protocol.
     words.insert(words.end(), {"-f", format_.container, "file:" + fs::absolute(output_.temporary()).string()});
-    child_.emplace(program_, words);
+    child_.emplace(program_, words, stop_);
     packed_.resize(std::size_t(even(width)) * std::size_t(even(height)) * 3);
   }
 
@@ -167,6 +173,7 @@ class Video : public FrameSink {
 
   std::string name_;
   int fps_;
+  const std::atomic<bool>* stop_;
   Format format_;
   fs::path program_;
   OutputFile output_;
@@ -195,6 +202,10 @@ std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder, std::functi
   return std::make_unique<FrameFolder>(folder, std::move(say));
 }
 
-std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps) { return std::make_unique<Video>(file, fps); }
+void check_video_name(const fs::path& file) { format_of(file); }
+
+std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps, const std::atomic<bool>* stop) {
+  return std::make_unique<Video>(file, fps, stop);
+}
 
 }  // namespace nacre

@@ -22,6 +22,11 @@ constexpr double longest_session = 1e6;  // seconds
 
 path beside(const path& folder, const path& file) { return file.is_absolute() ? file : folder / file; }
 
+/// The value of the knob "camera", which may name a file.
+std::string camera_beside(const path& folder, const std::string& camera) {
+  return is_camera_file(camera) ? beside(folder, camera).string() : camera;
+}
+
 /// Only names that a session knows: a misspelt one would be left out in silence.
 void check_names(const json& object, std::initializer_list<const char*> names, const char* what) {
   if (!object.is_object()) throw Error(fmt::format("{} is no JSON object", what));
@@ -64,9 +69,10 @@ Camera read_camera(const json& from) {
 }
 
 /// Values as text, each checked against the table and written as the table writes it.
-std::map<std::string, std::string> read_knobs(const json& from) {
+std::map<std::string, std::string> read_knobs(const json& from, const path& folder) {
   Settings settings;
   set_knobs(settings, from);
+  settings.camera = camera_beside(folder, settings.camera);
   std::map<std::string, std::string> texts;
   for (const auto& [name, value] : from.items()) texts[snake_case(name)];
   for (const Knob& knob : knobs(settings))
@@ -95,7 +101,7 @@ SessionEvent read_event(const json& from, const path& folder) {
     if (event.input->inputs.empty() && event.input->sample.empty())
       throw Error("an event opens nothing", "", "give it inputs or a sample");
   }
-  if (from.contains("knobs")) event.knobs = read_knobs(from["knobs"]);
+  if (from.contains("knobs")) event.knobs = read_knobs(from["knobs"], folder);
   if (from.contains("camera")) event.camera = read_camera(from["camera"]);
   event.over = seconds(from, "over");
   if (event.over > 0 && !event.camera) throw Error("'over' is how long a camera takes", "the event has no camera");
@@ -126,6 +132,7 @@ Session read_json(const json& from, const path& folder) {
   Session session;
   static_cast<SessionInput&>(session) = read_input(from, folder);
   if (from.contains("knobs")) set_knobs(session.settings, from["knobs"]);
+  session.settings.camera = camera_beside(folder, session.settings.camera);
   if (from.contains("camera")) session.camera = read_camera(from["camera"]);
   if (from.contains("events")) session.events = read_events(from["events"], folder);
   session.duration = seconds(from, "duration");
@@ -140,6 +147,12 @@ void write_input(const SessionInput& input, json& to) {
   if (input.detail != 0) to["detail"] = input.detail;
 }
 
+/// All values, with the whole name of a camera's file.
+json whole_knobs(Settings settings) {
+  settings.camera = camera_beside(std::filesystem::current_path(), settings.camera);
+  return knob_values(settings);
+}
+
 json event_json(const SessionEvent& event) {
   json to;
   to["time"] = event.time;
@@ -147,7 +160,7 @@ json event_json(const SessionEvent& event) {
   if (!event.knobs.empty()) {
     Settings settings;
     for (const auto& [name, text] : event.knobs) set_knob(settings, name, text);
-    const json values = knob_values(settings);  // with their types
+    const json values = whole_knobs(settings);  // with their types
     for (const auto& [name, text] : event.knobs) to["knobs"][name] = values.at(name);
   }
   if (event.camera) to["camera"] = camera_json(*event.camera);
@@ -179,11 +192,15 @@ std::string session_text(const Session& session) {
   json to;
   to["nacre"] = format_name;
   write_input(session, to);
-  to["knobs"] = knob_values(session.settings);
+  to["knobs"] = whole_knobs(session.settings);
   if (session.camera) to["camera"] = camera_json(*session.camera);
   for (const SessionEvent& event : session.events) to["events"].push_back(event_json(event));
   if (session.duration > 0) to["duration"] = session.duration;
-  return to.dump(2) + "\n";
+  try {
+    return to.dump(2) + "\n";
+  } catch (const json::type_error&) {
+    throw Error("a session cannot hold these names", "one of a file or an array is no UTF-8", "rename it");
+  }
 }
 
 std::optional<SessionEvent> session_change(const Session& before, const Session& after) {

@@ -46,9 +46,10 @@ struct SessionEvent {
 ///    "events": [{"time": 0.4, "knobs": {...}, "camera": {...}, "over": 1, "inputs": .., "sample": .., "detail": ..,
 ///                "screenshot": {"file": "a.png", "scale": 2, "panel": false, "transparent": false}}],
 ///    "duration": 5}
-/// All may be left out, and "detail" goes with inputs or a sample. Relative files are relative to the session file. A
-/// session with events is a recording, or a script that somebody wrote; without, it is the state of a view. An event's
-/// input without a camera, or its knob "camera" without one, has the camera fitted as at the start.
+/// All may be left out, and "detail" goes with inputs or a sample. Relative files, also one that the knob "camera" names,
+/// are relative to the session file. A session with events is a recording, or a script that somebody wrote; without, it is
+/// the state of a view. An event's input without a camera, or its knob "camera" without one, has the camera fitted as at
+/// the start.
 struct Session : SessionInput {
   Settings settings;
   std::optional<Camera> camera;      ///< none: as the knob says
@@ -59,7 +60,7 @@ struct Session : SessionInput {
 /// Throws Error where the file cannot be read, is no session, or holds a knob that is not known or out of range.
 Session read_session(const std::filesystem::path& file);
 
-/// The text of a session file.
+/// The text of a session file. Throws Error where the name of a file is no UTF-8, which JSON cannot hold.
 std::string session_text(const Session& session);
 
 /// What has to happen (at time 0) to `before` so that it becomes `after`: inputs, knobs, camera. None where they agree.

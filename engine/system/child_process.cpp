@@ -18,6 +18,8 @@
 #include <set>
 #include <sstream>
 #include <system_error>
+#include <thread>
+#include <utility>
 
 #include "compute/device/error.hpp"
 
@@ -28,6 +30,8 @@ namespace fs = std::filesystem;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr int longest_pause = 50;  // ms until a wish to stop is seen
 
 [[noreturn]] void fail(const fs::path& program, int error_number) {
   throw Error("cannot start " + program.string(), std::generic_category().message(error_number));
@@ -81,6 +85,12 @@ int reap(pid_t process) {
   do ended = ::waitpid(process, &status, 0);
   while (ended < 0 && errno == EINTR);
   return ended == process ? status : -1;
+}
+
+/// It waits to be reaped; or there is nothing to wait for.
+bool has_ended(pid_t process) {
+  siginfo_t info{};
+  return ::waitid(P_PID, id_t(process), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ? errno != EINTR : info.si_pid != 0;
 }
 
 /// Both ends of a pipe, closed when it dies.
@@ -153,7 +163,7 @@ bool drain_until(const std::array<Sink, 2>& sinks, const GiveUp& give_up) {
   while (*sinks[0].end >= 0 || *sinks[1].end >= 0) {
     if (give_up()) return false;
     pollfd polled[2] = {{*sinks[0].end, POLLIN, 0}, {*sinks[1].end, POLLIN, 0}};  // poll skips closed ends (-1)
-    if (::poll(polled, 2, 50) <= 0) continue;
+    if (::poll(polled, 2, longest_pause) <= 0) continue;
     for (int i = 0; i < 2; ++i)
       if (polled[i].revents != 0) drain(sinks[std::size_t(i)]);
   }
@@ -197,7 +207,9 @@ ChildResult run_child(const fs::path& program, const std::vector<std::string>& a
   return result;
 }
 
-ChildProcess::ChildProcess(const fs::path& program, const std::vector<std::string>& arguments) {
+ChildProcess::ChildProcess(const fs::path& program, const std::vector<std::string>& arguments,
+                           const std::atomic<bool>* stop)
+    : stop_(stop) {
   // A socket and not a pipe: writing to one whose reader is gone can be told not to raise SIGPIPE.
   int ends[2] = {-1, -1};
   complaints_ = ::memfd_create("complaints", MFD_CLOEXEC);
@@ -216,16 +228,20 @@ ChildProcess::ChildProcess(const fs::path& program, const std::vector<std::strin
 }
 
 ChildProcess::~ChildProcess() {
-  if (process_ > 0) ::kill(process_, SIGKILL);
-  wait();
+  close_and_forget(input_);
+  if (process_ > 0) ::kill(-process_, SIGKILL);
+  collect();
   close_and_forget(complaints_);
 }
 
 bool ChildProcess::send(const void* bytes, std::size_t size) {
   const char* next = static_cast<const char*>(bytes);
   while (size > 0) {
-    const ssize_t sent = ::send(input_, next, size, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
+    check_stop(stop_);
+    pollfd polled{input_, POLLOUT, 0};
+    if (::poll(&polled, 1, longest_pause) <= 0) continue;
+    const ssize_t sent = ::send(input_, next, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (sent < 0) return false;
     next += sent;
     size -= std::size_t(sent);
@@ -235,14 +251,21 @@ bool ChildProcess::send(const void* bytes, std::size_t size) {
 
 bool ChildProcess::wait() {
   close_and_forget(input_);
-  if (process_ <= 0) return false;
+  while (process_ > 0 && !has_ended(process_)) {
+    check_stop(stop_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  const int status = collect();
+  return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+int ChildProcess::collect() {
+  if (process_ <= 0) return -1;
   {
     const std::lock_guard lock(running().mutex);
     running().processes.erase(process_);
   }
-  const int status = reap(process_);
-  process_ = -1;
-  return status != -1 && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return reap(std::exchange(process_, -1));
 }
 
 std::string ChildProcess::first_complaint() const {
@@ -254,7 +277,7 @@ std::string ChildProcess::first_complaint() const {
 
 void kill_child_processes() noexcept try {
   const std::lock_guard lock(running().mutex);
-  for (const pid_t process : running().processes) ::kill(process, SIGKILL);
+  for (const pid_t process : running().processes) ::kill(-process, SIGKILL);
 } catch (...) {  // on the way out: nothing better can be done
 }
 

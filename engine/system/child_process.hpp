@@ -29,32 +29,37 @@ struct ChildResult {
 ChildResult run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                       std::chrono::milliseconds limit, const std::atomic<bool>* stop = nullptr);
 
-/// A running program whose standard input is ours to write and whose standard error is kept. Killed and reaped when
-/// this object goes before `wait`. Ctrl-C on our terminal does not reach it: we decide how it ends.
+/// A running program whose standard input is ours to write and whose standard error is kept. Killed, with all that it has
+/// started, and reaped when this object goes before `wait`. Ctrl-C on our terminal does not reach it: we decide how it
+/// ends.
 class ChildProcess {
  public:
-  /// Throws Error where the program cannot be started.
-  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+  /// `stop` (may be null) ends what waits for the program. Throws Error where the program cannot be started.
+  ChildProcess(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+               const std::atomic<bool>* stop = nullptr);
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Sends all bytes. False where the program reads no more (it ended, most likely).
+  /// Sends all bytes. False where the program reads no more (it ended, most likely). Throws Interrupted.
   bool send(const void* bytes, std::size_t size);
 
-  /// Ends the program's input and waits for it. True where it ended by itself with status 0.
+  /// Ends the program's input and waits for it. True where it ended by itself with status 0. Throws Interrupted.
   bool wait();
 
   /// The first line that it wrote to its standard error so far, empty if none.
   std::string first_complaint() const;
 
  private:
+  int collect();
+
+  const std::atomic<bool>* stop_;
   pid_t process_ = -1;
   int input_ = -1;       ///< our end of its standard input
   int complaints_ = -1;  ///< a file in memory: a pipe that nobody reads could fill up and stop the program
 };
 
-/// Kills every ChildProcess whose input is still open, for a program that leaves without unwinding.
+/// Kills every ChildProcess that still runs, with all that it has started, for a program that leaves without unwinding.
 void kill_child_processes() noexcept;
 
 }  // namespace nacre

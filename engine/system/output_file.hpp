@@ -21,8 +21,6 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// For writers that want a FILE. Failed writes through it are noticed by `commit`.
-  std::FILE* stream() { return stream_; }
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
 

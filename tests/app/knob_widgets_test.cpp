@@ -57,6 +57,17 @@ TEST_F(KnobWidgets, ASliderTurnsItsKnob) {
   EXPECT_DOUBLE_EQ(settings_.mesh.epsilon, 100);
 }
 
+TEST_F(KnobWidgets, ANumberIsTakenWhenItIsLetGo) {
+  const std::uint32_t before = settings_.flow.seed;
+  for (const int button : {-1, -1, 0, -1}) frame("seed", left, button);
+  ImGui::GetIO().AddInputCharacter('7');
+  for (int k = 0; k < 2; ++k) frame("seed", left);
+  EXPECT_EQ(settings_.flow.seed, before);
+  for (const int button : {0, -1, -1}) frame("seed", 390, button);  // elsewhere
+  EXPECT_NE(settings_.flow.seed, before);
+  EXPECT_EQ(settings_.mesh.seed, settings_.flow.seed);
+}
+
 TEST_F(KnobWidgets, SizesDoNotPassEachOther) {
   drag("min_size", left, right);
   EXPECT_DOUBLE_EQ(settings_.mesh.min_size, Settings().mesh.max_size);

@@ -62,11 +62,17 @@ TEST_F(Limits, OutputsThatCannotBeWritten) {
                               {"--save-session", path("none/s.json")}})
     expect_failure(nacre(small_flow + output), 1, {output[1]});
   // Found out before the data are read, which would fail for another reason.
-  for (const Words& output :
-       {Words{"--image", path("none/a.png")}, {"--out", path("none/a.vtp")}, {"--report", path("none/r.json")}})
+  for (const Words& output : {Words{"--image", path("none/a.png")},
+                              {"--out", path("none/a.vtp")},
+                              {"--report", path("none/r.json")},
+                              {"--video", path("none/a.mp4")},
+                              {"--frames", path("file/f")},
+                              {"--save-session", path("none/s.json")}})
     expect_failure(nacre(small_flow + output + Words{"--color", "pressure"}), 1, {output[1]});
-  expect_failure(nacre(small_flow + Words{"--video", path("a.txt")}), 1, {"a.txt", ".mp4"});
-  expect_failure(nacre({"sample", "sphere", "--detail", "16", "--out", path("a.xyz")}), 1, {"a.xyz"});
+  expect_failure(nacre(small_flow + Words{"--frames", path("f"), "--color", "pressure"}), 1, {"pressure"});
+  expect_failure(nacre(small_flow + Words{"--video", path("a.txt")}), 2, {"a.txt", ".mp4"});
+  expect_failure(nacre({"sample", "sphere", "--detail", "16", "--out", path("a.xyz")}), 2, {"a.xyz"});
+  expect_failure(nacre({"sample", "head", "--out", path("a.nii")}), 2, {"a.nii", ".nrrd"});
   EXPECT_EQ(names(), Words{"file"});
 }
 

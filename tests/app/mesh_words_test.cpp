@@ -146,7 +146,7 @@ TEST(MeshWords, VolumeSamplesAreListedAndWritten) {
   const Outcome written = nacre({"sample", "two-spheres", "--detail", "24", "--out", file});
   EXPECT_EQ(written.out, file + "\n") << written.err;
   EXPECT_TRUE(contains(nacre({"info", file}).out, "volume"));
-  expect_failure(nacre({"sample", "two-spheres", "--out", (folder / "a.obj").string()}), 1, {".nrrd"});
+  expect_failure(nacre({"sample", "two-spheres", "--out", (folder / "a.obj").string()}), 2, {".nrrd"});
 }
 
 }  // namespace

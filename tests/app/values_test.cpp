@@ -44,6 +44,7 @@ TEST_F(Values, OnePointPerSurfaceCellAndNothingElse) {
   for (const RawArray& a : mesh_.point_arrays) names.insert(a.name);
   EXPECT_EQ(names, (std::set<std::string>{"value", "velocity", "normal", "closest_point"}));
   EXPECT_EQ(mesh_.point_arrays.size(), 4u);
+  EXPECT_TRUE(contains(content("a.vtp"), "type=\"Float64\" Name=\"closest_point\"")) << "as exact as the centres";
   // A sphere of diameter 2 at 64 cells: cells that it passes through are 1.5 times its area in cells (mean of the
   // normal's absolute components).
   const double area = 4 * 3.14159265 / (cell_ * cell_);

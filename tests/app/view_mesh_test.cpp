@@ -3,6 +3,7 @@
 
 #include "engine/picture/png.hpp"
 #include "tests/app/mesh_program.hpp"
+#include "tests/app/view_program.hpp"
 
 namespace nacre::test {
 namespace {
@@ -151,6 +152,21 @@ TEST_F(ViewMesh, FailuresAreOneLine) {
 TEST_F(ViewMesh, LiveFramesDoNotWaitForCompute) {
   picture(30, {"--live", "--panel", "--set", "tab=result", "--set", "boxes=true"});
   EXPECT_GE(report["view"]["frames"], 30);
+}
+
+TEST_F(ViewMesh, LiveOneEndsWhenItIsDone) {
+  const Outcome run =
+      nacre(Words{"view", "--offscreen", "--live", "--out", path("v.vtp"), "--image", path("v.png")} + quick);
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_GT(covered(read_png(path("v.png"))), 0.1);
+  EXPECT_TRUE(exists("v.vtp"));
+}
+
+/// The memory of the particles' places is there, that of their directions is not.
+TEST_F(ViewMesh, AWindowOutlivesMemoryThatItDoesNotGet) {
+  const Outcome run = in_window(quick + Words{"--frames-count", "20"}, "export NACRE_FAULTS=graphics-memory@2");
+  if (run.status == 77) GTEST_SKIP() << run.err;
+  EXPECT_EQ(run.status, 0) << run.err;
 }
 
 }  // namespace

@@ -267,11 +267,11 @@ TEST_F(Scripts, ThatMeanNothingAreRefusedBeforeAnyFrame) {
 }
 
 TEST_F(Scripts, WhatCannotBeWrittenIsSaid) {
-  expect_failure(play(demo(), {"--record", path("x.avi")}), 1, {"x.avi", ".mp4"});
+  expect_failure(play(demo(), {"--record", path("x.avi")}), 2, {"x.avi", ".mp4"});
   expect_failure(play(demo(), {"--record", path("none/x.mp4")}), 1, {"none"});
   const std::string file = script({{{"time", 0}, {"screenshot", {{"file", "none/a.png"}}}}});
   expect_failure(play(file, {}), 1, {"none/a.png"});
-  expect_failure(play(file, {"--out", path("a.txt")}), 1, {"a.txt"});
+  expect_failure(play(file, {"--out", path("a.txt")}), 2, {"a.txt"});
 }
 
 TEST_F(Scripts, AnInputThatFailsInTheMiddleEndsTheRunWithItsName) {

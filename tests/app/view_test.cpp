@@ -126,6 +126,19 @@ TEST_F(View, AnotherDevicesPictureIsTheSameAndItsCopiesAreCounted) {
   EXPECT_GT(read_json(json).at("view").at("copied_bytes"), 0);
 }
 
+/// The texture of the second embedding, which is larger, has no memory: nothing is written to that of the first.
+TEST_F(View, AWindowOutlivesATextureWithoutMemory) {
+  std::ofstream(folder / "larger.json") << R"({"sample": "sphere", "detail": 24, "knobs": {"resolution": 48},
+    "events": [{"time": 1, "knobs": {"resolution": 160}}]})";
+  const fs::path json = folder / "view.json";
+  const Outcome outcome = in_window({"--script", (folder / "larger.json").string(), "--frames-count", "300", "--size",
+                                     "160x120", "--report", json.string()},
+                                    "export NACRE_FAULTS=graphics-memory@2");
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_json(json).at("view").at("steps"), 0);
+}
+
 TEST_F(View, OutOfMemoryIsOneLineThatSaysWhatToDo) {
   const Outcome outcome = with_faults("out-of-memory@1", {"--image", (folder / "view.png").string()});
   EXPECT_EQ(outcome.status, 1);

@@ -44,5 +44,35 @@ TEST_F(ViewWords, PicturesThatNoFileCanHold) {
   EXPECT_EQ(folder.entries(), 1u);
 }
 
+TEST_F(ViewWords, OutputsThatCannotBeWritten) {
+  const Words mesh = start_ + Words{"--sample", "two-spheres"};
+  expect_failure(nacre(mesh + Words{"--out", path("a.xyz")}), 2, {"a.xyz", ".msh"});
+  expect_failure(nacre(start_ + Words{"--sample", "sphere", "--out", path("a.ply")}), 2, {"a.ply", ".vtp"});
+  for (const char* option : {"--out", "--save-recording", "--save-session"})
+    expect_failure(nacre(mesh + Words{"--frames-count", "1", option, path("none/a.vtp")}), 1, {"none/a.vtp"});
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST_F(ViewWords, LargeLettersAreAnExtensionToo) {
+  const Outcome run = nacre(start_ + Words{"--sample", "sphere", "--detail", "24", "--resolution", "48", "--steps", "1",
+                                           "--out", path("A.VTP")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_TRUE(fs::exists(path("A.VTP")));
+}
+
+TEST_F(ViewWords, FlagsAreThoseOfFlowAndMesh) {
+  const Words flags = {"--labels", "--curvature", "--no-legend", "--no-time"};
+  ASSERT_EQ(
+      nacre(start_ + flags +
+            Words{"--sample", "two-spheres", "--detail", "16", "--frames-count", "1", "--save-session", path("s.json")})
+          .status,
+      0);
+  const nlohmann::json knobs = read_json(path("s.json")).at("knobs");
+  EXPECT_EQ(knobs.at("labels"), true);
+  EXPECT_EQ(knobs.at("curvature"), true);
+  EXPECT_EQ(knobs.at("legend"), false);
+  EXPECT_EQ(knobs.at("time_stamp"), false);
+}
+
 }  // namespace
 }  // namespace nacre::test

@@ -221,6 +221,19 @@ TEST(Words, SampleListsAndWritesThem) {
   const Outcome info = nacre({"info", file});
   EXPECT_EQ(info.status, 0);
   EXPECT_TRUE(contains(info.out, "velocity")) << info.out;
+
+  const std::string series = (folder / "A.PVD").string(), report = (folder / "r.json").string();
+  const Outcome all = nacre({"sample", "sphere", "--detail", "16", "--out", series, "--report", report});
+  ASSERT_EQ(all.status, 0) << all.err;
+  const nlohmann::json outputs = nlohmann::json::parse(read_all(report)).at("outputs");
+  EXPECT_GT(outputs.size(), 2u);
+  EXPECT_EQ(outputs.back(), series);
+  for (const nlohmann::json& each : outputs) EXPECT_TRUE(fs::exists(each.get<std::string>())) << each;
+}
+
+TEST(Words, WhatCannotBePrintedIsAFailure) {
+  const Outcome full = run("/bin/bash", {"-c", "exec \"$0\" sample > /dev/full", NACRE_PROGRAM});
+  expect_failure(full, 1, {"standard output", "No space left"});
 }
 
 TEST(Words, InfoAsJson) {

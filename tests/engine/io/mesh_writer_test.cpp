@@ -264,6 +264,8 @@ TEST(MeshWriter, VtkFilesHaveTheNamesAsFieldData) {
   }
   write_surface_mesh(folder / "b.vtp", two_bodies(), labels);
   EXPECT_EQ(read_all(folder / "b.vtp").find("FieldData"), std::string::npos);
+  write_surface_mesh(folder / "c.vtp", two_bodies(), labels, std::vector<std::string>{"", "caf\xe9", "", ""});
+  EXPECT_NE(read_all(folder / "c.vtp").find("Name=\"caf\ufffd\""), std::string::npos) << "Latin-1 would be no XML";
 }
 
 /// ParaView 5.11 with today's expat finds no appended data.

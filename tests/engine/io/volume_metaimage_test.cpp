@@ -64,6 +64,11 @@ TEST_F(MetaImage, PackedAndInItsOwnFile) {
   EXPECT_EQ(values_of(read("b.mhd", meta(plain("HeaderSize = 4\n"), "", "UCHAR", "b.raw"))), count_up(12));
   EXPECT_EQ(values_of(read("c.mhd", meta(plain("HeaderSize = -1\n"), "", "UCHAR", "b.raw"))), count_up(12));
   EXPECT_EQ(values_of(read("d.mhd", meta(plain("CompressedData = True\n"), "", "UCHAR", "a.zraw"))), count_up(12));
+  const std::string packed = deflated(bytes), last = "CompressedData = True\nHeaderSize = -1\n";
+  write("b.zraw", "head" + packed);
+  const std::string size = "CompressedDataSize = " + std::to_string(packed.size()) + "\n";
+  EXPECT_EQ(values_of(read("e.mhd", meta(plain(last + size), "", "UCHAR", "b.zraw"))), count_up(12));
+  EXPECT_TRUE(contains(failure("f.mhd", meta(plain(last), "", "UCHAR", "b.zraw")), "no CompressedDataSize"));
 }
 
 TEST_F(MetaImage, FourthDimensionOfOneStep) {

@@ -45,6 +45,14 @@ TEST_F(Nrrd, LabelsHaveTheNamesOfSegments) {
   EXPECT_TRUE(read("b.nrrd", raw("uchar", "spacings: 1 1 1\n", counting<std::uint8_t>(12))).label_names.empty());
 }
 
+TEST_F(Nrrd, LongNamesAreCutBetweenLetters) {
+  const std::string wide(119, 'w');
+  const std::string segments = "spacings: 1 1 1\nSegment0_LabelValue:=2\nSegment0_Name:=" + wide +
+                               "\u00e9\nSegment1_LabelValue:=3\n" + "Segment1_Name:=caf\xe9\n";
+  const Volume volume = read("a.seg.nrrd", raw("uchar", segments, counting<std::uint8_t>(12)));
+  EXPECT_EQ(volume.label_names, (LabelNames{{2, wide}, {3, "caf\ufffd"}}));
+}
+
 TEST_F(Nrrd, BigEndian) {
   expect_type<std::int16_t>(
       read("a.nrrd", raw("short", "endian: big\nspacings: 1 1 1\n", counting<std::int16_t>(12, true))), "int16");

@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "engine/io/vtk_image.hpp"
 #include "tests/engine/io/io_test_files.hpp"
@@ -161,6 +162,18 @@ TEST_F(VtkXml, DamagedArraysAreErrors) {
   EXPECT_TRUE(contains(failure("lie.vtp", lie), "is no count"));
   lie.replace(lie.find("9000000000000"), 13, "900000000");
   EXPECT_TRUE(contains(failure("lie.vtp", lie), "promises 900000000 points"));
+}
+
+TEST_F(VtkXml, SizesOfPackedBlocksThatLieAreErrors) {
+  Writer writer({Encoding::Where::appended_raw, true, true});
+  const std::string good = mixed_vtp(writer);
+  const std::size_t begin = good.find("\n _") + 3;
+  for (std::uint64_t first = 1; first < good.size(); first += 4) {
+    std::string lie = good;
+    const std::uint64_t lies[] = {2, 16, 16, first, std::uint64_t(1) << 60};  // blocks, sizes unpacked, sizes packed
+    std::memcpy(lie.data() + begin, lies, sizeof lies);
+    EXPECT_TRUE(contains(failure("lie.vtp", lie), "cut short")) << first;
+  }
 }
 
 std::string grid(Writer& w, const std::vector<float>& points, const std::vector<std::int64_t>& connectivity,

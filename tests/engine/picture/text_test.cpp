@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/picture/plain_text.hpp"
-#include "engine/picture/utf8.hpp"
+#include "engine/system/utf8.hpp"
 #include "tests/engine/picture/test_images.hpp"
 
 namespace nacre {
@@ -20,6 +20,13 @@ TEST(Utf8, ValidAndBroken) {
   // A lone continuation, an overlong slash (two bytes), a surrogate (three), and a cut sequence.
   std::string_view broken = "\x80\xC0\xAF\xED\xA0\x80\xE2\x88";
   while (!broken.empty()) EXPECT_EQ(take_code_point(broken), char32_t(0xFFFD));
+}
+
+TEST(Utf8, WhatIsCutIsOfWholeCharacters) {
+  EXPECT_EQ(in_utf8("d\u00e9coup\u00e9"), "d\u00e9coup\u00e9");
+  EXPECT_EQ(in_utf8("d\u00e9coup\u00e9", 8), "d\u00e9coup");
+  EXPECT_EQ(in_utf8("caf\xe9\tau lait"), "caf\ufffd au lait") << "Latin-1";
+  EXPECT_EQ(in_utf8("\uffff", 2), "") << "no character, and no room to say so";
 }
 
 TEST(Text, CapitalsFillTheirHeight) {

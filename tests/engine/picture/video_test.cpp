@@ -111,6 +111,7 @@ TEST(FrameFolder, NamesWhatIsWrong) {
   EXPECT_THROW(make_frame_folder(folder / "file"), Error);
   EXPECT_THROW(make_frame_folder(folder / "file/below"), Error);
   EXPECT_THROW(make_frame_folder(folder / "empty")->finish(), Error);
+  EXPECT_FALSE(fs::exists(folder / "empty"));
 }
 
 TEST(FrameFolder, FullDiskLeavesWholeFramesOnly) {
@@ -237,6 +238,20 @@ TEST(Video, ANoisyOrIdleProgramDoesNotBlockUs) {
   EXPECT_TRUE(has(failure_of_video(folder / "a.mp4", 20, 128), "ffmpeg: xxx"));
   write_program(programs / "ffmpeg", "exec sleep 100\n");
   { make_video(folder / "a.mp4", 25)->add(noise_image(8, 8)); }
+  EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(Video, StopsOnRequestAndLeavesNothing) {
+  TemporaryFolder programs, folder;
+  const OnlyPath path(programs.path().string() + ":/usr/bin:/bin");
+  write_program(programs / "ffmpeg", "cat > /dev/null; sleep 100\n");
+  std::atomic<bool> stop{false};
+  {
+    const auto video = make_video(folder / "a.mp4", 25, &stop);
+    video->add(noise_image(8, 8));
+    stop = true;
+    EXPECT_THROW(video->finish(), Interrupted);
+  }
   EXPECT_EQ(folder.entries(), 0);
 }
 

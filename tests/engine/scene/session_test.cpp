@@ -44,6 +44,28 @@ class SessionFile : public testing::Test {
   test::TemporaryFolder folder;
 };
 
+TEST_F(SessionFile, ACameraFileIsBesideTheSession) {
+  const Session session =
+      read(R"({"knobs": {"camera": "c.json"}, "events": [{"time": 1, "knobs": {"camera": "/d.json"}},
+                                                         {"time": 2, "knobs": {"camera": "e.json"}},
+                                                         {"time": 3, "knobs": {"camera": "+x"}}]})");
+  EXPECT_EQ(session.settings.camera, folder / "c.json");
+  EXPECT_EQ(session.events[0].knobs.at("camera"), "/d.json");
+  EXPECT_EQ(session.events[1].knobs.at("camera"), folder / "e.json");
+  EXPECT_EQ(session.events[2].knobs.at("camera"), "+x");
+  Session written;
+  written.settings.camera = "c.json";
+  EXPECT_EQ(json::parse(session_text(written))["knobs"]["camera"], std::filesystem::absolute("c.json").string());
+  written.settings.camera = "iso";
+  EXPECT_EQ(json::parse(session_text(written))["knobs"]["camera"], "iso");
+}
+
+TEST_F(SessionFile, NamesThatJsonCannotHoldAreNamed) {
+  Session session;
+  session.inputs = {"/data/caf\xe9.vtp"};  // Latin-1
+  EXPECT_THROW(session_text(session), Error);
+}
+
 /// A camera whose numbers have no short decimal form.
 Camera odd_camera() {
   return {{1.0 / 3, -std::sqrt(2.0), 1e-17}, {0.1, 1e21, -0.3}, {0, 1.0 / 7, 1}, std::exp(1.0), true};

@@ -71,6 +71,24 @@ TEST(ChildProcess, IsKilledOnRequest) {
   EXPECT_FALSE(result.timed_out);
 }
 
+TEST(ChildProcess, WhatWaitsForItEndsOnRequest) {
+  const std::vector<char> bytes(4 << 20);  // more than a socket holds
+  for (const bool sends : {false, true}) {
+    std::atomic<bool> stop{false};
+    std::thread later([&] {
+      std::this_thread::sleep_for(100ms);
+      stop = true;
+    });
+    const auto start = std::chrono::steady_clock::now();
+    {
+      ChildProcess child("/bin/sleep", {"60"}, &stop);
+      EXPECT_THROW(sends ? child.send(bytes.data(), bytes.size()) : child.wait(), Interrupted);
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - start, 5s);
+    later.join();
+  }
+}
+
 TEST(ChildProcess, MissingProgramIsAnError) { EXPECT_THROW(run_child("/no/such/program", {}, 1s), Error); }
 
 }  // namespace

@@ -1,7 +1,8 @@
-// Nacre: code points out of UTF-8 text that may be broken.
+// Nacre: UTF-8 text that may be broken: its code points, and what of it is whole.
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace nacre {
@@ -30,6 +31,22 @@ inline char32_t take_code_point(std::string_view& text) {
   }
   text.remove_prefix(length);
   return point < 0x20 || point == 0x7F ? U' ' : point;
+}
+
+/// As much of `text` as goes into `most` bytes, in whole characters that any reader takes: what is no UTF-8 (or no
+/// character) becomes U+FFFD, a control character a space.
+inline std::string in_utf8(std::string_view text, std::size_t most = std::string_view::npos) {
+  std::string out;
+  while (!text.empty()) {
+    std::string_view character = text;
+    const char32_t point = take_code_point(text);
+    character.remove_suffix(text.size());
+    if (point == U' ') character = " ";
+    if (point >= 0xFFFD && point <= 0xFFFF) character = "\xEF\xBF\xBD";
+    if (out.size() + character.size() > most) break;
+    out += character;
+  }
+  return out;
 }
 
 }  // namespace nacre

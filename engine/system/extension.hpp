@@ -1,0 +1,17 @@
+// Nacre: the extension of a file's name.
+#pragma once
+
+#include <cctype>
+#include <filesystem>
+#include <string>
+
+namespace nacre {
+
+/// With its dot and in small letters: ".vtp" of a.VTP; empty where there is none.
+inline std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+}  // namespace nacre
