@@ -11,13 +11,15 @@ window=$(xdotool search --name 'Nacre$' | head -1)
 filming() { titled '^film - '; }
 filmed() { [[ -s $video ]] && ! filming; }
 film() { # by its key, until WHAT holds; more slowly at each attempt, where much else runs
-  local what=$1 pace
+  local what=$1 pace try
   for pace in 0.5 2 5; do
     xdotool windowfocus "$window" key ctrl+m
     sleep $pace
     [[ $what == filming ]] && xdotool key ctrl+a type "$video" && sleep $pace && xdotool key Return
-    sleep $pace
-    $what && return
+    for try in {1..20}; do
+      $what && return
+      sleep 0.5
+    done
     xdotool key Escape
   done
   echo "$what did not come" >&2
