@@ -10,13 +10,14 @@ open_window "$program" --sample sphere --detail 24 --resolution 64 --size 640x48
 window=$(xdotool search --name 'Nacre$' | head -1)
 filming() { titled '^film - '; }
 filmed() { [[ -s $video ]] && ! filming; }
-film() { # by its key, until WHAT holds; more slowly at each attempt, where much else runs
-  local what=$1 pace try
+film() { # by its key, until WHAT holds; more slowly at each attempt, where much else runs. ffmpeg takes its time to end.
+  local what=$1 pace try patience=20
+  [[ $what == filming ]] || patience=120
   for pace in 0.5 2 5; do
     xdotool windowfocus "$window" key ctrl+m
     sleep $pace
     [[ $what == filming ]] && xdotool key ctrl+a type "$video" && sleep $pace && xdotool key Return
-    for try in {1..20}; do
+    for ((try = 0; try < patience; ++try)); do
       $what && return
       sleep 0.5
     done

@@ -17,16 +17,17 @@ does() {
 }
 
 # gets WHAT CONDITION ACTION...: acts until the condition holds, more slowly at each attempt, as a user does where much
-# else runs and a frame takes longer than a click. Only the first attempt is counted.
+# else runs and a frame takes longer than a click. Only the first attempt is counted. ffmpeg takes its time to end a video.
 gets() {
-  local what=$1 condition=$2 before=$actions counted='' pace try
+  local what=$1 condition=$2 before=$actions counted='' pace try patience=20
+  [[ $condition != filmed ]] || patience=120
   shift 2
   for pace in 0.4 1 3 6; do
     actions=$before
     "$@"
     counted=${counted:-$actions}
     actions=$counted
-    for try in {1..20}; do
+    for ((try = 0; try < patience; ++try)); do
       $condition && return
       sleep 0.5
     done

@@ -129,9 +129,9 @@ TEST_F(View, AnotherDevicesPictureIsTheSameAndItsCopiesAreCounted) {
 /// The texture of the second embedding, which is larger, has no memory: nothing is written to that of the first.
 TEST_F(View, AWindowOutlivesATextureWithoutMemory) {
   std::ofstream(folder / "larger.json") << R"({"sample": "sphere", "detail": 24, "knobs": {"resolution": 48},
-    "events": [{"time": 1, "knobs": {"resolution": 160}}]})";
+    "events": [{"time": 3, "knobs": {"resolution": 160}}]})";
   const fs::path json = folder / "view.json";
-  const Outcome outcome = in_window({"--script", (folder / "larger.json").string(), "--frames-count", "300", "--size",
+  const Outcome outcome = in_window({"--script", (folder / "larger.json").string(), "--frames-count", "400", "--size",
                                      "160x120", "--report", json.string()},
                                     "export NACRE_FAULTS=graphics-memory@2");
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
