@@ -16,6 +16,7 @@ class BenchTables : public AppTest {
   void run(const Words& more) {
     const Outcome run = nacre(tiny_bench + Words{"--json", path("bench.json")} + more);
     status_ = run.status;
+    printed_ = run.out;
     errors_ = run.err;
     ASSERT_TRUE(exists("bench.json")) << run.err;
     report_ = read_json("bench.json");
@@ -55,7 +56,7 @@ class BenchTables : public AppTest {
 
   json report_;
   int status_ = -1;
-  std::string errors_;
+  std::string printed_, errors_;
 };
 
 void BenchTables::expect_scalar_tables() const {
@@ -163,6 +164,8 @@ TEST_F(BenchTables, EveryTableAndOneThatIsMissing) {
   EXPECT_TRUE(contains(errors_, "has no figure where") && contains(errors_, "Table 9.9, a row")) << errors_;
   EXPECT_EQ(lines_with(errors_, "nacre"), 1) << errors_;
   EXPECT_EQ(report_["tables"].size(), 14u);
+  for (const json& table : report_["tables"])
+    EXPECT_EQ(lines_with(printed_, "Table " + table["name"].get<std::string>() + " "), 1) << table["name"];
   expect_scalar_tables();
   expect_material_tables();
   expect_flow_tables();
