@@ -27,7 +27,7 @@ void main() {
   }
   float light_here = brightness(direction, seen);
 #ifdef TEXTURED
-  light_here *= 0.25 + 1.15 * shown_at(place);
+  light_here *= 0.04 + 1.52 * shown_at(place);
 #endif
   pixel = vec4(to_encoded(base * light_here), 1.0);
 }

@@ -16,7 +16,7 @@ auto of_start(const Settings& s) {
   return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power);
 }
 
-auto of_steps(const FlowParameters& p) { return std::tie(p.sharpen, p.jitter, p.equalise, p.contrast); }
+auto of_steps(const FlowParameters& p) { return std::tie(p.sharpen, p.jitter, p.equalise, p.streaks, p.contrast); }
 
 auto of_arrows(const Look& l) { return std::tie(l.arrows, l.arrow_count); }
 

@@ -117,12 +117,10 @@ struct NoLocalMoments {
 template <class View, class Local>
 struct EqualiseBand {
   View view;
-  const float *value, *ahead;
+  const float* ahead;
   Local moments;
   const TextureSpread* whole;  ///< of all of `value` and `ahead`
-  float local, contrast;
-  float* shown;
-  float* output;  ///< the same, for whoever draws it; null: nobody does
+  float local;
   float* detail;
 
   NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& place, typename View::Cursor& cursor) const {
@@ -135,9 +133,6 @@ struct EqualiseBand {
       shift = local * (local_mean - all.mean);
       spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
     }
-    const float frame = clamp01(0.5f + contrast * (value[s] - all.mean - shift) / spread);
-    shown[s] = frame;
-    if (output) output[s] = frame;
     detail[s] = (ahead[s] - all.ahead_mean - shift) / (spread * all.ratio);
   }
 };

@@ -116,16 +116,13 @@ struct BlurMoments {
 
 /// How far a value is from the mean, in standard deviations; mean and deviation are the local ones to the share `local`,
 /// else those of the whole texture. Without it what a diverging flow stretches grows into blotches, step by step.
-/// Gives the shown frame, contrast stretched, and the same of `ahead`.
+/// Gives that of `ahead`.
 struct Equalise {
   RefinedGridView texture;
-  const float* value;
   const float* ahead;
   const Float4* moments;       ///< of `value`
   const TextureSpread* whole;  ///< of the whole of `value` and `ahead`
-  float local, contrast;
-  float* shown;
-  float* output;  ///< the same, for whoever draws it; null: nobody does
+  float local;
   float* detail;
   NACRE_HD void operator()(std::int64_t i) const {
     const Vec3f p = cell_centre(texture.cell(std::uint32_t(i))) * texture.inverse_refine;
@@ -140,10 +137,20 @@ struct Equalise {
       shift = local * (local_mean - all.mean);
       spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
     }
-    const float frame = clamp01(0.5f + contrast * (value[i] - all.mean - shift) / spread);
+    detail[i] = (ahead[i] - all.ahead_mean - shift) / (spread * all.ratio);
+  }
+};
+
+/// The frame for the eye: contrast stretched.
+struct Show {
+  const float* detail;  ///< how far a value is from the mean, in standard deviations
+  float contrast;
+  float* shown;
+  float* output;  ///< the same, for whoever draws it; null: nobody does
+  NACRE_HD void operator()(std::int64_t i) const {
+    const float frame = clamp01(0.5f + contrast * detail[i]);
     shown[i] = frame;
     if (output) output[i] = frame;
-    detail[i] = (ahead[i] - all.ahead_mean - shift) / (spread * all.ratio);
   }
 };
 

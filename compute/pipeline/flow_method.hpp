@@ -7,6 +7,7 @@
 
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/flow/filter.hpp"
+#include "compute/flow/streaks.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/render.hpp"
@@ -89,6 +90,7 @@ class FlowMethodOn : public FlowMethod {
     steady_ = !(vectors.end > vectors.start);
     exec_.arena().rewind(embedding_mark_);
     point_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
+    present_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
     step_ = launched_ = 0;
     first_ = parameters_.warmup >= 0 ? -parameters_.warmup : -ttl_;
     output_ = nullptr;
@@ -103,12 +105,28 @@ class FlowMethodOn : public FlowMethod {
   /// The slots that the first step sees, then the steps before the data's first.
   void warm_up() {
     for (int j = 0; j < slots(); ++j) fill(first_ + j);
+    load_present(first_ - 1);
     started_ = true;
   }
 
   /// Embeds what comes into sight at step `k`.
   void look_ahead(int k) {
-    if (!steady_ && k > first_) fill(k + ttl_);
+    if (steady_) return;
+    if (k > first_) fill(k + ttl_);
+    load_present(k);
+  }
+
+  /// Streaks of `value` along the flow of the frame, around 1/2, into `streaks`. `cell`: edge of a texture cell in cells
+  /// of the domain.
+  template <class Streaks>
+  void draw_streaks(const Streaks& on, std::int64_t n, double cell, const float* value, StreakCell* cells,
+                    float* streaks) {
+    const float least = 1e-6f * float(vectors_.reference_speed);
+    auto stage = exec_.stage("streaks");
+    for_each_streak_cell(exec_, on, n,
+                         MarkStreakCells<Streaks>{on, mesh_, cell, present_vectors_.data(), least, cells});
+    for_each_streak_cell(exec_, on, n, HighPass<Streaks>{on, value, cells});
+    for_each_streak_cell(exec_, on, n, ConvolveAlongFlow<Streaks>{on, cells, parameters_.streaks, streaks});
   }
 
   /// Time of the data at the beginning of step `k`; it stands still before the first step and after the last.
@@ -182,6 +200,12 @@ class FlowMethodOn : public FlowMethod {
     std::vector<Vec3f> vectors_;
   };
 
+  std::vector<float> download_frame(const float* frame, std::size_t n) const {
+    std::vector<float> host(n);
+    exec_.device().copy_to_host(host.data(), frame, n * sizeof(float));
+    return host;
+  }
+
   Executor<Backend>& exec_;
   const FlowParameters& parameters_;
   FlowDomain domain_;
@@ -222,6 +246,14 @@ class FlowMethodOn : public FlowMethod {
     pixel.samples = std::max(1, options.samples);
   }
 
+  /// The vectors at the time of the frame that step `k` makes.
+  void load_present(int k) {
+    auto stage = exec_.stage("velocity");
+    host_vectors_.resize(points_.size());
+    vectors_.at(time_of(k + 1), host_vectors_);
+    present_vectors_.upload(host_vectors_);
+  }
+
   void fill(int k) {
     auto stage = exec_.stage("velocity");
     host_vectors_.resize(points_.size());
@@ -232,7 +264,7 @@ class FlowMethodOn : public FlowMethod {
     fill_slot(point_vectors_, scale, slot(k));
   }
 
-  Array<Vec3f> point_vectors_;
+  Array<Vec3f> point_vectors_, present_vectors_;
   std::vector<Vec3f> host_vectors_;
 };
 

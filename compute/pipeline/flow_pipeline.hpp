@@ -35,7 +35,8 @@ struct FlowParameters {
   double sharpen = 0.05;   ///< strength of the Laplacian between steps
   double jitter = 0.55;    ///< share of fresh noise between steps
   double equalise = 0.5;   ///< share of local contrast against that of the whole texture
-  double contrast = 0.26;  ///< shown standard deviation
+  int streaks = 16;        ///< cells that shown streaks are drawn along the flow, each way; 0: what particles leave
+  double contrast = 0.4;   ///< shown standard deviation
   std::uint32_t seed = 1;
 };
 

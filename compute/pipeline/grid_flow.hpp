@@ -10,6 +10,7 @@
 #include "compute/embedding/tree_boxes.hpp"
 #include "compute/flow/advect.hpp"
 #include "compute/flow/filter.hpp"
+#include "compute/flow/streaks.hpp"
 #include "compute/flow/velocity.hpp"
 #include "compute/pipeline/flow_method.hpp"
 #include "compute/raycast/render.hpp"
@@ -64,6 +65,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     value_ = arena.permanent<float>(n);
     ahead_ = arena.permanent<float>(n);
     detail_ = arena.permanent<float>(n);
+    streak_cells_ = arena.permanent<StreakCell>(n);
     for (Array<Float4>& moments : moments_) {
       moments = arena.permanent<Float4>(coarse_.cells);
       moments.fill_bytes(0);  // blurring never writes the cells without a block
@@ -141,24 +143,32 @@ class GridFlow final : public FlowMethodOn<Backend> {
     show();
   }
 
-  /// Contrast for the eye, sharpening and jitter for the next step.
+  /// Sharpening and jitter for the next step, streaks and contrast for the eye.
   void show() {
     auto stage = exec_.stage("filter");
     const std::int64_t n = fine_.surface_cells;
     const RefinedGridView texture = fine_.view(coarse_.view());
     Arena::Scope scope(exec_.arena());
-    const TextureSpread* whole = measure_spread(exec_, n, value_.data(), ahead_.data());
-    const Float4* moments = gather_moments(texture);
-    exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, whole, float(parameters_.equalise),
-                               float(parameters_.contrast), shown_.data(), output_, detail_.data()});
+    const auto equalise = [&](const float* value, const float* ahead) {
+      const TextureSpread* whole = measure_spread(exec_, n, value, ahead);
+      const Float4* moments = gather_moments(texture, value);
+      exec_.for_each(n, Equalise{texture, ahead, moments, whole, float(parameters_.equalise), detail_.data()});
+    };
+    equalise(value_.data(), ahead_.data());
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
                                        seed_, std::uint32_t(++launched_), carried_.data()});
+    // Nobody needs what is ahead any more: the frame for the eye takes its memory.
+    if (parameters_.streaks > 0)
+      this->draw_streaks(GridStreaks{texture}, n, 1.0 / refine_, value_.data(), streak_cells_.data(), ahead_.data());
+    frame_ = parameters_.streaks > 0 ? ahead_.data() : value_.data();
+    equalise(frame_, frame_);
+    exec_.for_each(n, Show{detail_.data(), float(parameters_.contrast), shown_.data(), output_});
   }
 
-  /// Local moments of `value_` over a window of about a dozen texture cells, in one of two buffers.
-  const Float4* gather_moments(const RefinedGridView& texture) {
+  /// Local moments of `value` over a window of about a dozen texture cells, in one of two buffers.
+  const Float4* gather_moments(const RefinedGridView& texture, const float* value) {
     const Array<Float4>*from = &moments_[0], *to = &moments_[1];
-    exec_.for_each(coarse_.cells, LocalMoments{texture, value_.data(), from->data()});
+    exec_.for_each(coarse_.cells, LocalMoments{texture, value, from->data()});
     const int passes = refine_ == 1 ? 8 : refine_ == 2 ? 4 : refine_ <= 4 ? 1 : 0;
     for (int k = 0; k < passes; ++k) {
       exec_.for_each(fine_.block_cell.size(), BlurMoments{texture, from->data(), to->data()});
@@ -179,6 +189,8 @@ class GridFlow final : public FlowMethodOn<Backend> {
   Array<std::uint64_t> sums_[max_ttl];
   Array<std::uint8_t> axis_;
   Array<float> carried_, value_, ahead_, detail_, shown_;
+  Array<StreakCell> streak_cells_;
+  const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_[2];
   Steps steps_;
 };
@@ -207,7 +219,7 @@ FlowValues GridFlow<Backend>::values() const {
   this->require_started();
   const std::size_t n = fine_.surface_cells;
   FlowValues values(n);
-  values.value = value_.download();
+  values.value = this->download_frame(frame_, n);
   const std::vector<Float4> seed = fine_.seed.download();
   const std::vector<std::uint32_t> place = fine_.place.download(), triangle = fine_.seed_triangle.download();
   const std::vector<std::uint32_t> block_cell = fine_.block_cell.download();

@@ -136,7 +136,11 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     value_ = arena.permanent<float>(n);
     carried_ = arena.permanent<float>(n);
     shown_ = arena.permanent<float>(n);
-    if constexpr (Band::local_contrast) moments_ = arena.permanent<Float4>(view.items());
+    if constexpr (Band::local_contrast) {
+      moments_ = arena.permanent<Float4>(view.items());
+      streaks_ = arena.permanent<float>(n);
+      streak_cells_ = arena.permanent<StreakCell>(n);
+    }
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
     this->warm_up();
@@ -146,9 +150,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   std::vector<float> shown() const override {
     this->require_started();
-    std::vector<float> host(octree_.view().surface_cells);
-    exec_.device().copy_to_host(host.data(), shown_.data(), host.size() * sizeof(float));
-    return host;
+    return this->download_frame(shown_.data(), octree_.view().surface_cells);
   }
   void show_into(float* memory) override { output_ = memory; }
   FlowValues values() const override;
@@ -229,35 +231,55 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     auto stage = exec_.stage("filter");
     if constexpr (Band::local_contrast) {
       exec_.for_each_team(octree_.view().items(), BrickMoments{octree_.view(), value_.data(), moments_.data()});
-      equalise(LocalBrickMoments{moments_.data()}, ahead, floats_in(done));
+      equalise(LocalBrickMoments{moments_.data()}, value_.data(), ahead, floats_in(done));
     } else {
-      equalise(NoLocalMoments{}, ahead, floats_in(done));
+      equalise(NoLocalMoments{}, value_.data(), ahead, floats_in(done));
     }
     const View view = octree_.view();
     for_each_surface_cell(
         exec_, view,
         SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter), seed_,
                           std::uint32_t(++launched_), carried_.data()});
+    show_frame();
     exec_.fill(done, 0);
   }
 
   template <class Local>
-  void equalise(const Local& local, const float* ahead, float* detail) {
+  void equalise(const Local& local, const float* value, const float* ahead, float* detail) {
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);
     Arena::Scope scope(exec_.arena());
-    const TextureSpread* whole = measure_spread(exec_, n, value_.data(), ahead);
-    for_each_surface_cell(
-        exec_, view,
-        EqualiseBand<View, Local>{view, value_.data(), ahead, local, whole, float(parameters_.equalise),
-                                  float(parameters_.contrast), shown_.data(), output_, detail});
+    const TextureSpread* whole = measure_spread(exec_, n, value, ahead);
+    for_each_surface_cell(exec_, view,
+                          EqualiseBand<View, Local>{view, ahead, local, whole, float(parameters_.equalise), detail});
+  }
+
+  /// The frame for the eye: streaks, but on the thesis's octree, which shows what the thesis does.
+  void show_frame() {
+    const View view = octree_.view();
+    const auto n = std::int64_t(view.surface_cells);
+    Arena::Scope scope(exec_.arena());
+    float* detail = exec_.arena().template temporary<float>(n).data();
+    if constexpr (Band::local_contrast) {
+      if (parameters_.streaks > 0)
+        this->draw_streaks(BrickStreaks{view}, n, 1.0, value_.data(), streak_cells_.data(), streaks_.data());
+      frame_ = parameters_.streaks > 0 ? streaks_.data() : value_.data();
+      exec_.for_each_team(view.items(), BrickMoments{view, frame_, moments_.data()});
+      equalise(LocalBrickMoments{moments_.data()}, frame_, frame_, detail);
+    } else {
+      frame_ = value_.data();
+      equalise(NoLocalMoments{}, frame_, frame_, detail);
+    }
+    exec_.for_each(n, Show{detail, float(parameters_.contrast), shown_.data(), output_});
   }
 
   typename Band::Octree octree_;
   int levels_ = 0;
   Array<std::uint32_t> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
-  Array<float> carried_, value_, shown_;
+  Array<float> carried_, value_, shown_, streaks_;
+  Array<StreakCell> streak_cells_;
+  const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_;
   Steps steps_;
 };
@@ -296,7 +318,7 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
   for_each_surface_cell(exec_, view, detail::GatherSurface<View>{view, device_code.data(), device_point.data()});
   const std::vector<std::uint64_t> code = device_code.download();
   const std::vector<CellPoint> point = device_point.download();
-  const std::vector<float> value = value_.download();
+  const std::vector<float> value = this->download_frame(frame_, n);
   FlowValues values(std::size_t(info_.surface_cells));
   const typename Base::Describe describe(*this);
   std::size_t out = 0;

@@ -88,7 +88,7 @@ NACRE_HD inline Vec3f shade(const Look& look, const Ray& ray, const Hit& hit, fl
   const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
   const float diffuse = dot(n, look.light) * facing;
   float brightness = look.ambient + (1 - look.ambient) * (diffuse > 0 ? diffuse : 0);
-  if (look.shown) brightness *= 0.25f + 1.15f * value;
+  if (look.shown) brightness *= 0.04f + 1.52f * value;
   return base * brightness;
 }
 
