@@ -40,17 +40,24 @@ struct NormaliseAndExtend {
   const std::uint64_t* sums;
   const float* otherwise;  ///< the value of a cell around which nothing was deposited: nothing goes black
   float share;             ///< of the mean in the result; the rest is `otherwise`
+  bool sharp;              ///< a cell's own deposits count alone, where it has some (see Normalise)
   float* value;            ///< 0..1; may be `otherwise` itself
 
   NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor& cursor) const {
-    const SplineWeights weights(closest_point_of(place, view.point[cell], view.quantum));
     float sum = 0, hits = 0;
-    cursor.each_surface_of_27(weights.first, [&](int k, CellIndex at) {
-      const std::uint64_t d = sums[at];
-      const float w = weights.w[0][k % 3] * weights.w[1][k / 3 % 3] * weights.w[2][k / 9];
-      sum += w * float(Deposit::value(d));
-      hits += w * float(Deposit::hits(d));
-    });
+    if (sharp) {
+      sum = float(Deposit::value(sums[s]));
+      hits = float(Deposit::hits(sums[s]));
+    }
+    if (hits == 0) {
+      const SplineWeights weights(closest_point_of(place, view.point[cell], view.quantum));
+      cursor.each_surface_of_27(weights.first, [&](int k, CellIndex at) {
+        const std::uint64_t d = sums[at];
+        const float w = weights.w[0][k % 3] * weights.w[1][k / 3 % 3] * weights.w[2][k / 9];
+        sum += w * float(Deposit::value(d));
+        hits += w * float(Deposit::hits(d));
+      });
+    }
     const float before = otherwise[s];
     const float mean = hits > 1e-6f ? clamp01(sum / (65535.0f * hits)) : before;
     value[s] = before + (mean - before) * share;

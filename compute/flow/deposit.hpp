@@ -22,18 +22,8 @@ struct Deposit {
   NACRE_HD static std::uint64_t value(std::uint64_t sum) { return sum & ((std::uint64_t(1) << hit_shift) - 1); }
 };
 
-/// Axis along which a vector runs most; 0 for no vector.
-NACRE_HD_INLINE int main_axis(float x, float y, float z) {
-  x = std::fabs(x);
-  y = std::fabs(y);
-  z = std::fabs(z);
-  return z > x && z > y ? 2 : y > x ? 1 : 0;
-}
-
 /// Draws the line from `a` to `b` (texture cells), without the cell of `a` (Alg. 5.4 as decided: p advances by d / N, N
 /// the largest of the differences between the cells, which may be 0). Returns the number of cells hit.
-/// The line is antialiased afterwards, once for all lines: the low-pass filter across it is linear, so it may as well be
-/// applied to the sums (see `Antialias`).
 NACRE_HD_INLINE int deposit_line(const RefinedGridView& texture, std::uint64_t* sums, const Vec3f& a, const Vec3f& b,
                                  std::uint32_t value16) {
   const Int3 cells = floor_cell(b) - floor_cell(a);
@@ -52,40 +42,27 @@ NACRE_HD_INLINE int deposit_line(const RefinedGridView& texture, std::uint64_t* 
   return hits;
 }
 
-/// The axis of the flow in each surface cell: what a pathline there runs along.
-struct PathAxis {
-  RefinedGridView texture;
-  const Float4* displacement;  ///< per closest-point cell
-  std::uint8_t* axis;
-  NACRE_HD void operator()(std::int64_t s) const {
-    const Float4 v = displacement[texture.block_cell[texture.place[s] / texture.cells_per_block()]];
-    axis[s] = std::uint8_t(main_axis(v.x, v.y, v.z));
-  }
-};
-
-/// Normalised frame of antialiased lines: a hit counts half for its cell and an eighth for each of the four neighbours
-/// in the plane across the line's main axis; a neighbour that projects back counts for the cell itself. The hit count
-/// has the same weights, so the mean is exact.
-struct Antialias {
+/// Normalised frame: the mean of what was deposited in each cell, or, where nothing was, in the six cells around it. Lines
+/// are not antialiased (Alg. 5.4 does so): streaks are convolved along the flow afterwards, which hides their steps, and
+/// what particles carry stays as sharp as a cell.
+struct Normalise {
   RefinedGridView texture;
   const std::uint64_t* sums;
-  const std::uint8_t* axis;
   const float* otherwise;  ///< the value of a cell that nothing reached: nothing goes black
   float share;             ///< of the mean in the result; the rest is `otherwise`
   float* value;            ///< 0..1; may be `otherwise` itself
 
   NACRE_HD void operator()(std::int64_t i) const {
-    const std::uint32_t* neighbour = texture.neighbour + 6 * i;
-    const std::uint64_t own = sums[i];
-    std::uint64_t values = 4 * Deposit::value(own), weights = 4 * Deposit::hits(own);
-    for (int k = 0; k < 6; ++k) {
-      const std::uint32_t n = neighbour[k];
-      if (axis[n] == k / 2) continue;
-      values += Deposit::value(sums[n]);
-      weights += Deposit::hits(sums[n]);
+    std::uint64_t values = Deposit::value(sums[i]), hits = Deposit::hits(sums[i]);
+    if (hits == 0) {
+      for (int k = 0; k < 6; ++k) {
+        const std::uint64_t beside = sums[texture.neighbour[6 * i + k]];
+        values += Deposit::value(beside);
+        hits += Deposit::hits(beside);
+      }
     }
     const float before = otherwise[i];
-    const float mean = weights ? float(double(values) / (65535.0 * double(weights))) : before;
+    const float mean = hits ? float(double(values) / (65535.0 * double(hits))) : before;
     value[i] = before + (mean - before) * share;
   }
 };

@@ -152,26 +152,36 @@ struct MarkStreakCells {
   }
 };
 
-/// Takes most of the mean of the values around away from each value: what streaks are made of is left. Without it they
-/// would be as wide as the lines that particles draw, with all of it they are thinner than a cell and lose their way.
+/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow, less most of the mean of
+/// those around. Without that they would be as wide as the lines that particles draw; less all of it they are thinner than
+/// a cell and lose their way.
 template <class Streaks>
 struct HighPass {
   Streaks streaks;
   const float* value;  ///< 0..1
   StreakCell* cells;
 
-  static constexpr float share = 0.7f;
+  static constexpr float share = 0.3f;
 
   NACRE_HD void operator()(CellIndex s, const Int3& place) const {
     typename Streaks::Cursor cursor(streaks);
-    float around = 0;
+    const auto at = [&](const Int3& cell) {
+      const NearSurfaceCell found = cursor.find(cell);
+      return value[found.cell == no_cell ? s : found.cell] - 0.5f;
+    };
+    const float own = value[s] - 0.5f;
+    float along = own, around = 0;
+    if (const std::uint32_t direction = cells[s].direction) {
+      const Vec3f d = PackedDirection::unpack(direction);
+      const Vec3f p = Vec3f(0.5f) + PackedDirection::unpack(cells[s].normal) * cells[s].plane;
+      along = 0.5f * own + 0.25f * (at(place + floor_cell(p + d)) + at(place + floor_cell(p - d)));
+    }
     for (int k = 0; k < 6; ++k) {
       Int3 next = place;
       next[k / 2] += k & 1 ? 1 : -1;
-      const NearSurfaceCell found = cursor.find(next);
-      around += value[found.cell == no_cell ? s : found.cell];
+      around += at(next);
     }
-    cells[s].value = value[s] - 0.5f - share * (around / 6 - 0.5f);
+    cells[s].value = along - share * (around / 6);
   }
 };
 
@@ -195,13 +205,14 @@ struct ConvolveAlongFlow {
     float sum = own.value;
     if (own.direction == 0) return sum;
     int count = 1;
+    const int steps = (reach + 1) / 2;
     const Vec3f along = PackedDirection::unpack(own.direction);
     const Vec3f start = Vec3f(0.5f) + PackedDirection::unpack(own.normal) * own.plane;
     for (int side = -1; side <= 1; side += 2) {
       typename Streaks::Cursor cursor(streaks);
       Vec3f p = start, d = along * float(side), before = d;
-      for (int i = 0; i < reach; ++i) {
-        p = p + d * 1.5f - before * 0.5f;  // Adams and Bashforth's second order: one direction a step
+      for (int i = 0; i < steps; ++i) {
+        p = p + d * 3.0f - before;  // two cells by Adams and Bashforth's second order: one direction a step
         const Vec3f low{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
         const NearSurfaceCell found = cursor.find(place + Int3(int(low.x), int(low.y), int(low.z)));
         if (found.cell == no_cell) break;

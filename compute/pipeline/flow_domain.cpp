@@ -87,7 +87,7 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
   const double slots = parameters.ttl + 1;
   const double pairs = std::min(triangles, sheet * 2) * 60 / parameters.subcells + cells / 16 + edges / H;
   return dense / std::pow(parameters.subcells, 3) * 4 + cells * (16 + 4 + 4 + 4 + 32 + 16 * slots) + texels * (4 + 4) +
-         surface * (4 + 16 + 4 + 24 + 16 + 8 * parameters.ttl + 4 * 5 + 1) + pairs * 24 + triangles * 220 + 64e6;
+         surface * (4 + 16 + 4 + 24 + 16 + 8 * parameters.ttl + 4 * 5) + pairs * 24 + triangles * 220 + 64e6;
 }
 
 int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain) {

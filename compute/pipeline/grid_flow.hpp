@@ -60,7 +60,6 @@ class GridFlow final : public FlowMethodOn<Backend> {
       sums_[j] = arena.permanent<std::uint64_t>(n);
       sums_[j].fill_bytes(0);
     }
-    axis_ = arena.permanent<std::uint8_t>(n);
     carried_ = arena.permanent<float>(n);
     value_ = arena.permanent<float>(n);
     ahead_ = arena.permanent<float>(n);
@@ -132,13 +131,11 @@ class GridFlow final : public FlowMethodOn<Backend> {
     Array<std::uint64_t>& done = sums_[this->ring(k)];
     {
       auto stage = exec_.stage("deposit");
-      exec_.for_each(fine_.surface_cells,
-                     PathAxis{fine_.view(coarse_.view()), slots_[this->slot(k)].data(), axis_.data()});
-      antialias(done, value_, 1, value_);
+      normalise(done, value_, 1, value_);
       exec_.fill(done, 0);
       // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the mean
       // of this frame and of what older particles have already left in the next one; else the texture lags the flow.
-      antialias(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
+      normalise(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
     }
     show();
   }
@@ -177,9 +174,9 @@ class GridFlow final : public FlowMethodOn<Backend> {
     return from->data();
   }
 
-  void antialias(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
-    exec_.for_each(fine_.surface_cells, Antialias{fine_.view(coarse_.view()), sums.data(), axis_.data(),
-                                                  otherwise.data(), share, value.data()});
+  void normalise(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
+    exec_.for_each(fine_.surface_cells,
+                   Normalise{fine_.view(coarse_.view()), sums.data(), otherwise.data(), share, value.data()});
   }
 
   int refine_ = 4;
@@ -187,7 +184,6 @@ class GridFlow final : public FlowMethodOn<Backend> {
   RefinedGrid fine_;
   Array<Float4> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
-  Array<std::uint8_t> axis_;
   Array<float> carried_, value_, ahead_, detail_, shown_;
   Array<StreakCell> streak_cells_;
   const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched

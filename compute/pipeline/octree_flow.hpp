@@ -220,7 +220,8 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   void extend(const Array<std::uint64_t>& sums, float share, float* value) {
     const View view = octree_.view();
-    for_each_surface_cell(exec_, view, NormaliseAndExtend<View>{view, sums.data(), value_.data(), share, value});
+    for_each_surface_cell(
+        exec_, view, NormaliseAndExtend<View>{view, sums.data(), value_.data(), share, !Band::from_centres, value});
   }
 
   /// Sums that were taken out hold floats, one per surface cell, until the next particles start.
