@@ -100,7 +100,7 @@ class Painter {
     std::vector<float> scalar;
     const Range range = color_range(settings_, {input_.color_low(), input_.color_high()});
     if (input_.colored()) {
-      scalar = input_.scalar(pipeline_.time());
+      scalar = input_.scalar(pipeline_.flow().time());
       options.scalar = scalar;
       options.low = range.low;
       options.high = range.high;
@@ -108,13 +108,13 @@ class Painter {
     Image image;
     image.width = settings_.width;
     image.height = settings_.height;
-    image.pixels = pipeline_.render(options);
+    image.pixels = pipeline_.flow().render(options);
     FlowCaption caption;
     caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;
     caption.low = range.low;
     caption.high = range.high;
     caption.title = settings_.color == "speed" ? input_.array() : settings_.color;
-    if (settings_.time_stamp && input_.end() > input_.start()) caption.time = pipeline_.time();
+    if (settings_.time_stamp && input_.end() > input_.start()) caption.time = pipeline_.flow().time();
     caption.frame_time = frame_time_;
     draw_caption(image, caption);
     if (settings_.legend)
@@ -190,7 +190,7 @@ std::vector<double> take_steps(FlowPipeline& pipeline, int steps, Painter& paint
   std::vector<double> seconds;
   for (int k = 0; k < steps; ++k) {
     const double before = now();
-    pipeline.step();
+    pipeline.flow().step();
     seconds.push_back(now() - before);
     if (films.any()) {
       const Image image = painter.paint(k);
@@ -213,7 +213,8 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   if (!options.image.empty()) write_png(options.image, image), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
-  if (!options.out.empty()) write_flow_values(pipeline, options.out, pipeline.time()), outputs.push_back(options.out);
+  if (!options.out.empty())
+    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time()), outputs.push_back(options.out);
   return outputs;
 }
 
@@ -255,13 +256,13 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const FlowVectors vectors = flow_vectors(input, span);
   pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
-  pipeline->start(vectors);
+  pipeline->flow().start(vectors);
   const std::vector<double> seconds = take_steps(*pipeline, span.steps, painter, films, progress);
   const std::vector<std::string> outputs = write_outputs(options, *pipeline, span.steps, painter, films);
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    add_flow_report(report, input, vectors, settings, pipeline->embedding(), seconds);
+    add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds);
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);

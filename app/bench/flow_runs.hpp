@@ -18,7 +18,8 @@ namespace nacre {
 struct FlowJob {
   std::string sample;
   int detail = 0;  ///< of the sample; 0: its own
-  std::string method = "grid", octree = "brick";
+  EmbeddingKind method = EmbeddingKind::grid;
+  OctreeKind octree = OctreeKind::brick;
   bool neighbour_index = false;
   int resolution = 1024, refine = 4;
   double radius = 0;

@@ -88,8 +88,8 @@ std::array<FlowJob, 3> three_methods(const Bench& bench, const std::string& samp
   grid.detail = bench.small ? small_flow_detail : 0;
   grid.resolution = resolution;
   FlowJob brick = grid, source = grid;
-  brick.method = source.method = "octree";
-  source.octree = "source";
+  brick.method = source.method = EmbeddingKind::octree;
+  source.octree = OctreeKind::cell;
   return {grid, brick, source};
 }
 

@@ -7,12 +7,12 @@ namespace {
 std::vector<Knob> flow_knobs(Settings& s) {
   FlowParameters& f = s.flow;
   return {
-      {"method", "embedding", "", "embedding that the flow runs on", &f.method, 0, 0, {"grid", "octree"}},
+      {"method", "embedding", "", "embedding that the flow runs on", knob_choice(f.method), 0, 0, {"grid", "octree"}},
       {"octree",
        "embedding",
        "",
        "brick: two levels, by bit masks; source: a tree of cells, the yardstick",
-       &f.octree,
+       knob_choice(f.octree),
        0,
        0,
        {"brick", "source"}},

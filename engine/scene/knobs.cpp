@@ -50,11 +50,11 @@ void assign(const Knob& knob, const std::string& text) {
       throw Error(fmt::format("{} takes true or false, not '{}'", knob.option(), text));
     **p = text == "true" || text == "1";
   }
-  if (auto* p = std::get_if<std::string*>(&knob.value)) {
-    if (!knob.choices.empty() && std::find(knob.choices.begin(), knob.choices.end(), text) == knob.choices.end())
-      throw Error(fmt::format("no {} '{}'", knob.name, text), "", "use " + range_of(knob));
-    **p = text;
-  }
+  const auto chosen = std::find(knob.choices.begin(), knob.choices.end(), text);
+  if (!knob.choices.empty() && chosen == knob.choices.end())
+    throw Error(fmt::format("no {} '{}'", knob.name, text), "", "use " + range_of(knob));
+  if (auto* p = std::get_if<KnobChoice>(&knob.value)) p->set(p->place, int(chosen - knob.choices.begin()));
+  if (auto* p = std::get_if<std::string*>(&knob.value)) **p = text;
 }
 
 }  // namespace
@@ -81,7 +81,13 @@ bool Knob::concerns(const std::string& command) const {
 }
 
 std::string Knob::text() const {
-  return std::visit([](const auto* value) { return fmt::format("{}", *value); }, value);
+  if (const auto* choice = std::get_if<KnobChoice>(&value)) return choices.at(std::size_t(choice->get(choice->place)));
+  return std::visit(
+      [](const auto& stored) {
+        if constexpr (std::is_pointer_v<std::decay_t<decltype(stored)>>) return fmt::format("{}", *stored);
+        return std::string();
+      },
+      value);
 }
 
 void set_knob(Settings& settings, const std::string& name, const std::string& text) {
@@ -99,7 +105,15 @@ void set_knob(Settings& settings, const std::string& name, const std::string& te
 nlohmann::json knob_values(const Settings& settings) {
   Settings copy = settings;
   nlohmann::json values = nlohmann::json::object();
-  for (const Knob& knob : knobs(copy)) std::visit([&](const auto* value) { values[knob.name] = *value; }, knob.value);
+  for (const Knob& knob : knobs(copy))
+    std::visit(
+        [&](const auto& stored) {
+          if constexpr (std::is_pointer_v<std::decay_t<decltype(stored)>>)
+            values[knob.name] = *stored;
+          else
+            values[knob.name] = knob.text();
+        },
+        knob.value);
   return values;
 }
 

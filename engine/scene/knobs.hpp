@@ -13,15 +13,28 @@ namespace nacre {
 /// A knob's name for what may be written with dashes.
 std::string snake_case(std::string name);
 
+/// Where a knob's value is stored as one of an enumeration's values; value k has the name `choices[k]`.
+struct KnobChoice {
+  void* place;
+  int (*get)(const void* place);
+  void (*set)(void* place, int value);
+};
+
+template <class Enum>
+KnobChoice knob_choice(Enum& place) {
+  return {&place, [](const void* p) { return int(*static_cast<const Enum*>(p)); },
+          [](void* p, int value) { *static_cast<Enum*>(p) = Enum(value); }};
+}
+
 /// One knob, bound to its place in a Settings.
 struct Knob {
   std::string name;   ///< snake_case; on the command line --with-dashes
   std::string group;  ///< the panel it is in
   std::string unit;
   std::string help;  ///< one line
-  std::variant<int*, double*, std::uint32_t*, bool*, std::string*> value;
+  std::variant<int*, double*, std::uint32_t*, bool*, std::string*, KnobChoice> value;
   double min = 0, max = 0;           ///< of a number
-  std::vector<std::string> choices;  ///< of a string; empty: any
+  std::vector<std::string> choices;  ///< of an enumeration, or of a string (empty: any)
   std::uint32_t* also = nullptr;     ///< a second place with the same value
 
   std::string option() const;                       ///< "--step-cells"

@@ -34,7 +34,13 @@ bool inside(const void* place, const void* object, std::size_t bytes) {
 }
 
 const void* place_of(const Knob& knob) {
-  return std::visit([](auto* value) { return static_cast<const void*>(value); }, knob.value);
+  if (const auto* choice = std::get_if<KnobChoice>(&knob.value)) return choice->place;
+  return std::visit(
+      [](const auto& stored) -> const void* {
+        if constexpr (std::is_pointer_v<std::decay_t<decltype(stored)>>) return stored;
+        return nullptr;
+      },
+      knob.value);
 }
 
 /// Another value that the knob may have.

@@ -107,10 +107,12 @@ Settings other_settings() {
       set_knob(settings, knob.name, knob.text() == "true" ? "false" : "true");
     else if (std::holds_alternative<double*>(knob.value))
       **std::get_if<double*>(&knob.value) = between;
-    else if (!std::holds_alternative<std::string*>(knob.value))
-      set_knob(settings, knob.name, std::to_string(std::int64_t(between)));
+    else if (!knob.choices.empty())
+      set_knob(settings, knob.name, knob.choices.back());
+    else if (std::holds_alternative<std::string*>(knob.value))
+      set_knob(settings, knob.name, "other");
     else
-      set_knob(settings, knob.name, knob.choices.empty() ? "other" : knob.choices.back());
+      set_knob(settings, knob.name, std::to_string(std::int64_t(between)));
   }
   return settings;
 }
