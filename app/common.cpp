@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "compute/device/error.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 #include "engine/system/child_process.hpp"
 #include "engine/system/extension.hpp"
 #include "engine/system/output_file.hpp"

@@ -14,7 +14,7 @@
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
 #include "compute/device/stage_timers.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 

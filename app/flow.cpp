@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
-#include "app/picture_words.hpp"
+#include "app/picture_options.hpp"
 #include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
@@ -15,11 +15,11 @@
 #include "engine/picture/legend.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
-#include "engine/scene/flow_input.hpp"
-#include "engine/scene/knobs.hpp"
-#include "engine/scene/ranges.hpp"
-#include "engine/scene/samples.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/session/session.hpp"
+#include "engine/scene/settings/knobs.hpp"
+#include "engine/scene/settings/ranges.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {

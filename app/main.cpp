@@ -13,7 +13,7 @@
 #include "app/common.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/vtk_child.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace {

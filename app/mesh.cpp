@@ -3,12 +3,12 @@
 
 #include "app/commands.hpp"
 #include "app/mesh_run.hpp"
-#include "app/picture_words.hpp"
+#include "app/picture_options.hpp"
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
-#include "engine/scene/knobs.hpp"
-#include "engine/scene/material_words.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/settings/knobs.hpp"
+#include "engine/scene/volume/material_options.hpp"
 
 namespace nacre {
 

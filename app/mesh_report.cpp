@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/mesh_run.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {

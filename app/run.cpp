@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/ranges.hpp"
+#include "engine/scene/settings/ranges.hpp"
 
 namespace nacre {
 

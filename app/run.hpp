@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/common.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

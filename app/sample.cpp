@@ -9,8 +9,8 @@
 #include "compute/device/error.hpp"
 #include "engine/io/nrrd_writer.hpp"
 #include "engine/io/surface_writer.hpp"
-#include "engine/scene/phantoms.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/samples/samples.hpp"
 #include "engine/system/extension.hpp"
 
 namespace nacre {

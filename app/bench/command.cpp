@@ -11,7 +11,7 @@
 #include "app/bench/figures.hpp"
 #include "app/commands.hpp"
 #include "app/run.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {

@@ -7,8 +7,8 @@
 #include "app/common.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "engine/picture/colormap.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
 namespace {

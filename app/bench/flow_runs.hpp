@@ -9,8 +9,8 @@
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/picture/image.hpp"
-#include "engine/scene/settings.hpp"
-#include "engine/scene/vectors_in_time.hpp"
+#include "engine/scene/settings/settings.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 

@@ -9,8 +9,8 @@
 #include "app/common.hpp"
 #include "app/mesh_run.hpp"
 #include "compute/meshing/quality.hpp"
-#include "engine/scene/materials.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/volume/materials.hpp"
 
 namespace nacre {
 namespace {

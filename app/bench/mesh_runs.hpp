@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "compute/pipeline/mesh_pipeline.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 

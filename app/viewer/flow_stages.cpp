@@ -7,8 +7,8 @@
 #include "compute/device/error.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/scene/flow_input.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {

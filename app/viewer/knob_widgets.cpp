@@ -12,7 +12,7 @@
 
 #include "app/viewer/words.hpp"
 #include "engine/picture/colormap.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {

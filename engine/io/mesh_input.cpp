@@ -8,8 +8,8 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/volume_reader.hpp"
-#include "engine/scene/material_words.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/volume/material_options.hpp"
 
 namespace nacre {
 namespace {

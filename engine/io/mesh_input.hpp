@@ -12,8 +12,8 @@
 #include "compute/meshing/lattice.hpp"
 #include "compute/meshing/topology.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
-#include "engine/scene/session.hpp"
-#include "engine/scene/volume.hpp"
+#include "engine/scene/session/session.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

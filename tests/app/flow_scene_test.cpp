@@ -14,7 +14,7 @@
 #include "engine/gl/framebuffer.hpp"
 #include "engine/io/surface_writer.hpp"
 #include "engine/picture/png.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
 #include "tests/engine/gl/offscreen.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <map>
 
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "app/viewer/flow_rerun.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {

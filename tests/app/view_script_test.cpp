@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/picture/png.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 #include "tests/app/view_program.hpp"
 
 namespace nacre::test {

@@ -10,9 +10,9 @@
 
 #include "compute/device/device.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
-#include "engine/scene/vectors_in_time.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/prepare.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 

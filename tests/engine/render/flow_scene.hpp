@@ -6,8 +6,8 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/render/surface_pass.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/prepare.hpp"
 #include "tests/compute/pipeline/choose_embedding.hpp"
 
 namespace nacre::test {
