@@ -30,7 +30,7 @@ struct FlowOptions {
   std::string image, frames, video, out;
 };
 
-/// Names that mean something without any file, and outputs: wrong ones are found before the work begins.
+/// Finds unknown names and outputs that cannot be written before the work begins.
 void check_words(const FlowOptions& options, const Settings& settings) {
   checked_words([&] {
     colormap(settings.colormap);
@@ -64,13 +64,6 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   return make_flow_input(std::move(series), session.settings, news, &interrupt_flag());
 }
 
-Camera camera_for(const Session& session, const PreparedSurface& surface, bool legend) {
-  std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  return read_camera(session, corners, legend);
-}
-
 /// Draws frames of one run.
 class Painter {
  public:
@@ -80,7 +73,7 @@ class Painter {
         settings_(session.settings),
         frame_time_(frame_time),
         map_(colormap(settings_.colormap)),
-        camera_(camera_for(session, input.surface(), settings_.legend && input.colored())) {
+        camera_(read_camera(session, triangle_corners(input.surface()), settings_.legend && input.colored())) {
     if (settings_.background == "transparent")
       transparent_ = true;
     else
@@ -154,7 +147,7 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
           {"cell_size", e.cell_size}};
 }
 
-/// Where every frame goes; null where it was not asked for.
+/// Where every frame goes; null if it was not asked for.
 struct Films {
   std::unique_ptr<FrameSink> frames, video;
 
@@ -174,15 +167,6 @@ Films open_films(const FlowOptions& options, int fps, Progress& progress) {
   if (!options.frames.empty()) films.frames = make_frame_folder(options.frames, tell);
   if (!options.video.empty()) films.video = make_video(options.video, fps, &interrupt_flag());
   return films;
-}
-
-FlowVectors flow_vectors(VectorsInTime& input, const FlowSpan& span) {
-  FlowVectors vectors;
-  vectors.at = [&input](double t, std::span<Vec3f> out) { input.vectors(t, out); };
-  vectors.start = span.start;
-  vectors.end = span.end;
-  vectors.reference_speed = input.statistics().percentile_98 > 0 ? input.statistics().percentile_98 : 1;
-  return vectors;
 }
 
 /// Returns how long each took, seconds.
@@ -253,7 +237,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
 
   progress.update("embed", 0);
   pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
-  const FlowVectors vectors = flow_vectors(input, span);
+  const FlowVectors vectors = flow_vectors(input, span.start, span.end);
   pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
   pipeline->flow().start(vectors);
@@ -273,7 +257,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
 void add_flow_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("flow", "unsteady flow on a surface: picture, frames, video, values");
   auto options = std::make_shared<FlowOptions>();
-  add_input_options(*command, options->input, "surface with vectors; several files are one series",
+  add_input_options(*command, options->input, "surface with vectors; several files form a time series",
                     "triangle edges along the sample's longest side (0: its own)");
   command->add_option("--image", options->image, "write the last frame as PNG");
   command->add_option("--frames", options->frames, "write every frame into a folder");

@@ -1,4 +1,4 @@
-// Nacre: words about pictures.
+// Nacre: options for pictures.
 #include "app/picture_options.hpp"
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ Camera read_camera(const Settings& settings, std::span<const Vec3d> corners, boo
   try {
     return camera_of(nlohmann::json::parse(stream), fitted("iso").height);
   } catch (const nlohmann::json::exception& error) {
-    throw Error(settings.camera + " is no camera", error.what(), camera_advice);
+    throw Error(settings.camera + " is not a camera", error.what(), camera_advice);
   } catch (const Error& error) {
     throw Error(settings.camera + ": " + error.what());
   }

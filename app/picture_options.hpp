@@ -1,4 +1,4 @@
-// Nacre: words about pictures that several commands take: colour, size, camera.
+// Nacre: options for pictures that several commands take: colour, size, camera.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace nacre {
 /// "#rrggbb" as 0..1. Throws UsageError.
 std::array<float, 3> parse_color(const std::string& text);
 
-/// Throws UsageError where `camera` or `background` mean nothing; a camera file is not looked into.
+/// Throws UsageError where `camera` or `background` has no valid value; a camera file is not opened.
 void check_picture_words(const Settings& settings);
 
 /// Throws UsageError where a picture as PNG (also a frame in a folder) or a video of that size cannot be written.

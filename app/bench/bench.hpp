@@ -44,8 +44,8 @@ class Bench {
 
   /// Begins a table and prints what stands above its rows; `differs`: from the source, beside the hardware.
   BenchTable& begin(std::string name, std::string title, std::vector<std::string> differs);
-  /// Says what comes now, lets `work` fill the row in, and prints it at once. Where the memory does not do, the row is left
-  /// out, aloud; other errors end the command. Throws Interrupted after Ctrl-C.
+  /// Says what comes now, lets `work` fill the row in, and prints it at once. Where the memory does not do, the row is
+  /// left out, aloud; other errors end the command. Throws Interrupted after Ctrl-C.
   void row(BenchTable& table, const std::string& name, const std::string& input,
            const std::function<void(BenchRow&)>& work);
   void leave_out(BenchTable& table, const std::string& name, const std::string& input, const std::string& why);

@@ -8,7 +8,7 @@
 #include "compute/pipeline/flow_domain.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/scene/samples/samples.hpp"
-#include "engine/scene/surface/prepare.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {
@@ -66,12 +66,7 @@ std::size_t FlowRuns::triangles(const FlowJob& job) { return sample(job).surface
 
 FlowVectors FlowRuns::vectors(const FlowJob& job) {
   VectorsInTime& all = sample(job);
-  FlowVectors vectors;
-  vectors.at = [&all](double t, std::span<Vec3f> out) { all.vectors(t, out); };
-  vectors.start = all.start();
-  vectors.end = all.end();
-  vectors.reference_speed = all.statistics().percentile_98;
-  return vectors;
+  return flow_vectors(all, all.start(), all.end());
 }
 
 std::unique_ptr<FlowPipeline> FlowRuns::pipeline(const FlowJob& job) const {
@@ -165,13 +160,9 @@ Image FlowRuns::picture(const FlowJob& job, int steps, int width, int height) {
   made->embed(mesh(job));
   made->flow().start(vectors(job));
   for (int k = 0; k < steps; ++k) made->flow().step();
-  const PreparedSurface& surface = all.surface();
-  std::vector<Vec3d> corners;
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
   const std::vector<float> scalar = all.scalar(made->flow().time());
   RenderOptions options;
-  options.camera = fit_camera("iso", corners, width, height);
+  options.camera = fit_camera("iso", triangle_corners(all.surface()), width, height);
   options.width = width;
   options.height = height;
   options.scalar = scalar;

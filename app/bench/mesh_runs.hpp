@@ -66,7 +66,8 @@ class MeshRuns {
   /// The user's knobs, over the source's constants and Nacre's own; what a job or a solve says comes over them.
   std::function<void(Settings&)> turn;
 
-  /// Throws Error where the memory does not do, and Interrupted. The serial solver runs on the CPU whatever the device is.
+  /// Throws Error where the memory does not do, and Interrupted. The serial solver runs on the CPU whatever the device
+  /// is.
   const MeshFields& fields(const MeshJob& job);
   const MeshRun& run(const MeshJob& job, const MeshSolve& solve);
   /// The particles of `run`, which is done again; lengths in voxels.

@@ -44,11 +44,11 @@ struct BenchTable {
 /// a / b; nothing where one of them is missing or b is not positive.
 std::optional<double> ratio(std::optional<double> a, std::optional<double> b);
 
-/// The table for people: what stands above its rows. The first line begins "Table 3.1" (or "Side result: arena"), the last
-/// names the columns.
+/// The table for people: what stands above its rows. The first line begins "Table 3.1" (or "Side result: arena"), the
+/// last names the columns.
 std::string table_head(const BenchTable& table);
-/// One line per quantity: row, quantity, the source's figure, ours, what differs. Columns are as wide for all rows of all
-/// tables, so that a row can be printed before the next one is known.
+/// One line per quantity: row, quantity, the source's figure, ours, what differs. Columns are as wide for all rows of
+/// all tables, so that a row can be printed before the next one is known.
 std::string row_text(const BenchRow& row);
 
 /// The same for programs: {name, title, differs, rows: [{name, input, left_out?, values: {quantity: {source?, ours?,

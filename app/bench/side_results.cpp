@@ -1,5 +1,5 @@
-// Nacre: the source's side results: memory kept against memory made on the way, grid against octree, the methods side by
-// side.
+// Nacre: the source's side results: memory kept against memory made on the way, grid against octree, the methods side
+// by side.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -130,12 +130,9 @@ void FlowWorker::start() {
   has_values_ = false;
   span_ = flow_span(settings_, {vectors_->start(), vectors_->end()});
   const int n = rounds(settings_.flow.steps, loop_);
-  FlowVectors vectors;
+  const double end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
+  FlowVectors vectors = flow_vectors(*vectors_, span_.start, end);
   vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->vectors(wrapped(t), out); };
-  vectors.start = span_.start;
-  vectors.end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
-  const double speed = vectors_->statistics().percentile_98;
-  vectors.reference_speed = speed > 0 ? speed : 1;
   steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
   pipeline_->parameters = settings_.flow;
   pipeline_->parameters.steps = steps_in_all_;

@@ -26,7 +26,7 @@ const std::map<std::string, FlowRerun>& expected() {
       {"refine", {embed, start}},
       {"subcells", {embed, start}},
       {"radius", {embed, start}},
-      {"crease", {surface, embed, start}},
+      {"crease_angle", {surface, embed, start}},
       {"vectors", {vectors, start}},
       {"time", {start}},
       {"begin_at", {start}},

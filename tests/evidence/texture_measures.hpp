@@ -11,6 +11,7 @@
 #include "compute/device/device.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/prepare.hpp"
 #include "engine/scene/surface/vectors_in_time.hpp"
 
@@ -33,12 +34,7 @@ struct FlowRun {
     pipeline->parameters = parameters;
     const PreparedSurface& s = vectors->surface();
     pipeline->embed({s.points, s.triangles, s.corner_normals});
-    FlowVectors flow;
-    flow.at = [this](double t, std::span<Vec3f> out) { vectors->vectors(t, out); };
-    flow.start = vectors->start();
-    flow.end = vectors->end();
-    flow.reference_speed = vectors->statistics().percentile_98;
-    pipeline->flow().start(flow);
+    pipeline->flow().start(flow_vectors(*vectors, vectors->start(), vectors->end()));
   }
 
   void steps(int n) {

@@ -36,10 +36,11 @@ Camera camera_of(const nlohmann::json& json, double height) {
     camera.height = json.value("height", height);
     camera.orthographic = json.value("orthographic", false);
   } catch (const nlohmann::json::exception& error) {
-    throw Error("this is no camera", error.what(), camera_advice);
+    throw Error("this is not a camera", error.what(), camera_advice);
   }
   if (!(length(camera.target - camera.eye) > 0) || !(length(camera.up) > 0) || !(camera.height > 0))
-    throw Error("this is no camera", "eye and target must differ, up and height be above zero", camera_advice);
+    throw Error("this is not a camera", "eye and target must differ, up must not be zero, and height must be positive",
+                camera_advice);
   return camera;
 }
 

@@ -14,12 +14,13 @@ class SessionPlayer {
  public:
   explicit SessionPlayer(Session recording);
 
-  /// Brings `now` to `time` (seconds, never less than at the last call): makes the changes of all events up to then, and
-  /// moves the camera where one is on its way. Whoever else moves it meanwhile has it: until the next event's camera.
-  /// Returns the pictures to be taken of this frame.
+  /// Brings `now` to `time` (seconds, never less than at the last call): makes the changes of all events up to then,
+  /// and moves the camera where one is on its way. Whoever else moves it meanwhile has it: until the next event's
+  /// camera. Returns the pictures to be taken of this frame.
   std::vector<Screenshot> advance(double time, Session& now);
 
-  /// Was there something to play, and has it been brought to its duration? So the last frame is the first at or after it.
+  /// Was there something to play, and has it been brought to its duration? So the last frame is the first at or after
+  /// it.
   bool ended() const;
 
  private:

@@ -29,10 +29,10 @@ std::string camera_beside(const path& folder, const std::string& camera) {
 
 /// Only names that a session knows: a misspelt one would be left out in silence.
 void check_names(const json& object, std::initializer_list<const char*> names, const char* what) {
-  if (!object.is_object()) throw Error(fmt::format("{} is no JSON object", what));
+  if (!object.is_object()) throw Error(fmt::format("{} is not a JSON object", what));
   for (const auto& [name, value] : object.items())
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw Error(fmt::format("'{}' means nothing in {}", name, what), "",
+      throw Error(fmt::format("'{}' is not valid in {}", name, what), "",
                   fmt::format("use {}", fmt::join(names, ", ")));
 }
 
@@ -68,15 +68,18 @@ Camera read_camera(const json& from) {
   return camera_of(from);
 }
 
-/// Values as text, each checked against the table and written as the table writes it.
+/// Values as text, each checked against the table; names and values are written as the table writes them.
 std::map<std::string, std::string> read_knobs(const json& from, const path& folder) {
   Settings settings;
   set_knobs(settings, from);
   settings.camera = camera_beside(folder, settings.camera);
   std::map<std::string, std::string> texts;
-  for (const auto& [name, value] : from.items()) texts[snake_case(name)];
-  for (const Knob& knob : knobs(settings))
-    if (texts.contains(knob.name)) texts[knob.name] = knob.text();
+  const std::vector<Knob> table = knobs(settings);
+  for (const auto& [name, value] : from.items()) {
+    const auto knob =
+        std::find_if(table.begin(), table.end(), [&](const Knob& each) { return each.is_named(snake_case(name)); });
+    texts[knob->name] = knob->text();
+  }
   return texts;
 }
 
@@ -111,7 +114,7 @@ SessionEvent read_event(const json& from, const path& folder) {
 
 std::vector<SessionEvent> read_events(const json& from, const path& folder) {
   std::vector<SessionEvent> events;
-  if (!from.is_array()) throw Error("'events' is no JSON array");
+  if (!from.is_array()) throw Error("'events' is not a JSON array");
   for (const json& event : from) try {
       events.push_back(read_event(event, folder));
     } catch (const json::exception& error) {
@@ -182,9 +185,9 @@ Session read_session(const path& file) {
   try {
     return read_json(json::parse(stream), file.parent_path());
   } catch (const json::exception& error) {
-    throw Error(file.string() + " is no session", error.what());
+    throw Error(file.string() + " is not a session", error.what());
   } catch (const Error& error) {
-    throw Error(file.string() + " is no session", error.what());
+    throw Error(file.string() + " is not a session", error.what());
   }
 }
 
@@ -199,7 +202,7 @@ std::string session_text(const Session& session) {
   try {
     return to.dump(2) + "\n";
   } catch (const json::type_error&) {
-    throw Error("a session cannot hold these names", "one of a file or an array is no UTF-8", "rename it");
+    throw Error("a session cannot hold these names", "the name of a file or an array is not UTF-8", "rename it");
   }
 }
 

@@ -46,10 +46,10 @@ struct SessionEvent {
 ///    "events": [{"time": 0.4, "knobs": {...}, "camera": {...}, "over": 1, "inputs": .., "sample": .., "detail": ..,
 ///                "screenshot": {"file": "a.png", "scale": 2, "panel": false, "transparent": false}}],
 ///    "duration": 5}
-/// All may be left out, and "detail" goes with inputs or a sample. Relative files, also one that the knob "camera" names,
-/// are relative to the session file. A session with events is a recording, or a script that somebody wrote; without, it is
-/// the state of a view. An event's input without a camera, or its knob "camera" without one, has the camera fitted as at
-/// the start.
+/// All may be left out, and "detail" goes with inputs or a sample. Relative files, also one that the knob "camera"
+/// names, are relative to the session file. A session with events is a recording, or a script that somebody wrote;
+/// without, it is the state of a view. An event's input without a camera, or its knob "camera" without one, has the
+/// camera fitted as at the start.
 struct Session : SessionInput {
   Settings settings;
   std::optional<Camera> camera;      ///< none: as the knob says
@@ -69,7 +69,8 @@ std::optional<SessionEvent> session_change(const Session& before, const Session&
 /// Does the event leave the camera to be fitted anew?
 bool fits_camera(const SessionEvent& event);
 
-/// Makes the change, all of it at once; a camera that is to be fitted is none. Throws Error where a knob is not known or out of range.
+/// Makes the whole change; a camera that is to be fitted is removed. Throws Error where a knob is unknown or out of
+/// range.
 void apply_event(const SessionEvent& event, Session& session);
 
 }  // namespace nacre

@@ -57,6 +57,11 @@ void assign(const Knob& knob, const std::string& text) {
   if (auto* p = std::get_if<std::string*>(&knob.value)) **p = text;
 }
 
+std::string with_dashes(std::string name) {
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
 }  // namespace
 
 std::string snake_case(std::string name) {
@@ -64,10 +69,24 @@ std::string snake_case(std::string name) {
   return name;
 }
 
-std::string Knob::option() const {
-  std::string dashes = name;
-  std::replace(dashes.begin(), dashes.end(), '_', '-');
-  return "--" + dashes;
+std::string Knob::option() const { return "--" + with_dashes(name); }
+
+std::vector<std::string> Knob::off_options() const {
+  if (!std::holds_alternative<bool*>(value)) return {};
+  std::vector<std::string> options;
+  if (!off_option.empty()) options.push_back(off_option);
+  options.push_back("--no-" + with_dashes(name));
+  return options;
+}
+
+std::vector<std::string> Knob::old_options() const {
+  std::vector<std::string> options;
+  for (const std::string& old : old_names) options.push_back("--" + with_dashes(old));
+  return options;
+}
+
+bool Knob::is_named(const std::string& wanted) const {
+  return name == wanted || std::find(old_names.begin(), old_names.end(), wanted) != old_names.end();
 }
 
 bool Knob::concerns(const std::string& command) const {
@@ -94,7 +113,7 @@ void set_knob(Settings& settings, const std::string& name, const std::string& te
   const std::string wanted = snake_case(name);
   const std::vector<Knob> table = knobs(settings);
   for (const Knob& knob : table)
-    if (knob.name == wanted) return assign(knob, text);
+    if (knob.is_named(wanted)) return assign(knob, text);
   const auto nearest = std::min_element(table.begin(), table.end(), [&](const Knob& a, const Knob& b) {
     return edit_distance(a.name, wanted) < edit_distance(b.name, wanted);
   });
@@ -118,7 +137,7 @@ nlohmann::json knob_values(const Settings& settings) {
 }
 
 void set_knobs(Settings& settings, const nlohmann::json& values) {
-  if (!values.is_object()) throw Error("the session's knobs are no JSON object");
+  if (!values.is_object()) throw Error("the knobs of the session are not a JSON object");
   for (const auto& [name, value] : values.items())
     set_knob(settings, name, value.is_string() ? value.get<std::string>() : value.dump());
 }

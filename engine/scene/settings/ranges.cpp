@@ -31,7 +31,7 @@ Range time_words(const Settings& settings) {
 
 Range color_words(const Settings& settings) {
   const auto [low, high] = parse_pair(settings.color_range, ':', "--color-range");
-  if (!(low < high)) throw Error("--color-range " + settings.color_range + " holds nothing", "", "write LOW:HIGH");
+  if (!(low < high)) throw Error("--color-range " + settings.color_range + " is empty", "", "write LOW:HIGH");
   return {low, high};
 }
 

@@ -31,8 +31,8 @@ struct FlowSpan {
   double frame_time = 0;      ///< of the data, from frame to frame
 };
 
-/// By the knobs `time`, `begin_at` and `steps`, for data over `of_data`. The frames of a run that begins later are frames
-/// of the whole one. Throws Error where `time` is off or outside of the data.
+/// By the knobs `time`, `begin_at` and `steps`, for data over `of_data`. The frames of a run that begins later are
+/// frames of the whole one. Throws Error where `time` is off or outside of the data.
 FlowSpan flow_span(const Settings& settings, const Range& of_data);
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: everything about a run that can be turned.
+// Nacre: all settings of a run.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace nacre {
 
-/// What becomes a material of a volume, as words; engine/scene/volume/material_options.hpp turns them into what they mean.
+/// What becomes a material of a volume, as text; engine/scene/volume/material_options.hpp parses it.
 struct MaterialWords {
   bool labels = false;    ///< the values are labels, whatever they look like
   std::string isovalue;   ///< V[,V...]
@@ -18,7 +18,7 @@ struct MaterialWords {
   int min_component = 0;  ///< drop pieces of fewer voxels
 };
 
-/// What the viewer shows, and how. Nothing here changes a result.
+/// What the viewer draws, and how. Nothing here changes a result.
 struct Look {
   bool play = true;                         ///< flow: time goes on
   bool edges = false;                       ///< of triangles

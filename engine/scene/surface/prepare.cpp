@@ -169,7 +169,7 @@ void require_triangles(const PreparedSurface& surface, std::string_view why) {
 PreparedSurface prepare(const Surface& surface, double crease_degrees, std::vector<std::string>* warnings) {
   if (surface.triangles.size() > 0xfffffffdu / 3)
     throw Error("the surface has too many triangles", fmt::format("{}", surface.triangles.size()),
-                "1.4 thousand million are the most that are supported");
+                "at most 1.4 billion are supported");
   PreparedSurface result{surface.points, surface.triangles, {}};
   require_triangles(result, "the file lists none");
   drop_unusable(result, warnings);

@@ -34,7 +34,7 @@ struct VectorChoice {
 };
 
 /// Which vectors to show. `request` names an array (exactly, else up to case) or an analytic field ("@swirl"). Empty:
-/// the only 3-component array, else the likeliest by name (wall shear, velocity, momentum, others, displacement last)
+/// the only 3-component array, else the most likely by name (wall shear, velocity, momentum, others, displacement last)
 /// and content (not all zero, not mostly normal to the surface); never normals, colours or coordinates.
 /// Throws Error that lists the arrays there are.
 VectorChoice choose_vectors(const Surface& surface, const std::string& request);

@@ -15,8 +15,8 @@ struct SurfacePlace {
   Vec3f weights;  ///< of its corners
 };
 
-/// At most `count` places, none nearer to another than the room allows (blue noise by darts); the same for one seed. None
-/// where the triangles have no area.
+/// At most `count` places, none nearer to another than the room allows (blue noise by darts); the same for one seed.
+/// None where the triangles have no area.
 std::vector<SurfacePlace> spread_places(std::span<const Vec3d> points, std::span<const Triangle> triangles, int count,
                                         std::uint32_t seed);
 

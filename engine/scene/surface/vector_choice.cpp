@@ -151,12 +151,12 @@ VectorChoice choose_analytic(const std::string& request) {
   if (std::find(names.begin(), names.end(), request) == names.end())
     throw Error("there is no analytic field " + request, "",
                 fmt::format("the fields are {}", fmt::join(names, " and ")));
-  return {request, "an analytic field, as asked"};
+  return {request, "an analytic field, as requested"};
 }
 
 VectorChoice choose_named(const Surface& surface, const std::string& request) {
   const PointArray* found = surface.find(request);
-  std::string reason = "as asked";
+  std::string reason = "as requested";
   if (!found) {
     std::vector<const PointArray*> alike;
     for (const PointArray& array : surface.arrays)
@@ -164,7 +164,7 @@ VectorChoice choose_named(const Surface& surface, const std::string& request) {
     if (alike.size() != 1)
       throw Error(fmt::format("the surface has no array \"{}\"", request), list_arrays(surface), analytic_advice);
     found = alike[0];
-    reason = fmt::format("as asked (\"{}\")", request);
+    reason = fmt::format("as requested (\"{}\")", request);
   }
   if (found->components != 3)
     throw Error(fmt::format("the array \"{}\" has {} component{}, vectors have 3", found->name, found->components,
@@ -182,7 +182,7 @@ std::string describe(const Candidate& best, const std::vector<Candidate>& all) {
     if (c.array != best.array) others.push_back(c.array->name);
   const std::size_t more = others.size() > 4 ? others.size() - 4 : 0;
   others.resize(others.size() - more);
-  return fmt::format("the likeliest of {} vector arrays: {} by name; others: {}{}", all.size(),
+  return fmt::format("the most likely of {} vector arrays: {} by name; others: {}{}", all.size(),
                      kinds[static_cast<int>(best.kind)], fmt::join(others, ", "),
                      more > 0 ? fmt::format(" and {} more", more) : "");
 }

@@ -37,8 +37,8 @@ std::vector<PointShare> share_out(const PreparedSurface& surface, std::span<cons
   return shares;
 }
 
-/// The smallest speed such that `fraction` of the weight is no faster. (speed, weight) pairs, reordered: halves are left out
-/// until one pair remains.
+/// The smallest speed such that `fraction` of the weight is no faster. (speed, weight) pairs, reordered: halves are
+/// left out until one pair remains.
 double weighted_percentile(std::vector<std::pair<double, double>>& speeds, double fraction) {
   if (speeds.empty()) return 0;
   const auto weight = [](auto from, auto to) {

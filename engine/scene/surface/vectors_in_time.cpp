@@ -98,7 +98,7 @@ VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
   const Surface surface = needs_file ? series_.load(number) : Surface{};
   if (!analytic_) {
     const PointArray& array = array_of(surface, vectors_, n, number);
-    if (array.components != 3) throw Error("array '" + vectors_ + "' has no three components");
+    if (array.components != 3) throw Error("array '" + vectors_ + "' does not have three components");
     step.vectors.resize(n);
     for (std::size_t i = 0; i < n; ++i)
       step.vectors[i] = {array.values[3 * i], array.values[3 * i + 1], array.values[3 * i + 2]};

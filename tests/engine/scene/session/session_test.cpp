@@ -194,16 +194,25 @@ TEST_F(SessionFile, NamesWithDashesAreTheTables) {
   EXPECT_EQ(session_text(read(session_text(session))), session_text(session));
 }
 
+TEST_F(SessionFile, OldNamesOfKnobsAreRead) {
+  const Session session = read(R"({"knobs": {"crease": 30}, "events": [{"time": 1, "knobs": {"crease": 50}}]})");
+  EXPECT_EQ(session.settings.crease, 30);
+  EXPECT_EQ(session.events[0].knobs, (std::map<std::string, std::string>{{"crease_angle", "50"}}));
+  const json written = json::parse(session_text(session));
+  EXPECT_EQ(written["knobs"]["crease_angle"], 30);
+  EXPECT_FALSE(written["knobs"].contains("crease"));
+}
+
 TEST_F(SessionFile, WhatMeansNothingIsRefused) {
-  expect_refused(R"({"input": ["a"]})", {"'input' means nothing in a session", "inputs"});
-  expect_refused(R"({"events": [{"time": 1}, {"tme": 1}]})", {"event 2", "'tme' means nothing in an event"});
+  expect_refused(R"({"input": ["a"]})", {"'input' is not valid in a session", "inputs"});
+  expect_refused(R"({"events": [{"time": 1}, {"tme": 1}]})", {"event 2", "'tme' is not valid in an event"});
   expect_refused(R"({"knobs": {"tttl": 3}})", {"no knob 'tttl'", "ttl"});
   expect_refused(R"({"camera": {"eye": [1, 0, 0], "target": [0, 0, 0], "ortho": true}})", {"'ortho'", "a camera"});
   EXPECT_NE(refused_event(R"({"time": 1, "knobs": {"tttl": 3}})").find("event 1"), std::string::npos);
   EXPECT_NE(refused_event(R"({"time": 1, "screenshot": {"file": "a.png", "size": 2}})").find("'size'"),
             std::string::npos);
   expect_refused(R"({"nacre": "session 2"})", {"session 2", "session 1"});
-  expect_refused(R"({"nacre": "0.9.0", "command": "flow"})", {"is no session"});
+  expect_refused(R"({"nacre": "0.9.0", "command": "flow"})", {"is not a session"});
 }
 
 TEST_F(SessionFile, WrongTypesAreRefused) {
@@ -230,12 +239,12 @@ TEST_F(SessionFile, WrongTypesAreRefused) {
                            R"({"duration": 1e7})",
                            R"({"nacre": 1})",
                            R"({"sample": "torus", "inputs": ["a.vtp"]})"})
-    EXPECT_NE(refused(text).find("is no session"), std::string::npos) << text;
+    EXPECT_NE(refused(text).find("is not a session"), std::string::npos) << text;
 }
 
 TEST_F(SessionFile, ValuesOutOfRangeAreRefused) {
   expect_refused(R"({"knobs": {"ttl": 17}})", {"--ttl", "1..16"});
-  expect_refused(R"({"knobs": {"contrast": 1e999}})", {"is no session"});
+  expect_refused(R"({"knobs": {"contrast": 1e999}})", {"is not a session"});
   expect_refused(R"({"knobs": {"method": "sieve"}})", {"method", "grid|octree"});
   expect_refused(R"({"camera": {"eye": [0, 0, 0], "target": [0, 0, 0]}})", {"camera", "differ"});
 }
