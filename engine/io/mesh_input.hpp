@@ -39,7 +39,7 @@ std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atom
                                       const WarningSink& warn = {});
 
 /// What of the volumes is which material. `sample`: they are a phantom, which is cut where it is meant to be unless the
-/// words say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for words that mean nothing.
+/// options say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for values that cannot be parsed.
 MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialWords& words,
                           MeshInput& described, const WarningSink& warn = {});
 
@@ -49,8 +49,8 @@ EdgeLength longest_edge(double max_cell, const Vec3d& spacing);
 /// The labels of materials that no facet touches.
 std::vector<std::int64_t> lost_labels(std::span<const std::int64_t> labels, const TopologyReport& topology);
 
-/// What is wrong with a mesh: labels that are lost, surfaces that are not closed, topology that is not sound. A sentence
-/// each, with what may help.
+/// What is wrong with a mesh: labels that are lost, surfaces that are not closed, topology that is not sound. A
+/// sentence each, with what may help.
 std::vector<std::string> mesh_flaws(std::span<const std::int64_t> labels, const TopologyReport& topology);
 
 }  // namespace nacre

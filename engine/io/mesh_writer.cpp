@@ -31,7 +31,7 @@ std::string checked_extension(const fs::path& file, const std::vector<std::strin
   const std::string extension = lower_extension(file);
   if (std::find(known.begin(), known.end(), extension) == known.end())
     throw Error(fmt::format("cannot write {}", file.string()),
-                extension.empty() ? "its name has no extension" : fmt::format("{} is not written", extension),
+                extension.empty() ? "its name has no extension" : fmt::format("{} files cannot be written", extension),
                 fmt::format("use one of {}", fmt::join(known, " ")));
   return extension;
 }
@@ -253,8 +253,8 @@ GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, cons
   return block;
 }
 
-/// The triangles between the materials, then the tetrahedra. Groups say what each belongs to, and nothing else does: of a
-/// file with cells of two kinds, meshio 5.3 reads no numbers that stand beside them, nor the rest.
+/// The triangles between the materials, then the tetrahedra. Groups say what each belongs to, and nothing else does: of
+/// a file with cells of two kinds, meshio 5.3 reads no numbers that stand beside them, nor the rest.
 void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels,
                const Names& names) {
   GmshMesh out;

@@ -117,8 +117,9 @@ class Waves {
   float scale_;
 };
 
-/// A tree of tubes that grows from `root` to all `leaves`, nearest first, each joining the tree where the way back to the
-/// root stays short. Radii shrink with the number of leaves that a branch feeds, down to `twig`, and stop at `trunk`.
+/// A tree of tubes that grows from `root` to all `leaves`, nearest first, each joining the tree where the way back to
+/// the root stays short. Radii shrink with the number of leaves that a branch feeds, down to `twig`, and stop at
+/// `trunk`.
 std::vector<Tube> grow_tree(const Vec3d& root, std::vector<Vec3d> leaves, double twig, double trunk);
 
 /// Jittered lattice points `apart` from each other for which inside(p) holds.
@@ -143,8 +144,8 @@ std::vector<Vec3d> scatter(const Vec3d& low, const Vec3d& high, double apart, st
   return points;
 }
 
-/// Gives 6-connected pieces of fewer than `smallest` voxels the label that most of their neighbours have: where sheets and
-/// tubes graze each other, crumbs are left over that no anatomy has.
+/// Gives 6-connected pieces of fewer than `smallest` voxels the label that most of their neighbours have: where sheets
+/// and tubes graze each other, crumbs are left over that no anatomy has.
 void remove_crumbs(const PhantomGrid& grid, std::vector<std::uint8_t>& labels, std::size_t smallest);
 
 /// Value of a scalar phantom at signed distance `d`: 1 inside, 0 outside, 0.5 on the interface, smooth everywhere.

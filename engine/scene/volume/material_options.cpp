@@ -1,4 +1,4 @@
-// Nacre: what the words about materials mean.
+// Nacre: the options for materials, parsed.
 #include "engine/scene/volume/material_options.hpp"
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ MaterialOptions parse_material_words(const MaterialWords& words) {
     throw Error("--labels, --isovalue and --threshold exclude each other", "", "give one of them");
   const bool scalar = !words.isovalue.empty() || !words.threshold.empty();
   if (scalar && (!words.materials.empty() || !words.merge.empty()))
-    throw Error("--materials and --merge are about labels", "--isovalue and --threshold cut a scalar volume");
+    throw Error("--materials and --merge apply to labels", "--isovalue and --threshold cut a scalar volume");
   MaterialOptions options;
   if (words.labels) options.mode = MaterialOptions::Mode::labels;
   if (!words.isovalue.empty()) {

@@ -1,4 +1,4 @@
-// Nacre: what the words about materials mean.
+// Nacre: the options for materials, parsed.
 #pragma once
 
 #include "engine/scene/settings/settings.hpp"
@@ -6,7 +6,7 @@
 
 namespace nacre {
 
-/// Throws Error for words that cannot be understood or do not go together.
+/// Throws Error for values that cannot be parsed, or for options that contradict each other.
 MaterialOptions parse_material_words(const MaterialWords& words);
 
 }  // namespace nacre

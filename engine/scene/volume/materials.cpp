@@ -22,7 +22,7 @@ constexpr double least_alike = 0.6;  // of neighbours in a label map; of real on
 
 void check_options(std::span<const Volume> volumes, const MaterialOptions& options) {
   const bool scalar = options.mode == Mode::isovalue || !options.isovalues.empty() || options.threshold;
-  const std::string what = "The options for materials do not go together";
+  const std::string what = "The options for materials contradict each other";
   if (volumes.empty()) throw Error("no volume is given", "", "name at least one");
   if (!options.isovalues.empty() && options.threshold)
     throw Error(what, "iso-values and a threshold were given", "leave one of them out");
@@ -38,8 +38,8 @@ void check_options(std::span<const Volume> volumes, const MaterialOptions& optio
   if (options.min_component < 0) throw Error(what, "a component cannot have fewer than 0 voxels", "give 0 or more");
 }
 
-/// Share of neighbours along x with the same value, of those that are not both `usual`. Labels lie in patches; an image's
-/// values change from voxel to voxel.
+/// Share of neighbours along x with the same value, of those that are not both `usual`. Labels lie in patches; an
+/// image's values change from voxel to voxel.
 double share_alike(const Volume& volume, double usual) {
   std::size_t alike = 0, all = 0;
   std::visit(
@@ -71,9 +71,9 @@ bool looks_like_labels(const Volume& volume, const Notes& notes) {
 
 [[noreturn]] void fail_without_isovalue(const Volume& volume) {
   const VolumeStatistics statistics = volume_statistics(volume);
-  throw MissingIsovalue(
-      volume.name, fmt::format("its values, {:.6g} to {:.6g}, are no labels", statistics.min, statistics.max),
-      otsu_threshold(volume), statistics.integral ? "; where they are labels after all, --labels" : "");
+  throw MissingIsovalue(volume.name,
+                        fmt::format("its values, {:.6g} to {:.6g}, are not labels", statistics.min, statistics.max),
+                        otsu_threshold(volume), statistics.integral ? ", or --labels if they are labels" : "");
 }
 
 void check_inside(const MeshVolume& volume, const std::string& name, const char* advice) {
@@ -116,7 +116,7 @@ std::vector<float> as_floats(const Volume& volume, const VolumeStatistics& stati
 
 void note_not_finite(const Volume& volume, const VolumeStatistics& statistics, const Notes& notes) {
   if (statistics.nan > 0)
-    notes.add(fmt::format("{}: {} voxels that are no number became outside.", volume.name, statistics.nan));
+    notes.add(fmt::format("{}: {} voxels that are not numbers became outside.", volume.name, statistics.nan));
   if (statistics.infinite > 0)
     notes.add(fmt::format("{}: {} infinite voxels took the nearest finite value.", volume.name, statistics.infinite));
 }

@@ -35,9 +35,9 @@ struct MaterialOptions {
 /// threshold, or of several indicator volumes on one grid, one per material.
 ///
 /// Label maps: label 0 is the outside unless `materials` names it; then the outside is one below the smallest label.
-/// Indicators: labels are 1..n in the order of the files, names are the files' stems. Probabilities are divided by their
-/// common maximum (floats up to 1 are left alone), and the outside takes what is missing from 1. Where any value is
-/// negative they are functions, used as they are: the largest wins, and the outside is where a material that is not
+/// Indicators: labels are 1..n in the order of the files, names are the files' stems. Probabilities are divided by
+/// their common maximum (floats up to 1 are left alone), and the outside takes what is missing from 1. Where any value
+/// is negative they are functions, used as they are: the largest wins, and the outside is where a material that is not
 /// kept would be. Scalars: material m lies between level m - 1 and level m. Voxels that are no number become outside;
 /// infinite ones take the nearest finite value of the volume.
 ///

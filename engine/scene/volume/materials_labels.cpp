@@ -30,7 +30,7 @@ void require_label(const std::vector<std::int64_t>& present, std::int64_t label,
 [[noreturn]] void fail_no_labels(const Volume& volume) {
   const VolumeStatistics statistics = volume_statistics(volume);
   const std::string range = fmt::format("its values run from {:.6g} to {:.6g}", statistics.min, statistics.max);
-  throw Error(fmt::format("{} is no label map", volume.name),
+  throw Error(fmt::format("{} is not a label map", volume.name),
               statistics.integral ? range + fmt::format(", with more than {} different ones", most_materials)
                                   : range + " and are not all whole numbers",
               fmt::format("give --isovalue V, for example {:.6g}", otsu_threshold(volume)));
@@ -110,7 +110,7 @@ MeshVolume from_labels(const Volume& volume, const MaterialOptions& options, con
   if (!counts) fail_no_labels(volume);
   const VolumeStatistics statistics = volume_statistics(volume);
   if (statistics.nan + statistics.infinite > 0)
-    notes.add(fmt::format("{}: {} voxels that are no number became outside.", volume.name,
+    notes.add(fmt::format("{}: {} voxels that are not numbers became outside.", volume.name,
                           statistics.nan + statistics.infinite));
   std::vector<std::int64_t> present;
   for (const auto& [label, voxels] : *counts) present.push_back(label);

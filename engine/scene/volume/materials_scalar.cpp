@@ -24,7 +24,7 @@ std::string range_of(const VolumeStatistics& statistics) {
 }
 
 void check_level(const Volume& volume, const VolumeStatistics& statistics, double level) {
-  if (!std::isfinite(level)) throw Error("an iso-value is no number", "", "give --isovalue V");
+  if (!std::isfinite(level)) throw Error("an iso-value is not a number", "", "give --isovalue V");
   const bool all_inside = level <= statistics.min && statistics.nan == 0;
   if (level > statistics.max || all_inside)
     throw Error(fmt::format("{} has no surface at iso-value {:.6g}", volume.name, level), range_of(statistics),
@@ -65,13 +65,14 @@ MeshVolume from_threshold(const Volume& volume, const MaterialOptions& options, 
     throw Error(fmt::format("the threshold {:.6g}:{:.6g} is empty", lowest, highest), "",
                 "give the lowest and the highest value, LOW:HIGH");
   const std::string what =
-      fmt::format("{} has no surface by the threshold {:.6g}:{:.6g}", volume.name, lowest, highest);
+      fmt::format("{} has no surface at the threshold {:.6g}:{:.6g}", volume.name, lowest, highest);
   if (lowest <= statistics.min && highest >= statistics.max && statistics.nan == 0)
     throw Error(what, "every voxel is inside, " + range_of(statistics), "give a smaller range");
 
   MeshVolume result = on_grid_of(volume, MeshVolume::Kind::indicators);
   result.labels = {0, 1};
-  // Whole values on the bounds are inside. A side that no value reaches leaves the other alone; what is no number is as far outside as the range is wide.
+  // Whole values on the bounds are inside. A bound that no value reaches does not limit; a value that is not a number
+  // counts as outside, as far as the range is wide.
   const double half = statistics.integral && lowest == std::floor(lowest) && highest == std::floor(highest) ? 0.5 : 0;
   const double low = std::max(lowest - half, statistics.min - (statistics.max - statistics.min) - 1);
   const double high = std::min(highest + half, statistics.max + (statistics.max - statistics.min) + 1);

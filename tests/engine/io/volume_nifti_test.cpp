@@ -96,7 +96,7 @@ TEST_F(Nifti, TwoFiles) {
   header.replace(344, 3, "ni1");
   EXPECT_EQ(values_of(read("a.hdr", header)), count_up(12));
   EXPECT_EQ(values_of(read_volume(folder_ / "a.img")), count_up(12));
-  EXPECT_TRUE(contains(failure("alone.hdr", header), "file with its values is not there"));
+  EXPECT_TRUE(contains(failure("alone.hdr", header), "file with its values is missing"));
   EXPECT_TRUE(contains(failure("lonely.img", shorts), "no .hdr file beside it"));
 }
 

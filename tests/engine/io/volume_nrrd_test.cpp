@@ -162,13 +162,13 @@ TEST_F(Nrrd, WhatIsDamagedIsAnError) {
 
 TEST_F(Nrrd, DataFilesThatAreNone) {
   const std::string fields = std::string("type: uchar\n") + sizes + "encoding: raw\n";
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: missing.raw\n")), "missing.raw is not there"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: /dev/zero\n")), "is not there"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "datafile: -\n")), "is not there"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "Data File: %s%d.raw 1 2 1\n")), "is not sane"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2000000000 1\n")), "is not sane"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2 0\n")), "is not sane"));
-  EXPECT_TRUE(contains(failure("a.nhdr", "NRRD0004\n" + fields + "data file: LIST\n/dev/zero\n"), "is not there"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: missing.raw\n")), "missing.raw is missing"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: /dev/zero\n")), "is missing"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "datafile: -\n")), "is missing"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "Data File: %s%d.raw 1 2 1\n")), "is not valid"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2000000000 1\n")), "is not valid"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2 0\n")), "is not valid"));
+  EXPECT_TRUE(contains(failure("a.nhdr", "NRRD0004\n" + fields + "data file: LIST\n/dev/zero\n"), "is missing"));
 }
 
 TEST_F(Nrrd, EveryTruncationAndFlippedByteEndsWell) {

@@ -91,7 +91,7 @@ TEST(LabelMaterials, WhatIsNoNumberIsOutside) {
   const MeshVolume mesh = materials_of(volume_of<float>(eight, {0, 1, nan, 2, 2, infinity, 0, 1}), options, &warnings);
   EXPECT_EQ(mesh.material, (Materials{0, 1, 0, 2, 2, 0, 0, 1}));
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_TRUE(contains(warnings[0], "2 voxels that are no number"));
+  EXPECT_TRUE(contains(warnings[0], "2 voxels that are not numbers"));
 }
 
 TEST(LabelMaterials, NothingToMesh) {
@@ -105,7 +105,7 @@ TEST(LabelMaterials, NothingToMesh) {
   merged.merge = {{4, 0}, {9, 0}, {200, 0}};
   EXPECT_TRUE(contains(refusal(gaps(), merged), "no label but the outside"));
   const std::string fractions = refusal(volume_of<float>(eight, {0, 0.5f, 1, 2, 3, 4, 5, 6}), labels);
-  EXPECT_TRUE(contains(fractions, "no label map") && contains(fractions, "0 to 6")) << fractions;
+  EXPECT_TRUE(contains(fractions, "not a label map") && contains(fractions, "0 to 6")) << fractions;
 }
 
 TEST(ScalarMaterials, OneAndSeveralLevels) {
