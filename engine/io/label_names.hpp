@@ -14,8 +14,8 @@ namespace nacre {
 /// extension. Empty where it is damaged or has no table: names are a help, and nothing fails for want of them.
 LabelNames names_of_label_table(std::string_view xml);
 
-/// Of the segments in a NRRD that 3D Slicer has written. `field(key)` is the header's value for a key, none where it
-/// has none; the keys are "Segment0_Name" and "Segment0_LabelValue", and so on.
+/// Of the segments in a NRRD that 3D Slicer has written. `field(key)` is the header's value for a key, none where it has
+/// none; the keys are "Segment0_Name" and "Segment0_LabelValue", and so on.
 LabelNames names_of_segments(const std::function<std::optional<std::string>(const std::string& key)>& field);
 
 }  // namespace nacre

@@ -49,8 +49,8 @@ EdgeLength longest_edge(double max_cell, const Vec3d& spacing);
 /// The labels of materials that no facet touches.
 std::vector<std::int64_t> lost_labels(std::span<const std::int64_t> labels, const TopologyReport& topology);
 
-/// What is wrong with a mesh: labels that are lost, surfaces that are not closed, topology that is not sound. A
-/// sentence each, with what may help.
+/// What is wrong with a mesh: labels that are lost, surfaces that are not closed, topology that is not sound. A sentence
+/// each, with what may help.
 std::vector<std::string> mesh_flaws(std::span<const std::int64_t> labels, const TopologyReport& topology);
 
 }  // namespace nacre

@@ -253,8 +253,8 @@ GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, cons
   return block;
 }
 
-/// The triangles between the materials, then the tetrahedra. Groups say what each belongs to, and nothing else does: of
-/// a file with cells of two kinds, meshio 5.3 reads no numbers that stand beside them, nor the rest.
+/// The triangles between the materials, then the tetrahedra. Groups say what each belongs to, and nothing else does: of a
+/// file with cells of two kinds, meshio 5.3 reads no numbers that stand beside them, nor the rest.
 void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels,
                const Names& names) {
   GmshMesh out;

@@ -1,6 +1,6 @@
-// Nacre: the numbers of VTK XML files that we write, in base64 between the tags. Appended data are found by fewer
-// readers: raw ones are no XML, and VTK before 9.3 (ParaView 5.11) finds none at all, not even its own, where expat has
-// the fixes of 2024.
+// Nacre: the numbers of VTK XML files that we write, in base64 between the tags. Appended data are found by fewer readers:
+// raw ones are no XML, and VTK before 9.3 (ParaView 5.11) finds none at all, not even its own, where expat has the fixes
+// of 2024.
 #pragma once
 
 #include <fmt/format.h>

@@ -16,8 +16,8 @@ namespace nacre {
 /// never wider than a quarter of it: where it cannot be read at that size (about 200 pixels) it is left out.
 void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title);
 
-/// Where draw_legend draws in an image of that size: bar, numbers of six letters, and as much of a title as stands
-/// above these. Nothing where the image is too small for a legend.
+/// Where draw_legend draws in an image of that size: bar, numbers of six letters, and as much of a title as stands above
+/// these. Nothing where the image is too small for a legend.
 KeptFree legend_room(int width, int height);
 
 /// "t = 0.125 s" at the bottom left; `unit` may be empty. `step` (the time between frames, in the same unit; 0 where

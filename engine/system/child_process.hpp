@@ -29,9 +29,9 @@ struct ChildResult {
 ChildResult run_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                       std::chrono::milliseconds limit, const std::atomic<bool>* stop = nullptr);
 
-/// A running program whose standard input is ours to write and whose standard error is kept. Killed, with all that it
-/// has started, and reaped when this object goes before `wait`. Ctrl-C on our terminal does not reach it: we decide how
-/// it ends.
+/// A running program whose standard input is ours to write and whose standard error is kept. Killed, with all that it has
+/// started, and reaped when this object goes before `wait`. Ctrl-C on our terminal does not reach it: we decide how it
+/// ends.
 class ChildProcess {
  public:
   /// `stop` (may be null) ends what waits for the program. Throws Error where the program cannot be started.

@@ -5,8 +5,8 @@
 
 namespace nacre {
 
-/// Has this fault been asked for? The environment's NACRE_FAULTS lists NAME (every time that it is asked about) or
-/// NAME@K (the K-th time only), with commas between: lost-context@20,other-device,out-of-memory@2. Without it: never.
+/// Has this fault been asked for? The environment's NACRE_FAULTS lists NAME (every time that it is asked about) or NAME@K
+/// (the K-th time only), with commas between: lost-context@20,other-device,out-of-memory@2. Without it: never.
 bool fault_due(std::string_view name);
 
 }  // namespace nacre

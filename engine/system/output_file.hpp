@@ -42,8 +42,8 @@ class OutputFile {
   bool direct_ = false;
 };
 
-/// Throws as an OutputFile would where `target` cannot be written: before hours of work rather than after. Leaves
-/// nothing behind; devices and pipes are not opened, since who reads them would take that for the end.
+/// Throws as an OutputFile would where `target` cannot be written: before hours of work rather than after. Leaves nothing
+/// behind; devices and pipes are not opened, since who reads them would take that for the end.
 void check_writable(const std::filesystem::path& target);
 
 /// What a user can do about an errno met while writing; empty where we know nothing better than the reason itself.
@@ -56,8 +56,8 @@ void drop_unfinished(const std::filesystem::path& path) noexcept;
 /// Removes the temporaries of all files not committed, for a program that leaves without unwinding.
 void remove_unfinished_files() noexcept;
 
-/// The same, and ends the program while other threads may still be at work; none of them begins a file any more. Not
-/// for a signal handler.
+/// The same, and ends the program while other threads may still be at work; none of them begins a file any more. Not for a
+/// signal handler.
 [[noreturn]] void leave_without_unfinished_files(int status) noexcept;
 
 }  // namespace nacre
