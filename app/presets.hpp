@@ -5,10 +5,10 @@
 
 namespace nacre {
 
-/// The constants of the dissertation (source notes), but for the kernel, which depends on the volume.
+/// The constants of the thesis (source notes), but for the kernel, which depends on the volume.
 void apply_source_preset(Settings& settings);
 
-/// The kernel of the dissertation: B-splines for volumes that are cut at iso-values, Catmull-Rom for labels and
+/// The kernel of the thesis: B-splines for volumes that are cut at iso-values, Catmull-Rom for labels and
 /// indicators.
 void apply_source_kernel(Settings& settings, bool cut_at_isovalues);
 

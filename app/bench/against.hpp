@@ -22,7 +22,7 @@ struct Comparison {
 /// those that were asked for by name, or all where no name was given (`asked`), are missing.
 Comparison compare_runs(const nlohmann::json& now, const nlohmann::json& last, const std::vector<std::string>& asked);
 
-/// Reads what --json wrote. Throws Error where the file is no such thing.
+/// Reads a file that --json wrote. Throws Error for any other file.
 nlohmann::json read_bench(const std::filesystem::path& file);
 
 /// Throws Error where `last` was made in a way that makes ratios incomparable: size, backend, number of threads, knobs.

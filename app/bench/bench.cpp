@@ -8,7 +8,7 @@
 namespace nacre {
 namespace {
 
-/// To whoever reads along: the next row may take minutes.
+/// At once, for whoever watches: the next row may take minutes.
 void print_now(const std::string& text) {
   fmt::print("{}", text);
   std::fflush(stdout);

@@ -1,4 +1,4 @@
-// Nacre: `nacre bench`: the source's tables on this machine: its words, its report, its verdict.
+// Nacre: `nacre bench`: the thesis's tables on this machine: options, report, comparison.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,7 +27,7 @@ struct BenchOptions {
   std::string plots, against;
 };
 
-/// Knobs that are not as they come, by name.
+/// Knobs that differ from their defaults, by name.
 using TurnedKnobs = std::map<std::string, std::string>;
 
 bool asked_for(const BenchOptions& options, const std::string& name) {
@@ -45,7 +45,7 @@ void check_words(const BenchOptions& options) {
   }
 }
 
-/// What is found out before the hours of work rather than after.
+/// Checks outputs before hours of work rather than after.
 void check_outputs(const BenchOptions& options) {
   check_output(options.common.report, "--json", "");
   if (options.plots.empty()) return;
@@ -95,7 +95,7 @@ void write_figures(Bench& bench, const json& report) {
   }
 }
 
-/// Figures and JSON of the rows that there are.
+/// Writes plots and JSON of the rows so far.
 void write_results(const BenchOptions& options, Bench& bench, const json& report) {
   if (!options.plots.empty()) write_figures(bench, report);
   if (!options.common.report.empty()) bench.outputs.push_back(options.common.report);
@@ -103,8 +103,7 @@ void write_results(const BenchOptions& options, Bench& bench, const json& report
   print_outputs(bench.outputs);
 }
 
-/// Runs the tables. What is measured by then stays, also where one of them ends the command: `why` goes into the
-/// report.
+/// Runs the tables. What has been measured is kept when one of them ends the command; the report says why.
 void measure(const BenchOptions& options, Bench& bench, json& report) {
   const auto add_tables = [&] {
     for (const BenchTable& table : bench.tables()) report["tables"].push_back(table_json(table));
@@ -116,7 +115,7 @@ void measure(const BenchOptions& options, Bench& bench, json& report) {
     if (std::none_of(bench.tables().begin(), bench.tables().end(), has_rows)) return;
     try {
       write_results(options, bench, report);
-    } catch (const std::exception& error) {  // beside the first reason, which ends the command
+    } catch (const std::exception& error) {  // reported only: the first error ends the command
       warn(options.common, error.what());
     }
   };

@@ -23,7 +23,7 @@ double median(std::vector<double> seconds) {
 
 }  // namespace
 
-/// Nacre's own, as the user has turned them.
+/// Nacre's own settings, with the user's changes.
 FlowParameters FlowRuns::turned() const {
   Settings settings;
   if (turn) turn(settings);

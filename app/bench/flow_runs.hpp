@@ -45,7 +45,7 @@ class FlowRuns {
   explicit FlowRuns(Device& device) : device_(device) {}
 
   int repeats = 1;                      ///< of short embeddings; the fastest counts
-  std::function<void(Settings&)> turn;  ///< the user's knobs; what a job says comes over them
+  std::function<void(Settings&)> turn;  ///< the user's knobs; a job overrides them
 
   /// Bytes that the run will need, and those that there are.
   double estimate(const FlowJob& job);
@@ -59,7 +59,7 @@ class FlowRuns {
   /// Every run has a pipeline of its own, whose memory is given back at its end. Throws Error and Interrupted.
   const FlowRun& run(const FlowJob& job);
   /// Seconds to embed the surface and take one step, with everything in memory that is kept (`times` runs in one
-  /// pipeline, the first not counted) or made anew for each; the fastest.
+  /// pipeline, the first not counted) or allocated again for each; the fastest.
   double embed_and_step(const FlowJob& job, bool anew, int times);
   /// A picture after some steps, coloured by speed.
   Image picture(const FlowJob& job, int steps, int width, int height);

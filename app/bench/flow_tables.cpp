@@ -1,4 +1,4 @@
-// Nacre: the source's Tables 5.1, 6.1 and 6.2: flow on the grid and on octrees.
+// Nacre: the thesis's Tables 5.1, 6.1 and 6.2: flow on the grid and on octrees.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double mebibyte = 1 << 20;
 
-/// The source's octrees hold the cells up to 5 from the surface.
+/// The thesis's octrees hold the cells up to 5 from the surface.
 constexpr double source_radius = 5;
 
 /// A row of one flow run or several, left out where one does not fit the memory.

@@ -15,7 +15,7 @@
 namespace nacre {
 namespace {
 
-/// Repeats end here, seconds.
+/// Runs are not repeated after this time, seconds.
 constexpr double long_enough = 1.5;
 
 MeshVolume make_volume(const MeshJob& job) {
@@ -32,7 +32,7 @@ void MeshRuns::release() {
   volume_.reset();
 }
 
-/// Nacre's own; or the source's constants, and 50 iterations for all: its energy threshold would let the solvers stop
+/// Nacre's own; or the thesis's constants, and 50 iterations for all: its energy threshold would let the solvers stop
 /// after different amounts of work.
 MeshParameters MeshRuns::parameters(const MeshJob& job, bool own_settings) const {
   Settings settings;
