@@ -23,7 +23,9 @@ TEST(KnobTable, EveryRowIsWhole) {
     const bool number = std::holds_alternative<int*>(knob.value) || std::holds_alternative<double*>(knob.value) ||
                         std::holds_alternative<std::uint32_t*>(knob.value);
     EXPECT_EQ(number, knob.min < knob.max) << "a range is for numbers, and each has one";
-    if (std::holds_alternative<KnobChoice>(knob.value)) EXPECT_GE(knob.choices.size(), 2u);
+    if (std::holds_alternative<KnobChoice>(knob.value)) {
+      EXPECT_GE(knob.choices.size(), 2u);
+    }
     EXPECT_NO_THROW(set_knob(settings, knob.name, knob.text())) << "the default is not allowed";
   }
 }
@@ -57,10 +59,14 @@ TEST(KnobTable, WhatIsOnOrOffHasTwoOptions) {
   for (const Knob& knob : knobs(settings)) {
     const bool flag = std::holds_alternative<bool*>(knob.value);
     EXPECT_EQ(flag, !knob.off_options().empty()) << knob.name;
-    if (knob.name == "edges") EXPECT_EQ(knob.off_options(), std::vector<std::string>{"--no-edges"});
-    if (knob.name == "time_stamp")
-      EXPECT_EQ(knob.off_options(), (std::vector<std::string>{"--no-time", "--no-time-stamp"}));
   }
+  const auto off_options = [&](const std::string& name) {
+    for (const Knob& knob : knobs(settings))
+      if (knob.name == name) return knob.off_options();
+    return std::vector<std::string>();
+  };
+  EXPECT_EQ(off_options("edges"), std::vector<std::string>{"--no-edges"});
+  EXPECT_EQ(off_options("time_stamp"), (std::vector<std::string>{"--no-time", "--no-time-stamp"}));
 }
 
 }  // namespace
