@@ -1,4 +1,4 @@
-// Nacre: the commands. Each adds its words to the program; what the user asked for runs after parsing.
+// Nacre: the commands. Each adds its options to the program; what the user asked for runs after parsing.
 #pragma once
 
 #include <CLI/App.hpp>

@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "compute/device/error.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 #include "engine/system/child_process.hpp"
 #include "engine/system/extension.hpp"
 #include "engine/system/output_file.hpp"
@@ -63,17 +63,6 @@ void wait_for_second_press() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-/// Knobs that are on or off have a flag where a command line often wants the other one than the default.
-struct KnobFlag {
-  const char *knob, *option, *value, *help;
-};
-constexpr KnobFlag knob_flags[] = {
-    {"labels", "--labels", "true", "the values are labels, whatever they look like"},
-    {"curvature", "--curvature", "true", "bound the sizing field by curvature, too"},
-    {"legend", "--no-legend", "false", "no colour legend and axes"},
-    {"time_stamp", "--no-time", "false", "no time stamp"},
-};
-
 int columns_of_terminal() {
   winsize size{};
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
@@ -87,17 +76,16 @@ void add_common_options(CLI::App& command, CommonOptions& options, const CommonW
       .add_option_function<int>(
           "--threads",
           [&options](int threads) { options.threads = std::min(threads, tbb::info::default_concurrency()); },
-          "worker threads, at most one for each processor (0: all)")
+          "worker threads, at most one per processor (0: all)")
       ->check(CLI::Range(0, 4096));
   command.add_option(words.report_names, options.report, words.report_help);
   command.add_option("--session", options.session, words.session_help);
-  command
-      .add_option("--set", options.set,
-                  "KNOB=VALUE, any knob by name, also those without an option: `nacre --knobs` lists them")
+  command.add_option("--set", options.set,
+                     "KNOB=VALUE: set any knob by name; `nacre --knobs` lists them")
       ->expected(1)  // and no more: a FILE may follow
       ->allow_extra_args(false)
       ->take_all();
-  command.add_flag("--quiet", options.quiet, "say nothing but results, what is wrong with them, and errors");
+  command.add_flag("--quiet", options.quiet, "print only results, warnings about them, and errors");
 }
 
 void add_save_session(CLI::App& command, CommonOptions& options) {
@@ -114,23 +102,20 @@ KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
   Settings defaults;
   for (const Knob& knob : knobs(defaults)) {
     if (!knob.concerns(command_name)) continue;
+    std::string& value = *values_.emplace_back(knob.name, std::make_unique<std::string>()).second;
     const std::string group = "Knobs: " + knob.group;
-    const auto* flag = std::find_if(std::begin(knob_flags), std::end(knob_flags),
-                                    [&](const KnobFlag& each) { return knob.name == each.knob; });
-    if (flag == std::end(knob_flags) && std::holds_alternative<bool*>(knob.value)) continue;  // by --set
-    auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
-    if (flag != std::end(knob_flags)) {
-      command
-          .add_flag_callback(
-              flag->option, [flag, text = value.get()] { *text = flag->value; }, flag->help)
-          ->group(group);
+    if (std::holds_alternative<bool*>(knob.value)) {
+      const std::vector<std::string> off = knob.off_options();  // all but the first are not shown in the help
+      command.add_flag(knob.option() + ",!" + off.front(), value, knob.help)->take_last()->group(group);
+      for (std::size_t k = 1; k < off.size(); ++k) command.add_flag("!" + off[k], value)->take_last()->group("");
       continue;
     }
     std::string help = knob.help;
     if (!knob.choices.empty() && help.find(knob.choices[0]) == help.npos)
       help += fmt::format(": {}", fmt::join(knob.choices, "|"));
     if (!knob.unit.empty()) help += " [" + knob.unit + "]";
-    command.add_option(knob.option(), *value, help)->default_str(knob.text())->take_last()->group(group);
+    command.add_option(knob.option(), value, help)->default_str(knob.text())->take_last()->group(group);
+    for (const std::string& old : knob.old_options()) command.add_option(old, value)->take_last()->group("");
   }
 }
 
@@ -149,10 +134,11 @@ void KnobOptions::apply(Settings& settings, const std::vector<std::string>& set)
 bool KnobOptions::given(const std::string& name, const std::vector<std::string>& set) const {
   for (const auto& [option, value] : values_)
     if (option == name && !value->empty()) return true;
-  return std::any_of(set.begin(), set.end(), [&](std::string pair) {
-    pair.resize(std::min(pair.size(), pair.find('=')));
-    std::replace(pair.begin(), pair.end(), '-', '_');
-    return pair == name;
+  Settings settings;
+  const std::vector<Knob> table = knobs(settings);
+  const auto knob = std::find_if(table.begin(), table.end(), [&](const Knob& each) { return each.name == name; });
+  return std::any_of(set.begin(), set.end(), [&](const std::string& pair) {
+    return knob->is_named(snake_case(pair.substr(0, pair.find('='))));
   });
 }
 

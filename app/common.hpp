@@ -14,7 +14,7 @@
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
 #include "compute/device/stage_timers.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 
@@ -29,12 +29,12 @@ struct CommonOptions {
   std::vector<std::string> set;
 };
 
-/// The words of a command line were off: exit status 2.
+/// The command line is wrong: exit status 2.
 class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What `action` returns; an Error in it is one of the words: UsageError.
+/// What `action` returns; an Error that it throws becomes a UsageError.
 template <class Action>
 auto checked_words(const Action& action) {
   try {
@@ -44,7 +44,7 @@ auto checked_words(const Action& action) {
   }
 }
 
-/// Names and help where a command has its own.
+/// Option names and help texts, where a command has its own.
 struct CommonWords {
   std::string report_names = "--report", report_help = "write a JSON report to this file";
   std::string session_help = "take inputs, knobs and camera from a session file";
@@ -53,34 +53,35 @@ void add_common_options(CLI::App& command, CommonOptions& options, const CommonW
 /// For commands whose inputs and knobs make a session.
 void add_save_session(CLI::App& command, CommonOptions& options);
 
-/// `threads` is the most that work at once anywhere in the program, from here on; 0: as many as the machine has.
+/// From here on, at most `threads` threads work at once in the whole program; 0: as many as the machine has.
 void limit_threads(int threads);
 
-/// Remembers what the knob options of a command line say, to be applied over a session's values.
+/// Keeps the values of a command line's knob options until they are applied over those of a session.
 class KnobOptions {
  public:
-  /// Adds one option per knob that concerns the command; of those that are on or off, flags of a few.
+  /// Adds an option for each knob that concerns the command; two flags (`--edges`, `--no-edges`) where it is on or off.
   KnobOptions(CLI::App& command, const std::string& name);
-  /// Was this knob given, as an option or by `--set`?
+  /// Was this knob of the table given, as an option or by `--set`?
   bool given(const std::string& name, const std::vector<std::string>& set) const;
-  /// Applies them and `--set` to `settings`. Throws UsageError for values that are off.
+  /// Applies them and `--set` to `settings`. Throws UsageError for values that are not allowed.
   void apply(Settings& settings, const std::vector<std::string>& set) const;
 
  private:
   std::vector<std::pair<std::string, std::unique_ptr<std::string>>> values_;
 };
 
-/// Set by Ctrl-C (SIGINT, SIGTERM or SIGHUP). A second one removes what is half written and leaves; a third leaves at once.
+/// Set by Ctrl-C (SIGINT, SIGTERM or SIGHUP). A second one removes half-written files and ends the program; a third
+/// ends it at once.
 const std::atomic<bool>& interrupt_flag();
 void catch_interrupts();
 
 /// A line on stderr, unless --quiet.
 void say(const CommonOptions& options, const std::string& line);
 void warn(const CommonOptions& options, const std::string& line);
-/// The same where a result is not what was asked for: also with --quiet, which silences the way there.
+/// The same, also with --quiet: for a result that is not what was asked for.
 void warn_of_result(const std::string& line);
 
-/// A bar with the time left on stderr where that is a terminal; nothing otherwise.
+/// A progress bar with the time left on stderr if that is a terminal; nothing otherwise.
 class Progress {
  public:
   explicit Progress(bool quiet);
@@ -95,7 +96,8 @@ class Progress {
   double last_ = -1;
 };
 
-/// Says on stderr what is being done: on a terminal a line that is gone with this, else a line that stays.
+/// Says on stderr what is being done: on a terminal in a line that this object removes at its end, else in one that
+/// stays.
 class StatusLine {
  public:
   StatusLine(bool quiet, const std::string& text);
@@ -107,7 +109,7 @@ class StatusLine {
   bool drawn_ = false;
 };
 
-/// Of each stage "name", "seconds", "calls", "launches".
+/// "name", "seconds", "calls" and "launches" of each stage.
 nlohmann::json stages_report(const StageTimers& timers);
 
 /// "nacre", "command", "device", "stages", "memory".
@@ -115,9 +117,9 @@ nlohmann::json report_frame(const std::string& command, const Device& device, co
                             std::size_t arena_bytes);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
-/// Before the work: throws UsageError where the name of `file` does not end in `extension`, as the only format of `option`
-/// does (a device or pipe has no such name, and takes no PNG), and Error where it cannot be written. Nothing where `file`
-/// is empty.
+/// For a check before the work begins. Throws UsageError where the name of `file` does not end in `extension`, the only
+/// one that `option` takes (a device or pipe has no such name, and cannot hold a PNG), and Error where it cannot be
+/// written. Does nothing where `file` is empty.
 void check_output(const std::string& file, const std::string& option, std::string_view extension);
 
 }  // namespace nacre

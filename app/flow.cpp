@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/commands.hpp"
-#include "app/picture_words.hpp"
+#include "app/picture_options.hpp"
 #include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
@@ -15,11 +15,11 @@
 #include "engine/picture/legend.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
-#include "engine/scene/flow_input.hpp"
-#include "engine/scene/knobs.hpp"
-#include "engine/scene/ranges.hpp"
-#include "engine/scene/samples.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/session/session.hpp"
+#include "engine/scene/settings/knobs.hpp"
+#include "engine/scene/settings/ranges.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {
@@ -30,7 +30,7 @@ struct FlowOptions {
   std::string image, frames, video, out;
 };
 
-/// Names that mean something without any file, and outputs: wrong ones are found before the work begins.
+/// Finds unknown names and outputs that cannot be written before the work begins.
 void check_words(const FlowOptions& options, const Settings& settings) {
   checked_words([&] {
     colormap(settings.colormap);
@@ -64,13 +64,6 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   return make_flow_input(std::move(series), session.settings, news, &interrupt_flag());
 }
 
-Camera camera_for(const Session& session, const PreparedSurface& surface, bool legend) {
-  std::vector<Vec3d> corners;  // of the triangles: a point that none uses shall not count
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  return read_camera(session, corners, legend);
-}
-
 /// Draws frames of one run.
 class Painter {
  public:
@@ -80,7 +73,7 @@ class Painter {
         settings_(session.settings),
         frame_time_(frame_time),
         map_(colormap(settings_.colormap)),
-        camera_(camera_for(session, input.surface(), settings_.legend && input.colored())) {
+        camera_(read_camera(session, triangle_corners(input.surface()), settings_.legend && input.colored())) {
     if (settings_.background == "transparent")
       transparent_ = true;
     else
@@ -100,7 +93,7 @@ class Painter {
     std::vector<float> scalar;
     const Range range = color_range(settings_, {input_.color_low(), input_.color_high()});
     if (input_.colored()) {
-      scalar = input_.scalar(pipeline_.time());
+      scalar = input_.scalar(pipeline_.flow().time());
       options.scalar = scalar;
       options.low = range.low;
       options.high = range.high;
@@ -108,13 +101,13 @@ class Painter {
     Image image;
     image.width = settings_.width;
     image.height = settings_.height;
-    image.pixels = pipeline_.render(options);
+    image.pixels = pipeline_.flow().render(options);
     FlowCaption caption;
     caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;
     caption.low = range.low;
     caption.high = range.high;
     caption.title = settings_.color == "speed" ? input_.array() : settings_.color;
-    if (settings_.time_stamp && input_.end() > input_.start()) caption.time = pipeline_.time();
+    if (settings_.time_stamp && input_.end() > input_.start()) caption.time = pipeline_.flow().time();
     caption.frame_time = frame_time_;
     draw_caption(image, caption);
     if (settings_.legend)
@@ -154,7 +147,7 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
           {"cell_size", e.cell_size}};
 }
 
-/// Where every frame goes; null where it was not asked for.
+/// Where every frame goes; null if it was not asked for.
 struct Films {
   std::unique_ptr<FrameSink> frames, video;
 
@@ -176,21 +169,12 @@ Films open_films(const FlowOptions& options, int fps, Progress& progress) {
   return films;
 }
 
-FlowVectors flow_vectors(VectorsInTime& input, const FlowSpan& span) {
-  FlowVectors vectors;
-  vectors.at = [&input](double t, std::span<Vec3f> out) { input.vectors(t, out); };
-  vectors.start = span.start;
-  vectors.end = span.end;
-  vectors.reference_speed = input.statistics().percentile_98 > 0 ? input.statistics().percentile_98 : 1;
-  return vectors;
-}
-
 /// Returns how long each took, seconds.
 std::vector<double> take_steps(FlowPipeline& pipeline, int steps, Painter& painter, Films& films, Progress& progress) {
   std::vector<double> seconds;
   for (int k = 0; k < steps; ++k) {
     const double before = now();
-    pipeline.step();
+    pipeline.flow().step();
     seconds.push_back(now() - before);
     if (films.any()) {
       const Image image = painter.paint(k);
@@ -213,7 +197,8 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   if (!options.image.empty()) write_png(options.image, image), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
-  if (!options.out.empty()) write_flow_values(pipeline, options.out, pipeline.time()), outputs.push_back(options.out);
+  if (!options.out.empty())
+    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time()), outputs.push_back(options.out);
   return outputs;
 }
 
@@ -252,16 +237,16 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
 
   progress.update("embed", 0);
   pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
-  const FlowVectors vectors = flow_vectors(input, span);
+  const FlowVectors vectors = flow_vectors(input, span.start, span.end);
   pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
-  pipeline->start(vectors);
+  pipeline->flow().start(vectors);
   const std::vector<double> seconds = take_steps(*pipeline, span.steps, painter, films, progress);
   const std::vector<std::string> outputs = write_outputs(options, *pipeline, span.steps, painter, films);
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    add_flow_report(report, input, vectors, settings, pipeline->embedding(), seconds);
+    add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds);
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);
@@ -272,7 +257,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
 void add_flow_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("flow", "unsteady flow on a surface: picture, frames, video, values");
   auto options = std::make_shared<FlowOptions>();
-  add_input_options(*command, options->input, "surface with vectors; several files are one series",
+  add_input_options(*command, options->input, "surface with vectors; several files form a time series",
                     "triangle edges along the sample's longest side (0: its own)");
   command->add_option("--image", options->image, "write the last frame as PNG");
   command->add_option("--frames", options->frames, "write every frame into a folder");

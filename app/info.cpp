@@ -80,7 +80,8 @@ void print(const VolumeInfo& volume) {
              triple(volume.axes[2]), volume.right_handed ? "right" : "left", volume.space.empty() ? "" : ", in ",
              volume.space);
   const VolumeStatistics& statistics = volume.statistics;
-  fmt::print("  values {:.9g} to {:.9g}{}", statistics.min, statistics.max, statistics.integral ? ", all whole" : "");
+  fmt::print("  values {:.9g} to {:.9g}{}", statistics.min, statistics.max,
+             statistics.integral ? ", all integers" : "");
   if (statistics.nan + statistics.infinite > 0)
     fmt::print(", {} voxels NaN, {} infinite", statistics.nan, statistics.infinite);
   fmt::print("\n");
@@ -111,7 +112,7 @@ void print(const FileInfo& info) {
   for (const std::string& warning : info.warnings) fmt::print("  warning: {}\n", warning);
 }
 
-/// Those of the words, else of the session.
+/// The files of the command line, else those of the session.
 std::vector<std::string> asked_files(const InfoOptions& options) {
   std::vector<std::string> files = options.files;
   if (files.empty() && !options.common.session.empty())
@@ -121,7 +122,7 @@ std::vector<std::string> asked_files(const InfoOptions& options) {
   return files;
 }
 
-/// Knobs turn nothing here, but shall be knobs, since all commands may be given the same words.
+/// Knobs have no effect here, but they are checked: all commands take the same options.
 void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
   Settings settings;
   knob_options.apply(settings, options.common.set);
@@ -152,10 +153,10 @@ void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
 void add_info_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("info", "what is in a file: kind, size, arrays, time steps, labels");
   auto options = std::make_shared<InfoOptions>();
-  command->add_option("FILE", options->files, "files to look at");
+  command->add_option("FILE", options->files, "files to describe");
   command->add_flag("--json", options->json, "as JSON");
   add_common_options(*command, options->common,
-                     {"--report", "write the same as JSON to this file", "look at the files of a session file"});
+                     {"--report", "write the same as JSON to this file", "describe the files of a session"});
   auto knob_options = std::make_shared<KnobOptions>(*command, "info");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_info(*options, *knob_options); }; });

@@ -1,4 +1,4 @@
-// Nacre: main: words in, exit status out.
+// Nacre: main: command line in, exit status out.
 #include <fmt/format.h>
 
 #include <CLI/App.hpp>
@@ -13,14 +13,14 @@
 #include "app/common.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/vtk_child.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace {
 
 enum Status { done = 0, failed = 1, usage = 2, interrupted = 130 };
 
-/// One line, whatever the text.
+/// Prints one line, whatever the text.
 Status fail(Status status, std::string line) {
   for (char& c : line)
     if (c == '\n') c = ' ';
@@ -28,19 +28,31 @@ Status fail(Status status, std::string line) {
   return status;
 }
 
-/// `status`, unless what was printed has not arrived: a disk is full, a pipe is closed.
+/// `status`, or failure where the output could not be written: a full disk, a closed pipe.
 Status flushed(Status status) {
   errno = 0;
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
   const std::string why = errno != 0 ? fmt::format(" ({})", std::strerror(errno)) : "";
-  return fail(failed, "cannot write to the standard output" + why + "; send it to another place");
+  return fail(failed, "cannot write to the standard output" + why + "; redirect it elsewhere");
 }
 
+/// The help without CLI11's notes on what a flag sets: "--edges,--no-edges" in place of "--edges,--no-edges{false}".
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool positional) const override {
+    std::string name = CLI::Formatter::make_option_name(option, positional);
+    for (const std::string note : {"{false}", "{true}"})
+      for (std::size_t at; (at = name.find(note)) != name.npos;) name.erase(at, note.size());
+    return name;
+  }
+};
+
 Status run(int argc, char** argv) {
-  CLI::App program("Nacre: flow on surfaces, and meshes from volumes.", "nacre");
+  CLI::App program("Nacre: unsteady flow on surfaces, and multi-material meshes from labelled volumes.", "nacre");
+  program.formatter(std::make_shared<HelpFormatter>());
   program.set_version_flag("--version", std::string("nacre ") + nacre::version);
   bool knobs = false;
-  program.add_flag("--knobs", knobs, "print the table of knobs");
+  program.add_flag("--knobs", knobs, "print all knobs with their defaults, ranges and units");
   std::function<void()> command;
   nacre::add_flow_command(program, command);
   nacre::add_mesh_command(program, command);

@@ -3,27 +3,15 @@
 
 #include "app/commands.hpp"
 #include "app/mesh_run.hpp"
-#include "app/picture_words.hpp"
+#include "app/picture_options.hpp"
+#include "app/presets.hpp"
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
-#include "engine/scene/knobs.hpp"
-#include "engine/scene/material_words.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/settings/knobs.hpp"
+#include "engine/scene/volume/material_options.hpp"
 
 namespace nacre {
-
-void apply_source_preset(Settings& settings) {
-  MeshParameters& m = settings.mesh;
-  m.theta = 0.75;
-  m.iterations = 50;
-  m.stagnation = 0.0015;
-  m.add_below = 0.75;
-  m.delete_above = 1.35;
-  m.subcells = 3;
-  m.smooth = 0;
-  m.mend = 0;
-  m.by_density = false;
-}
 
 void check_particle_sizes(const MeshParameters& mesh) {
   if (mesh.min_size > mesh.max_size)
@@ -36,7 +24,10 @@ Session make_session(const MeshOptions& options, const KnobOptions& knobs) {
   const auto preset = [&](Settings& settings) {
     if (options.preset == "source") apply_source_preset(settings);
   };
-  return asked_session(options.common, options.input, knobs, "mesh", preset);
+  Session session = asked_session(options.common, options.input, knobs, "mesh", preset);
+  if (options.preset == "source" && !knobs.given("kernel", options.common.set))
+    apply_source_kernel(session.settings, is_cut_at_isovalues(session));
+  return session;
 }
 
 void check_words(const MeshOptions& options, const Session& session) {
@@ -62,12 +53,6 @@ MeshVolume read_input(const MeshOptions& options, const Session& session, StageT
   return make_materials(volumes, sample, session.settings.materials, input, say_warning);
 }
 
-/// The source rebuilds scalar volumes from B-splines and labels by Catmull-Rom.
-void choose_kernel(const MeshOptions& options, const KnobOptions& knobs, MeshVolume::Kind kind, Settings& settings) {
-  if (options.preset != "source" || knobs.given("kernel", options.common.set)) return;
-  settings.mesh.kernel = kind == MeshVolume::Kind::scalar ? "b-spline" : "catmull-rom";
-}
-
 void show_progress(MeshPipeline& pipeline, Progress& bar) {
   pipeline.progress = [&bar](const MeshProgress& p) {
     std::string what(p.stage);
@@ -77,20 +62,21 @@ void show_progress(MeshPipeline& pipeline, Progress& bar) {
   };
 }
 
-/// Throws Interrupted unless what there is shall be kept.
+/// Throws Interrupted after Ctrl-C, unless the mesh so far is to be kept.
 void check_interrupt(bool kept) {
   if (!kept && interrupt_flag()) throw Interrupted();
 }
 
-/// Thin structures everywhere (a head's cortex between skull and white matter) ask for small particles everywhere. Whoever
-/// did not expect that shall know before the long part begins.
+/// Thin structures everywhere (the cortex of a head, between skull and white matter) need small particles everywhere. A
+/// user who did not expect that should know before the long part begins.
 void say_how_many(const MeshOptions& options, const MeshInfo& info, const MeshParameters& parameters) {
   constexpr double many = 3e6;
   if (parameters.particles > 0 || info.expected_particles < many) return;
   say(options.common,
-      fmt::format("about {:.1f} million particles, {:.2g} to {:.2g} voxels apart, as thin as the materials are; their "
-                  "number falls with the square of --min-size (now {:.2g})",
-                  info.expected_particles / 1e6, info.smallest_size, info.largest_size, parameters.min_size));
+      fmt::format(
+          "about {:.1f} million particles are needed, {:.2g} to {:.2g} voxels apart, since materials are thin; their "
+          "number falls with the square of --min-size (now {:.2g})",
+          info.expected_particles / 1e6, info.smallest_size, info.largest_size, parameters.min_size));
 }
 
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
@@ -100,8 +86,8 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   pipeline.build_fields();
   bar.clear();
   if (const int crowded = pipeline.info().crowded_cells; crowded > 0)
-    warn(options.common, fmt::format("in {} cells of the embedding more than 8 materials or 64 junctions lie together: "
-                                     "some junctions are left out; --merge or --materials makes fewer",
+    warn(options.common, fmt::format("in {} cells of the embedding more than 8 materials or 64 junctions meet: "
+                                     "some junctions are left out; choose fewer materials with --merge or --materials",
                                      crowded));
   say_how_many(options, pipeline.info(), settings.mesh);
   try {
@@ -110,7 +96,7 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
     if (!options.keep_on_interrupt) throw;
     result.interrupted = true;
     bar.clear();
-    say(options.common, "interrupted: making the mesh of the particles so far");
+    say(options.common, "interrupted: making the mesh from the particles so far");
   }
   const bool kept = options.keep_on_interrupt;  // from here on a first Ctrl-C asks for what is being made anyway
   if (kept) pipeline.watch(nullptr);
@@ -136,7 +122,7 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
 
 void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   const double started = now();
-  Session session = make_session(options, knob_options);
+  const Session session = make_session(options, knob_options);
   check_words(options, session);
   const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<MeshPipeline> pipeline = make_mesh_pipeline(*device);
@@ -145,7 +131,6 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   bar.update("read", 0);
   MeshInput input;
   const MeshVolume volume = read_input(options, session, pipeline->timers(), input);
-  choose_kernel(options, knob_options, volume.kind, session.settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   pipeline->parameters = session.settings.mesh;
   show_progress(*pipeline, bar);
@@ -171,7 +156,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
 }  // namespace
 
 void add_mesh_command(CLI::App& program, std::function<void()>& run) {
-  CLI::App* command = program.add_subcommand("mesh", "from a volume to a conformal mesh: surfaces, tetrahedra");
+  CLI::App* command = program.add_subcommand("mesh", "conformal mesh of a volume: surfaces and tetrahedra");
   auto options = std::make_shared<MeshOptions>();
   add_input_options(*command, options->input, "a label or scalar volume, or one indicator volume per material",
                     "voxels along the sample's longest side (0: its own)");
@@ -179,13 +164,13 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run) {
       ->check(CLI::IsMember({"source"}));
   command->add_option("--out", options->out,
                       "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu, .msh (and the surface)");
-  command->add_flag("--surface-only", options->surface_only, "no tetrahedra in a .msh, only the triangles");
-  command->add_flag("--per-material", options->per_material, "one closed surface per material: NAME_LABEL.ext");
+  command->add_flag("--surface-only", options->surface_only, "write only the triangles to a .msh file, no tetrahedra");
+  command->add_flag("--per-material", options->per_material, "write one closed surface per material: NAME_LABEL.ext");
   command->add_option("--particles-out", options->particles_out, "write the particles as .vtp");
   command->add_option("--image", options->image, "write a picture of the triangles as PNG");
-  command->add_flag("--cut-away", options->cut_away, "picture: leave out the half nearer to the camera");
+  command->add_flag("--cut-away", options->cut_away, "leave the half nearer to the camera out of the picture");
   command->add_flag("--keep-on-interrupt", options->keep_on_interrupt,
-                    "Ctrl-C ends the particles early; the mesh is made of what there is");
+                    "on Ctrl-C, stop moving particles and make the mesh from those so far");
   add_common_options(*command, options->common);
   add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "mesh");

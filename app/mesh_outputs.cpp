@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "app/mesh_run.hpp"
-#include "app/picture_words.hpp"
+#include "app/picture_options.hpp"
 #include "compute/raycast/mesh_picture.hpp"
 #include "engine/io/mesh_writer.hpp"
 #include "engine/io/vtp_writer.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "app/mesh_run.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {
@@ -188,14 +188,15 @@ std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const Mes
                                         : "all closed, not sound";
   std::string text = fmt::format("{} particles, {} triangles around {} material{}, {}\n", info.final, t.triangles,
                                  materials, materials == 1 ? "" : "s", state);
-  text += fmt::format("radius ratio {:.3f} mean, {:.3f} min; triangles {:.3f} voxels off the interface on average",
+  text += fmt::format("radius ratio {:.3f} mean, {:.3f} min; triangles {:.3f} voxels from the interface on average",
                       result.quality.all.radius_ratio_mean, result.quality.all.radius_ratio_min,
                       result.distance.facet_mean);
   if (result.cells)
     text += fmt::format("\n{} tetrahedra, dihedral angles {:.1f} to {:.1f} degrees, {:.2f}% within 10 to 160",
                         result.cell_quality.cells, result.cell_quality.dihedral_min, result.cell_quality.dihedral_max,
                         100 * result.cell_quality.share_within_10_160);
-  return text + fmt::format("\n{:.1f} s{}", seconds, result.interrupted ? ", interrupted: particles as they were" : "");
+  return text + fmt::format("\n{:.1f} s{}", seconds,
+                            result.interrupted ? ", interrupted: the particles were not finished" : "");
 }
 
 }  // namespace nacre

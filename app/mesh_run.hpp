@@ -1,4 +1,4 @@
-// Nacre: what a run of `nacre mesh` was asked for, and what came out.
+// Nacre: options and results of a run of `nacre mesh`.
 #pragma once
 
 #include <optional>
@@ -30,10 +30,6 @@ struct MeshResult {
   bool interrupted = false;  ///< the particles were stopped before they were done
 };
 
-/// The source's own constants (source notes). Its reconstruction depends on the volume: b-spline for scalars, else
-/// catmull-rom.
-void apply_source_preset(Settings& settings);
-
 /// Throws UsageError where the smallest distance of particles is above the largest.
 void check_particle_sizes(const MeshParameters& mesh);
 
@@ -41,10 +37,10 @@ void check_particle_sizes(const MeshParameters& mesh);
 void add_mesh_report(nlohmann::json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
                      const MeshResult& result);
 
-/// Some lines for people.
+/// The result in a few lines, for the terminal.
 std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds);
 
-/// Throws UsageError where a file's extension says nothing, Error where it cannot be written.
+/// Throws UsageError for an unknown extension of a file, Error where it cannot be written.
 void check_mesh_outputs(const MeshOptions& options);
 
 /// Will `--out` be a file of tetrahedra?

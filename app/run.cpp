@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/scene/ranges.hpp"
+#include "engine/scene/settings/ranges.hpp"
 
 namespace nacre {
 
@@ -12,7 +12,7 @@ void add_input_options(CLI::App& command, InputWords& words, const std::string& 
   command.add_option("FILE", words.files, file_help);
   command.add_option("--sample", words.sample, "a built-in data set; `nacre sample` lists them");
   command.add_option("--detail", words.detail, detail_help)->check(CLI::Range(0, 1 << 20));
-  command.add_option("--size", words.size, "WxH of the picture");
+  command.add_option("--size", words.size, "size of the picture in pixels, WxH");
 }
 
 Session asked_session(const CommonOptions& options, const InputWords& words, const KnobOptions& knobs,
@@ -35,7 +35,7 @@ Session asked_session(const CommonOptions& options, const InputWords& words, con
   }
   if (session.inputs.empty() && session.sample.empty())
     throw UsageError(fmt::format("no input: give a FILE or --sample NAME; see nacre {} --help", command));
-  if (!session.inputs.empty() && !session.sample.empty()) throw UsageError("a FILE or --sample, not both");
+  if (!session.inputs.empty() && !session.sample.empty()) throw UsageError("give a FILE or --sample, not both");
   return session;
 }
 

@@ -9,8 +9,8 @@
 #include "compute/device/error.hpp"
 #include "engine/io/nrrd_writer.hpp"
 #include "engine/io/surface_writer.hpp"
-#include "engine/scene/phantoms.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/samples/samples.hpp"
 #include "engine/system/extension.hpp"
 
 namespace nacre {
@@ -42,7 +42,7 @@ void list_samples() {
                phantom.dims.z);
 }
 
-/// Before the work. A name that is not known is told as such.
+/// For a check before the work begins. An unknown name is reported later, with the list of names.
 void check_surface_output(const SampleWords& words) {
   const std::vector<SampleInfo> all = samples();
   if (std::none_of(all.begin(), all.end(), [&](const SampleInfo& s) { return s.name == words.name; })) return;
@@ -65,7 +65,7 @@ Files write_surface_sample(const SampleWords& words) {
   return files;
 }
 
-/// What the words ask for: a sample by its name, else that of the session.
+/// The sample that was asked for: by its name, else that of the session.
 SampleWords asked_sample(SampleWords words) {
   if (!words.name.empty() || words.common.session.empty()) return words;
   const Session session = read_session(words.common.session);
@@ -92,7 +92,7 @@ void report_on(const SampleWords& words, const StageTimers& timers, const Files&
   write_report(words.common, std::move(report), files);
 }
 
-/// Knobs turn nothing here (samples know no chance), but shall be knobs, since all commands may be given the same words.
+/// Knobs have no effect here (samples use no random numbers), but they are checked: all commands take the same options.
 void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
   Settings settings;
   knob_options.apply(settings, given.common.set);
@@ -100,7 +100,7 @@ void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
   limit_threads(given.common.threads);
   const SampleWords words = asked_sample(given);
   if (words.name.empty() != words.out.empty())
-    throw UsageError(words.name.empty() ? "which one? `nacre sample` lists them" : "where to? add --out FILE");
+    throw UsageError(words.name.empty() ? "name a sample; `nacre sample` lists them" : "add --out FILE");
   StageTimers timers;
   Files files;
   if (words.name.empty()) {
@@ -121,7 +121,7 @@ void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
 void add_sample_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("sample", "list the built-in data sets, or write one to a file");
   auto words = std::make_shared<SampleWords>();
-  command->add_option("NAME", words->name, "which one");
+  command->add_option("NAME", words->name, "sample to write");
   command->add_option("--out", words->out,
                       "a surface: .pvd (all time steps), or .vtp .ply .obj .stl .off (the first); a volume: .nrrd");
   command

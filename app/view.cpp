@@ -7,16 +7,17 @@
 
 #include "app/commands.hpp"
 #include "app/mesh_run.hpp"
-#include "app/picture_words.hpp"
+#include "app/picture_options.hpp"
+#include "app/presets.hpp"
 #include "app/run.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
-#include "engine/scene/knobs.hpp"
-#include "engine/scene/phantoms.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/ranges.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/settings/knobs.hpp"
+#include "engine/scene/settings/ranges.hpp"
+#include "engine/scene/surface/prepare.hpp"
 #if NACRE_HAS_VIEWER
 #include "app/viewer/scene.hpp"
 #include "app/viewer/viewer.hpp"
@@ -30,7 +31,7 @@ struct ViewOptions {
   InputWords input;
   std::string script, image, record, save_recording, out, preset;
   int frames = 0;
-  bool offscreen = false, live = false, panel = false, no_panel = false;
+  bool offscreen = false, live = false;
 };
 
 #if NACRE_HAS_VIEWER
@@ -39,17 +40,10 @@ constexpr const char* welcome_sample = "torus";
 constexpr int welcome_detail = 128;      // reads in a moment
 constexpr int welcome_resolution = 512;  // and moves soon after
 
-bool is_scalar_phantom(const std::string& name) {
-  const std::vector<PhantomInfo> all = phantoms();
-  return std::any_of(all.begin(), all.end(), [&](const PhantomInfo& p) { return p.name == name && !p.labelled; });
-}
-
-/// As `nacre mesh` does, which knows the volume by then: here an iso-value says that it is a scalar one.
-void choose_source_kernel(const CommonOptions& common, const KnobOptions& knobs, Session& session) {
-  if (!is_mesh_input(session)) throw UsageError("--preset source is for volumes: its constants are those of meshing");
-  if (knobs.given("kernel", common.set)) return;
-  const bool scalar = !session.settings.materials.isovalue.empty() || is_scalar_phantom(session.sample);
-  session.settings.mesh.kernel = scalar ? "b-spline" : "catmull-rom";
+/// The preset is for volumes: its constants are those of meshing.
+void apply_preset_kernel(const CommonOptions& common, const KnobOptions& knobs, Session& session) {
+  if (!is_mesh_input(session)) throw UsageError("--preset source is for volumes: it sets the constants of meshing");
+  if (!knobs.given("kernel", common.set)) apply_source_kernel(session.settings, is_cut_at_isovalues(session));
 }
 
 /// A session is the state that it begins with; a script is played.
@@ -66,7 +60,7 @@ Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
     if (!own_resolution) settings.flow.resolution = welcome_resolution;
     if (options.preset == "source") apply_source_preset(settings);
   });
-  if (options.preset == "source") choose_source_kernel(options.common, knobs, session);
+  if (options.preset == "source") apply_preset_kernel(options.common, knobs, session);
   if (options.script.empty()) return session;
   const Session script = read_session(options.script);
   if (script.events.empty() && script.duration == 0)
@@ -83,17 +77,16 @@ void check_view_words(const ViewOptions& options) {
   if (options.offscreen && !does)
     throw UsageError(
         "--offscreen has nothing to do: give --script, --record, --image FILE.png, --out FILE or --frames-count N");
-  if (options.live && !options.offscreen) throw UsageError("--live goes with --offscreen: a window never waits");
+  if (options.live && !options.offscreen) throw UsageError("--live needs --offscreen: a window never waits");
   if (options.live && !options.record.empty())
-    throw UsageError("--live or --record: frames of a video wait for compute");
+    throw UsageError("use --live or --record, not both: the frames of a video wait for the computation");
   if (!options.script.empty() && !options.common.session.empty())
-    throw UsageError("--session or --script, not both: a script has inputs, knobs and camera, too");
+    throw UsageError("use --session or --script, not both: a script also has inputs, knobs and a camera");
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", "");
   check_output(options.save_recording, "--save-recording", "");
   check_output(options.common.save_session, "--save-session", "");
   check_output(options.common.report, "--report", "");
-  if (options.panel && options.no_panel) throw UsageError("--panel or --no-panel, not both");
 }
 
 void check_names(const Session& session) {
@@ -112,7 +105,7 @@ void check_names(const Session& session) {
   check_picture_words(session.settings);
 }
 
-/// What names mean is found before the work begins, also for the events of a script.
+/// Unknown names are found before the work begins, also in the events of a script.
 void check_all_names(Session session) {
   check_names(session);
   for (const SessionEvent& event : session.events) try {
@@ -126,9 +119,9 @@ void check_all_names(Session session) {
     }
 }
 
-/// A panel offscreen is for those who ask for it; a script says itself.
-bool begins_with_panel(const ViewOptions& options, const Look& look) {
-  if (options.panel || options.no_panel) return options.panel;
+/// Offscreen, the panel is drawn only for those who ask for it; a script says for itself whether it shows it.
+bool begins_with_panel(const ViewOptions& options, const KnobOptions& knobs, const Look& look) {
+  if (knobs.given("panel", options.common.set)) return look.panel;
   return !options.script.empty() ? look.panel : !options.offscreen;
 }
 
@@ -143,7 +136,7 @@ std::unique_ptr<FrameSink> make_record(const ViewOptions& options, int fps) {
   return make_frame_folder(options.record, [&](const std::string& line) { say(options.common, line); });
 }
 
-/// What the session has to fit to: the sizes of the pictures and the film, and the formats of that and the result.
+/// Checks the session against its outputs: the sizes of pictures and video, and the formats of video and result.
 void check_view_outputs(const ViewOptions& options, const Session& session) {
   const Settings& settings = session.settings;
   const bool folder = is_frame_folder(options.record), video = !options.record.empty() && !folder;
@@ -192,8 +185,8 @@ nlohmann::json view_report(const ViewerResult& result, const Session& session) {
   return report;
 }
 
-/// The last picture, the frames, the result, and what the session itself has written. `lost_video`: is told why there is
-/// none.
+/// Finishes and lists the files: the last picture, the frames, the result, and those that the session itself has
+/// written. `lost_video` receives the reason where the video could not be finished.
 std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerResult& result, FrameSink* record,
                                        std::string& lost_video) {
   std::vector<std::string> outputs;
@@ -225,7 +218,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.open_device = [&] { return open_device(options.common); };
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
-  viewer.session.settings.look.panel = begins_with_panel(options, settings.look);
+  viewer.session.settings.look.panel = begins_with_panel(options, knobs, settings.look);
   const bool flow = !is_mesh_input(viewer.session);  // a mesh is done when it is done
   const bool by_steps = options.offscreen && options.script.empty() && options.frames == 0 && flow;
   viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
@@ -269,29 +262,28 @@ void run_view(const ViewOptions&, const KnobOptions&) {
 
 void add_view_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand(
-      "view", "the desktop viewer; without a FILE it shows a sample. Flow begins at a resolution of 512");
+      "view", "the desktop viewer; without a FILE it opens a sample. Flow starts at a resolution of 512");
   auto options = std::make_shared<ViewOptions>();
   add_input_options(*command, options->input,
-                    "surface with vectors, or a volume; several files are one series, or a volume's materials",
+                    "surface with vectors, or a volume; several files form a time series, or hold one material each",
                     "triangle edges, or voxels, along the sample's longest side (0: its own)");
   command->add_flag("--offscreen", options->offscreen, "draw without a display (EGL)");
   command->add_option("--script", options->script,
-                      "play a session file: its input, knobs and camera, each at its time");
+                      "play a recorded session: inputs, knobs and camera, each at its time");
   command->add_option("--record", options->record,
                       "write every frame: a video (.mp4, .mkv, .mov, .webm, .gif) or a folder");
   command->add_option("--save-recording", options->save_recording,
-                      "write what was done, and when, to a session file for --script");
+                      "record what is done, and when, to a session file for --script");
   command->add_option("--image", options->image, "write the last frame as PNG");
-  command->add_option("--preset", options->preset, "source: of a volume, the constants of the dissertation")
+  command->add_option("--preset", options->preset, "source: the constants of the dissertation, for volumes")
       ->check(CLI::IsMember({"source"}));
   command->add_option("--out", options->out, "write the result at the end, as nacre flow and nacre mesh do");
   command
       ->add_option("--frames-count", options->frames,
-                   "end after N frames with the texture (offscreen, without a script: one for each step)")
+                   "stop after N frames with a texture (offscreen without a script: one frame per step)")
       ->check(CLI::Range(0, 1000000000));
-  command->add_flag("--live", options->live, "offscreen: frames do not wait for compute, as in a window");
-  command->add_flag("--panel", options->panel, "offscreen: draw the panel, too");
-  command->add_flag("--no-panel", options->no_panel, "begin without the panel");
+  command->add_flag("--live", options->live,
+                    "offscreen: do not wait for the computation between frames, as in a window");
   add_common_options(*command, options->common);
   add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "view");

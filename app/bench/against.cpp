@@ -67,7 +67,7 @@ void check_shape(const json& report) {
     for (const json& row : table.at("rows")) {
       row.at("name").get<std::string>();
       for (const auto& [quantity, value] : row.at("values").items()) {
-        if (!value.is_object()) throw Error(quantity + " is no quantity");
+        if (!value.is_object()) throw Error(quantity + " is not a quantity");
         if (value.contains("ours")) value.at("ours").get<double>();
         if (value.contains("better")) value.at("better").get<std::string>();
       }
@@ -100,11 +100,11 @@ json read_bench(const std::filesystem::path& file) {
   if (!in || !(text << in.rdbuf())) throw Error("cannot read " + file.string());
   json report = json::parse(text.str(), nullptr, false);
   const char* advice = "give a file that nacre bench --json wrote";
-  if (report.is_discarded() || !report.is_object()) throw Error(file.string() + " is no JSON object", "", advice);
+  if (report.is_discarded() || !report.is_object()) throw Error(file.string() + " is not a JSON object", "", advice);
   try {
     check_shape(report);
   } catch (const std::exception& error) {
-    throw Error(file.string() + " is no report of nacre bench", error.what(), advice);
+    throw Error(file.string() + " is not a report of nacre bench", error.what(), advice);
   }
   return report;
 }

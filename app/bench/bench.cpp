@@ -8,7 +8,7 @@
 namespace nacre {
 namespace {
 
-/// To whoever reads along: the next row may take minutes.
+/// At once, for whoever watches: the next row may take minutes.
 void print_now(const std::string& text) {
   fmt::print("{}", text);
   std::fflush(stdout);
@@ -17,7 +17,7 @@ void print_now(const std::string& text) {
 }  // namespace
 
 BenchTable& Bench::begin(std::string name, std::string title, std::vector<std::string> differs) {
-  if (scale == BenchScale::tiny) differs.push_back("--tiny: as coarse as can be; figures mean nothing");
+  if (scale == BenchScale::tiny) differs.push_back("--tiny: as coarse as possible; the figures mean nothing");
   if (scale == BenchScale::small) differs.push_back("--small: coarser than the source's runs; compare ratios only");
   begun_ = now();
   tables_.push_back({std::move(name), std::move(title), std::move(differs), {}});

@@ -14,10 +14,10 @@
 
 namespace nacre {
 
-/// How large the data of the tables are. Tiny is for tests: figures are there, and mean nothing.
+/// How large the data of the tables are. Tiny is for tests: its figures mean nothing.
 enum class BenchScale { whole, small, tiny };
 
-/// One run of the command: what it works with, and what it has found out so far.
+/// One run of the command: what it works with, and its results so far.
 class Bench {
  public:
   Bench(Device& on, const CommonOptions& words, BenchScale size)
@@ -29,7 +29,7 @@ class Bench {
   const BenchScale scale;
   const bool small;             ///< or tiny
   std::filesystem::path plots;  ///< where pictures go; empty: nowhere
-  MeshRuns meshes;              ///< several tables look at the same runs
+  MeshRuns meshes;              ///< several tables use the same runs
   FlowRuns flows;
   std::vector<std::string> outputs;
 
@@ -42,10 +42,10 @@ class Bench {
     return scale == BenchScale::whole ? whole : scale == BenchScale::small ? small_one : tiny_one;
   }
 
-  /// Begins a table and prints what stands above its rows; `differs`: from the source, beside the hardware.
+  /// Begins a table and prints what stands above its rows; `differs`: from the thesis, beside the hardware.
   BenchTable& begin(std::string name, std::string title, std::vector<std::string> differs);
-  /// Says what comes now, lets `work` fill the row in, and prints it at once. Where the memory does not do, the row is left
-  /// out, aloud; other errors end the command. Throws Interrupted after Ctrl-C.
+  /// Says what is measured next, lets `work` fill in the row, and prints it at once. Where the memory does not suffice,
+  /// the row is left out with a warning; other errors end the command. Throws Interrupted after Ctrl-C.
   void row(BenchTable& table, const std::string& name, const std::string& input,
            const std::function<void(BenchRow&)>& work);
   void leave_out(BenchTable& table, const std::string& name, const std::string& input, const std::string& why);
@@ -56,7 +56,7 @@ class Bench {
   void print_last_row(BenchTable& table);
 
   const CommonOptions& common_;
-  std::deque<BenchTable> tables_;  // whoever fills one in holds a reference
+  std::deque<BenchTable> tables_;  // a deque: references to its tables stay valid
   double begun_ = 0;
 };
 

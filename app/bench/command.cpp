@@ -1,4 +1,4 @@
-// Nacre: `nacre bench`: the source's tables on this machine: its words, its report, its verdict.
+// Nacre: `nacre bench`: the thesis's tables on this machine: options, report, comparison.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,7 +11,7 @@
 #include "app/bench/figures.hpp"
 #include "app/commands.hpp"
 #include "app/run.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {
@@ -27,7 +27,7 @@ struct BenchOptions {
   std::string plots, against;
 };
 
-/// Knobs that are not as they come, by name.
+/// Knobs that differ from their defaults, by name.
 using TurnedKnobs = std::map<std::string, std::string>;
 
 bool asked_for(const BenchOptions& options, const std::string& name) {
@@ -45,7 +45,7 @@ void check_words(const BenchOptions& options) {
   }
 }
 
-/// What is found out before the hours of work rather than after.
+/// Checks outputs before hours of work rather than after.
 void check_outputs(const BenchOptions& options) {
   check_output(options.common.report, "--json", "");
   if (options.plots.empty()) return;
@@ -95,7 +95,7 @@ void write_figures(Bench& bench, const json& report) {
   }
 }
 
-/// Figures and JSON of the rows that there are.
+/// Writes plots and JSON of the rows so far.
 void write_results(const BenchOptions& options, Bench& bench, const json& report) {
   if (!options.plots.empty()) write_figures(bench, report);
   if (!options.common.report.empty()) bench.outputs.push_back(options.common.report);
@@ -103,7 +103,7 @@ void write_results(const BenchOptions& options, Bench& bench, const json& report
   print_outputs(bench.outputs);
 }
 
-/// Runs the tables. What is measured by then stays, also where one of them ends the command: `why` goes into the report.
+/// Runs the tables. What has been measured is kept when one of them ends the command; the report says why.
 void measure(const BenchOptions& options, Bench& bench, json& report) {
   const auto add_tables = [&] {
     for (const BenchTable& table : bench.tables()) report["tables"].push_back(table_json(table));
@@ -115,7 +115,7 @@ void measure(const BenchOptions& options, Bench& bench, json& report) {
     if (std::none_of(bench.tables().begin(), bench.tables().end(), has_rows)) return;
     try {
       write_results(options, bench, report);
-    } catch (const std::exception& error) {  // beside the first reason, which ends the command
+    } catch (const std::exception& error) {  // reported only: the first error ends the command
       warn(options.common, error.what());
     }
   };
@@ -140,7 +140,7 @@ void judge(const BenchOptions& options, const json& now, const json& last) {
     text = fmt::format("{} of {} ratios lost more than {:.0f}% against {}: {}", result.losses.size(), result.compared,
                        100 * tolerated_loss, options.against, fmt::join(result.losses, "; "));
   if (!result.missing.empty())
-    text += fmt::format("{}this run has no figure where {} has one: {}", text.empty() ? "" : "; ", options.against,
+    text += fmt::format("{}this run has no value where {} has one: {}", text.empty() ? "" : "; ", options.against,
                         fmt::join(result.missing, "; "));
   if (!text.empty()) throw Error(text);
   if (result.compared == 0)
@@ -153,7 +153,7 @@ json read_last(const BenchOptions& options) {
   if (options.against.empty()) return {};
   json last = read_bench(options.against);
   if (last.contains("ended_early"))
-    warn(options.common, options.against + " is of a run that ended early: only the rows that it has are compared");
+    warn(options.common, options.against + " comes from a run that ended early: only its rows are compared");
   return last;
 }
 
@@ -178,18 +178,19 @@ void run_bench(const BenchOptions& options, const KnobOptions& knob_options) {
 }  // namespace
 
 void add_bench_command(CLI::App& program, std::function<void()>& run) {
-  CLI::App* command = program.add_subcommand("bench", "the source's tables, on this machine");
+  CLI::App* command = program.add_subcommand("bench", "the tables of the dissertation, measured on this machine");
   auto options = std::make_shared<BenchOptions>();
   command->add_option("TABLE", options->tables,
                       "3.1 3.2 3.3 3.4 4.1 4.2 4.3 5.1 6.1 6.2 gathering arena grid-octree methods (all)");
   command->add_flag("--small", options->small, "smaller data: two minutes on two cores");
   command->add_flag("--tiny", options->tiny, "for tests: smaller still, figures mean nothing")->group("");  // not shown
-  command->add_option("--plots", options->plots, "write the source's plots (SVG) and pictures (PNG) into a folder");
+  command->add_option("--plots", options->plots,
+                      "write the dissertation's plots (SVG) and pictures (PNG) into a folder");
   command->add_option("--against", options->against,
-                      "JSON of an earlier run: fail where a ratio between methods has lost 30%, or is missing");
+                      "JSON of an earlier run: fail if a ratio between methods has lost 30% or is missing");
   add_common_options(*command, options->common,
-                     {"--json,--report", "write the figures as JSON, also of a run that was interrupted",
-                      "take knobs from a session file; what a table sets itself stays"});
+                     {"--json,--report", "write the results as JSON, also when the run is interrupted",
+                      "take knobs from a session file, except those that a table sets itself"});
   auto knob_options = std::make_shared<KnobOptions>(*command, "bench");
   command->callback(
       [&run, options, knob_options] { run = [options, knob_options] { run_bench(*options, *knob_options); }; });

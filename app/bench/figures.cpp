@@ -64,7 +64,7 @@ void add_scaling(Figures& figures, const json& report, const char* table_name, c
   add_plot(figures, file, std::move(plot));
 }
 
-/// Shares of the stages for each data set and solver: figure 4.5, the source's bars beside ours.
+/// Shares of the stages for each data set and solver: figure 4.5, the thesis's bars beside ours.
 void add_shares(Figures& figures, const json& report) {
   const json* table = find_table(report, "4.3");
   if (!table) return;

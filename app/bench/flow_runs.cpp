@@ -7,8 +7,8 @@
 #include "app/common.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "engine/picture/colormap.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {
@@ -23,7 +23,7 @@ double median(std::vector<double> seconds) {
 
 }  // namespace
 
-/// Nacre's own, as the user has turned them.
+/// Nacre's own settings, with the user's changes.
 FlowParameters FlowRuns::turned() const {
   Settings settings;
   if (turn) turn(settings);
@@ -66,12 +66,7 @@ std::size_t FlowRuns::triangles(const FlowJob& job) { return sample(job).surface
 
 FlowVectors FlowRuns::vectors(const FlowJob& job) {
   VectorsInTime& all = sample(job);
-  FlowVectors vectors;
-  vectors.at = [&all](double t, std::span<Vec3f> out) { all.vectors(t, out); };
-  vectors.start = all.start();
-  vectors.end = all.end();
-  vectors.reference_speed = all.statistics().percentile_98;
-  return vectors;
+  return flow_vectors(all, all.start(), all.end());
 }
 
 std::unique_ptr<FlowPipeline> FlowRuns::pipeline(const FlowJob& job) const {
@@ -82,8 +77,8 @@ std::unique_ptr<FlowPipeline> FlowRuns::pipeline(const FlowJob& job) const {
 }
 
 double FlowRuns::estimate(const FlowJob& job) {
-  return job.method == "grid" ? estimate_flow_bytes(mesh(job), parameters(job))
-                              : estimate_octree_bytes(mesh(job), parameters(job));
+  return job.method == EmbeddingKind::grid ? estimate_flow_bytes(mesh(job), parameters(job))
+                                           : estimate_octree_bytes(mesh(job), parameters(job));
 }
 
 int FlowRuns::largest_resolution(FlowJob job) {
@@ -92,7 +87,7 @@ int FlowRuns::largest_resolution(FlowJob job) {
     job.resolution = resolution;
     try {
       FlowDomain domain;
-      if (job.method == "grid")
+      if (job.method == EmbeddingKind::grid)
         make_domain(surface, parameters(job));
       else
         make_octree_domain(surface, parameters(job), domain);
@@ -114,44 +109,44 @@ const FlowRun& FlowRuns::run(const FlowJob& job) {
   const auto known = runs_.find(job);
   if (known != runs_.end()) return known->second;
   const FlowMesh surface = mesh(job);
-  const std::unique_ptr<FlowPipeline> flow = pipeline(job);
-  const StageTimers& timers = flow->timers();
+  const std::unique_ptr<FlowPipeline> made = pipeline(job);
+  const StageTimers& timers = made->timers();
   FlowRun run;
   double spent = 0;
   for (int k = 0; k == 0 || (k < repeats && spent < 1); ++k) {
     const double embedded = timers.seconds("embed"), refined = timers.seconds("refine");
-    flow->embed(surface);
+    made->embed(surface);
     const double embed = timers.seconds("embed") - embedded, refine = timers.seconds("refine") - refined;
     run.embed = k == 0 ? embed : std::min(run.embed, embed);
     run.refine = k == 0 ? refine : std::min(run.refine, refine);
     spent += embed + refine;
   }
-  flow->start(vectors(job));
+  made->flow().start(vectors(job));
   std::vector<double> steps;
   for (double from = now(); steps.size() < 5 && (steps.empty() || now() - from < long_enough);) {
     const double before = now();
-    flow->step();
+    made->flow().step();
     steps.push_back(now() - before);
   }
   run.step = median(steps);
-  run.embedding = flow->embedding();
-  run.arena_bytes = flow->peak_bytes();
+  run.embedding = made->flow().embedding();
+  run.arena_bytes = made->peak_bytes();
   return runs_[job] = run;
 }
 
 double FlowRuns::embed_and_step(const FlowJob& job, bool anew, int times) {
   const FlowMesh surface = mesh(job);
   const FlowVectors flow_vectors = vectors(job);
-  std::unique_ptr<FlowPipeline> flow;
+  std::unique_ptr<FlowPipeline> made;
   double best = 1e300;
   for (int k = anew ? 1 : 0; k <= times; ++k) {
     const double before = now();
-    if (anew || !flow) flow = pipeline(job);
-    flow->parameters.warmup = 0;
-    flow->embed(surface);
-    flow->start(flow_vectors);
-    flow->step();
-    if (anew) flow.reset();
+    if (anew || !made) made = pipeline(job);
+    made->parameters.warmup = 0;
+    made->embed(surface);
+    made->flow().start(flow_vectors);
+    made->flow().step();
+    if (anew) made.reset();
     if (k > 0) best = std::min(best, now() - before);
   }
   return best;
@@ -159,19 +154,15 @@ double FlowRuns::embed_and_step(const FlowJob& job, bool anew, int times) {
 
 Image FlowRuns::picture(const FlowJob& job, int steps, int width, int height) {
   VectorsInTime& all = sample(job);
-  const std::unique_ptr<FlowPipeline> flow = pipeline(job);
-  flow->parameters.ttl = turned().ttl;
-  flow->parameters.warmup = turned().warmup;
-  flow->embed(mesh(job));
-  flow->start(vectors(job));
-  for (int k = 0; k < steps; ++k) flow->step();
-  const PreparedSurface& surface = all.surface();
-  std::vector<Vec3d> corners;
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) corners.push_back(surface.points[t[k]]);
-  const std::vector<float> scalar = all.scalar(flow->time());
+  const std::unique_ptr<FlowPipeline> made = pipeline(job);
+  made->parameters.ttl = turned().ttl;
+  made->parameters.warmup = turned().warmup;
+  made->embed(mesh(job));
+  made->flow().start(vectors(job));
+  for (int k = 0; k < steps; ++k) made->flow().step();
+  const std::vector<float> scalar = all.scalar(made->flow().time());
   RenderOptions options;
-  options.camera = fit_camera("iso", corners, width, height);
+  options.camera = fit_camera("iso", triangle_corners(all.surface()), width, height);
   options.width = width;
   options.height = height;
   options.scalar = scalar;
@@ -179,7 +170,7 @@ Image FlowRuns::picture(const FlowJob& job, int steps, int width, int height) {
   options.high = all.color_high();
   options.colours = colormap("sea").table;
   Image image(width, height);
-  image.pixels = flow->render(options);
+  image.pixels = made->flow().render(options);
   return image;
 }
 

@@ -9,8 +9,8 @@
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/picture/image.hpp"
-#include "engine/scene/settings.hpp"
-#include "engine/scene/vectors_in_time.hpp"
+#include "engine/scene/settings/settings.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 
@@ -18,7 +18,8 @@ namespace nacre {
 struct FlowJob {
   std::string sample;
   int detail = 0;  ///< of the sample; 0: its own
-  std::string method = "grid", octree = "brick";
+  EmbeddingKind method = EmbeddingKind::grid;
+  OctreeKind octree = OctreeKind::brick;
   bool neighbour_index = false;
   int resolution = 1024, refine = 4;
   double radius = 0;
@@ -44,7 +45,7 @@ class FlowRuns {
   explicit FlowRuns(Device& device) : device_(device) {}
 
   int repeats = 1;                      ///< of short embeddings; the fastest counts
-  std::function<void(Settings&)> turn;  ///< the user's knobs; what a job says comes over them
+  std::function<void(Settings&)> turn;  ///< the user's knobs; a job overrides them
 
   /// Bytes that the run will need, and those that there are.
   double estimate(const FlowJob& job);
@@ -58,7 +59,7 @@ class FlowRuns {
   /// Every run has a pipeline of its own, whose memory is given back at its end. Throws Error and Interrupted.
   const FlowRun& run(const FlowJob& job);
   /// Seconds to embed the surface and take one step, with everything in memory that is kept (`times` runs in one
-  /// pipeline, the first not counted) or made anew for each; the fastest.
+  /// pipeline, the first not counted) or allocated again for each; the fastest.
   double embed_and_step(const FlowJob& job, bool anew, int times);
   /// A picture after some steps, coloured by speed.
   Image picture(const FlowJob& job, int steps, int width, int height);

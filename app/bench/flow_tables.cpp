@@ -1,4 +1,4 @@
-// Nacre: the source's Tables 5.1, 6.1 and 6.2: flow on the grid and on octrees.
+// Nacre: the thesis's Tables 5.1, 6.1 and 6.2: flow on the grid and on octrees.
 #include <fmt/format.h>
 
 #include <array>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double mebibyte = 1 << 20;
 
-/// The source's octrees hold the cells up to 5 from the surface.
+/// The thesis's octrees hold the cells up to 5 from the surface.
 constexpr double source_radius = 5;
 
 /// A row of one flow run or several, left out where one does not fit the memory.
@@ -35,8 +35,8 @@ FlowJob octree_job(const Bench& bench, const std::string& sample, int resolution
   FlowJob job;
   job.sample = sample;
   job.detail = bench.small ? small_flow_detail : 0;
-  job.method = "octree";
-  job.octree = "source";
+  job.method = EmbeddingKind::octree;
+  job.octree = OctreeKind::cell;
   job.radius = source_radius;
   job.resolution = resolution;
   job.neighbour_index = index;
@@ -64,7 +64,7 @@ const BenchRow* row_before(const BenchTable& table, const std::string& sample, i
 void octree_row(Bench& bench, BenchTable& table, const std::string& sample, int resolution) {
   const FlowJob source = octree_job(bench, sample, resolution, false);
   FlowJob brick = source;
-  brick.octree = "brick";
+  brick.octree = OctreeKind::brick;
   brick.radius = 0;
   flow_row(bench, table, fmt::format("{} {}", sample, resolution), {source, brick}, [&](BenchRow& row) {
     const BenchRow* before = row_before(table, sample, resolution);

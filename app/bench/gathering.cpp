@@ -2,27 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <vector>
 
 #include "app/bench/bench.hpp"
-#include "compute/device/executor_cpu.hpp"
-#include "compute/particles/neighbourhoods.hpp"
-#include "compute/particles/solver_state.hpp"
+#include "compute/particles/gathering_time.hpp"
 
 namespace nacre {
 namespace {
 
-/// A turn that copies every neighbourhood and then does nothing with it.
-struct LeaveAlone {
-  std::size_t scratch_bytes() const { return 0; }
-  void operator()(Team&, const Neighbourhood&) const {}
-};
-
-struct GatherSeconds {
-  double binning = 0, copying = 0;
-};
-
-ParticleSet upload(Arena& arena, const MeshParticles& particles) {
+GatheringTime measure(const MeshParticles& particles, int threads) {
   const std::size_t n = particles.points.size();
   std::vector<Float4> place(n), direction(n);
   std::vector<std::uint32_t> interface(n);
@@ -33,31 +23,8 @@ ParticleSet upload(Arena& arena, const MeshParticles& particles) {
     direction[i] = {d.x, d.y, d.z, particles.energy[i]};
     interface[i] = number.try_emplace(particles.materials[i], std::uint32_t(number.size())).first->second;
   }
-  ParticleSet set;
-  set.count = std::int64_t(n);
-  set.place = arena.permanent_copy<Float4>(place);
-  set.direction = arena.permanent_copy<Float4>(direction);
-  set.interface = arena.permanent_copy<std::uint32_t>(interface);
-  return set;
-}
-
-/// The fastest of a few turns over all particles.
-GatherSeconds measure(const MeshParticles& particles, int threads) {
   const std::unique_ptr<Device> device = make_cpu_device(threads);
-  Executor<Cpu> exec(*device);
-  exec.watch(&interrupt_flag());
-  const ParticleSet set = upload(exec.arena(), particles);
-  GatherSeconds best{1e300, 1e300};
-  for (int k = 0; k < 5; ++k) {
-    Arena::Scope scope(exec.arena());
-    const double before = now();
-    Neighbourhoods<Cpu> neighbourhoods(exec, set, SolverParameters().step);
-    const double binned = now();
-    neighbourhoods.for_each(LeaveAlone{});
-    best.binning = std::min(best.binning, binned - before);
-    best.copying = std::min(best.copying, now() - binned);
-  }
-  return best;
+  return time_gathering(*device, {place, direction, interface}, &interrupt_flag());
 }
 
 }  // namespace
@@ -76,7 +43,7 @@ void bench_gathering(Bench& bench) {
     const MeshRun run = bench.meshes.run(job, solve);
     const MeshParticles particles = bench.meshes.particles(job, solve);
     bench.meshes.release();
-    const GatherSeconds seconds = measure(particles, bench.device.threads());
+    const GatheringTime seconds = measure(particles, bench.device.threads());
     const double turn = run.relax / std::max(1, run.iterations);
     row.input += fmt::format(", {} particles", particles.points.size());
     table.add(row, "a turn, ms", 1000 * turn);

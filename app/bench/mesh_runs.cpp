@@ -7,15 +7,15 @@
 #include <span>
 
 #include "app/common.hpp"
-#include "app/mesh_run.hpp"
+#include "app/presets.hpp"
 #include "compute/meshing/quality.hpp"
-#include "engine/scene/materials.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/volume/materials.hpp"
 
 namespace nacre {
 namespace {
 
-/// Repeats end here, seconds.
+/// Runs are not repeated after this time, seconds.
 constexpr double long_enough = 1.5;
 
 MeshVolume make_volume(const MeshJob& job) {
@@ -32,14 +32,14 @@ void MeshRuns::release() {
   volume_.reset();
 }
 
-/// Nacre's own; or the source's constants, and 50 iterations for all: its energy threshold would let the solvers stop after
-/// different amounts of work.
+/// Nacre's own; or the thesis's constants, and 50 iterations for all: its energy threshold would let the solvers stop
+/// after different amounts of work.
 MeshParameters MeshRuns::parameters(const MeshJob& job, bool own_settings) const {
   Settings settings;
   MeshParameters& mesh = settings.mesh;
   if (!own_settings) {
     apply_source_preset(settings);
-    mesh.kernel = volume_->kind == MeshVolume::Kind::scalar ? "b-spline" : "catmull-rom";
+    apply_source_kernel(settings, volume_->kind == MeshVolume::Kind::scalar);
     mesh.iterations = bench_iterations;
     mesh.stagnation = 0;
   }

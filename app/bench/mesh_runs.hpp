@@ -1,4 +1,4 @@
-// Nacre: runs of the mesh pipeline on built-in volumes, each done once however many tables look at it.
+// Nacre: runs of the mesh pipeline on built-in volumes, each done once for all tables.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "compute/pipeline/mesh_pipeline.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 
-/// What fields are made of. The rest are the source's constants.
+/// What fields are made of. The rest are the thesis's constants.
 struct MeshJob {
   std::string sample;
   int detail = 0;  ///< voxels along the longest side; 0: the sample's own
@@ -63,15 +63,16 @@ class MeshRuns {
 
   /// Short runs are repeated up to this often, and the fastest counts.
   int repeats = 1;
-  /// The user's knobs, over the source's constants and Nacre's own; what a job or a solve says comes over them.
+  /// The user's knobs, over the thesis's constants and Nacre's own; a job or a solve overrides them.
   std::function<void(Settings&)> turn;
 
-  /// Throws Error where the memory does not do, and Interrupted. The serial solver runs on the CPU whatever the device is.
+  /// Throws Error where the memory does not suffice, and Interrupted. The serial solver runs on the CPU whatever the
+  /// device is.
   const MeshFields& fields(const MeshJob& job);
   const MeshRun& run(const MeshJob& job, const MeshSolve& solve);
   /// The particles of `run`, which is done again; lengths in voxels.
   MeshParticles particles(const MeshJob& job, const MeshSolve& solve);
-  /// Gives the memory of the fields back; figures stay.
+  /// Frees the memory of the fields; results stay.
   void release();
 
  private:

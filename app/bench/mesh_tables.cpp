@@ -1,4 +1,4 @@
-// Nacre: the source's Tables 3.1 to 3.4 and 4.1 to 4.3: particles and the meshes made of them.
+// Nacre: the thesis's Tables 3.1 to 3.4 and 4.1 to 4.3: particles and the meshes made of them.
 #include <fmt/format.h>
 
 #include <array>
@@ -84,7 +84,7 @@ std::array<MeshRun, 3> run_solvers(Bench& bench, const MeshJob& job, int particl
   return runs;
 }
 
-/// The source's figures per particle: its seconds over its final counts (Table 4.2 over Table 4.1).
+/// The thesis's figures per particle: its seconds over its final counts (Table 4.2 over Table 4.1).
 void add_source_costs(BenchRow& row) {
   const auto cost = [&](const char* solver) {
     const SourceFigure* seconds = find_source_figure("4.2", row.name, fmt::format("{}: s", solver));
@@ -217,7 +217,7 @@ void bench_material_stages(Bench& bench) {
                 ratio(runs[0].seconds, fields.distance + fields.sizing), Better::higher);
       table.add(row, "serial particles / closest point", ratio(runs[0].seconds, fields.embed), Better::higher);
       table.add(row, "serial particles / extract", ratio(runs[0].seconds, runs[2].extract), Better::higher);
-      for (std::size_t k = 0; k < solvers.size(); ++k)  // for figure 4.5; the source's are those of Table 4.2
+      for (std::size_t k = 0; k < solvers.size(); ++k)  // for figure 4.5; the thesis's are those of Table 4.2
         table.add(row, fmt::format("particles, {}, s", solvers[k].name), runs[k].seconds, Better::neither,
                   find_source_figure("4.2", c.row, fmt::format("{}: s", solvers[k].name))->value);
     });

@@ -1,4 +1,4 @@
-// Nacre: what `nacre bench` finds out: tables of rows of quantities, each beside the source's figure.
+// Nacre: what `nacre bench` measures: tables of rows of quantities, each beside the thesis's figure.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -30,13 +30,13 @@ struct BenchRow {
 struct BenchTable {
   std::string name;                  ///< "3.1", or a word for a side result
   std::string title;                 ///< what is measured
-  std::vector<std::string> differs;  ///< what differs from the source beside the hardware
+  std::vector<std::string> differs;  ///< what differs from the thesis beside the hardware
   std::vector<BenchRow> rows;
   double seconds = 0;  ///< that it took
 
-  /// A row without figures of ours: what the source has for it, and why there are none.
+  /// A row without figures of ours: what the thesis has for it, and why there are none.
   void leave_out(std::string row, std::string input, std::string why);
-  /// Adds a quantity to `row`, beside the source's figure of that name, or `source` where that is given.
+  /// Adds a quantity to `row`, beside the thesis's figure of that name, or `source` where that is given.
   void add(BenchRow& row, std::string quantity, std::optional<double> ours, Better better = Better::neither,
            std::optional<double> source = {}) const;
 };
@@ -44,15 +44,15 @@ struct BenchTable {
 /// a / b; nothing where one of them is missing or b is not positive.
 std::optional<double> ratio(std::optional<double> a, std::optional<double> b);
 
-/// The table for people: what stands above its rows. The first line begins "Table 3.1" (or "Side result: arena"), the last
-/// names the columns.
+/// The table as text: what stands above its rows. The first line begins "Table 3.1" (or "Side result: arena"), the
+/// last names the columns.
 std::string table_head(const BenchTable& table);
-/// One line per quantity: row, quantity, the source's figure, ours, what differs. Columns are as wide for all rows of all
-/// tables, so that a row can be printed before the next one is known.
+/// One line per quantity: row, quantity, the thesis's figure, ours, what differs. Columns are as wide for all rows of
+/// all tables, so that a row can be printed before the next one is known.
 std::string row_text(const BenchRow& row);
 
-/// The same for programs: {name, title, differs, rows: [{name, input, left_out?, values: {quantity: {source?, ours?,
-/// better?, note?}}}], seconds}; a figure that is missing is not there.
+/// The table as JSON: {name, title, differs, rows: [{name, input, left_out?, values: {quantity: {source?, ours?,
+/// better?, note?}}}], seconds}; missing figures are left out.
 nlohmann::json table_json(const BenchTable& table);
 
 }  // namespace nacre

@@ -1,5 +1,5 @@
-// Nacre: the source's side results: memory kept against memory made on the way, grid against octree, the methods side by
-// side.
+// Nacre: the thesis's side results: memory kept against memory made on the way, grid against octree, the methods side
+// by side.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,8 +88,8 @@ std::array<FlowJob, 3> three_methods(const Bench& bench, const std::string& samp
   grid.detail = bench.small ? small_flow_detail : 0;
   grid.resolution = resolution;
   FlowJob brick = grid, source = grid;
-  brick.method = source.method = "octree";
-  source.octree = "source";
+  brick.method = source.method = EmbeddingKind::octree;
+  source.octree = OctreeKind::cell;
   return {grid, brick, source};
 }
 
@@ -136,7 +136,7 @@ void bench_grid_octree(Bench& bench) {
       }
       table.add(row, "build, grid / bricks", ratio(build[0], build[1]));
       table.add(row, "step, grid / bricks", ratio(step[0], step[1]));
-      for (std::size_t k = 0; k < 2; ++k) {  // the source's octree is what both are judged by
+      for (std::size_t k = 0; k < 2; ++k) {  // the thesis's octree is what both are judged by
         table.add(row, fmt::format("build, octree of the source / {}", short_names[k]), ratio(build[2], build[k]),
                   Better::higher);
         table.add(row, fmt::format("step, octree of the source / {}", short_names[k]), ratio(step[2], step[k]),

@@ -1,4 +1,4 @@
-// Nacre: the figures of the source's tables (sec. 3.4, 4.3, 5.3, 6.3). Where a figure is misprinted (source notes),
+// Nacre: the figures of the thesis's tables (sec. 3.4, 4.3, 5.3, 6.3). Where a figure is misprinted (source notes),
 // the right one stands here and the note says so.
 #include "app/bench/source_figures.hpp"
 

@@ -1,4 +1,4 @@
-// Nacre: the figures of the source's tables, which `nacre bench` prints beside its own.
+// Nacre: the figures of the thesis's tables, which `nacre bench` prints beside its own.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct SourceFigure {
 /// All figures, table by table.
 std::span<const SourceFigure> source_figures();
 
-/// The figure of that name; nullptr where the source has none.
+/// The figure of that name; nullptr where the thesis has none.
 const SourceFigure* find_source_figure(std::string_view table, std::string_view row, std::string_view quantity);
 
 }  // namespace nacre

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/render/view.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 

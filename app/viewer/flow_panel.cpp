@@ -7,7 +7,7 @@
 
 #include "app/viewer/flow_scene.hpp"
 #include "app/viewer/words.hpp"
-#include "engine/scene/prepare.hpp"
+#include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <initializer_list>
 
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 

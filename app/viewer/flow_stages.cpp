@@ -7,8 +7,8 @@
 #include "compute/device/error.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/scene/flow_input.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {
@@ -120,7 +120,8 @@ void FlowWorker::embed() {
   const PreparedSurface& surface = vectors_->surface();
   pipeline_->embed({surface.points, surface.triangles, surface.corner_normals});
   take_timers();
-  FlowEmbedded told{pipeline_->lookup(), {}, pipeline_->embedding(), pipeline_->boxes(), embeddings_};
+  const FlowMethod& flow = pipeline_->flow();
+  FlowEmbedded told{flow.lookup(), {}, flow.embedding(), flow.boxes(), embeddings_};
   if (told.lookup.kind == FlowLookup::Kind::grid) told.rimmed = with_rims(sparse_lookup(told.lookup));
   tell(std::move(told));
 }
@@ -129,16 +130,13 @@ void FlowWorker::start() {
   has_values_ = false;
   span_ = flow_span(settings_, {vectors_->start(), vectors_->end()});
   const int n = rounds(settings_.flow.steps, loop_);
-  FlowVectors vectors;
+  const double end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
+  FlowVectors vectors = flow_vectors(*vectors_, span_.start, end);
   vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->vectors(wrapped(t), out); };
-  vectors.start = span_.start;
-  vectors.end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
-  const double speed = vectors_->statistics().percentile_98;
-  vectors.reference_speed = speed > 0 ? speed : 1;
   steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
   pipeline_->parameters = settings_.flow;
   pipeline_->parameters.steps = steps_in_all_;
-  pipeline_->start(vectors);
+  pipeline_->flow().start(vectors);
   has_values_ = true;
   steps_made_ = 0;
   {
@@ -153,12 +151,12 @@ void FlowWorker::make_step() {
   const auto before = std::chrono::steady_clock::now();
   pipeline_->parameters = settings_.flow;
   pipeline_->parameters.steps = steps_in_all_;
-  pipeline_->show_into(memory_);
-  pipeline_->step();
+  pipeline_->flow().show_into(memory_);
+  pipeline_->flow().step();
   FlowStepped told;
   told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   told.number = ++steps_made_;
-  told.time = shown_time_ = wrapped(pipeline_->time());
+  told.time = shown_time_ = wrapped(pipeline_->flow().time());
   told.scalar = scalar(told.time);
   told.vectors = vectors(told.time);
   take_timers();
@@ -166,19 +164,19 @@ void FlowWorker::make_step() {
 }
 
 void FlowWorker::answer_sample(const Vec3d& place) {
-  if (has_values_) tell(FlowSampled{place, pipeline_->sample_shown({&place, 1}).front()});
+  if (has_values_) tell(FlowSampled{place, pipeline_->flow().sample_shown({&place, 1}).front()});
 }
 
 void FlowWorker::write_boxes(std::uint64_t* memory, int embedding) {
   if (embedding != embeddings_) return;
-  pipeline_->show_boxes(memory);
+  pipeline_->flow().show_boxes(memory);
   tell(FlowBoxed{embedding});
 }
 
 void FlowWorker::write_values(const std::filesystem::path& file) {
   if (!has_values_) throw Error("there is no flow to write yet", "", "wait for the texture");
   StageTimers::Scope scope(pipeline_->timers(), "write");
-  write_flow_values(*pipeline_, file, wrapped(pipeline_->time()));
+  write_flow_values(pipeline_->flow(), file, wrapped(pipeline_->flow().time()));
 }
 
 double FlowWorker::wrapped(double time) const {

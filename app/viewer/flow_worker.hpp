@@ -17,10 +17,10 @@
 #include "compute/raycast/triangle_tree.hpp"
 #include "engine/render/geometry.hpp"
 #include "engine/render/sparse_texture.hpp"
-#include "engine/scene/ranges.hpp"
-#include "engine/scene/session.hpp"
-#include "engine/scene/spread_places.hpp"
-#include "engine/scene/vectors_in_time.hpp"
+#include "engine/scene/session/session.hpp"
+#include "engine/scene/settings/ranges.hpp"
+#include "engine/scene/surface/spread_points.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 

@@ -2,7 +2,7 @@
 #include "app/viewer/framing.hpp"
 
 #include "engine/picture/legend.hpp"
-#include "engine/scene/camera_json.hpp"
+#include "engine/scene/session/camera_json.hpp"
 
 namespace nacre {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/gl/window.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/viewer/frame_clock.hpp"
-#include "engine/scene/recording.hpp"
+#include "engine/scene/session/recording.hpp"
 
 namespace nacre {
 

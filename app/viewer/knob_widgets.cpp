@@ -12,7 +12,7 @@
 
 #include "app/viewer/words.hpp"
 #include "engine/picture/colormap.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {
@@ -73,6 +73,12 @@ void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
   if (auto* const* number = std::get_if<std::uint32_t*>(&knob.value)) {
     let_go(**number, [](std::uint32_t& shown) { ImGui::InputScalar("##value", ImGuiDataType_U32, &shown); });
     if (knob.also) *knob.also = **number;
+  }
+  if (const auto* choice = std::get_if<KnobChoice>(&knob.value)) {
+    std::string name = knob.text();
+    choice_widget(name, knob.choices);
+    const auto chosen = std::find(knob.choices.begin(), knob.choices.end(), name);
+    choice->set(choice->place, int(chosen - knob.choices.begin()));
   }
   if (auto* const* words = std::get_if<std::string*>(&knob.value)) {
     if (knob.name == "colormap")

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

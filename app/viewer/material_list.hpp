@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/viewer/mesh_results.hpp"
-#include "engine/scene/settings.hpp"
+#include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
 

@@ -10,8 +10,8 @@
 #include "app/viewer/ui.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/volume_reader.hpp"
-#include "engine/scene/phantoms.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/samples/samples.hpp"
 
 namespace nacre {
 namespace {

@@ -10,7 +10,7 @@
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
 #include "engine/picture/material_colours.hpp"
-#include "engine/scene/ranges.hpp"
+#include "engine/scene/settings/ranges.hpp"
 
 namespace nacre {
 namespace {

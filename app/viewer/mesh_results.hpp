@@ -6,7 +6,7 @@
 
 #include "app/viewer/mesh_measures.hpp"
 #include "app/viewer/viewed_volume.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

@@ -8,7 +8,7 @@
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
 #include "engine/io/mesh_writer.hpp"
-#include "engine/scene/materials.hpp"
+#include "engine/scene/volume/materials.hpp"
 #include "engine/system/extension.hpp"
 
 namespace nacre {

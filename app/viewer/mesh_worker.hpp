@@ -18,7 +18,7 @@
 #include "compute/device/stage_timers.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
 #include "compute/raycast/triangle_tree.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

@@ -9,7 +9,7 @@
 #include "compute/device/error.hpp"
 #include "engine/io/mesh_writer.hpp"
 #include "engine/io/volume_reader.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
 #include "engine/system/extension.hpp"
 
 namespace nacre {

@@ -15,7 +15,7 @@
 #include "compute/device/stage_timers.hpp"
 #include "engine/picture/image.hpp"
 #include "engine/render/view.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

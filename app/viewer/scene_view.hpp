@@ -5,7 +5,7 @@
 #include <span>
 
 #include "engine/render/view.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

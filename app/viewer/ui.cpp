@@ -13,8 +13,8 @@
 #include "app/viewer/knob_widgets.hpp"
 #include "app/viewer/words.hpp"
 #include "engine/render/camera_motion.hpp"
-#include "engine/scene/phantoms.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/samples/samples.hpp"
 
 namespace nacre {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

@@ -10,8 +10,8 @@
 #include "engine/io/mesh_input.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/image.hpp"
-#include "engine/scene/settings.hpp"
-#include "engine/scene/volume.hpp"
+#include "engine/scene/settings/settings.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

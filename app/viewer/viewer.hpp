@@ -14,7 +14,7 @@
 #include "compute/device/stage_timers.hpp"
 #include "engine/picture/image.hpp"
 #include "engine/picture/video.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/viewer/viewed_volume.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 
 namespace nacre {
 

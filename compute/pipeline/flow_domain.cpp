@@ -123,7 +123,7 @@ double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& paramet
   const Bounds b = bounds_of(mesh);
   const double h = std::max(largest(b.upper - b.lower), 1e-300) / parameters.resolution;
   const double radius = parameters.radius > 0 ? parameters.radius : octree_radius;
-  const bool brick = parameters.octree == "brick";
+  const bool brick = parameters.octree == OctreeKind::brick;
   double cells = 0, surface = 0, edges = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3d ab = mesh.points[t.b] - mesh.points[t.a], ac = mesh.points[t.c] - mesh.points[t.a];

@@ -14,25 +14,6 @@
 
 namespace nacre {
 
-/// A way to embed a surface and to move a texture on it; the calls are those of FlowPipeline.
-class FlowMethod {
- public:
-  virtual ~FlowMethod() = default;
-  virtual void embed(const FlowMesh& mesh) = 0;
-  virtual void start(const FlowVectors& vectors) = 0;
-  virtual void step() = 0;
-  virtual double time() const = 0;
-  virtual std::vector<float> shown() const = 0;
-  virtual void show_into(float* memory) = 0;
-  virtual FlowValues values() const = 0;
-  virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
-  virtual std::vector<float> sample_shown(std::span<const Vec3d> points) = 0;
-  virtual const EmbeddingInfo& embedding() const = 0;
-  virtual FlowLookup lookup() const = 0;
-  virtual FlowBoxes boxes() const = 0;
-  virtual void show_boxes(std::uint64_t* memory) = 0;
-};
-
 /// The shared part on a backend. A derived class builds its embedding in `embed` (after `begin_embedding`), its arrays
 /// in `start` (after `begin_flow`), and advances by one step in `advance`.
 template <class Backend>
@@ -40,10 +21,12 @@ class FlowMethodOn : public FlowMethod {
  public:
   FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters) : exec_(exec), parameters_(parameters) {}
 
+  /// Waits once, at its end: then the frame is there, for whoever draws it.
   void step() override {
     require_started();
     advance(step_);
     ++step_;
+    exec_.wait();
   }
 
   double time() const override { return time_of(step_); }

@@ -1,4 +1,4 @@
-// Nacre: which backend a flow pipeline runs on, chosen once.
+// Nacre: which backend a flow pipeline runs on, chosen once; its embedded flow.
 #include "compute/pipeline/flow_pipeline.hpp"
 
 #include "compute/device/error.hpp"
@@ -10,4 +10,14 @@ std::unique_ptr<nacre::FlowPipeline> nacre::make_flow_pipeline(Device& device) {
 #endif
   if (device.backend() == "cpu") return make_flow_pipeline(Cpu{}, device);
   throw Error("no pipeline for device '" + device.backend() + "'");
+}
+
+nacre::FlowMethod& nacre::FlowPipeline::flow() {
+  if (!method_) throw Error("no surface embedded");
+  return *method_;
+}
+
+const nacre::FlowMethod& nacre::FlowPipeline::flow() const {
+  if (!method_) throw Error("no surface embedded");
+  return *method_;
 }

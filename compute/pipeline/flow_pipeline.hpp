@@ -18,11 +18,17 @@
 
 namespace nacre {
 
-/// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp).
+/// What flow runs on: the closest-point grid of chapter 5, or the octree of chapter 6.
+enum class EmbeddingKind { grid, octree };
+
+/// An octree of bricks of 8^3 cells that are found by bit masks, or one whose leaves are cells, as in sec. 6.1.
+enum class OctreeKind { brick, cell };
+
+/// Settings of a flow run. Ranges and help texts are in the knob table (engine/scene/settings/knobs.hpp).
 struct FlowParameters {
-  std::string method = "grid";   ///< embedding that the flow runs on: grid, octree
-  std::string octree = "brick";  ///< brick: two levels, by bit masks; source: a tree of cells, as in sec. 6.1
-  bool neighbour_index = false;  ///< of the source's octree (sec. 6.1.4)
+  EmbeddingKind method = EmbeddingKind::grid;
+  OctreeKind octree = OctreeKind::brick;
+  bool neighbour_index = false;  ///< store every cell's neighbours, in the octree of cells (sec. 6.1.4)
   int resolution = 1024;         ///< texture cells along the longest side; of an octree: cells of its domain per axis
   int refine = 4;                ///< texture cells per closest-point cell and axis (R)
   int subcells = 4;              ///< closest-point cells per coarse cell and axis
@@ -79,7 +85,7 @@ struct FlowValues {
   explicit FlowValues(std::size_t n) : centre(n), value(n), velocity(n), normal(n), closest_point(n) {}
 };
 
-/// The arrays of the embedding that lead from a place of the surface to its shown value, on the host, for a renderer that
+/// The arrays of the embedding that lead from a point of the surface to its shown value, on the host, for a renderer that
 /// looks values up by itself.
 struct FlowLookup {
   enum class Kind {
@@ -129,23 +135,20 @@ struct RenderOptions {
   bool transparent = false;
 };
 
-/// embed, start, then step and look as often as wanted; `parameters` may be changed between calls: those of the grid
-/// take effect at the next `embed`, ttl and seed at the next `start`, the others at once. Throws Error for bad input,
-/// too little memory, and Interrupted when the watched flag is set.
-class FlowPipeline {
+/// An embedded surface and the texture that moves on it: all that can be asked of it. Its implementations are GridFlow
+/// and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
+/// Interrupted when the watched flag is set.
+class FlowMethod {
  public:
-  virtual ~FlowPipeline() = default;
-
-  FlowParameters parameters;
-
-  virtual void embed(const FlowMesh& mesh) = 0;        ///< stages embed, refine
+  virtual ~FlowMethod() = default;
+  virtual void embed(const FlowMesh& mesh) = 0;        ///< stages embed, refine; FlowPipeline::embed calls it
   virtual void start(const FlowVectors& vectors) = 0;  ///< noise and warm-up
   virtual void step() = 0;                             ///< stages velocity, advect, deposit, filter
   virtual double time() const = 0;                     ///< of the frame that is shown
-  virtual std::vector<float> shown()
-      const = 0;  ///< per surface cell (source octree: per cell), 0..1, contrast stretched
-  /// From the next step on, shown values go to `memory` of the device, too, for whoever draws them: one float per value of
-  /// `shown`; null: no more, as after `start`. Nothing is read from there.
+  /// One value per surface cell (octree of cells: per cell), 0..1, contrast stretched.
+  virtual std::vector<float> shown() const = 0;
+  /// From the next step on, shown values also go to `memory` of the device, for whoever draws them: one float per value
+  /// of `shown`; null: no longer, as after `start`. Nothing is read from there.
   virtual void show_into(float* memory) = 0;
   virtual FlowLookup lookup() const = 0;
   virtual FlowBoxes boxes() const = 0;
@@ -156,16 +159,34 @@ class FlowPipeline {
   virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
   /// Shown value at points of the surface (world coordinates); for probes and tests.
   virtual std::vector<float> sample_shown(std::span<const Vec3d> points) = 0;
-
   virtual const EmbeddingInfo& embedding() const = 0;
+};
+
+/// `embed` a surface, `start` its flow, then `step` and look as often as wanted. `parameters` may be changed between
+/// calls: those of the embedding take effect at the next `embed`, ttl and seed at the next `start`, the others at once.
+/// Throws Error for bad input and too little memory, and Interrupted when the watched flag is set.
+class FlowPipeline {
+ public:
+  virtual ~FlowPipeline() = default;
+
+  FlowParameters parameters;
+
+  virtual void embed(const FlowMesh& mesh) = 0;  ///< chooses the method; the surface and flow before it are gone
+  FlowMethod& flow();                            ///< on the embedded surface; throws Error where there is none
+  const FlowMethod& flow() const;
+
   virtual StageTimers& timers() = 0;
   virtual std::size_t peak_bytes() const = 0;             ///< of the arena
   virtual void watch(const std::atomic<bool>* stop) = 0;  ///< checked between and inside launches
+
+ protected:
+  std::unique_ptr<FlowMethod> method_;
 };
 
 std::unique_ptr<FlowPipeline> make_flow_pipeline(Device& device);
 
-/// Bytes that `embed` and `start` will need (on the grid, on an octree), from the area of the surface: within some tens of percent.
+/// Bytes that `embed` and `start` will need (on the grid, on an octree), from the area of the surface: within some tens
+/// of percent.
 double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
 double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
 

@@ -74,6 +74,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     this->warm_up();
     show();
     for (int k = first_; k < 0; ++k) advance(k);
+    exec_.wait();
   }
 
   std::vector<float> shown() const override;

@@ -18,7 +18,7 @@
 
 namespace nacre {
 
-/// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp). Lengths are in voxels: edges of the
+/// What can be turned. Ranges and help are in the knob table (engine/scene/settings/knobs.hpp). Lengths are in voxels: edges of the
 /// volume's smallest voxel spacing.
 struct MeshParameters {
   std::string solver = "tree";         ///< tree (ch. 4), redblack (sec. 3.2), serial (sec. 3.1)

@@ -146,6 +146,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     this->warm_up();
     show(value_.data(), sums_[0]);
     for (int k = first_; k < 0; ++k) advance(k);
+    exec_.wait();
   }
 
   std::vector<float> shown() const override {

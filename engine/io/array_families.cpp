@@ -92,7 +92,7 @@ ArrayFamilies find_array_families(const std::vector<PointArray>& arrays) {
     if (candidate.times == longest->times) {
       result.families.push_back(candidate.family);
     } else if (is_vector(candidate) || !have_vectors) {
-      result.warnings.push_back(fmt::format("Arrays '{}..' have other times than '{}..' and do not follow them.",
+      result.warnings.push_back(fmt::format("Arrays '{}..' have other times than '{}..' and are not shown over time.",
                                             candidate.family.members[0], longest->family.members[0]));
     }
   }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/surface.hpp"
+#include "engine/scene/surface/surface.hpp"
 
 namespace nacre {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/io/raw_mesh.hpp"
-#include "engine/scene/surface.hpp"
+#include "engine/scene/surface/surface.hpp"
 
 namespace nacre {
 

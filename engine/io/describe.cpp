@@ -73,8 +73,8 @@ void add_mesh(FileInfo& info, RawMesh mesh) {
   add_arrays(info, mesh.field_arrays, "field");
   if (mesh.time) info.times = {*mesh.time};
   if (mesh.volume_cells > 0)
-    info.warnings.push_back(
-        fmt::format("{}: of {} volume cells the outer surface is taken.", info.path, with_commas(mesh.volume_cells)));
+    info.warnings.push_back(fmt::format("{}: the outer surface of its {} volume cells is used.", info.path,
+                                        with_commas(mesh.volume_cells)));
   if (info.kind != "surface") return;
   try {
     const Surface surface = build_surface(std::move(mesh), info.path, info.warnings);

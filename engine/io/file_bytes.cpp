@@ -42,7 +42,8 @@ std::string gunzip(const std::string& packed, std::size_t unpacked_ratio, const 
     used += chunk_in - stream.avail_in;
     filled += chunk_out - stream.avail_out;
     if (filled > limit)
-      fail_reading(path, fmt::format("it unpacks to more than {} times its size", unpacked_ratio), "unpack it by hand");
+      fail_reading(path, fmt::format("it expands to more than {} times its size", unpacked_ratio),
+                   "decompress it by hand");
     if (state == Z_BUF_ERROR && used == packed.size()) fail_reading(path, "its gzip data ends too early");
     if (state != Z_OK && state != Z_STREAM_END && state != Z_BUF_ERROR) fail_reading(path, "its gzip data is damaged");
     // A gzip file may be several members one after the other.
@@ -83,14 +84,14 @@ std::string read_file(const fs::path& path, std::size_t unpacked_ratio) {
   std::error_code code;
   const std::uintmax_t size = fs::file_size(path, code);
   if (!file || code)
-    throw Error(path.string() + " cannot be opened", "the system refuses it", "check the file's permissions");
+    throw Error(path.string() + " cannot be opened", "access was denied", "check the file's permissions");
   if (size == 0) fail_reading(path, "it is empty", "check how it was written");
   std::string bytes(size, '\0');
   file.read(bytes.data(), std::streamsize(size));
   bytes.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
-  if (bytes.size() != size) fail_reading(path, "the system ended the file early");
+  if (bytes.size() != size) fail_reading(path, "reading stopped before the end of the file");
   if (bytes.compare(0, 2, "\x1f\x8b") == 0) bytes = gunzip(bytes, unpacked_ratio, path);
-  if (bytes.empty()) fail_reading(path, "what it packs is empty", "check how it was written");
+  if (bytes.empty()) fail_reading(path, "its compressed content is empty", "check how it was written");
   reject_utf16(bytes, path);
   if (bytes.compare(0, 3, "\xef\xbb\xbf") == 0) bytes.erase(0, 3);
   return bytes;

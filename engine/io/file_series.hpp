@@ -6,7 +6,7 @@
 
 #include "engine/io/array_families.hpp"
 #include "engine/io/file_steps.hpp"
-#include "engine/scene/surface.hpp"
+#include "engine/scene/surface/surface.hpp"
 
 namespace nacre {
 

@@ -10,8 +10,8 @@
 
 namespace nacre {
 
-void write_flow_values(const FlowPipeline& pipeline, const std::filesystem::path& file, double time) {
-  const FlowValues v = pipeline.values();
+void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time) {
+  const FlowValues v = flow.values();
   const std::size_t n = v.value.size();
   const auto vectors = [&](std::string name, const std::vector<Vec3f>& from) {
     PointArray array{std::move(name), 3, std::vector<float>(3 * n)};

@@ -110,7 +110,7 @@ void set_position(Volume& volume, const Header& header, const fs::path& path) {
     steps[axis][axis] = header.number(sizes[axis], 1);
     volume.origin[axis] = header.number(places[axis], 0);
   }
-  if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+  if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
   set_steps(volume, steps, path);
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/scene/volume.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

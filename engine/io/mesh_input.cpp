@@ -8,8 +8,8 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/volume_reader.hpp"
-#include "engine/scene/material_words.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/volume/material_options.hpp"
 
 namespace nacre {
 namespace {
@@ -98,11 +98,12 @@ std::vector<std::string> mesh_flaws(std::span<const std::int64_t> labels, const 
   std::vector<std::string> flaws;
   const std::vector<std::int64_t> lost = lost_labels(labels, topology);
   if (lost.size() == 1)
-    flaws.push_back(
-        fmt::format("label {} has no surface: it is lost; {}, or less --tighten, may keep it", lost[0], smaller_sizes));
+    flaws.push_back(fmt::format("label {} was lost: it has no surface; {}, or a smaller --tighten, may keep it",
+                                lost[0], smaller_sizes));
   if (lost.size() > 1)
-    flaws.push_back(fmt::format("{} labels have no surface: they are lost ({}); {}, or less --tighten, may keep them",
-                                lost.size(), some_of(lost), smaller_sizes));
+    flaws.push_back(
+        fmt::format("{} labels were lost: they have no surface ({}); {}, or a smaller --tighten, may keep them",
+                    lost.size(), some_of(lost), smaller_sizes));
   std::vector<std::int64_t> open;
   for (std::size_t m = 1; m < topology.materials.size(); ++m)
     if (topology.materials[m].facets > 0 && !topology.materials[m].closed) open.push_back(labels[m]);

@@ -12,8 +12,8 @@
 #include "compute/meshing/lattice.hpp"
 #include "compute/meshing/topology.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
-#include "engine/scene/session.hpp"
-#include "engine/scene/volume.hpp"
+#include "engine/scene/session/session.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 
@@ -39,7 +39,7 @@ std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atom
                                       const WarningSink& warn = {});
 
 /// What of the volumes is which material. `sample`: they are a phantom, which is cut where it is meant to be unless the
-/// words say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for words that mean nothing.
+/// options say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for values that cannot be parsed.
 MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialWords& words,
                           MeshInput& described, const WarningSink& warn = {});
 

@@ -31,7 +31,7 @@ std::string checked_extension(const fs::path& file, const std::vector<std::strin
   const std::string extension = lower_extension(file);
   if (std::find(known.begin(), known.end(), extension) == known.end())
     throw Error(fmt::format("cannot write {}", file.string()),
-                extension.empty() ? "its name has no extension" : fmt::format("{} is not written", extension),
+                extension.empty() ? "its name has no extension" : fmt::format("{} files cannot be written", extension),
                 fmt::format("use one of {}", fmt::join(known, " ")));
   return extension;
 }

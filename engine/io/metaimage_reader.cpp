@@ -117,7 +117,7 @@ void set_dimensions(Volume& volume, const Header& header, std::size_t bytes_per_
   for (std::int64_t i = 0; i < rank; ++i)
     if (!cursor.integer(dims[std::size_t(i)])) fail_reading(path, "its header gives no DimSize");
   if (dims[3] != 1)
-    fail_reading(path, fmt::format("it has {} entries along its dimension 4", dims[3]), "take one of them out");
+    fail_reading(path, fmt::format("it has {} entries along its dimension 4", dims[3]), "extract one of them");
   if (const std::int64_t channels = header.integer("ElementNumberOfChannels", 1); channels != 1)
     fail_reading(path, fmt::format("it has {} values per voxel", channels), "open one component at a time");
   set_dims(volume, {dims[0], dims[1], dims[2]}, bytes_per_voxel, path);
@@ -131,7 +131,7 @@ void set_place(Volume& volume, const Header& header, const fs::path& path) {
   spacing.fill(1);
   for (std::size_t i = 0; i < Rank; ++i) matrix[i * Rank + i] = 1;
   if (!header.numbers({"ElementSpacing", "ElementSize"}, spacing))
-    volume.warnings.push_back("The file gives no spacing: 1 is taken.");
+    volume.warnings.push_back("The file gives no spacing; 1 is assumed.");
   header.numbers({"Offset", "Position", "Origin"}, origin);
   header.numbers({"TransformMatrix", "Orientation", "Rotation"}, matrix);
   std::array<Vec3d, 3> steps;
@@ -140,7 +140,7 @@ void set_place(Volume& volume, const Header& header, const fs::path& path) {
     for (int row = 0; row < 3; ++row)
       steps[axis][row] = spacing[std::size_t(axis)] * matrix[std::size_t(axis) * Rank + std::size_t(row)];
   }
-  if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+  if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
   set_steps(volume, steps, path);
 }
 
@@ -157,7 +157,7 @@ Stored find_values(const Header& header, const fs::path& path) {
   const fs::path file = fs::path(name).is_absolute() ? fs::path(name) : path.parent_path() / name;
   std::error_code code;
   if (!fs::is_regular_file(file, code))
-    fail_reading(path, fmt::format("its data file {} is not there", name), "put it beside the header");
+    fail_reading(path, fmt::format("its data file {} is missing", name), "put it beside the header");
   const std::int64_t skip = header.integer("HeaderSize", 0);
   if (skip < -1 || skip > std::int64_t(1) << 50)
     fail_reading(path, fmt::format("its header says HeaderSize = {}", skip));
@@ -187,7 +187,7 @@ std::string stored_bytes(const Stored& stored, std::size_t needed, const fs::pat
   file.seekg(std::streamoff(from));
   file.read(bytes.data(), std::streamsize(bytes.size()));
   if (std::size_t(std::max<std::streamsize>(file.gcount(), 0)) != bytes.size())
-    fail_reading(path, "the system ended the file early");
+    fail_reading(path, "reading stopped before the end of the file");
   return bytes;
 }
 
@@ -215,7 +215,7 @@ void unpack(const std::string& packed, char* out, std::size_t size, const fs::pa
       fail_reading(path,
                    state == Z_DATA_ERROR ? "its packed values are damaged" : "its packed values end too early or late");
   }
-  if (filled != size) fail_reading(path, fmt::format("it needs {} bytes of values and packs {}", size, filled));
+  if (filled != size) fail_reading(path, fmt::format("it needs {} bytes of values but contains {}", size, filled));
 }
 
 template <class T>
@@ -227,7 +227,7 @@ std::vector<T> parse_values(const std::string& text, std::size_t count, const fs
     if (!cursor.number(number)) fail_reading(path, "its text has fewer numbers than voxels");
     if constexpr (std::is_integral_v<T>)
       if (!(number >= double(std::numeric_limits<T>::lowest()) && number <= double(std::numeric_limits<T>::max())))
-        fail_reading(path, fmt::format("its text has {}, which is beyond its type", number));
+        fail_reading(path, fmt::format("its text has {}, which is out of range for its type", number));
     value = T(number);
   }
   if (values.size() != count) fail_reading(path, "its text has fewer numbers than voxels");

@@ -32,7 +32,7 @@ using Image = std::unique_ptr<nifti_image, Free>;
 class PackedFile {
  public:
   explicit PackedFile(const fs::path& path) : path_(path), file_(gzopen(path.c_str(), "rb")) {
-    if (!file_) fail_reading(path, "the system refuses it", "check the file's permissions");
+    if (!file_) fail_reading(path, "access was denied", "check the file's permissions");
     gzbuffer(file_, 1 << 18);
   }
   ~PackedFile() { gzclose(file_); }
@@ -137,7 +137,7 @@ void check_dimensions(const RawHeader& header, const fs::path& path) {
   for (std::size_t d = 3; d < std::size_t(header.rank); ++d)
     if (header.dims[d] != 1 && header.dims[d] != 0)
       fail_reading(path, fmt::format("it has {} entries along its dimension {} ({})", header.dims[d], d + 1, names[d]),
-                   "take one of them out: one value per voxel is needed");
+                   "extract one of them: one value per voxel is needed");
   if (!(header.offset >= 0 && header.offset < 1e15))
     fail_reading(path, fmt::format("its values begin at byte {:.6g}", header.offset));
 }
@@ -157,7 +157,7 @@ void with_datatype(int type, const fs::path& path, Use use) {
     case DT_FLOAT32: return use(float{});
     case DT_FLOAT64: return use(double{});
     default:
-      fail_reading(path, fmt::format("its values are of type {}, no plain numbers", nifti_datatype_string(type)),
+      fail_reading(path, fmt::format("its values are of type {}, not plain numbers", nifti_datatype_string(type)),
                    "convert it to integers or floats");
   }
 }
@@ -174,7 +174,7 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
   const bool by_q = image.qform_code > 0;
   if (by_s && by_q && shear_of(steps_of(image.sto_xyz)) > 1e-3) {
     by_s = false;
-    volume.warnings.push_back("Its sform is sheared: the qform is taken for its place in the world.");
+    volume.warnings.push_back("Its sform is sheared; the qform is used instead.");
   }
   const std::array<double, 3>& sizes = header.spacing;
   const std::array<Vec3d, 3> straight{Vec3d(std::abs(sizes[0]), 0, 0), Vec3d(0, std::abs(sizes[1]), 0),
@@ -184,14 +184,14 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
     const nifti_dmat44& to_world = by_s ? image.sto_xyz : image.qto_xyz;
     volume.origin = {to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]};
     volume.space = "right-anterior-superior";
-    if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+    if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
     set_steps(volume, steps_of(to_world), path);
     return;
   }
   if (image.nifti_type == NIFTI_FTYPE_ANALYZE)
-    volume.warnings.push_back("It is an ANALYZE file, which does not say where its axes point to.");
+    volume.warnings.push_back("It is an ANALYZE file, which does not say where its axes point.");
   else
-    volume.warnings.push_back("It has neither sform nor qform: its axes are those of the world.");
+    volume.warnings.push_back("It has neither sform nor qform; its axes are assumed to be those of the world.");
 }
 
 /// Of the first extension that names labels.
@@ -225,7 +225,7 @@ void set_values(Volume& volume, std::vector<T> values, double slope, double inte
 fs::path image_path(const nifti_image& image, const fs::path& header) {
   std::error_code code;
   if (!image.iname || !fs::is_regular_file(image.iname, code))
-    fail_reading(header, "the file with its values is not there", "put it beside the header");
+    fail_reading(header, "the file with its values is missing", "put it beside the header");
   return image.iname;
 }
 

@@ -71,7 +71,7 @@ std::vector<std::string> names_of_pattern(const std::string& field, const fs::pa
   const bool ends = step != 0 && std::max(std::abs(range[0]), std::abs(range[1])) < 1 << 30 &&
                     (range[1] - range[0]) / step >= 0 && std::size_t((range[1] - range[0]) / step) < most_files;
   if (!sane || !ends)
-    fail_reading(path, fmt::format("its pattern of data files '{}' is not sane", field.substr(0, 80)));
+    fail_reading(path, fmt::format("its pattern of data files '{}' is not valid", field.substr(0, 80)));
   const std::string before = field.substr(0, percent), after = field.substr(end + 1, name_end - end - 1);
   const bool zeros = end > percent + 1 && field[percent + 1] == '0';
   std::vector<std::string> names;
@@ -95,7 +95,7 @@ void add_file(NrrdStorage& storage, const std::string& name, const fs::path& pat
   const fs::path file = fs::path(name).is_absolute() ? fs::path(name) : path.parent_path() / name;
   std::error_code code;
   if (name == "-" || !fs::is_regular_file(file, code))
-    fail_reading(path, fmt::format("its data file {} is not there", name), "put it beside the header");
+    fail_reading(path, fmt::format("its data file {} is missing", name), "put it beside the header");
   storage.bytes += fs::file_size(file, code);
   storage.files.push_back(file);
 }
@@ -106,7 +106,7 @@ NrrdStorage look_into_nrrd(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   std::size_t read = 0;
-  if (!file) fail_reading(path, "the system refuses it", "check the file's permissions");
+  if (!file) fail_reading(path, "access was denied", "check the file's permissions");
   if (!next_line(file, line, read, path)) fail_reading(path, "it is empty", "check how it was written");
   if (!line.starts_with("NRRD000")) fail_reading(path, "it does not begin with NRRD", "check that it is a NRRD file");
   NrrdStorage storage;
@@ -115,7 +115,7 @@ NrrdStorage look_into_nrrd(const fs::path& path) {
     if (!data_file_field(line, value)) continue;
     std::vector<std::string> names;
     if (value.starts_with("LIST") || value.starts_with("SKIPLIST")) {
-      if (value.starts_with("SKIPLIST")) fail_reading(path, "it skips bytes per data file", "write it as one file");
+      if (value.starts_with("SKIPLIST")) fail_reading(path, "it skips bytes in each data file", "write it as one file");
       names = listed_names(file, read, path);
     } else {
       names = names_of_pattern(value, path);

@@ -94,8 +94,8 @@ std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
     if (is_spatial(nrrd, a) && !(single && spatial > 3 && (a == 0 || a + 1 == nrrd.dim))) {
       axes.push_back(a);
     } else if (!single) {
-      fail_reading(path, describe_axis(nrrd, a) + " is not one of space: one value per voxel is needed",
-                   "take one entry out of that axis, for example with `unu slice`");
+      fail_reading(path, describe_axis(nrrd, a) + " is not a spatial axis: one value per voxel is needed",
+                   "extract one entry of that axis, for example with `unu slice`");
     } else {
       spatial -= is_spatial(nrrd, a);
     }
@@ -103,9 +103,8 @@ std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
   if (axes.size() > 3)
     fail_reading(path,
                  fmt::format("it has {} dimensions; {} is too many", axes.size(), describe_axis(nrrd, axes.back())),
-                 "take one entry out of that axis, for example with `unu slice`");
-  if (axes.size() < 3)
-    fail_reading(path, fmt::format("it has {} of the 3 axes of space", axes.size()), "open a volume");
+                 "extract one entry of that axis, for example with `unu slice`");
+  if (axes.size() < 3) fail_reading(path, fmt::format("it has {} of the 3 spatial axes", axes.size()), "open a volume");
   return {axes[0], axes[1], axes[2]};
 }
 
@@ -116,7 +115,7 @@ double spacing_of(const NrrdAxisInfo& info, unsigned axis, Volume& volume) {
     const double steps = info.center == nrrdCenterCell ? double(info.size) : double(info.size) - 1;
     return (info.max - info.min) / steps;
   }
-  volume.warnings.push_back(fmt::format("The file gives no spacing for axis {}: 1 is taken.", axis));
+  volume.warnings.push_back(fmt::format("The file gives no spacing for axis {}; 1 is assumed.", axis));
   return 1;
 }
 
@@ -135,7 +134,7 @@ void set_orientation(Volume& volume, const Nrrd& nrrd, const std::array<unsigned
   if (nrrd.spaceDim > 0)
     for (int i = 0; i < 3; ++i)
       if (!std::isnan(nrrd.spaceOrigin[i])) volume.origin[i] = nrrd.spaceOrigin[i];
-  if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+  if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
   if (nrrd.space != nrrdSpaceUnknown) volume.space = airEnumStr(nrrdSpace, nrrd.space);
   set_steps(volume, steps, path);
 }
@@ -160,7 +159,7 @@ Volume read_nrrd(const fs::path& path) {
   const NrrdEncoding* encoding = nullptr;
   const auto header = load(path, true, &encoding);
   if (header->type <= nrrdTypeUnknown || header->type >= nrrdTypeBlock)
-    fail_reading(path, "its values are blocks of bytes, no numbers", "convert it to a numeric type");
+    fail_reading(path, "its values are blocks of bytes, not numbers", "convert it to a numeric type");
   if (header->spaceDim != 0 && header->spaceDim != 3 && header->spaceDim != 4)
     fail_reading(path, fmt::format("its space has {} dimensions", header->spaceDim), "open a volume");
   const std::array<unsigned, 3> axes = spatial_axes(*header, path);

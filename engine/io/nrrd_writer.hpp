@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "engine/scene/volume.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

@@ -25,11 +25,11 @@ Counts read_header(TextCursor& text, const std::filesystem::path& path) {
       fail_reading(path, "it does not begin with OFF", "check that it is an OFF file");
   } else {
     if (magic.substr(0, at).find_first_of("4n") != magic.npos)
-      fail_reading(path, fmt::format("{} has points of other than 3 dimensions", magic), "convert it to plain OFF");
+      fail_reading(path, fmt::format("{} has points that are not three-dimensional", magic), "convert it to plain OFF");
     text.word();
     const std::string_view glued = magic.substr(at + 3);
     if (!glued.empty() && std::from_chars(glued.data(), glued.data() + glued.size(), points).ec != std::errc{})
-      fail_reading(path, fmt::format("'{}' is no OFF header", magic), "check that it is an OFF file");
+      fail_reading(path, fmt::format("'{}' is not an OFF header", magic), "check that it is an OFF file");
     probe = text;
     if (probe.word() == "BINARY") fail_reading(path, "it is binary OFF", "convert it to text OFF");
   }

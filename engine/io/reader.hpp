@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/surface.hpp"
-#include "engine/scene/volume.hpp"
+#include "engine/scene/surface/surface.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

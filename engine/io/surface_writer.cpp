@@ -132,7 +132,7 @@ void write_surface(const fs::path& file, const Surface& surface, std::optional<d
   const std::vector<std::string> known = surface_writer_extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end())
     throw Error(fmt::format("cannot write {}", file.string()),
-                extension.empty() ? "its name has no extension" : fmt::format("{} is not written", extension),
+                extension.empty() ? "its name has no extension" : fmt::format("{} files cannot be written", extension),
                 fmt::format("use one of {}", fmt::join(known, " ")));
   check(file, surface);
   if (extension == ".vtp")

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/surface.hpp"
+#include "engine/scene/surface/surface.hpp"
 
 namespace nacre {
 

@@ -38,8 +38,7 @@ std::array<Vec3d, 3> orthogonalised(std::array<Vec3d, 3> a) {
     if (cosine(pair) > cosine(worst)) worst = pair;
   const int a = std::min(worst, (worst + 1) % 3), b = std::max(worst, (worst + 1) % 3);
   const double angle = std::acos(std::clamp(dot(axes[a], axes[b]), -1.0, 1.0)) * 180 / pi;
-  fail_reading(path,
-               fmt::format("its axes {} and {} stand at {:.2f} degrees instead of 90: it is sheared", a, b, angle),
+  fail_reading(path, fmt::format("its axes {} and {} are at {:.2f} degrees instead of 90: it is sheared", a, b, angle),
                "resample it to a grid with right angles");
 }
 
@@ -52,7 +51,7 @@ void set_dims(Volume& volume, const std::array<std::int64_t, 3>& dims, std::size
   for (int axis = 0; axis < 3; ++axis) {
     if (dims[axis] <= 0) fail_reading(path, fmt::format("its size is {} voxels", sizes));
     if (dims[axis] > std::numeric_limits<std::int32_t>::max())
-      fail_reading(path, fmt::format("its size is {} voxels, which is not sane", sizes));
+      fail_reading(path, fmt::format("its size is {} voxels, which is implausible", sizes));
     voxels *= double(dims[axis]);
     volume.dims[axis] = std::int32_t(dims[axis]);
   }
@@ -60,7 +59,7 @@ void set_dims(Volume& volume, const std::array<std::int64_t, 3>& dims, std::size
     fail_reading(path, fmt::format("it is a flat image of {} voxels", sizes), "open a volume, at least 2 voxels thick");
   if (voxels * double(bytes_per_voxel) > memory_of_machine())
     fail_reading(path, fmt::format("its {} voxels do not fit in memory", sizes),
-                 "check the file, or take out a part of the volume");
+                 "check the file, or extract a part of the volume");
 }
 
 double shear_of(const std::array<Vec3d, 3>& steps) {
@@ -74,7 +73,7 @@ void set_steps(Volume& volume, const std::array<Vec3d, 3>& steps, const std::fil
   for (int axis = 0; axis < 3; ++axis) {
     const double step = length(steps[axis]);
     if (!is_finite(steps[axis]) || !std::isfinite(step))
-      fail_reading(path, fmt::format("the spacing along its axis {} is no number", axis), "correct its header");
+      fail_reading(path, fmt::format("the spacing along its axis {} is not a number", axis), "correct its header");
     if (!(step > 1e-30))
       fail_reading(path, fmt::format("the spacing along its axis {} is zero", axis), "correct its header");
     volume.spacing[axis] = step;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "engine/scene/volume.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

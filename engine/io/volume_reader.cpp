@@ -64,7 +64,7 @@ Volume read_volume(const fs::path& path) {
   require_file(path);
   const VolumeFormat* format = find_volume_format(path);
   if (!format)
-    fail_reading(path, "its name is not that of a volume",
+    fail_reading(path, "its name is not that of a known volume format",
                  fmt::format("known are {}", fmt::join(volume_extensions(), " ")));
   try {
     Volume volume = format->read(path);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/volume.hpp"
+#include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
 

@@ -48,7 +48,7 @@ Choice choose(pugi::xml_node piece, Volume& volume, const fs::path& path) {
         others.push_back(array.attribute("Name").value());
   if (!choice.array) fail_reading(path, "it has no array with one value per voxel", "check what it holds");
   if (!others.empty())
-    volume.warnings.push_back(fmt::format("Of its arrays, {} is taken and {} left.",
+    volume.warnings.push_back(fmt::format("Its array {} is used, and {} ignored.",
                                           choice.array.attribute("Name").value(), fmt::join(others, ", ")));
   return choice;
 }
@@ -92,9 +92,9 @@ Volume read_vti(const fs::path& path) {
     for (int row = 0; row < 3; ++row) steps[axis][row] = grid.direction[3 * row + axis] * grid.spacing[axis];
     if (choice.on_cells) volume.origin += 0.5 * steps[axis];
   }
-  if (!file.dataset().attribute("Spacing")) volume.warnings.push_back("The file gives no spacing: 1 is taken.");
+  if (!file.dataset().attribute("Spacing")) volume.warnings.push_back("The file gives no spacing; 1 is assumed.");
   set_dims(volume, dims, 1, path);
-  if (!is_finite(volume.origin)) fail_reading(path, "its origin is no number", "correct its header");
+  if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
   set_steps(volume, steps, path);
   take_values(volume, file, choice.array);
   return volume;

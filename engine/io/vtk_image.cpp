@@ -42,7 +42,7 @@ VtkImage read_vtk_grid(const VtkXmlFile& file) {
   read_numbers(grid, "Direction", image.direction);
   for (int axis = 0; axis < 3; ++axis) {
     const double count = extent[2 * axis + 1] - extent[2 * axis] + 1;
-    if (!(count >= 1 && count <= 1 << 20)) fail_reading(path, "its extent is empty or not sane");
+    if (!(count >= 1 && count <= 1 << 20)) fail_reading(path, "its extent is empty or implausibly large");
     image.dimensions[axis] = int(count);
     image.spacing[axis] = spacing[axis];
     image.origin[axis] = origin[axis];

@@ -111,7 +111,7 @@ std::string VtkXmlFile::unpack(pugi::xml_node array) const {
   if (std::strcmp(array.attribute("format").value(), "appended") != 0)
     return unpack_vtk_array(array.text().get(), true, encoding_, path_, name);
   const std::size_t offset = count_attribute(*this, array, "offset");
-  if (offset >= appended_.size()) fail_reading(path_, fmt::format("array '{}' lies behind its end", name));
+  if (offset >= appended_.size()) fail_reading(path_, fmt::format("array '{}' lies beyond its end", name));
   return unpack_vtk_array(std::string_view(appended_).substr(offset), appended_base64_, encoding_, path_, name);
 }
 
@@ -209,7 +209,7 @@ std::size_t count_attribute(const VtkXmlFile& file, pugi::xml_node node, const c
   // The bound keeps sums and products of counts within 64 bits.
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
   if (code != std::errc{} || end == text.data() || count > std::size_t(1) << 40)
-    fail_reading(file.path(), fmt::format("its attribute {}=\"{}\" is no count", name, text));
+    fail_reading(file.path(), fmt::format("its attribute {}=\"{}\" is not a count", name, text));
   return count;
 }
 
@@ -221,7 +221,7 @@ std::vector<CollectionStep> read_collection(const VtkXmlFile& file) {
     TextCursor text{std::string_view(entry.attribute("timestep").value())};
     double time = double(steps.size());
     if (entry.attribute("timestep") && (!text.number(time) || !std::isfinite(time)))
-      fail_reading(file.path(), fmt::format("the time step of '{}' is no number", name));
+      fail_reading(file.path(), fmt::format("the time step of '{}' is not a number", name));
     const auto same = std::find_if(steps.begin(), steps.end(), [&](const CollectionStep& s) { return s.time == time; });
     const auto part = file.path().parent_path() / name;
     if (same == steps.end())

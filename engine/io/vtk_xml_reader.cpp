@@ -178,7 +178,7 @@ class GridCells {
       }
     }
     for (const auto& [type, count] : unknown)
-      mesh.warnings.push_back(fmt::format("{} cells of the unknown VTK type {} ignored.", count, type));
+      mesh.warnings.push_back(fmt::format("{} cells of the unknown VTK type {} were ignored.", count, type));
   }
 
   const FaceCollector& faces() const { return faces_; }

@@ -8,7 +8,7 @@
 
 #include "compute/grid/vec.hpp"
 #include "engine/io/vtk_inline.hpp"
-#include "engine/scene/surface.hpp"
+#include "engine/scene/surface/surface.hpp"
 
 namespace nacre {
 

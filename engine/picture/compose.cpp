@@ -1,58 +1,13 @@
-// Nacre: putting images over each other and making them smaller.
+// Nacre: putting images over each other.
 #include "engine/picture/compose.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cassert>
 #include <cmath>
-
-#include "engine/picture/oklab.hpp"
 
 namespace nacre {
 namespace {
 
-/// Finest encoded step, near black, is 1 / (255 * 12.92) in linear light: 16384 levels resolve it four times over.
-constexpr int linear_levels = 16384;
-
-const std::array<float, 256>& linear_table() {
-  static const auto table = [] {
-    std::array<float, 256> t{};
-    for (int i = 0; i < 256; ++i) t[i] = linear_from_srgb(float(i) / 255);
-    return t;
-  }();
-  return table;
-}
-
-const std::array<std::uint8_t, linear_levels>& encoded_table() {
-  static const auto table = [] {
-    std::array<std::uint8_t, linear_levels> t{};
-    for (int i = 0; i < linear_levels; ++i)
-      t[i] = std::uint8_t(std::lround(255 * srgb_from_linear(float(i) / (linear_levels - 1))));
-    return t;
-  }();
-  return table;
-}
-
 std::uint8_t to_byte(float c) { return std::uint8_t(std::lround(std::clamp(c, 0.f, 255.f))); }
-
-/// The mean of the block of `image` whose left upper corner is (x0, y0).
-void average_block(const Image& image, int x0, int y0, int width, int height, std::uint8_t* out) {
-  const auto& linear = linear_table();
-  std::array<float, 3> sum{};
-  float alpha_sum = 0;
-  for (int y = y0; y < y0 + height; ++y)
-    for (int x = x0; x < x0 + width; ++x) {
-      const std::uint8_t* pixel = image.at(x, y);
-      const float alpha = pixel[3];
-      for (int k = 0; k < 3; ++k) sum[k] += alpha * linear[pixel[k]];
-      alpha_sum += alpha;
-    }
-  for (int k = 0; k < 3; ++k) {
-    const float mean = alpha_sum > 0 ? sum[k] / alpha_sum : 0;
-    out[k] = encoded_table()[std::min(int(std::lround(mean * (linear_levels - 1))), linear_levels - 1)];
-  }
-  out[3] = to_byte(alpha_sum / float(width * height));
-}
 
 }  // namespace
 
@@ -93,17 +48,6 @@ Image on_canvas(const Image& image, int width, int height) {
   for (int y = std::max(0, top); y < std::min(height, top + image.height); ++y)
     std::copy_n(image.at(first - left, y - top), std::size_t(past - first) * 4, canvas.at(first, y));
   return canvas;
-}
-
-Image downsample(const Image& image, int factor) {
-  assert(factor >= 1);
-  if (factor == 1 || image.width == 0 || image.height == 0) return image;
-  const int block_width = std::min(factor, image.width), block_height = std::min(factor, image.height);
-  Image small(std::max(1, image.width / factor), std::max(1, image.height / factor));
-  for (int y = 0; y < small.height; ++y)
-    for (int x = 0; x < small.width; ++x)
-      average_block(image, x * factor, y * factor, block_width, block_height, small.at(x, y));
-  return small;
 }
 
 }  // namespace nacre

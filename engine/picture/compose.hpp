@@ -1,4 +1,4 @@
-// Nacre: putting images over each other and making them smaller.
+// Nacre: putting images over each other.
 #pragma once
 
 #include <cstdint>
@@ -23,9 +23,5 @@ void blend_over(Image& bottom, const Image& top, int x = 0, int y = 0);
 
 /// The image in the middle of one of another size: cut off, or framed in the colour of its left upper corner.
 Image on_canvas(const Image& image, int width, int height);
-
-/// The mean of each factor x factor block in linear light, weighted by alpha. The result has width / factor by
-/// height / factor pixels (at least one each way); columns and rows that fill no block are left out.
-Image downsample(const Image& image, int factor);
 
 }  // namespace nacre

@@ -111,7 +111,7 @@ std::array<Axis, 2> axes_of(const LinePlot& plot) {
   double low[2]{inf, inf}, high[2]{-inf, -inf};
   const auto visible = [](double v, bool log) { return std::isfinite(v) && (!log || v > 0); };
   for (const PlotLine& line : plot.lines) {
-    if (line.x.size() != line.y.size()) throw Error("the line '" + line.name + "' has not one y for each x");
+    if (line.x.size() != line.y.size()) throw Error("the line '" + line.name + "' does not have one y for each x");
     for (std::size_t i = 0; i < line.x.size(); ++i) {
       const double p[2]{line.x[i], line.y[i]};
       if (!visible(p[0], plot.log_x) || !visible(p[1], plot.log_y)) continue;
@@ -203,7 +203,7 @@ std::string svg_stacked_bars(const StackedBars& plot) {
   if (n == 0 || plot.parts.empty()) throw Error("nothing to plot in '" + plot.title + "'");
   std::vector<double> sum(n, 0.0);
   for (const BarPart& part : plot.parts) {
-    if (part.values.size() != n) throw Error("the part '" + part.name + "' has not one value for each bar");
+    if (part.values.size() != n) throw Error("the part '" + part.name + "' does not have one value for each bar");
     for (std::size_t i = 0; i < n; ++i) sum[i] += std::max(0.0, part.values[i]);
   }
   std::size_t longest = 0;

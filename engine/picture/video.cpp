@@ -103,7 +103,7 @@ Format format_of(const fs::path& file) {
   h264.insert(h264.end(), {"-movflags", "+faststart"});
   if (extension == ".mp4") return {"mp4", yuv, h264};
   if (extension == ".mov") return {"mov", yuv, h264};
-  throw Error("cannot write the video " + file.string(), "its extension says no kind of video",
+  throw Error("cannot write the video " + file.string(), "its extension is not that of a video",
               "name it .mp4, .mov, .mkv, .webm or .gif");
 }
 
@@ -165,7 +165,7 @@ class Video : public FrameSink {
   [[noreturn]] void fail() {
     child_->wait();
     std::string reason = child_->first_complaint();
-    if (reason.empty()) reason = "ffmpeg ended before its time";
+    if (reason.empty()) reason = "ffmpeg ended early";
     const bool full = reason.find(std::strerror(ENOSPC)) != std::string::npos;
     throw Error("cannot write the video " + name_, "ffmpeg: " + reason,
                 full ? advice_on_writing(ENOSPC) : "write a folder of pictures instead");

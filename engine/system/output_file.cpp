@@ -72,7 +72,7 @@ int open_listed(const fs::path& file) {
 }
 
 std::string reason(int error_number) {
-  return error_number != 0 ? std::generic_category().message(error_number) : "not everything could be written";
+  return error_number != 0 ? std::generic_category().message(error_number) : "only a part could be written";
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ const char* advice_on_writing(int error_number) {
     case ENOTDIR: return "create the folder first or choose another one";
     case EACCES:
     case EPERM:
-    case EROFS: return "choose a place that you may write to";
+    case EROFS: return "choose a folder that you may write to";
     case ENOSPC:
     case EDQUOT: return "free some space or choose another disk";
     case EFBIG: return "raise the file size limit or write a smaller file";
@@ -99,7 +99,7 @@ OutputFile::OutputFile(fs::path target, Devices devices)
   const fs::file_status status = fs::status(destination_, error);
   const bool plain = destination_.has_filename() && (!fs::exists(status) || fs::is_regular_file(status));
   if (devices == Devices::refused && !plain)
-    throw Error("cannot write " + target_.string(), "it is not a plain file", "give the name of a file");
+    throw Error("cannot write " + target_.string(), "it is not a regular file", "give the name of a file");
   if (target_.empty()) fail(ENOENT);
   if (error == std::errc::filename_too_long) fail(ENAMETOOLONG);
   if (fs::is_directory(status) || !destination_.has_filename()) fail(EISDIR);

@@ -1,11 +1,11 @@
-// Nacre: pictures that someone has looked at and approved, and what the viewer draws today. After a change that is meant,
-// NACRE_APPROVE=1 writes them anew: look at each before it is committed.
+// Nacre: pictures that someone has looked at and approved, and what the viewer draws today. After a change that is
+// meant, NACRE_APPROVE=1 writes them anew: look at each before it is committed.
 #include <cstdlib>
 
 #include "engine/picture/compose.hpp"
-#include "engine/picture/png.hpp"
 #include "tests/app/picture_likeness.hpp"
 #include "tests/app/view_program.hpp"
+#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

@@ -1,7 +1,7 @@
 // Nacre: the tables of `nacre bench` at the smallest scale: rows, quantities beside the source's, sums, plots.
 #include "compute/device/device.hpp"
-#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
+#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {
@@ -161,7 +161,7 @@ TEST_F(BenchTables, EveryTableAndOneThatIsMissing) {
                      {"tables", {{{"name", "9.9"}, {"rows", {ratio}}}}}};
   run({"--device", "cpu", "--plots", path("plots"), "--against", write("last.json", last.dump())});
   EXPECT_EQ(status_, 1);
-  EXPECT_TRUE(contains(errors_, "has no figure where") && contains(errors_, "Table 9.9, a row")) << errors_;
+  EXPECT_TRUE(contains(errors_, "has no value where") && contains(errors_, "Table 9.9, a row")) << errors_;
   EXPECT_EQ(lines_with(errors_, "nacre"), 1) << errors_;
   EXPECT_EQ(report_["tables"].size(), 14u);
   for (const json& table : report_["tables"])

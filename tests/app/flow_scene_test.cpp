@@ -14,7 +14,7 @@
 #include "engine/gl/framebuffer.hpp"
 #include "engine/io/surface_writer.hpp"
 #include "engine/picture/png.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
 #include "tests/engine/gl/offscreen.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
@@ -208,11 +208,11 @@ TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
 
 TEST_F(FlowInView, SourceTreesAreDrawnToo) {
   Session session = small_session();
-  session.settings.flow.method = "octree";
+  session.settings.flow.method = EmbeddingKind::octree;
   open(session);
   advance();
   const Image brick = picture();
-  change([](Settings& s) { s.flow.octree = "source"; });
+  change([](Settings& s) { s.flow.octree = OctreeKind::cell; });
   advance();
   EXPECT_EQ(scene_->steps(), 1);
   EXPECT_TRUE(scene_->warnings().empty());
@@ -226,7 +226,8 @@ TEST_F(FlowInView, BoxesAreWrittenOnceAndNotCopied) {
   Session session = small_session();
   session.settings.look.play = false;
   open(session);
-  for (const char* method : {"grid", "octree"}) {
+  for (const EmbeddingKind method : {EmbeddingKind::grid, EmbeddingKind::octree}) {
+    SCOPED_TRACE(method == EmbeddingKind::grid ? "grid" : "octree");
     change([&](Settings& s) { s.flow.method = method, s.look.boxes = false; });
     advance();
     const Image plain = picture();
@@ -234,12 +235,12 @@ TEST_F(FlowInView, BoxesAreWrittenOnceAndNotCopied) {
     advance();
     EXPECT_EQ(scene_->steps(), 1);  // it stands still all the same
     const Image boxed = picture();
-    EXPECT_NE(boxed.pixels, plain.pixels) << method;
+    EXPECT_NE(boxed.pixels, plain.pixels);
     advance();
-    EXPECT_EQ(picture().pixels, boxed.pixels) << method;
+    EXPECT_EQ(picture().pixels, boxed.pixels);
     change([](Settings& s) { s.look.boxes = false; });
     advance();
-    EXPECT_EQ(picture().pixels, plain.pixels) << method;
+    EXPECT_EQ(picture().pixels, plain.pixels);
   }
   EXPECT_EQ(scene_->copied_bytes(), 0u);
 }
@@ -248,15 +249,17 @@ TEST_F(FlowInView, BoxesBelongToTheEmbeddingThatIsShown) {
   Session session = small_session();
   session.settings.look.boxes = true;
   open(session);
-  for (const char* octree : {"brick", "source", "brick"})
+  for (const OctreeKind octree : {OctreeKind::brick, OctreeKind::cell, OctreeKind::brick})
     for (const int resolution : {48, 32, 64}) {
-      change([&](Settings& s) { s.flow.method = "octree", s.flow.octree = octree, s.flow.resolution = resolution; });
+      change([&](Settings& s) {
+        s.flow.method = EmbeddingKind::octree, s.flow.octree = octree, s.flow.resolution = resolution;
+      });
       scene_->advance(0);  // asks again while it is being built
       advance();
       EXPECT_EQ(scene_->steps(), 1);
       const Image boxed = picture();
       change([](Settings& s) { s.look.boxes = false; });
-      EXPECT_NE(picture().pixels, boxed.pixels) << octree << resolution;
+      EXPECT_NE(picture().pixels, boxed.pixels) << int(octree) << " " << resolution;
       change([](Settings& s) { s.look.boxes = true; });
     }
   EXPECT_EQ(scene_->copied_bytes(), 0u);

@@ -7,7 +7,7 @@
 
 #include <map>
 
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {
@@ -91,7 +91,8 @@ struct WorkerRun {
     }
   }
 
-  /// Takes all events until the worker has nothing to do, or `enough` says so. In lockstep gives a turn for each iteration.
+  /// Takes all events until the worker has nothing to do, or `enough` says so. In lockstep gives a turn for each
+  /// iteration.
   void settle(const std::function<bool()>& enough = [] { return false; }) {
     while (!enough()) {
       worker->grant_turn();

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/surface.hpp"
+#include "engine/scene/surface/surface.hpp"
 #include "engine/system/child_process.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 

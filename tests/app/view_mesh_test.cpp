@@ -1,9 +1,9 @@
 // Nacre: meshes in the viewer, as a script runs it without a display.
 #include <cstdlib>
 
-#include "engine/picture/png.hpp"
 #include "tests/app/mesh_program.hpp"
 #include "tests/app/view_program.hpp"
+#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {
@@ -90,13 +90,19 @@ TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
 }
 
 TEST_F(ViewMesh, TheSourcesPresetIsThatOfTheHeadlessCommand) {
-  for (const char* sample : {"two-spheres", "ellipsoid"}) {  // labels, and a scalar
-    const Words alike = {"--set",    "resolution=100", "--sample", sample, "--detail", "20",
-                         "--preset", "source",         "--theta",  "0.8",  "--quiet",  "--save-session"};
+  // Labels, a scalar that is cut at an iso-value, and a region of it.
+  const std::vector<std::pair<Words, std::string>> inputs{{{"two-spheres"}, "catmull-rom"},
+                                                          {{"ellipsoid"}, "b-spline"},
+                                                          {{"ellipsoid", "--threshold", "0.3:0.6"}, "catmull-rom"}};
+  for (const auto& [input, kernel] : inputs) {
+    SCOPED_TRACE(kernel + " for " + input.back());
+    const Words alike = Words{"--set", "resolution=100", "--sample"} + input +
+                        Words{"--detail", "20", "--preset", "source", "--theta", "0.8", "--quiet", "--save-session"};
     ASSERT_EQ(nacre(Words{"mesh"} + alike + Words{path("m.json")}).status, 0);
     const Outcome run = nacre(Words{"view", "--offscreen", "--frames-count", "1"} + alike + Words{path("v.json")});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_EQ(read_json("v.json"), read_json("m.json")) << sample;
+    EXPECT_EQ(read_json("v.json"), read_json("m.json"));
+    EXPECT_EQ(read_json("m.json").at("knobs").at("kernel"), kernel);
   }
   const Outcome run = nacre({"view", "--offscreen", "--frames-count", "1", "--preset", "source", "--sample", "sphere"});
   EXPECT_EQ(run.status, 2);

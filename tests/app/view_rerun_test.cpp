@@ -9,7 +9,7 @@
 #include <string>
 
 #include "app/viewer/flow_rerun.hpp"
-#include "engine/scene/knobs.hpp"
+#include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
 namespace {
@@ -26,7 +26,7 @@ const std::map<std::string, FlowRerun>& expected() {
       {"refine", {embed, start}},
       {"subcells", {embed, start}},
       {"radius", {embed, start}},
-      {"crease", {surface, embed, start}},
+      {"crease_angle", {surface, embed, start}},
       {"vectors", {vectors, start}},
       {"time", {start}},
       {"begin_at", {start}},
@@ -64,6 +64,8 @@ Settings with_changed(const std::string& name) {
       **real = 0.5 * (**real + (**real < knob.max ? knob.max : knob.min));
     if (auto* const* whole = std::get_if<int*>(&knob.value)) ++**whole;
     if (auto* const* number = std::get_if<std::uint32_t*>(&knob.value)) ++**number;
+    if (const auto* choice = std::get_if<KnobChoice>(&knob.value))
+      choice->set(choice->place, 1 - choice->get(choice->place));
     if (auto* const* word = std::get_if<std::string*>(&knob.value))
       **word = knob.choices.empty() ? "other" : **word == knob.choices[0] ? knob.choices[1] : knob.choices[0];
   }

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "engine/picture/png.hpp"
-#include "engine/scene/session.hpp"
+#include "engine/scene/session/session.hpp"
 #include "tests/app/view_program.hpp"
+#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {
@@ -263,7 +263,6 @@ TEST_F(Scripts, ThatMeanNothingAreRefusedBeforeAnyFrame) {
   refused(script({{{"time", 1}, {"knobs", {{"background", "blue"}}}}}), 2, {"the event at 1 s", "blue"});
   refused(demo(), 2, {"--session or --script"}, {"--session", demo()});
   refused(demo(), 2, {"--live or --record"}, {"--live"});
-  refused(demo(), 2, {"--panel or --no-panel"}, {"--panel", "--no-panel"});
 }
 
 TEST_F(Scripts, WhatCannotBeWrittenIsSaid) {

@@ -11,7 +11,7 @@
 #include "app/viewer/flow_worker.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {

@@ -2,12 +2,15 @@
 #include <sstream>
 #include <thread>
 
+#include "engine/scene/settings/knobs.hpp"
 #include "tests/app/program.hpp"
 
 namespace nacre::test {
 namespace {
 
 const std::vector<std::string> all_commands = {"flow", "mesh", "view", "sample", "bench", "info"};
+
+class WordsInFiles : public AppTest {};
 
 TEST(Words, HelpVersionAndKnobs) {
   const Outcome help = nacre({"--help"});
@@ -69,6 +72,31 @@ TEST(Words, NoMoreThreadsThanProcessors) {
             std::max(1u, std::thread::hardware_concurrency()));
 }
 
+TEST(Words, EveryKnobIsAnOptionOfTheViewer) {
+  const std::string help = nacre({"view", "--help"}).out;
+  Settings settings;
+  for (const Knob& knob : knobs(settings)) {
+    EXPECT_TRUE(contains(help, "  " + knob.option() + " ") || contains(help, "  " + knob.option() + ",")) << knob.name;
+    for (const std::string& old : knob.old_options()) EXPECT_FALSE(contains(help, "  " + old + " ")) << old;
+  }
+  EXPECT_TRUE(contains(help, "  --edges,--no-edges "));
+  EXPECT_TRUE(contains(help, "  --time-stamp,--no-time "));
+}
+
+TEST_F(WordsInFiles, FlagsTurnKnobsOnAndOff) {
+  const auto knobs_after = [&](const Words& words) {
+    const Outcome run = nacre(small_flow + words + Words{"--report", path("r.json"), "--steps", "1"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return read_json("r.json").at("parameters");
+  };
+  EXPECT_EQ(knobs_after({"--neighbour-index"}).at("neighbour_index"), true);
+  EXPECT_EQ(knobs_after({"--neighbour-index", "--no-neighbour-index"}).at("neighbour_index"), false);
+  EXPECT_EQ(knobs_after({"--no-time-stamp"}).at("time_stamp"), false);
+  EXPECT_EQ(knobs_after({"--set", "legend=false", "--no-time"}).at("legend"), false);
+  EXPECT_EQ(knobs_after({"--crease", "20"}).at("crease_angle"), 20) << "an old name";
+  EXPECT_EQ(knobs_after({"--set", "crease=30"}).at("crease_angle"), 30);
+}
+
 TEST(Words, CommonOptionsOfSampleAndInfo) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.vtp").string(), session = (folder / "s.json").string();
@@ -96,7 +124,7 @@ TEST(Words, CommonOptionsOfSampleAndInfo) {
   EXPECT_EQ(info["stages"][0]["name"], "read");
 
   expect_failure(nacre({"sample", "--session", session, "--out", file}), 2, {"has no sample"});
-  expect_failure(nacre({"sample", "--out", file}), 2, {"which one"});
+  expect_failure(nacre({"sample", "--out", file}), 2, {"name a sample"});
 }
 
 TEST(Words, PicturesThatNoFileCanHoldAreRefusedBeforeTheWork) {

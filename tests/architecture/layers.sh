@@ -3,9 +3,11 @@
 set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 
-# Top folders, and the folders of compute, from the highest to the lowest: a file includes its own and lower ones.
+# Top folders, and the folders of compute and of engine/scene, from the highest to the lowest: a file includes its own and
+# lower ones.
 top_order=(app engine compute)
 compute_order=(pipeline raycast flow particles meshing embedding field grid device)
+scene_order=(session samples volume surface settings)
 
 # FOLDER:WORD... what a folder of the engine may not include, although it stands beside it.
 engine_forbidden=(
@@ -29,6 +31,18 @@ rank() {
   echo -1
 }
 
+# order_complaint WHERE FROM TO ORDER...: the same for two folders of WHERE.
+order_complaint() {
+  local from_rank to_rank
+  from_rank=$(rank "$2" "${@:4}")
+  to_rank=$(rank "$3" "${@:4}")
+  if ((from_rank < 0 || to_rank < 0)); then
+    echo "has a folder of $1 without a place in its order (${*:4})"
+  elif ((to_rank < from_rank)); then
+    echo "points upwards in $1 (${*:4})"
+  fi
+}
+
 # complaint FROM TO: why a file in folder FROM may not include one in folder TO; nothing where it may.
 complaint() {
   local from=$1 to=$2 from_rank to_rank from_sub to_sub
@@ -39,13 +53,9 @@ complaint() {
   elif ((to_rank < from_rank)); then
     echo "points upwards (${top_order[*]})"
   elif [[ $from == compute/* && $to == compute/* ]]; then
-    from_rank=$(rank "$(cut -d/ -f2 <<<"$from")" "${compute_order[@]}")
-    to_rank=$(rank "$(cut -d/ -f2 <<<"$to")" "${compute_order[@]}")
-    if ((from_rank < 0 || to_rank < 0)); then
-      echo "has a folder of compute without a place in its order (${compute_order[*]})"
-    elif ((to_rank < from_rank)); then
-      echo "points upwards in compute (${compute_order[*]})"
-    fi
+    order_complaint compute "$(cut -d/ -f2 <<<"$from")" "$(cut -d/ -f2 <<<"$to")" "${compute_order[@]}"
+  elif [[ $from == engine/scene/* && $to == engine/scene/* ]]; then
+    order_complaint engine/scene "$(cut -d/ -f3 <<<"$from")" "$(cut -d/ -f3 <<<"$to")" "${scene_order[@]}"
   elif [[ $from == engine/* && $to == engine/* ]]; then
     from_sub=$(cut -d/ -f2 <<<"$from")
     to_sub=$(cut -d/ -f2 <<<"$to")

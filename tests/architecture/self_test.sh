@@ -50,6 +50,10 @@ good_tree
 plant compute/device/up.hpp '  #  include "compute/grid/b.hpp"'
 expect layers.sh 'points upwards in compute'
 good_tree
+plant engine/scene/samples/f.hpp
+plant engine/scene/settings/up.hpp '#include "engine/scene/samples/f.hpp"'
+expect layers.sh 'points upwards in engine/scene'
+good_tree
 plant engine/picture/side.hpp '#include "engine/scene/c.hpp"'
 expect layers.sh 'engine/picture does not know engine/scene'
 good_tree

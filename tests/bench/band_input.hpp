@@ -12,7 +12,7 @@
 
 #include "compute/embedding/brick_octree.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
 
 namespace nacre {
 

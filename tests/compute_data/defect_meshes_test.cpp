@@ -8,7 +8,7 @@
 
 #include "compute/device/executor_cpu.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/scene/prepare.hpp"
+#include "engine/scene/surface/prepare.hpp"
 #include "tests/compute/embedding/check_closest_points.hpp"
 
 namespace nacre::test {

@@ -8,7 +8,7 @@
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "engine/io/volume_reader.hpp"
-#include "engine/scene/materials.hpp"
+#include "engine/scene/volume/materials.hpp"
 #include "tests/evidence/mesh_measures.hpp"
 
 namespace nacre::test {

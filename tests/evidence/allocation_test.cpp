@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "tests/compute/pipeline/choose_embedding.hpp"
 #include "tests/evidence/exact_bodies.hpp"
 #include "tests/evidence/texture_measures.hpp"
 
@@ -42,8 +43,7 @@ class StepsAllocateNothing : public testing::TestWithParam<const char*> {
   /// Of four steps of steady flow, after two.
   static long host_blocks(int resolution) {
     FlowParameters parameters;
-    parameters.method = std::string(GetParam()) == "grid" ? "grid" : "octree";
-    if (parameters.method == "octree") parameters.octree = GetParam();
+    test::choose_embedding(parameters, GetParam());
     parameters.resolution = resolution;
     FlowRun run("torus", parameters, 2);
     run.steps(2);
@@ -57,7 +57,7 @@ TEST_P(StepsAllocateNothing, OfTheFlow) {
   EXPECT_LT(fine, 20) << "sixteen times the cells";
 }
 
-INSTANTIATE_TEST_SUITE_P(On, StepsAllocateNothing, testing::Values("grid", "brick", "source"));
+INSTANTIATE_TEST_SUITE_P(On, StepsAllocateNothing, testing::Values("grid", "brick", "cell"));
 
 TEST(IterationsAllocateNothing, OfTheParticles) {
   for (const char* solver : {"tree", "redblack"}) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 
+#include "tests/compute/pipeline/choose_embedding.hpp"
 #include "tests/evidence/texture_measures.hpp"
 
 namespace nacre {
@@ -12,9 +13,8 @@ namespace {
 
 FlowParameters parameters_at(int resolution, int ttl, const std::string& embedding) {
   FlowParameters parameters;
-  parameters.method = embedding == "grid" ? "grid" : "octree";
-  if (embedding != "grid") parameters.octree = embedding;
-  parameters.resolution = embedding == "source" ? resolution / 2 : resolution;  // the yardstick is slow
+  test::choose_embedding(parameters, embedding);
+  parameters.resolution = embedding == "cell" ? resolution / 2 : resolution;  // the yardstick is slow
   parameters.ttl = ttl;
   return parameters;
 }
@@ -30,7 +30,7 @@ double median_alignment(const std::string& sample, const FlowParameters& paramet
                         const std::function<Vec3d(Vec3d)>& onto_surface) {
   FlowRun run(sample, parameters);
   run.steps(6);
-  const FlowValues values = run.pipeline->values();
+  const FlowValues values = run.pipeline->flow().values();
   std::vector<Vec3d> points;
   std::vector<Vec3f> normals, flow;
   for (std::size_t i = 0; i < values.value.size(); i += values.value.size() / 800) {
@@ -40,8 +40,8 @@ double median_alignment(const std::string& sample, const FlowParameters& paramet
     flow.push_back(values.velocity[i]);
   }
   const double error = median(alignment_errors(*run.pipeline, points, normals, flow, onto_surface));
-  std::printf("alignment on %s, %s: median %.1f degrees\n", sample.c_str(), run.pipeline->embedding().kind.c_str(),
-              error);
+  std::printf("alignment on %s, %s: median %.1f degrees\n", sample.c_str(),
+              run.pipeline->flow().embedding().kind.c_str(), error);
   return error;
 }
 
@@ -73,13 +73,14 @@ TEST_P(FlowEvidence, TextureMovesWithTheFlow) {
     FlowRun run("sphere-rotation", at_resolution(256, ttl));
     run.steps(2 * ttl);
     const int points = 6000;
-    const std::vector<float> before = run.pipeline->sample_shown(spiral_on_sphere(points, 0));
+    const std::vector<float> before = run.pipeline->flow().sample_shown(spiral_on_sphere(points, 0));
     run.steps(1);
-    const double expected = run.pipeline->parameters.step_cells * run.pipeline->embedding().cell_size /
+    const double expected = run.pipeline->parameters.step_cells * run.pipeline->flow().embedding().cell_size /
                             run.vectors->statistics().percentile_98;
     double best = -1, at = 0;
     for (double share = 0; share <= 2; share += 0.05) {
-      const double c = correlation(before, run.pipeline->sample_shown(spiral_on_sphere(points, share * expected)));
+      const double c =
+          correlation(before, run.pipeline->flow().sample_shown(spiral_on_sphere(points, share * expected)));
       if (c > best) best = c, at = share;
     }
     std::printf("motion at ttl %d: %.2f of v dt, correlation %.3f\n", ttl, at, best);
@@ -101,9 +102,9 @@ TEST_P(FlowEvidence, TextureStaysWhenTheCameraMoves) {
   /// Brightness of the pixels that see the given points.
   const auto look = [&](const Camera& camera, const std::vector<Vec3d>& points) {
     options.camera = camera;
-    const std::vector<std::uint8_t> image = run.pipeline->render(options);
+    const std::vector<std::uint8_t> image = run.pipeline->flow().render(options);
     options.texture = false;
-    const std::vector<std::uint8_t> plain = run.pipeline->render(options);  // takes the light out
+    const std::vector<std::uint8_t> plain = run.pipeline->flow().render(options);  // takes the light out
     options.texture = true;
     const Vec3d right = camera.right(), up = cross(right, camera.forward());
     std::vector<float> seen;
@@ -134,7 +135,7 @@ std::vector<float> run_bytes(int threads, FlowParameters parameters, std::uint32
   parameters.seed = seed;
   FlowRun run("torus", parameters, threads, false, 60);
   run.steps(4);
-  return run.pipeline->shown();
+  return run.pipeline->flow().shown();
 }
 
 TEST_P(FlowEvidence, OneSeedGivesOneResultOnAnyNumberOfThreads) {
@@ -155,10 +156,10 @@ TEST_P(FlowEvidence, StagnantRegionsStayGrayNoise) {
       if (flow->surface().points[i].z < 0) out[i] = {};
   };
   half.reference_speed = flow->statistics().percentile_98;
-  run.pipeline->start(half);
+  run.pipeline->flow().start(half);
   run.steps(12);
-  const FlowValues values = run.pipeline->values();
-  const std::vector<float> shown = run.pipeline->sample_shown(values.closest_point);
+  const FlowValues values = run.pipeline->flow().values();
+  const std::vector<float> shown = run.pipeline->flow().sample_shown(values.closest_point);
   double sum = 0, squares = 0;
   int n = 0, black = 0;
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -179,9 +180,9 @@ TEST_P(FlowEvidence, AllZeroVectorsGiveNoise) {
   FlowRun run("torus", at_resolution(64), 0, true, 40);
   FlowVectors still;
   still.at = [](double, std::span<Vec3f> out) { std::fill(out.begin(), out.end(), Vec3f{}); };
-  run.pipeline->start(still);
+  run.pipeline->flow().start(still);
   run.steps(3);
-  for (float v : run.pipeline->shown()) ASSERT_TRUE(v >= 0 && v <= 1);
+  for (float v : run.pipeline->flow().shown()) ASSERT_TRUE(v >= 0 && v <= 1);
 }
 
 /// The texture grid is the same whatever the closest-point grid below it.
@@ -191,14 +192,14 @@ TEST(FlowGrid, RefineDoesNotChangeWhereTheSurfaceIs) {
     FlowParameters parameters = parameters_at(128, 4, "grid");
     parameters.refine = refine;
     FlowRun run("torus", parameters, 0, true, 60);
-    cells[refine] = run.pipeline->embedding().surface_cells;
+    cells[refine] = run.pipeline->flow().embedding().surface_cells;
     run.steps(1);
   }
   for (const auto& [refine, count] : cells)
     EXPECT_NEAR(double(count), double(cells[4]), 0.02 * double(cells[4])) << refine;
 }
 
-INSTANTIATE_TEST_SUITE_P(On, FlowEvidence, testing::Values("grid", "brick", "source"),
+INSTANTIATE_TEST_SUITE_P(On, FlowEvidence, testing::Values("grid", "brick", "cell"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Nacre: meshes of bodies given as labels, with exact answers: topology, distances, no stairs, none lost.
 #include <set>
 
-#include "engine/scene/materials.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/volume/materials.hpp"
 #include "tests/evidence/exact_bodies.hpp"
 
 namespace nacre::test {

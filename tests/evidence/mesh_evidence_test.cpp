@@ -1,6 +1,6 @@
 // Nacre: meshes of bodies given as distances, with exact answers: topology, distances, shapes, energy.
-#include "engine/scene/materials.hpp"
-#include "engine/scene/phantoms.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/volume/materials.hpp"
 #include "tests/evidence/exact_bodies.hpp"
 
 namespace nacre::test {

@@ -10,9 +10,10 @@
 
 #include "compute/device/device.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
-#include "engine/scene/vectors_in_time.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
+#include "engine/scene/surface/prepare.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 
@@ -33,16 +34,11 @@ struct FlowRun {
     pipeline->parameters = parameters;
     const PreparedSurface& s = vectors->surface();
     pipeline->embed({s.points, s.triangles, s.corner_normals});
-    FlowVectors flow;
-    flow.at = [this](double t, std::span<Vec3f> out) { vectors->vectors(t, out); };
-    flow.start = vectors->start();
-    flow.end = vectors->end();
-    flow.reference_speed = vectors->statistics().percentile_98;
-    pipeline->start(flow);
+    pipeline->flow().start(flow_vectors(*vectors, vectors->start(), vectors->end()));
   }
 
   void steps(int n) {
-    for (int k = 0; k < n; ++k) pipeline->step();
+    for (int k = 0; k < n; ++k) pipeline->flow().step();
   }
 };
 
@@ -69,7 +65,7 @@ inline double correlation(std::span<const float> a, std::span<const float> b) {
 inline std::vector<double> alignment_errors(FlowPipeline& pipeline, std::span<const Vec3d> points,
                                             std::span<const Vec3f> normals, std::span<const Vec3f> flow,
                                             const std::function<Vec3d(Vec3d)>& onto_surface) {
-  const double h = pipeline.embedding().cell_size;
+  const double h = pipeline.flow().embedding().cell_size;
   constexpr int reach = 9, side = 2 * reach + 3;
   std::vector<double> errors;
   std::vector<Vec3d> patch(side * side);
@@ -78,7 +74,7 @@ inline std::vector<double> alignment_errors(FlowPipeline& pipeline, std::span<co
     for (int y = 0; y < side; ++y)
       for (int x = 0; x < side; ++x)
         patch[y * side + x] = onto_surface(points[i] + e * ((x - reach - 1) * h) + f * ((y - reach - 1) * h));
-    const std::vector<float> v = pipeline.sample_shown(patch);
+    const std::vector<float> v = pipeline.flow().sample_shown(patch);
     double xx = 0, xy = 0, yy = 0;
     for (int y = 1; y + 1 < side; ++y)
       for (int x = 1; x + 1 < side; ++x) {

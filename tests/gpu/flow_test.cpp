@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "compute/device/error.hpp"
+#include "tests/compute/pipeline/choose_embedding.hpp"
 #include "tests/gpu/each_backend.hpp"
 #include "tests/gpu/shapes.hpp"
 
@@ -17,13 +18,12 @@ struct Frames {
   std::vector<std::uint8_t> picture;
 };
 
-/// Flow around the axis of a torus `scale` times as large, its speed swinging with time; `embedding`: grid, brick, source.
+/// Flow around the axis of a torus `scale` times as large, its speed swinging with time; `embedding`: grid, brick, cell.
 Frames run(Device& device, double scale, const std::string& embedding) {
   const Shape shape = torus(120, 48, scale);
   FlowParameters parameters;
   parameters.resolution = 160;
-  parameters.method = embedding == "grid" ? "grid" : "octree";
-  if (embedding != "grid") parameters.octree = embedding;
+  test::choose_embedding(parameters, embedding);
   parameters.ttl = 4;
   parameters.steps = 20;
   const auto pipeline = make_flow_pipeline(device);
@@ -38,18 +38,18 @@ Frames run(Device& device, double scale, const std::string& embedding) {
     }
   };
   vectors.end = 3;
-  pipeline->start(vectors);
+  pipeline->flow().start(vectors);
   Frames frames;
   for (int k = 0; k < 20; ++k) {
-    pipeline->step();
-    if (k == 0) frames.first = pipeline->shown();
+    pipeline->flow().step();
+    if (k == 0) frames.first = pipeline->flow().shown();
   }
-  frames.last = pipeline->shown();
+  frames.last = pipeline->flow().shown();
   RenderOptions options;
   options.camera = fit_camera("iso", Vec3d(-1.4, -1.4, -0.4) * scale, Vec3d(1.4, 1.4, 0.4) * scale, 320, 240);
   options.width = 320;
   options.height = 240;
-  frames.picture = pipeline->render(options);
+  frames.picture = pipeline->flow().render(options);
   return frames;
 }
 
@@ -96,7 +96,7 @@ TEST_P(FlowAgreement, CudaRepeatsItselfToTheBit) {
   EXPECT_EQ(a.picture, b.picture);
 }
 
-INSTANTIATE_TEST_SUITE_P(On, FlowAgreement, testing::Values("grid", "brick", "source"),
+INSTANTIATE_TEST_SUITE_P(On, FlowAgreement, testing::Values("grid", "brick", "cell"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(CudaDevice, TooLittleMemoryIsAnErrorThatNamesAResolution) {

@@ -4,6 +4,7 @@
 
 #include "compute/device/random.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
+#include "tests/compute/pipeline/choose_embedding.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 #include "tests/gpu/each_backend.hpp"
 #include "tests/gpu/shapes.hpp"
@@ -72,8 +73,7 @@ std::vector<float> flow_frames(Device& device, const std::string& embedding, con
   const Shape shape = torus(120, 48);
   const auto pipeline = make_flow_pipeline(device);
   pipeline->parameters.resolution = 120;
-  pipeline->parameters.method = embedding == "grid" ? "grid" : "octree";
-  if (embedding != "grid") pipeline->parameters.octree = embedding;
+  test::choose_embedding(pipeline->parameters, embedding);
   pipeline->parameters.steps = 12;
   pipeline->embed(shape.mesh());
   FlowVectors vectors;
@@ -81,11 +81,11 @@ std::vector<float> flow_frames(Device& device, const std::string& embedding, con
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = Vec3f(Vec3d(-shape.points[i].y, shape.points[i].x, 0.3 * t));
   };
   vectors.end = 2;
-  pipeline->start(vectors);
+  pipeline->flow().start(vectors);
   std::vector<float> all;
   for (int k = 0; k < 12; ++k) {
-    pipeline->step();
-    const std::vector<float> frame = pipeline->shown();
+    pipeline->flow().step();
+    const std::vector<float> frame = pipeline->flow().shown();
     all.insert(all.end(), frame.begin(), frame.end());
   }
   return all;
@@ -94,7 +94,7 @@ std::vector<float> flow_frames(Device& device, const std::string& embedding, con
 TEST(RepeatOnCuda, StepsOfTheFlowAreTheSameAsGraphs) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const auto gpu = make_cuda_device(arena_limit);
-  for (const char* embedding : {"grid", "brick", "source"}) {
+  for (const char* embedding : {"grid", "brick", "cell"}) {
     const std::vector<float> graphs = flow_frames(*gpu, embedding, "1");
     EXPECT_GT(graphs.size(), 10000u);
     EXPECT_EQ(graphs, flow_frames(*gpu, embedding, "0")) << embedding;

@@ -12,7 +12,7 @@
 #include "compute/pipeline/mesh_pipeline.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/volume_reader.hpp"
-#include "engine/scene/materials.hpp"
+#include "engine/scene/volume/materials.hpp"
 
 namespace nacre {
 

@@ -7,19 +7,15 @@
 
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
+#include "tests/compute/pipeline/choose_embedding.hpp"
 
 namespace nacre::test {
 namespace {
 
-struct Way {
-  const char *name, *method, *octree;
-};
-
-class FlowDoor : public ::testing::TestWithParam<Way> {
+class FlowDoor : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    pipeline_->parameters.method = GetParam().method;
-    pipeline_->parameters.octree = GetParam().octree;
+    choose_embedding(pipeline_->parameters, GetParam());
     pipeline_->parameters.resolution = 32;
     pipeline_->embed({points_, triangles_, normals_});
     vectors_.reference_speed = 1;
@@ -40,43 +36,41 @@ class FlowDoor : public ::testing::TestWithParam<Way> {
 
 TEST_P(FlowDoor, NothingIsShownBeforeTheStart) {
   const auto expect_nothing = [&] {
-    EXPECT_THROW(pipeline_->step(), Error);
-    EXPECT_THROW(pipeline_->shown(), Error);
-    EXPECT_THROW(pipeline_->values(), Error);
-    EXPECT_THROW(pipeline_->sample_shown(points_), Error);
+    EXPECT_THROW(pipeline_->flow().step(), Error);
+    EXPECT_THROW(pipeline_->flow().shown(), Error);
+    EXPECT_THROW(pipeline_->flow().values(), Error);
+    EXPECT_THROW(pipeline_->flow().sample_shown(points_), Error);
     RenderOptions options;
     options.width = options.height = 16;
-    EXPECT_EQ(pipeline_->render(options).size(), 4u * 16 * 16) << "the plain surface";
+    EXPECT_EQ(pipeline_->flow().render(options).size(), 4u * 16 * 16) << "the plain surface";
   };
   expect_nothing();
-  pipeline_->start(vectors_);
-  pipeline_->step();
+  pipeline_->flow().start(vectors_);
+  pipeline_->flow().step();
   broken_ = true;
-  EXPECT_THROW(pipeline_->start(vectors_), Error);
+  EXPECT_THROW(pipeline_->flow().start(vectors_), Error);
   expect_nothing();
 }
 
 TEST_P(FlowDoor, MemoryOfWhoDrawsIsWrittenAndNeverRead) {
-  pipeline_->start(vectors_);
-  std::vector<float> drawn(pipeline_->shown().size(), -1.0f);
-  pipeline_->show_into(drawn.data());
-  pipeline_->step();
-  const std::vector<float> shown = pipeline_->shown();
+  pipeline_->flow().start(vectors_);
+  std::vector<float> drawn(pipeline_->flow().shown().size(), -1.0f);
+  pipeline_->flow().show_into(drawn.data());
+  pipeline_->flow().step();
+  const std::vector<float> shown = pipeline_->flow().shown();
   EXPECT_EQ(drawn, shown);
-  const std::vector<float> probed = pipeline_->sample_shown(points_);
+  const std::vector<float> probed = pipeline_->flow().sample_shown(points_);
   std::fill(drawn.begin(), drawn.end(), 7.0f);  // given back: it may hold anything
-  EXPECT_EQ(pipeline_->shown(), shown);
-  EXPECT_EQ(pipeline_->sample_shown(points_), probed);
-  pipeline_->show_into(nullptr);
-  pipeline_->step();
-  EXPECT_NE(pipeline_->shown(), shown);
+  EXPECT_EQ(pipeline_->flow().shown(), shown);
+  EXPECT_EQ(pipeline_->flow().sample_shown(points_), probed);
+  pipeline_->flow().show_into(nullptr);
+  pipeline_->flow().step();
+  EXPECT_NE(pipeline_->flow().shown(), shown);
   EXPECT_EQ(drawn, std::vector<float>(drawn.size(), 7.0f));
 }
 
-INSTANTIATE_TEST_SUITE_P(By, FlowDoor,
-                         ::testing::Values(Way{"grid", "grid", "brick"}, Way{"brick", "octree", "brick"},
-                                           Way{"source", "octree", "source"}),
-                         [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(By, FlowDoor, ::testing::Values("grid", "brick", "cell"),
+                         [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
 }  // namespace nacre::test

@@ -36,7 +36,7 @@ double coverage(FlowPipeline& pipeline, const Camera& camera, int size) {
   options.width = options.height = size;
   options.samples = 1;
   options.transparent = true;
-  const std::vector<std::uint8_t> image = pipeline.render(options);
+  const std::vector<std::uint8_t> image = pipeline.flow().render(options);
   double seen = 0;
   for (std::size_t i = 3; i < image.size(); i += 4) seen += image[i] > 127;
   return seen / (double(size) * size);

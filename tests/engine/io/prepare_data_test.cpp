@@ -7,7 +7,7 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/scene/prepare.hpp"
+#include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
 namespace {

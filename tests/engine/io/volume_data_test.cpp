@@ -3,7 +3,7 @@
 #include <numeric>
 #include <set>
 
-#include "engine/scene/materials.hpp"
+#include "engine/scene/volume/materials.hpp"
 #include "tests/engine/io/volume_files.hpp"
 
 namespace nacre::test {

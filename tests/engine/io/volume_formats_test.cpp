@@ -60,14 +60,14 @@ TEST_F(Inr, WhatIsDamagedIsAnError) {
   };
   EXPECT_TRUE(contains(failure("a.inr", inr(fields, bytes.substr(1))), "needs 12 bytes of values and holds 11"));
   EXPECT_TRUE(contains(with("VX=1", "VX=0"), "spacing along its axis 0 is zero"));
-  EXPECT_TRUE(contains(with("VX=1", "VX=nan"), "no number"));
+  EXPECT_TRUE(contains(with("VX=1", "VX=nan"), "not a number"));
   EXPECT_TRUE(contains(with("VDIM=1", "VDIM=3"), "3 values per voxel"));
   EXPECT_TRUE(contains(with("ZDIM=2", "ZDIM=1"), "flat image"));
   EXPECT_TRUE(contains(with("ZDIM=2", "ZDIM=x"), "ZDIM=x"));
   EXPECT_TRUE(contains(with("PIXSIZE=8", "PIXSIZE=7"), "PIXSIZE=7"));
   EXPECT_TRUE(contains(with("unsigned fixed", "packed"), "TYPE=packed"));
   EXPECT_TRUE(contains(with("##}", "###"), "header does not end"));
-  EXPECT_TRUE(contains(with("XDIM=3", "XDIM=9999999999"), "not sane"));
+  EXPECT_TRUE(contains(with("XDIM=3", "XDIM=9999999999"), "implausible"));
   EXPECT_TRUE(contains(failure("a.inr", "something else"), "does not begin with"));
   EXPECT_TRUE(contains(failure("a.inr", inr("TYPE=float\nPIXSIZE=32 bits\n", counting<float>(12))), "no CPU"));
 }
@@ -133,7 +133,7 @@ TEST_F(Vti, ChoosesTheScalars) {
                    array("Float32", "a", "9 9 9 9 9 9 9 9 9 9 9 9") + array("Float32", "b", twelve) + "</PointData>"));
   EXPECT_EQ(values_of(volume), count_up(12));
   ASSERT_EQ(volume.warnings.size(), 1u);
-  EXPECT_TRUE(contains(volume.warnings[0], "b is taken and a left"));
+  EXPECT_TRUE(contains(volume.warnings[0], "array b is used, and a ignored"));
   EXPECT_TRUE(contains(failure("a.vti", vti("", "<PointData>" +
                                                     array("Float32", "v", twelve + " " + twelve + " " + twelve,
                                                           "NumberOfComponents=\"3\"") +
@@ -144,7 +144,7 @@ TEST_F(Vti, ChoosesTheScalars) {
 TEST_F(Vti, WhatIsDamagedIsAnError) {
   const std::string points = "<PointData>" + array("UInt8", "v", twelve) + "</PointData>";
   EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 0 1\"", points)), "axis 1 is zero"));
-  EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 nan 1\"", points)), "no number"));
+  EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 nan 1\"", points)), "not a number"));
   EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 1 1\" Direction=\"1 1 0 0 1 0 0 0 1\"", points)), "sheared"));
   EXPECT_TRUE(contains(failure("a.vti", vti("", "<PointData>" + array("UInt8", "v", "1 2 3") + "</PointData>")),
                        "has 3 entries, 12 are needed"));

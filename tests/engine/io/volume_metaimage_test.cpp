@@ -94,7 +94,7 @@ TEST_F(MetaImage, WhatIsDamagedIsAnError) {
   EXPECT_TRUE(contains(with(plain("CompressedData = True\n"), damaged), "damaged"));
   EXPECT_TRUE(contains(with(plain("CompressedData = True\n"), deflated(bytes + "x")), "too early or late"));
   EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 0 1\n"), "axis 1 is zero"));
-  EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 nan 1\n"), "no number"));
+  EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 nan 1\n"), "not a number"));
   EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 1\n"), "ElementSpacing = 1 1"));
   EXPECT_TRUE(contains(with("DimSize = 100000 100000 100000\n"), "do not fit"));
   EXPECT_TRUE(contains(with("DimSize = 3 -2 2\n"), "3 x -2 x 2"));
@@ -105,7 +105,7 @@ TEST_F(MetaImage, WhatIsDamagedIsAnError) {
   EXPECT_TRUE(contains(failure("a.mha", meta(plain("BinaryData = False\n"), "1 2 3")), "fewer numbers than voxels"));
   EXPECT_TRUE(contains(failure("a.mha", "nothing of the kind"), "no MetaImage header"));
   for (const char* file : {"no.raw", "/dev/zero"})
-    EXPECT_TRUE(contains(failure("a.mhd", meta(plain(), "", "UCHAR", file)), "is not there"));
+    EXPECT_TRUE(contains(failure("a.mhd", meta(plain(), "", "UCHAR", file)), "is missing"));
   EXPECT_TRUE(contains(failure("a.mhd", meta(plain(), "", "UCHAR", "LIST")), "several files"));
 }
 

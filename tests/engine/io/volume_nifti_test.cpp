@@ -96,7 +96,7 @@ TEST_F(Nifti, TwoFiles) {
   header.replace(344, 3, "ni1");
   EXPECT_EQ(values_of(read("a.hdr", header)), count_up(12));
   EXPECT_EQ(values_of(read_volume(folder_ / "a.img")), count_up(12));
-  EXPECT_TRUE(contains(failure("alone.hdr", header), "file with its values is not there"));
+  EXPECT_TRUE(contains(failure("alone.hdr", header), "file with its values is missing"));
   EXPECT_TRUE(contains(failure("lonely.img", shorts), "no .hdr file beside it"));
 }
 
@@ -147,7 +147,7 @@ TEST_F(Nifti, OrientationIsKept) {
 TEST_F(Nifti, Shear) {
   Header header;
   header.sform({1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
-  EXPECT_TRUE(contains(failure("a.nii", header.with(shorts)), "axes 0 and 1 stand at 45.00 degrees"));
+  EXPECT_TRUE(contains(failure("a.nii", header.with(shorts)), "axes 0 and 1 are at 45.00 degrees"));
   const Volume volume = read("a.nii", header.qform_quarter_turn().with(shorts));
   expect_near(volume.axes[0], {0, 1, 0});
   ASSERT_EQ(volume.warnings.size(), 1u);

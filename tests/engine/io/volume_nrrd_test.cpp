@@ -115,7 +115,7 @@ TEST_F(Nrrd, ShearIsAnErrorUnlessItIsRounding) {
     return raw("uchar", "space dimension: 3\nspace directions: (1,0,0) " + direction + " (0,0,1)\n", data);
   };
   const std::string why = failure("a.nrrd", with("(1,1,0)"));
-  EXPECT_TRUE(contains(why, "axes 0 and 1 stand at 45.00 degrees")) << why;
+  EXPECT_TRUE(contains(why, "axes 0 and 1 are at 45.00 degrees")) << why;
   const Volume volume = read("a.nrrd", with("(0.0005,1,0)"));
   EXPECT_NEAR(dot(volume.axes[0], volume.axes[1]), 0, 1e-12);
   EXPECT_NEAR(length(volume.axes[1]), 1, 1e-12);
@@ -137,7 +137,7 @@ TEST_F(Nrrd, ForeignAxes) {
   EXPECT_TRUE(contains(colours, "axis 0 (RGB-color, 3 entries)")) << colours;
   const std::string steps = failure("a.nrrd", with("dimension: 4\nsizes: 2 2 2 5\n") + counting<std::uint8_t>(40));
   EXPECT_TRUE(contains(steps, "4 dimensions") && contains(steps, "axis 3 (5 entries)")) << steps;
-  EXPECT_TRUE(contains(failure("a.nrrd", with("dimension: 2\nsizes: 4 3\n") + twelve), "2 of the 3 axes"));
+  EXPECT_TRUE(contains(failure("a.nrrd", with("dimension: 2\nsizes: 4 3\n") + twelve), "2 of the 3 spatial axes"));
   EXPECT_TRUE(contains(failure("a.nrrd", with("dimension: 3\nsizes: 4 3 1\n") + twelve), "flat image of 4 x 3 x 1"));
 }
 
@@ -162,13 +162,13 @@ TEST_F(Nrrd, WhatIsDamagedIsAnError) {
 
 TEST_F(Nrrd, DataFilesThatAreNone) {
   const std::string fields = std::string("type: uchar\n") + sizes + "encoding: raw\n";
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: missing.raw\n")), "missing.raw is not there"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: /dev/zero\n")), "is not there"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "datafile: -\n")), "is not there"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "Data File: %s%d.raw 1 2 1\n")), "is not sane"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2000000000 1\n")), "is not sane"));
-  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2 0\n")), "is not sane"));
-  EXPECT_TRUE(contains(failure("a.nhdr", "NRRD0004\n" + fields + "data file: LIST\n/dev/zero\n"), "is not there"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: missing.raw\n")), "missing.raw is missing"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: /dev/zero\n")), "is missing"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "datafile: -\n")), "is missing"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "Data File: %s%d.raw 1 2 1\n")), "is not valid"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2000000000 1\n")), "is not valid"));
+  EXPECT_TRUE(contains(failure("a.nhdr", header(fields + "data file: %d.raw 1 2 0\n")), "is not valid"));
+  EXPECT_TRUE(contains(failure("a.nhdr", "NRRD0004\n" + fields + "data file: LIST\n/dev/zero\n"), "is missing"));
 }
 
 TEST_F(Nrrd, EveryTruncationAndFlippedByteEndsWell) {

@@ -159,7 +159,7 @@ TEST_F(VtkXml, DamagedArraysAreErrors) {
   EXPECT_TRUE(contains(failure("lz4.vtp", lz4), "vtkLZ4DataCompressor"));
   std::string lie = good;
   lie.replace(lie.find("Points=\"6\""), 10, "Points=\"9000000000000\"");
-  EXPECT_TRUE(contains(failure("lie.vtp", lie), "is no count"));
+  EXPECT_TRUE(contains(failure("lie.vtp", lie), "is not a count"));
   lie.replace(lie.find("9000000000000"), 13, "900000000");
   EXPECT_TRUE(contains(failure("lie.vtp", lie), "promises 900000000 points"));
 }

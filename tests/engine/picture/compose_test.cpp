@@ -1,4 +1,4 @@
-// Nacre: blending and downsampling against values computed by hand.
+// Nacre: blending against values computed by hand.
 #include "engine/picture/compose.hpp"
 
 #include <gtest/gtest.h>
@@ -41,40 +41,6 @@ TEST(BlendOver, IsCutAtTheBorders) {
     blend_over(bottom, plain_image(3, 3, {9, 9, 9, 255}), x, y);
     EXPECT_EQ(changed_pixels(before, bottom), expected) << x << " " << y;
   }
-}
-
-TEST(Downsample, KeepsAConstantForEveryLevel) {
-  for (int level = 0; level < 256; ++level) {
-    const auto c = std::uint8_t(level);
-    const Image small = downsample(plain_image(4, 4, {c, c, c, 255}), 2);
-    ASSERT_EQ(small.width, 2);
-    EXPECT_EQ(small.pixels[0], level);
-    EXPECT_EQ(small.pixels[3], 255);
-  }
-}
-
-TEST(Downsample, AveragesLight) {
-  Image board = plain_image(2, 2, {0, 0, 0, 255});
-  for (int k = 0; k < 3; ++k) board.at(0, 0)[k] = board.at(1, 1)[k] = 255;
-  const Image small = downsample(board, 2);
-  ASSERT_EQ(small.width * small.height, 1);
-  EXPECT_EQ(small.pixels[0], 188) << "half the light is 188 in sRGB, not 128";
-}
-
-TEST(Downsample, WeighsByAlpha) {
-  Image image = plain_image(2, 1, {255, 0, 0, 255});
-  for (int k = 0; k < 4; ++k) image.at(1, 0)[k] = 0;
-  const Image small = downsample(image, 2);
-  EXPECT_EQ(small.pixels[0], 255);
-  EXPECT_EQ(small.pixels[3], 128);
-}
-
-TEST(Downsample, SizesThatAreNoMultiple) {
-  const Image small = downsample(plain_image(7, 5, {1, 2, 3, 255}), 3);
-  EXPECT_EQ(small.width, 2);
-  EXPECT_EQ(small.height, 1);
-  EXPECT_EQ(downsample(plain_image(2, 2, {1, 2, 3, 255}), 5).pixels, plain_image(1, 1, {1, 2, 3, 255}).pixels);
-  EXPECT_EQ(downsample(Image(), 2).width, 0);
 }
 
 TEST(OnCanvas, CutsOffAndFrames) {

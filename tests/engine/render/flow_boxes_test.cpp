@@ -13,11 +13,11 @@ namespace {
 
 class Boxes : public test::Offscreen {
  protected:
-  void open(const std::string& method, const std::string& octree) {
-    scene_.emplace("torus", 32, 96, 4, method, octree);
-    boxes_ = scene_->pipeline->boxes();
+  void open(const std::string& embedding) {
+    scene_.emplace("torus", 32, 96, 4, embedding);
+    boxes_ = scene_->pipeline->flow().boxes();
     codes_.assign(boxes_.count() + 1, 77);  // one more, which stays
-    scene_->pipeline->show_boxes(codes_.data());
+    scene_->pipeline->flow().show_boxes(codes_.data());
     ASSERT_GE(boxes_.level_start.size(), 2u);
     ASSERT_GT(boxes_.width, 0);
   }
@@ -49,7 +49,7 @@ class Boxes : public test::Offscreen {
   /// `cells`: of the texture, along the edge of a smallest box.
   void expect_boxes(std::size_t levels_wanted, int cells) {
     EXPECT_EQ(levels(), levels_wanted);
-    EXPECT_DOUBLE_EQ(boxes_.width, cells * scene_->pipeline->embedding().cell_size);
+    EXPECT_DOUBLE_EQ(boxes_.width, cells * scene_->pipeline->flow().embedding().cell_size);
     expect_cover();
   }
 
@@ -71,19 +71,19 @@ class Boxes : public test::Offscreen {
 };
 
 TEST_F(Boxes, OfTheBrickOctreeAreItsNodesAndBricks) {
-  open("octree", "brick");
+  open("brick");
   expect_boxes(5, 8);  // 8 << 4 cells per axis
   expect_tree();
 }
 
 TEST_F(Boxes, OfTheSourcesOctreeAreItsNodes) {
-  open("octree", "source");
+  open("cell");
   expect_boxes(7, 2);
   expect_tree();
 }
 
 TEST_F(Boxes, OfTheGridAreItsBricks) {
-  open("grid", "brick");
+  open("grid");
   expect_boxes(1, 16);  // subcells x refine
 }
 

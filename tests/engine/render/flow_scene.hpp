@@ -6,8 +6,9 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/render/surface_pass.hpp"
-#include "engine/scene/prepare.hpp"
-#include "engine/scene/samples.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/prepare.hpp"
+#include "tests/compute/pipeline/choose_embedding.hpp"
 
 namespace nacre::test {
 
@@ -19,10 +20,9 @@ struct FlowScene {
   std::unique_ptr<SharedBuffer> shown;
 
   explicit FlowScene(const std::string& sample, int detail, int resolution, int refine = 4,
-                     const std::string& method = "grid", const std::string& octree = "brick") {
+                     const std::string& embedding = "grid") {
     surface = prepare(make_sample(sample, detail).load(0));
-    pipeline->parameters.method = method;
-    pipeline->parameters.octree = octree;
+    choose_embedding(pipeline->parameters, embedding);
     pipeline->parameters.resolution = resolution;
     pipeline->parameters.refine = refine;
     pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
@@ -31,19 +31,19 @@ struct FlowScene {
       const std::vector<Vec3f> field = analytic_vectors("@swirl", surface, t);
       std::copy(field.begin(), field.end(), out.begin());
     };
-    pipeline->start(vectors);
-    shown = std::make_unique<SharedBuffer>(*device, pipeline->lookup().values * sizeof(float), GL_R32F);
+    pipeline->flow().start(vectors);
+    shown = std::make_unique<SharedBuffer>(*device, pipeline->flow().lookup().values * sizeof(float), GL_R32F);
     step();
   }
 
   void step() {
-    pipeline->show_into(static_cast<float*>(shown->begin_write(true)));
-    pipeline->step();
+    pipeline->flow().show_into(static_cast<float*>(shown->begin_write(true)));
+    pipeline->flow().step();
     shown->end_write();
   }
 
   SurfaceTexture texture(std::size_t page = 0) const {
-    const FlowLookup l = pipeline->lookup();
+    const FlowLookup l = pipeline->flow().lookup();
     if (l.kind != FlowLookup::Kind::grid)
       return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer, l.child}, page);
     const SparseLookup lookup{l.bricks, l.subcells, l.refine, l.origin, l.cell_size, l.brick_index, l.block, l.texel};

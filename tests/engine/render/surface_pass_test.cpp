@@ -58,7 +58,7 @@ class TwoPictures {
     options.colours = colormap("sea").table;
     rays.width = width;
     rays.height = height;
-    rays.pixels = scene.pipeline->render(options);
+    rays.pixels = scene.pipeline->flow().render(options);
     draw(scene, scalar, page);
   }
 
@@ -151,7 +151,7 @@ TEST_F(Render, OddDivisorsAgreeToo) {
 TEST_F(Render, ArraysOnSeveralPagesLookTheSame) {
   test::FlowScene scene("sphere", 24, 96);
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
-  const std::size_t page = std::bit_ceil(2 * scene.pipeline->lookup().texel.size()) / 4;  // with their rims
+  const std::size_t page = std::bit_ceil(2 * scene.pipeline->flow().lookup().texel.size()) / 4;  // with their rims
   const TwoPictures one(scene, camera, {}), paged(scene, camera, {}, page);
   EXPECT_EQ(one.opengl.pixels, paged.opengl.pixels);
   EXPECT_THROW(scene.texture(page / 8), Error);  // more pages than there are texture units for
@@ -159,7 +159,7 @@ TEST_F(Render, ArraysOnSeveralPagesLookTheSame) {
 
 TEST_F(Render, OctreesLookAsRaysSeeThem) {
   for (const int resolution : {64, 100}) {
-    test::FlowScene scene("sphere", 24, resolution, 4, "octree");
+    test::FlowScene scene("sphere", 24, resolution, 4, "brick");
     const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
     const TwoPictures two(scene, camera, heights(scene));
     two.keep("octree");
@@ -168,20 +168,20 @@ TEST_F(Render, OctreesLookAsRaysSeeThem) {
 }
 
 TEST_F(Render, TheSourcesOctreeLooksAsRaysSeeIt) {
-  test::FlowScene scene("sphere", 24, 64, 4, "octree", "source");
+  test::FlowScene scene("sphere", 24, 64, 4, "cell");
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
   const TwoPictures two(scene, camera, heights(scene));
   two.keep("source_octree");
   expect_alike(two, 0.3, 0.5, 0.005);
-  const std::size_t page = std::bit_ceil(scene.pipeline->lookup().child.size()) / 4;
+  const std::size_t page = std::bit_ceil(scene.pipeline->flow().lookup().child.size()) / 4;
   const TwoPictures paged(scene, camera, heights(scene), page);
   EXPECT_EQ(two.opengl.pixels, paged.opengl.pixels);
 }
 
 TEST_F(Render, OctreesLieOnPagesToo) {
-  test::FlowScene scene("torus", 32, 128, 4, "octree");
+  test::FlowScene scene("torus", 32, 128, 4, "brick");
   const Camera camera = fit_camera("+x", scene.surface.points, TwoPictures::width, TwoPictures::height);
-  const std::size_t page = std::bit_ceil(scene.pipeline->lookup().layer.size()) / 4;
+  const std::size_t page = std::bit_ceil(scene.pipeline->flow().lookup().layer.size()) / 4;
   const TwoPictures one(scene, camera, {}), paged(scene, camera, {}, page);
   EXPECT_EQ(one.opengl.pixels, paged.opengl.pixels);
 }

@@ -94,7 +94,7 @@ TEST(OutputFile, FollowsALinkToAFileThatIsNotThereYet) {
 }
 
 TEST(OutputFile, DevicesCanBeRefused) {
-  EXPECT_NE(error_of([] { OutputFile("/dev/null", OutputFile::Devices::refused); }).find("not a plain file"),
+  EXPECT_NE(error_of([] { OutputFile("/dev/null", OutputFile::Devices::refused); }).find("not a regular file"),
             std::string::npos);
   EXPECT_EQ(error_of([] { OutputFile("/dev/null").commit(); }), "");
 }

@@ -1,0 +1,74 @@
+// Nacre: all settings of a run.
+#pragma once
+
+#include <string>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+
+namespace nacre {
+
+/// What becomes a material of a volume, as text; engine/scene/volume/material_options.hpp parses it.
+struct MaterialWords {
+  bool labels = false;    ///< the values are labels, whatever they look like
+  std::string isovalue;   ///< V[,V...]
+  std::string threshold;  ///< LO:HI
+  std::string materials;  ///< L[,L...]: labels to keep; empty: all
+  std::string merge;      ///< A:B[,A:B...]: label A becomes B
+  int min_component = 0;  ///< drop pieces of fewer voxels
+};
+
+/// What the viewer draws, and how. Nothing here changes a result.
+struct Look {
+  bool play = true;                         ///< flow: time goes on
+  bool edges = false;                       ///< of triangles
+  bool arrows = false;                      ///< flow: vectors as arrows
+  int arrow_count = 1500;                   ///< over the whole surface
+  double arrow_length = 1;                  ///< of the reference speed, in mean distances between arrows
+  bool triangles = true, particles = true;  ///< mesh
+  bool curves = true;                       ///< mesh: junctions
+  bool boxes = false;                       ///< those of the tree, or grid
+  std::string particle_color = "energy";    ///< energy, size
+  std::string hidden, ghosts;               ///< L[,L...]: labels of materials
+  int worst = 0;                            ///< mesh: so many of the worst triangles stand out
+  std::string clip = "none";                ///< x, y, z: nothing is drawn before the plane across that axis
+  double clip_at = 0.5;                     ///< its place in the bounding box
+  bool clip_back = false;                   ///< nothing is drawn behind it instead
+  std::string slice = "none";               ///< x, y, z: a plane of the volume
+  double slice_at = 0.5;
+  std::string slice_field = "volume";          ///< volume, material, distance, size
+  std::string slice_range;                     ///< LO:HI of a volume's values; empty: nearly all of them
+  double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
+  double ambient = 0.3;                        ///< share of the light that comes from everywhere
+  std::string turning = "turntable";           ///< turntable, trackball
+  bool panel = true;                           ///< over the picture
+  std::string tab = "data";                    ///< of the panel
+  std::string theme = "dark";                  ///< of the panels: dark, light
+  double text_size = 1;                        ///< of the panels
+};
+
+/// Values of all knobs; the defaults are the members' initial values. The table is in knobs.hpp.
+struct Settings {
+  FlowParameters flow;
+  MeshParameters mesh;
+  MaterialWords materials;
+  Look look;
+  double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
+
+  std::string vectors;  ///< array name or @field; empty: chosen
+  double crease = 40;   ///< degrees
+  std::string time;     ///< LO:HI of the data; empty: all of it
+  double begin_at = 0;  ///< share of that time at which the first frame is
+  std::string color = "speed";
+  std::string colormap = "sea";
+  std::string color_range;         ///< LO:HI; empty: of the data
+  std::string camera = "iso";      ///< a view or a JSON file
+  double orbit = 0;                ///< degrees per frame
+  int width = 1024, height = 768;  ///< of the picture
+  int samples = 2;                 ///< rays per pixel and axis
+  std::string background = "#ffffff";
+  int fps = 25;
+  bool legend = true, time_stamp = true;
+};
+
+}  // namespace nacre

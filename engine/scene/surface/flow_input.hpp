@@ -1,0 +1,38 @@
+// Nacre: a surface with vectors over time, ready for the flow pipeline: the same for commands and viewer.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/scene/settings/settings.hpp"
+#include "engine/scene/surface/surface.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
+
+namespace nacre {
+
+/// Receives what a user should know, in the order in which it is found; full sentences.
+struct FlowNews {
+  std::function<void(const std::string& sentence)> warn;
+  std::function<void(const VectorChoice& choice)> chosen;  ///< which vectors, and why
+  std::function<void(const Surface& first)> read = {};     ///< the first step, before a choice is made; may be empty
+};
+
+/// Prepares the surface of `series`, chooses vectors and looks at all steps. Throws Error where there is nothing to
+/// show, Interrupted when `stop` is set.
+VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowNews& news,
+                              const std::atomic<bool>* stop = nullptr);
+
+/// Warns where the vectors show little: all zero, mostly normal to the surface, zero in many places.
+void warn_of_vectors(const VectorsInTime& vectors, const FlowNews& news);
+
+/// The vectors of `input` between two times of the data, as the flow pipeline takes them; `input` must outlive them.
+/// Where nothing moves, the reference speed is 1.
+FlowVectors flow_vectors(VectorsInTime& input, double start, double end);
+
+/// The corners of all triangles, one after the other: what a camera must see. Points that no triangle uses do not
+/// count.
+std::vector<Vec3d> triangle_corners(const PreparedSurface& surface);
+
+}  // namespace nacre

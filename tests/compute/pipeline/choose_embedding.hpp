@@ -1,0 +1,18 @@
+// Nacre: the three embeddings of flow by one name, for tests that run on each.
+#pragma once
+
+#include <stdexcept>
+#include <string_view>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+
+namespace nacre::test {
+
+/// `name`: grid, brick (the octree of bricks) or cell (the octree whose leaves are cells).
+inline void choose_embedding(FlowParameters& parameters, std::string_view name) {
+  if (name != "grid" && name != "brick" && name != "cell") throw std::invalid_argument("no such embedding");
+  parameters.method = name == "grid" ? EmbeddingKind::grid : EmbeddingKind::octree;
+  parameters.octree = name == "cell" ? OctreeKind::cell : OctreeKind::brick;
+}
+
+}  // namespace nacre::test

@@ -1,0 +1,23 @@
+// Nacre: PNG files as tests read them back.
+#include "tests/engine/picture/read_png.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb_image.h>
+
+nacre::Image nacre::read_png(const std::filesystem::path& file) {
+  int width = 0, height = 0, channels = 0;
+  stbi_uc* const pixels = stbi_load(file.c_str(), &width, &height, &channels, 4);
+  if (!pixels) throw std::runtime_error("cannot read " + file.string() + ": " + stbi_failure_reason());
+  Image image(width, height);
+  std::copy_n(pixels, image.pixels.size(), image.pixels.begin());
+  stbi_image_free(pixels);
+  return image;
+}

@@ -1,0 +1,69 @@
+// Nacre: places for arrows: even, by area, the same for one seed.
+#include "engine/scene/surface/spread_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/samples/samples.hpp"
+
+namespace nacre {
+namespace {
+
+Vec3d point_at(const Surface& s, const SurfacePlace& place) {
+  const Triangle& t = s.triangles[place.triangle];
+  return s.points[t.a] * double(place.weights.x) + s.points[t.b] * double(place.weights.y) +
+         s.points[t.c] * double(place.weights.z);
+}
+
+TEST(SpreadPlaces, KeepTheirDistance) {
+  const Surface sphere = make_sample("sphere", 24).load(0);
+  const int count = 400;
+  const auto places = spread_places(sphere.points, sphere.triangles, count, 1);
+  ASSERT_EQ(places.size(), std::size_t(count));
+  const double room = std::sqrt(surface_area(sphere.points, sphere.triangles) / count);
+  double nearest = 1e300;
+  for (std::size_t a = 0; a < places.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b)
+      nearest = std::min(nearest, length(point_at(sphere, places[a]) - point_at(sphere, places[b])));
+  EXPECT_GT(nearest, 0.5 * room);  // uniform ones would be at 0.03 of it
+}
+
+TEST(SpreadPlaces, CountByAreaNotByTriangles) {
+  // A large triangle, and many small ones with half of its area together.
+  std::vector<Vec3d> points{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+  std::vector<Triangle> triangles{{0, 1, 2}};
+  for (std::uint32_t k = 0; k < 50; ++k) {
+    const double x = 3 + 0.02 * k;
+    const auto n = std::uint32_t(points.size());
+    points.insert(points.end(), {{x, 0, 0}, {x + 0.02, 0, 0}, {x, 1, 0}, {x + 0.02, 1, 0}});
+    triangles.push_back({n, n + 1, n + 2});
+    triangles.push_back({n + 2, n + 1, n + 3});
+  }
+  const auto places = spread_places(points, triangles, 500, 3);
+  ASSERT_EQ(places.size(), 500u);
+  const auto large = std::count_if(places.begin(), places.end(), [](const SurfacePlace& p) { return p.triangle == 0; });
+  EXPECT_NEAR(double(large), 500 * 2 / 3.0, 25);
+}
+
+TEST(SpreadPlaces, OneSeedOneResult) {
+  const Surface torus = make_sample("torus", 24).load(0);
+  const auto at = [&](std::uint32_t seed) {
+    std::vector<std::uint32_t> triangles;
+    for (const SurfacePlace& p : spread_places(torus.points, torus.triangles, 100, seed))
+      triangles.push_back(p.triangle);
+    return triangles;
+  };
+  EXPECT_EQ(at(5), at(5));
+  EXPECT_NE(at(5), at(6));
+}
+
+TEST(SpreadPlaces, NothingToStandOn) {
+  const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  EXPECT_TRUE(spread_places(points, std::vector<Triangle>{{0, 1, 2}}, 10, 1).empty());
+  EXPECT_TRUE(spread_places({}, {}, 10, 1).empty());
+}
+
+}  // namespace
+}  // namespace nacre
