@@ -75,10 +75,7 @@ void MeshWorker::build_fields() { pipeline_->build_fields(); }
 
 void MeshWorker::relax() {
   RelaxBegun told{pipeline_->info(), 0, 0, 0};
-  const int particles = pipeline_->parameters.particles;
-  const double wanted = particles > 0 ? particles : told.info.expected_particles;
-  told.capacity = std::int64_t(1.6 * wanted) + 20000;  // as the solver has
-  told.box_capacity = told.capacity;
+  told.capacity = told.box_capacity = pipeline_->particle_capacity();
   {
     std::scoped_lock lock(mutex_);
     lent_.reset();
