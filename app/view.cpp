@@ -223,6 +223,11 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   check_view_outputs(options, viewer.session);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
   viewer.open_device = [&] { return open_device(options.common); };
+  viewer.open_spare_device = [&] {
+    CommonOptions spare = options.common;
+    spare.device = "cpu";
+    return open_device(spare);
+  };
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
   viewer.session.settings.look.panel = begins_with_panel(options, settings.look);

@@ -36,6 +36,7 @@ class FlowScene : public Scene {
   void set_settings(const Settings& settings) override;
   void cancel() override { worker_.cancel(); }
   bool halted() const override { return worker_.cancelled() || !failure_.empty(); }
+  std::string lost_device() const override { return worker_.lost_device(); }
   void resume() override { worker_.resume(); }
   void draw(const View& view) override;
   Image overlay(int width, int height) override;

@@ -119,7 +119,8 @@ void FlowWorker::embed() {
   pipeline_->parameters = settings_.flow;
   const PreparedSurface& surface = vectors_->surface();
   pipeline_->embed({surface.points, surface.triangles, surface.corner_normals});
-  take_timers();
+  take_timers(*pipeline_);
+  check_device();
   FlowEmbedded told{pipeline_->lookup(), {}, pipeline_->embedding(), pipeline_->boxes(), embeddings_};
   if (told.lookup.kind == FlowLookup::Kind::grid) told.rimmed = with_rims(sparse_lookup(told.lookup));
   tell(std::move(told));
@@ -161,7 +162,8 @@ void FlowWorker::make_step() {
   told.time = shown_time_ = wrapped(pipeline_->time());
   told.scalar = scalar(told.time);
   told.vectors = vectors(told.time);
-  take_timers();
+  take_timers(*pipeline_);
+  check_device();
   tell(std::move(told));
 }
 

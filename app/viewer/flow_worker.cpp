@@ -50,7 +50,7 @@ std::optional<FlowEvent> FlowWorker::wait(const std::atomic<bool>& stop, double 
 
 bool FlowWorker::ready() const {
   std::scoped_lock lock(mutex_);
-  return started_ && !cancelled_ && !next() && !step_ && doing_ != FlowStage::step && events_.empty();
+  return started_ && lost_.empty() && !cancelled_ && !next() && !step_ && doing_ != FlowStage::step && events_.empty();
 }
 
 void FlowWorker::step(float* memory) {
@@ -128,16 +128,6 @@ void FlowWorker::write(const std::filesystem::path& file) {
   wake_.notify_all();
 }
 
-StageTimers FlowWorker::timers() const {
-  std::scoped_lock lock(mutex_);
-  return timers_;
-}
-
-std::size_t FlowWorker::peak_bytes() const {
-  std::scoped_lock lock(mutex_);
-  return peak_bytes_;
-}
-
 std::string FlowWorker::stage() const {
   std::scoped_lock lock(mutex_);
   if (!doing_) return "";
@@ -154,13 +144,13 @@ std::string FlowWorker::stage() const {
 }
 
 std::optional<FlowStage> FlowWorker::next() const {
-  if (cancelled_ || failed_) return {};
+  if (cancelled_ || failed_ || !lost_.empty()) return {};
   for (int k = 0; k < int(FlowStage::step); ++k)
     if (due_.has(FlowStage(k))) return FlowStage(k);
   return {};
 }
 
-bool FlowWorker::has_work() const { return next() || file_ || sample_ || boxes_ || step_; }
+bool FlowWorker::has_work() const { return file_ || (lost_.empty() && (next() || sample_ || boxes_ || step_)); }
 
 void FlowWorker::run() {
   if (makes_way_) make_way();
@@ -197,7 +187,8 @@ void FlowWorker::run_errands(std::unique_lock<std::mutex>& lock) {
     if (!failure.empty()) tell(FlowFailed{failure});
   } catch (const Interrupted&) {  // the end: nobody waits for answers any more
   }
-  take_timers();
+  take_timers(*pipeline_);
+  if (const std::string why = lost_device(); !why.empty()) tell(FlowFailed{why});
   lock.lock();
 }
 
@@ -222,9 +213,10 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
   } catch (const Interrupted&) {  // for other knobs, or the end
     interrupted = true;
   }
-  take_timers();
+  take_timers(*pipeline_);
   lock.lock();
   doing_.reset();
+  if (!lost_.empty() && failure.empty()) failure = lost_;
   if (interrupted || !failure.empty()) undo(stage, failure);
 }
 
@@ -244,7 +236,7 @@ void FlowWorker::undo(FlowStage stage, const std::string& failure) {
 
 void FlowWorker::drop_step() {
   step_.reset();
-  events_.emplace_back(std::in_place_type<FlowInterrupted>);
+  if (lost_.empty()) events_.emplace_back(std::in_place_type<FlowInterrupted>);
 }
 
 void FlowWorker::make(FlowStage stage) {
@@ -257,13 +249,6 @@ void FlowWorker::make(FlowStage stage) {
     case FlowStage::start: return start();
     case FlowStage::step: return make_step();
   }
-}
-
-void FlowWorker::take_timers() {
-  const std::size_t peak = pipeline_->peak_bytes();
-  std::scoped_lock lock(mutex_);
-  timers_ = pipeline_->timers();
-  peak_bytes_ = peak;
 }
 
 }  // namespace nacre

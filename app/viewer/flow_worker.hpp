@@ -149,9 +149,7 @@ class FlowWorker : public Worker<FlowEvent> {
   /// Writes the values as `nacre flow --out` does, after what goes on; ends with FlowWritten.
   void write(const std::filesystem::path& file);
 
-  StageTimers timers() const;  ///< of all stages so far
-  std::string stage() const;   ///< what it does now, for the panel: "embedding"; empty: nothing
-  std::size_t peak_bytes() const;
+  std::string stage() const;  ///< what it does now, for the panel: "embedding"; empty: nothing
 
  private:
   // With the mutex held.
@@ -174,7 +172,6 @@ class FlowWorker : public Worker<FlowEvent> {
   void answer_sample(const Vec3d& place);
   void write_boxes(std::uint64_t* memory, int embedding);
   void write_values(const std::filesystem::path& file);
-  void take_timers();
   double wrapped(double time) const;
   std::vector<float> scalar(double time);
   std::shared_ptr<const std::vector<Vec3f>> vectors(double time);
@@ -203,8 +200,6 @@ class FlowWorker : public Worker<FlowEvent> {
   std::optional<std::filesystem::path> file_;
   bool started_ = false, failed_ = false, cancelled_ = false, working_ = false;
   Settings wanted_;
-  StageTimers timers_;
-  std::size_t peak_bytes_ = 0;
 };
 
 }  // namespace nacre

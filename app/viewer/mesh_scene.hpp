@@ -35,6 +35,7 @@ class MeshScene : public Scene {
   void set_settings(const Settings& settings) override;
   void cancel() override { worker_.cancel(); }
   bool halted() const override { return worker_.halted(); }
+  std::string lost_device() const override { return worker_.lost_device(); }
   void resume() override;
   void draw(const View& view) override;
   Image overlay(int width, int height) override;

@@ -147,22 +147,12 @@ bool MeshWorker::settled() const {
 
 bool MeshWorker::halted() const {
   std::scoped_lock lock(mutex_);
-  return cancelled_ || failed_;
-}
-
-StageTimers MeshWorker::timers() const {
-  std::scoped_lock lock(mutex_);
-  return timers_;
-}
-
-std::size_t MeshWorker::peak_bytes() const {
-  std::scoped_lock lock(mutex_);
-  return peak_bytes_;
+  return cancelled_ || failed_ || !lost_.empty();
 }
 
 MeshProgress MeshWorker::progress() const {
   std::scoped_lock lock(mutex_);
-  const bool more = next_ != MeshStage::done && !cancelled_ && !failed_;  // also between two stages
+  const bool more = next_ != MeshStage::done && !cancelled_ && !failed_ && lost_.empty();  // also between two stages
   if (doing_ == MeshStage::done && !more && !writing_) return {};
   return progress_.stage.empty() ? MeshProgress{"start", -1, 0, 0, 0} : progress_;
 }
@@ -170,6 +160,7 @@ MeshProgress MeshWorker::progress() const {
 /// What comes next. A slice waits for nothing but fields; a file waits for the mesh, unless there will be none.
 MeshWorker::Task MeshWorker::due() const {
   const bool halted = cancelled_ || failed_, complete = next_ == MeshStage::done;
+  if (!lost_.empty()) return file_ ? Task::write : Task::none;
   if (slice_due()) return Task::slice;
   if (!complete && !halted) return Task::stage;
   if (file_) return Task::write;
@@ -215,7 +206,9 @@ void MeshWorker::perform(Task task) {
     case Task::write: write_result(); break;
     case Task::none: break;
   }
-  take_timers();
+  const bool answered = lost_device().empty();
+  take_timers(*pipeline_);
+  if (const std::string why = lost_device(); answered && !why.empty()) tell(MeshFailed{why});
 }
 
 /// What went wrong in words; none: nothing, or an interruption.
@@ -293,7 +286,8 @@ bool MeshWorker::await_turn() {
 }
 
 void MeshWorker::note_progress(const MeshProgress& progress) {
-  take_timers();
+  take_timers(*pipeline_);
+  check_device();
   {
     std::scoped_lock lock(mutex_);
     progress_ = progress;
@@ -319,13 +313,6 @@ void MeshWorker::show(const MeshProgress& progress, bool step) {
     unshown_ = false;
   }
   if (step || memory) tell(std::move(told));
-}
-
-void MeshWorker::take_timers() {
-  const std::size_t peak = pipeline_->peak_bytes();
-  std::scoped_lock lock(mutex_);
-  timers_ = pipeline_->timers();
-  peak_bytes_ = peak;
 }
 
 }  // namespace nacre

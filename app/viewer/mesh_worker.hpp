@@ -147,8 +147,6 @@ class MeshWorker : public Worker<MeshEvent> {
   bool settled() const;  ///< all is done, and told
   bool halted() const;   ///< cancelled, or failed
 
-  StageTimers timers() const;
-  std::size_t peak_bytes() const;
   MeshProgress progress() const;  ///< stage empty: nothing goes on
 
  private:
@@ -174,7 +172,6 @@ class MeshWorker : public Worker<MeshEvent> {
   void note_progress(const MeshProgress& progress);
   void show(const MeshProgress& progress, bool step);
   bool await_turn();
-  void take_timers();
 
   Session session_;
   std::unique_ptr<Device> device_;
@@ -203,9 +200,7 @@ class MeshWorker : public Worker<MeshEvent> {
   bool slice_filled_ = false;
   std::optional<std::filesystem::path> file_;
   bool writing_ = false;
-  StageTimers timers_;
   MeshProgress progress_;
-  std::size_t peak_bytes_ = 0;
 };
 
 }  // namespace nacre

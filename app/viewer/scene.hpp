@@ -51,6 +51,8 @@ class Scene {
   virtual void resume() = 0;
   /// It was cancelled, or has failed: nothing goes on until `resume` or other knobs.
   virtual bool halted() const = 0;
+  /// Why the device does not compute any more, whatever is asked of it; empty: it does. The scene is of no more use.
+  virtual std::string lost_device() const { return {}; }
 
   virtual void draw(const View& view) = 0;
   /// What lies over the picture and belongs to it: legend and time; transparent elsewhere. Changes with `overlay_version`.

@@ -111,11 +111,21 @@ class Viewer {
     news_.forget();
     framing_.forget();
     // A number of frames is for headless runs to compare with: these do not begin again after the last time.
-    const SceneOptions options{options_.open_device, options_.frames == 0, waits(), !waits(), options_.stop};
+    const SceneOptions options{spare_ ? options_.open_spare_device : options_.open_device, options_.frames == 0,
+                               waits(), !waits(), options_.stop};
     for (const auto& file : session_.inputs)
       if (window_) recent_.add(file);
     scene_ = is_mesh_input(session_) ? make_mesh_scene(session_, options) : make_flow_scene(session_, options);
     told_ = session_;
+  }
+
+  /// A GPU that has failed does not come back while the program runs. The session is as it was.
+  void leave_lost_device() {
+    const std::string why = scene_->lost_device();
+    if (why.empty() || spare_ || !window_) return;
+    spare_ = true;
+    complain(fmt::format("{} stopped working ({}); the processor computes from now on", scene_->device().name(), why));
+    open();
   }
 
   bool done() const {
@@ -133,6 +143,7 @@ class Viewer {
     std::vector<Screenshot> pictures = player_->advance(time - played_since_, session_);
     if (!dropped_.empty()) open_dropped();
     take_changes();
+    leave_lost_device();
     const bool advanced = advance_scene();
     scene_->settle_knobs(session_);
     if (options_.offscreen && !scene_->failure().empty()) throw Error(scene_->failure());
@@ -426,7 +437,7 @@ class Viewer {
   Framing framing_;
   FreeArea area_;
   FrameClock clock_;
-  bool quit_ = false;
+  bool quit_ = false, spare_ = false;
   int counted_ = 0;
   News news_;
   std::vector<std::filesystem::path> dropped_;

@@ -21,6 +21,8 @@ namespace nacre {
 struct ViewerOptions {
   Session session;                                       ///< its events are played
   std::function<std::unique_ptr<Device>()> open_device;  ///< one for each input that is opened
+  /// Where a device is lost in a window: that of the inputs from then on.
+  std::function<std::unique_ptr<Device>()> open_spare_device;
   bool offscreen = false;
   bool live = false;     ///< offscreen: frames do not wait for compute, as in a window
   int frames = 0;        ///< ends after as many complete ones; 0: when the window is closed, or what is played ends

@@ -8,8 +8,13 @@
 #include <deque>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <utility>
+
+#include "compute/device/error.hpp"
+#include "compute/device/stage_timers.hpp"
+#include "engine/system/faults.hpp"
 
 namespace nacre {
 
@@ -33,8 +38,22 @@ class Worker {
     return event;
   }
 
-  /// Interrupts what it does and ends the thread; memory that was lent is not written any more. Nothing may be asked for
-  /// after this.
+  StageTimers timers() const {  ///< of all stages so far
+    std::scoped_lock lock(mutex_);
+    return timers_;
+  }
+  std::size_t peak_bytes() const {
+    std::scoped_lock lock(mutex_);
+    return peak_bytes_;
+  }
+  /// Why the device does not answer any more; empty: it does. Nothing is computed on a device that is lost.
+  std::string lost_device() const {
+    std::scoped_lock lock(mutex_);
+    return lost_;
+  }
+
+  /// Interrupts what it does and ends the thread; memory that was lent is not written any more. Nothing may be asked
+  /// for after this.
   void finish() {
     if (!thread_.joinable()) return;
     {
@@ -71,10 +90,34 @@ class Worker {
     told_.notify_all();
   }
 
+  /// Takes over the times of a pipeline's stages, which waits for its device. After some errors a GPU refuses every call
+  /// until the program ends: such a device is lost.
+  template <class Pipeline>
+  void take_timers(Pipeline& pipeline) {
+    try {
+      if (fault_due("lost-device")) throw Error("CUDA: a stage failed", "an illegal memory access was encountered");
+      StageTimers timers = pipeline.timers();
+      const std::size_t peak = pipeline.peak_bytes();
+      std::scoped_lock lock(mutex_);
+      timers_ = std::move(timers);
+      peak_bytes_ = peak;
+    } catch (const std::exception& error) {
+      std::scoped_lock lock(mutex_);
+      if (lost_.empty()) lost_ = error.what();
+    }
+  }
+  /// Throws Error where the device is lost.
+  void check_device() const {
+    if (const std::string why = lost_device(); !why.empty()) throw Error(why);
+  }
+
   mutable std::mutex mutex_;
   std::condition_variable wake_, told_;
   std::deque<Event> events_;
   bool ends_ = false;
+  StageTimers timers_;
+  std::size_t peak_bytes_ = 0;
+  std::string lost_;
   std::atomic<bool> interrupt_{false};
   std::thread thread_;
 };
