@@ -18,8 +18,8 @@
 #include "engine/scene/ranges.hpp"
 #include "engine/scene/samples.hpp"
 #if NACRE_HAS_VIEWER
-#include "app/viewer/scene.hpp"
-#include "app/viewer/viewer.hpp"
+#include "app/viewer/scene/scene.hpp"
+#include "app/viewer/window/viewer.hpp"
 #endif
 
 namespace nacre {
@@ -192,8 +192,8 @@ nlohmann::json view_report(const ViewerResult& result, const Session& session) {
   return report;
 }
 
-/// The last picture, the frames, the result, and what the session itself has written. `lost_video`: is told why there is
-/// none.
+/// The last picture, the frames, the result, and what the session itself has written. `lost_video`: is told why there
+/// is none.
 std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerResult& result, FrameSink* record,
                                        std::string& lost_video) {
   std::vector<std::string> outputs;

@@ -1,7 +1,7 @@
 // Nacre: a fitted camera stays fitted until somebody moves it.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/framing.hpp"
+#include "app/viewer/scene/framing.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,16 +32,14 @@ class Corners : public Scene {
 
   void advance(double) override {}
   bool advance_and_wait(const std::atomic<bool>&, double) override { return true; }
-  void set_settings(const Settings&) override {}
+  void set_settings(const Settings&, const ChangedKnobs&) override {}
   void cancel() override {}
   void resume() override {}
   bool halted() const override { return false; }
   void draw(const View&) override {}
   Image overlay(int, int) override { return {}; }
   std::uint64_t overlay_version() const override { return 0; }
-  void data_panel(Session&) override {}
-  void result_panel(Session&) override {}
-  std::optional<Probed> probe(const Vec3d&, const Vec3d&) override { return {}; }
+  std::optional<ProbeResult> probe(const Vec3d&, const Vec3d&) override { return {}; }
   void write_result(const std::filesystem::path&) override {}
   void begin_write(const std::filesystem::path&) override {}
   std::optional<std::string> take_written() override { return {}; }
@@ -54,10 +52,7 @@ class Corners : public Scene {
   const std::string& failure() const override { return nothing_; }
   const std::vector<std::string>& warnings() const override { return none_; }
   std::string remark() const override { return ""; }
-  int steps() const override { return 0; }
-  std::uint64_t copied_bytes() const override { return 0; }
-  StageTimers timers() const override { return {}; }
-  std::size_t peak_bytes() const override { return 0; }
+  SceneTotals totals() const override { return {}; }
   const Device& device() const override { return *device_; }
   void finish() override {}
 

@@ -1,7 +1,7 @@
 // Nacre: knobs of the panel, turned with the mouse. No OpenGL here.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/knob_widgets.hpp"
+#include "app/viewer/panel/knob_widgets.hpp"
 
 #include <gtest/gtest.h>
 #include <imgui.h>

@@ -1,7 +1,7 @@
 // Nacre: the thread that meshes beside the frames: what it tells, and which stages run again after a knob was changed.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/mesh_worker.hpp"
+#include "app/viewer/mesh/mesh_worker.hpp"
 
 #include <gtest/gtest.h>
 
@@ -95,7 +95,8 @@ struct WorkerRun {
     }
   }
 
-  /// Takes all events until the worker has nothing to do, or `enough` says so. In lockstep gives a turn for each iteration.
+  /// Takes all events until the worker has nothing to do, or `enough` says so. In lockstep gives a turn for each
+  /// iteration.
   void settle(const std::function<bool()>& enough = [] { return false; }) {
     while (!enough()) {
       worker->grant_turn();

@@ -1,7 +1,7 @@
 // Nacre: a computing device that stops working while the viewer runs: the window goes on without it.
 #include "tests/app/view_program.hpp"
 #if NACRE_HAS_VIEWER
-#include "app/viewer/worker.hpp"
+#include "app/viewer/scene/worker.hpp"
 #endif
 
 namespace nacre::test {

@@ -1,0 +1,35 @@
+// Nacre: which knobs have changed since the last frame. It is found once a frame; all who care are told.
+#pragma once
+
+#include <algorithm>
+#include <initializer_list>
+#include <map>
+#include <string>
+
+#include "engine/scene/session.hpp"
+
+namespace nacre {
+
+class ChangedKnobs {
+ public:
+  ChangedKnobs() = default;
+  /// `values`: new values by the names of knobs, as in SessionEvent.
+  explicit ChangedKnobs(std::map<std::string, std::string> values) : values_(std::move(values)) {}
+
+  bool empty() const { return values_.empty(); }
+  bool has(const char* name) const { return values_.contains(name); }
+  bool has_any(std::initializer_list<const char*> names) const {
+    return std::any_of(names.begin(), names.end(), [this](const char* name) { return has(name); });
+  }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+/// Those that differ.
+inline ChangedKnobs changed_knobs(const Session& before, const Session& after) {
+  std::optional<SessionEvent> change = session_change(before, after);
+  return change ? ChangedKnobs(std::move(change->knobs)) : ChangedKnobs();
+}
+
+}  // namespace nacre
