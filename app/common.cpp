@@ -63,7 +63,7 @@ void wait_for_second_press() {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }
 
-/// Knobs that are on or off have a flag where a command line often wants the other one than the default.
+/// Flags with help of their own, for knobs that a command line often wants the other way than they are by default.
 struct KnobFlag {
   const char *knob, *option, *value, *help;
 };
@@ -117,13 +117,18 @@ KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
     const std::string group = "Knobs: " + knob.group;
     const auto* flag = std::find_if(std::begin(knob_flags), std::end(knob_flags),
                                     [&](const KnobFlag& each) { return knob.name == each.knob; });
-    if (flag == std::end(knob_flags) && std::holds_alternative<bool*>(knob.value)) continue;  // by --set
+    if (command_name == "view" && knob.name == "panel") continue;  // the command's own, which depends on others
     auto& [name, value] = values_.emplace_back(knob.name, std::make_unique<std::string>());
     if (flag != std::end(knob_flags)) {
       command
           .add_flag_callback(
               flag->option, [flag, text = value.get()] { *text = flag->value; }, flag->help)
           ->group(group);
+      continue;
+    }
+    if (std::holds_alternative<bool*>(knob.value)) {
+      const std::string on = knob.option(), off = "--no-" + on.substr(2);
+      command.add_flag(on + ",!" + off, *value, knob.help)->take_last()->group(group);
       continue;
     }
     std::string help = knob.help;

@@ -59,7 +59,7 @@ void limit_threads(int threads);
 /// Remembers what the knob options of a command line say, to be applied over a session's values.
 class KnobOptions {
  public:
-  /// Adds one option per knob that concerns the command; of those that are on or off, flags of a few.
+  /// Adds one option per knob that concerns the command; for those that are on or off a flag, and one with `no-`.
   KnobOptions(CLI::App& command, const std::string& name);
   /// Was this knob given, as an option or by `--set`?
   bool given(const std::string& name, const std::vector<std::string>& set) const;

@@ -19,6 +19,7 @@
 #include "engine/scene/samples.hpp"
 #if NACRE_HAS_VIEWER
 #include "app/viewer/scene/scene.hpp"
+#include "app/viewer/scene/view_defaults.hpp"
 #include "app/viewer/window/viewer.hpp"
 #endif
 
@@ -36,8 +37,7 @@ struct ViewOptions {
 #if NACRE_HAS_VIEWER
 
 constexpr const char* welcome_sample = "torus";
-constexpr int welcome_detail = 128;      // reads in a moment
-constexpr int welcome_resolution = 512;  // and moves soon after
+constexpr int welcome_detail = 128;  // reads in a moment
 
 bool is_scalar_phantom(const std::string& name) {
   const std::vector<PhantomInfo> all = phantoms();
@@ -63,7 +63,7 @@ Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
   }
   const bool own_resolution = !common.session.empty() || knobs.given("resolution", common.set);
   Session session = asked_session(common, words, knobs, "view", [&](Settings& settings) {
-    if (!own_resolution) settings.flow.resolution = welcome_resolution;
+    if (!own_resolution) settings.flow.resolution = view_defaults().flow.resolution;
     if (options.preset == "source") apply_source_preset(settings);
   });
   if (options.preset == "source") choose_source_kernel(options.common, knobs, session);

@@ -31,4 +31,12 @@ Camera pan(const Camera& camera, double dx, double dy, double aspect);
 /// is.
 Camera dolly(const Camera& camera, double factor, double x, double y, double aspect);
 
+/// The camera that looks at the plane through `point` in place of that through its target: the picture is the same, but
+/// `dolly` and `pan` move what is there with the cursor. For a perspective camera `point` must lie before the eye.
+Camera look_at_depth(const Camera& camera, const Vec3d& point);
+
+/// `factor` as far as `dolly` may go in a scene of this `extent` (world; > 0): the picture's height at the target stays
+/// between a ten-thousandth and ten times that. A camera beyond these limits may come back.
+double limited_zoom(const Camera& camera, double factor, double extent);
+
 }  // namespace nacre

@@ -3,9 +3,13 @@
 
 #include "app/viewer/flow/flow_scene.hpp"
 
+#include <imgui.h>
+
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <set>
 #include <thread>
@@ -302,6 +306,50 @@ TEST_F(FlowInView, PanelShowsFiguresAndChangesNothingByItself) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) colours.insert({image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]});
   EXPECT_GT(colours.size(), 15u);  // of letters, frames, the plot's line; an empty window has five
+}
+
+TEST_F(FlowInView, TimesAreThoseOfTheDataFromTheFirst) {
+  EXPECT_EQ(time_text(17280), "17280");
+  EXPECT_EQ(time_text(0.1 + 0.2), "0.3");
+  const test::TemporaryFolder folder;
+  std::ofstream series(folder / "a.pvd");
+  series << "<VTKFile type=\"Collection\" version=\"0.1\"><Collection>";
+  for (const int k : {0, 1}) {
+    const std::string name = "a" + std::to_string(k) + ".vtp";
+    write_surface(folder / name, make_sample("sphere", 24).load(0));
+    series << "<DataSet timestep=\"" << (k == 0 ? 17280.25 : 17281.5) << "\" file=\"" << name << "\"/>";
+  }
+  series << "</Collection></VTKFile>";
+  series.close();
+  Session session = small_session();
+  session.sample.clear();
+  session.inputs = {folder / "a.pvd"};
+  open(session);
+  std::set<std::string> states;
+  while (!scene_->complete()) {
+    scene_->advance(0);
+    states.insert(scene_->state());
+    ASSERT_EQ(scene_->failure(), "");
+  }
+  states.erase("");  // nothing was known
+  EXPECT_EQ(states.begin()->substr(0, 13), "time 17280.25") << *states.begin();
+  EXPECT_EQ(states.rbegin()->substr(0, 9), "time 1728") << *states.rbegin();
+}
+
+TEST_F(FlowInView, WhatCanBeTickedInALightPopupIsSeen) {
+  ImGuiLayer imgui(nullptr);
+  for (const char* theme : {"light", "dark"}) {
+    session_.settings.look.theme = theme;
+    imgui.begin(100, 100, 0.1, session_.settings.look);
+    const ImVec4* colours = ImGui::GetStyle().Colors;
+    const ImVec4 box = colours[ImGuiCol_FrameBg];
+    for (const ImGuiCol behind : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) {
+      const ImVec4 paper = colours[behind];
+      const float differs = box.w * (std::abs(box.x - paper.x) + std::abs(box.y - paper.y) + std::abs(box.z - paper.z));
+      EXPECT_GT(differs, 0.15f) << theme << " " << ImGui::GetStyleColorName(behind);
+    }
+    imgui.end();
+  }
 }
 
 TEST_F(FlowInView, WritesItsValues) {

@@ -161,7 +161,11 @@ TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
   EXPECT_EQ(line(*probed, "between"), "outside and 1");
   const double ratio = std::stod(line(*probed, "radius ratio"));
   EXPECT_TRUE(ratio > 0.3 && ratio <= 1) << ratio;
-  EXPECT_NE(line(*probed, "wanted size"), "");
+  const Vec3d spacing = scene_->results().volume->input.spacing;
+  ASSERT_NE(spacing.x, 1) << "or voxels could not be told from the world's units";
+  const double size = std::stod(line(*probed, "wanted size"));  // voxels
+  EXPECT_GE(size, 0.999 * session_.settings.mesh.min_size);
+  EXPECT_LE(size, 1.001 * session_.settings.mesh.max_size);
   change([](Settings& s) { s.look.hidden = "1"; });
   const std::optional<ProbeResult> behind = scene_->probe(from, along);
   ASSERT_TRUE(behind);

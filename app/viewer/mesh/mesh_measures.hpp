@@ -34,7 +34,7 @@ struct MeshMeasures {
   SurfaceQuality quality;
   SurfaceDistance distance;
   std::vector<WorstTriangle> worst;  ///< the worst first; at most 1000
-  std::vector<float> size;           ///< sizing field at the mesh's points, world units
+  std::vector<float> size;           ///< sizing field at the mesh's points, voxels
 };
 
 std::vector<WorstTriangle> worst_triangles(const SurfaceMesh& mesh, std::size_t most);

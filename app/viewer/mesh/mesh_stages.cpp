@@ -112,6 +112,7 @@ void MeshWorker::measure() {
   if (interrupt_) throw Interrupted();
   measures->distance = pipeline_->surface_distance(*mesh_);
   measures->size = pipeline_->field_at(MeshField::size, mesh_->points);
+  for (float& size : measures->size) size /= float(viewed_->voxel_length());
   tell(MeshMeasured{std::move(measures)});
 }
 

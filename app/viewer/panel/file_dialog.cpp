@@ -78,6 +78,7 @@ void FileDialog::list() {
 void FileDialog::enter(const fs::path& folder) {
   folder_ = folder.lexically_normal();
   if (mode_ == Mode::open) name_.clear();
+  takes_keys_ = true;
   list();
 }
 
@@ -113,6 +114,8 @@ void FileDialog::draw_entries() {
       entry.chosen = !entry.folder && !taken_back;
       if (entry.folder && ImGui::IsMouseDoubleClicked(0)) into = folder_ / entry.name;
       if (!entry.folder) name_ = taken_back ? "" : entry.name;
+      if (entry.folder && mode_ == Mode::open) name_ = entry.name + "/";  // which Enter opens
+      takes_keys_ = true;
       for (const Entry& other : entries_)
         if (taken_back && other.chosen) name_ = other.name;
       if (!entry.folder && ImGui::IsMouseDoubleClicked(0)) entered_ = true;
@@ -147,7 +150,7 @@ std::optional<std::vector<fs::path>> FileDialog::draw() {
   draw_entries();
   if (!trouble_.empty()) ImGui::TextUnformatted(trouble_.c_str());
   ImGui::SetNextItemWidth(-1);
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (std::exchange(takes_keys_, false) || ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   if (ImGui::InputTextWithHint("##name", mode_ == Mode::save ? "name" : "name or path", &name_,
                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll))
     entered_ = true;

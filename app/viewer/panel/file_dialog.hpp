@@ -41,6 +41,7 @@ class FileDialog {
   std::filesystem::path folder_;
   std::vector<Entry> entries_;
   bool open_ = false, begins_ = false, all_files_ = false, entered_ = false;
+  bool takes_keys_ = false;          ///< after a click: what is typed goes to the name again
   std::filesystem::path overwrite_;  ///< asked about already
 };
 

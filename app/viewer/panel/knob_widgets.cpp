@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "app/viewer/panel/imgui_text.hpp"
+#include "app/viewer/scene/view_defaults.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/scene/knobs.hpp"
 
@@ -84,9 +85,9 @@ void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
   }
 }
 
-/// Its value in a Settings of defaults.
+/// Its value when the viewer begins.
 std::string default_text(const Knob& knob) {
-  static Settings defaults;
+  static Settings defaults = view_defaults();
   static const std::vector<Knob> table = knobs(defaults);
   for (const Knob& each : table)
     if (each.name == knob.name) return each.text();

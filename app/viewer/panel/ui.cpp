@@ -154,10 +154,33 @@ void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
   drawn_tab_ = tab;
 }
 
+/// At the bottom of the panel, so that nothing above moves under the cursor. Returns its height; 0: nothing failed.
+float Ui::failure_window(const Scene& scene, const UiFacts& facts) {
+  if (scene.failure().empty()) return 0;
+  const Layout l = layout(facts.width);
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const std::string& line = scene.failure();
+  const float wrap = l.panel - 2 * style.WindowPadding.x;
+  const float high = std::min(ImGui::CalcTextSize(line.c_str(), nullptr, false, wrap).y + 2 * style.WindowPadding.y,
+                              0.4f * float(facts.height));
+  ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - l.status - high));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, high));
+  const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
+  if (ImGui::Begin("failure", nullptr, fixed)) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.95f, 0.4f, 0.3f, 1));
+    ImGui::TextWrapped("%s", line.c_str());
+    ImGui::PopStyleColor();
+  }
+  ImGui::End();
+  return high;
+}
+
 void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
   const Layout l = layout(facts.width);
+  const float below = l.status + failure_window(scene, facts);
   ImGui::SetNextWindowPos(ImVec2(0, l.menu));
-  ImGui::SetNextWindowSize(ImVec2(l.panel, std::max(50.0f, float(facts.height) - l.menu - l.status)));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, std::max(50.0f, float(facts.height) - l.menu - below)));
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("panel", nullptr, fixed)) {
@@ -165,11 +188,6 @@ void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
     const std::string title = scene.title();
     ImGui::TextWrapped("%s", !title.empty() ? title.c_str() : scene.failure().empty() ? "opening ..." : refused);
     ImGui::TextWrapped("%s", title.empty() ? "" : scene.state().c_str());
-    if (!scene.failure().empty()) {
-      ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.95f, 0.4f, 0.3f, 1));
-      ImGui::TextWrapped("%s", scene.failure().c_str());
-      ImGui::PopStyleColor();
-    }
     tabs(session, scene, facts);
   }
   ImGui::End();

@@ -65,6 +65,7 @@ class Ui {
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void view_menu(Session& session, UiRequests& requests);
   void panel(Session& session, Scene& scene, const UiFacts& facts);
+  float failure_window(const Scene& scene, const UiFacts& facts);
   void tabs(Session& session, Scene& scene, const UiFacts& facts);
   void knob_tab(Session& session);
   void status(Scene& scene, const UiFacts& facts, UiRequests& requests);

@@ -5,17 +5,13 @@
 #include "app/viewer/scene/clip.hpp"
 
 namespace nacre {
-namespace {
 
-/// Of the middle of their bounding box to its corners.
-double radius_of(std::span<const Vec3d> points) {
+double diameter_of(std::span<const Vec3d> points) {
   if (points.empty()) return 0;
   Vec3d low = points.front(), high = low;
   for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
-  return 0.5 * length(high - low);
+  return length(high - low);
 }
-
-}  // namespace
 
 View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height) {
   const Settings& settings = session.settings;
@@ -27,7 +23,7 @@ View scene_view(const Session& session, std::span<const Vec3d> corners, double t
   view.light = turned_light(flow_light(view.camera), view.camera, look.light_azimuth, look.light_height);
   view.clip = clip_plane(look, corners);
   view.ambient = float(look.ambient);
-  view.extent = 2 * radius_of(corners) + length(view.camera.eye - view.camera.target);
+  view.extent = diameter_of(corners) + length(view.camera.eye - view.camera.target);
   return view;
 }
 

@@ -13,6 +13,9 @@ namespace nacre {
 /// (world) on width x height pixels.
 View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height);
 
+/// Of their bounding box; 0: there are none.
+double diameter_of(std::span<const Vec3d> points);
+
 /// Behind the scene, encoded.
 std::array<float, 4> background_of(const Settings& settings);
 

@@ -10,7 +10,8 @@
 
 namespace nacre {
 
-void move_camera(Camera& camera, const std::string& turning, const FreeArea& area) {
+void move_camera(Camera& camera, const std::string& turning, const FreeArea& area, double extent,
+                 const FindSurface& find) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse) return;
   const double dx = 2 * io.MouseDelta.x / std::max(1, area.width);
@@ -20,10 +21,13 @@ void move_camera(Camera& camera, const std::string& turning, const FreeArea& are
     camera = pan(camera, dx, dy, area.aspect());
   else if (io.MouseDown[0])
     camera = turning == "trackball" ? turn_ball(camera, dx, dy) : turn_table(camera, dx, dy);
-  if (io.MouseWheel != 0) {
-    const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
-    camera = dolly(camera, std::pow(0.88, double(io.MouseWheel)), x, y, area.aspect());
-  }
+  if (io.MouseWheel == 0) return;
+  const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
+  const auto [from, along] = ray_under(camera, x, y, area.aspect());
+  if (const std::optional<Vec3d> met = find(from, along)) camera = look_at_depth(camera, *met);
+  double factor = std::pow(0.88, double(io.MouseWheel));
+  if (extent > 0) factor = limited_zoom(camera, factor, extent);
+  camera = dolly(camera, factor, x, y, area.aspect());
 }
 
 }  // namespace nacre

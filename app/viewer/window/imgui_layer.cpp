@@ -43,6 +43,7 @@ void ImGuiLayer::dress(const Look& look) {
   style.WindowRounding = style.FrameRounding = style.PopupRounding = style.GrabRounding = 3;
   style.WindowBorderSize = 0;
   style.Colors[ImGuiCol_WindowBg].w = 0.9f;
+  style.Colors[ImGuiCol_PopupBg] = style.Colors[ImGuiCol_WindowBg];  // the light one is as white as its check boxes
   style.Colors[ImGuiCol_PopupBg].w = 1;  // dialogs lie over panels, whose words would show through
   style.ScaleAllSizes(scale);
   if (size != size_) {

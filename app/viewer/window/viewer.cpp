@@ -234,7 +234,11 @@ class Viewer {
   void move_by_hand(Camera& camera, const FreeArea& area) {
     const Camera seen = orbit(camera, turned_);
     Camera moved = seen;
-    move_camera(moved, session_.settings.look.turning, area);
+    move_camera(moved, session_.settings.look.turning, area, diameter_of(scene().seen()),
+                [this](const Vec3d& from, const Vec3d& along) -> std::optional<Vec3d> {
+                  const std::optional<ProbeResult> met = scene().probe(from, along);
+                  return met ? std::optional(met->position) : std::nullopt;
+                });
     if (moved == seen) return;
     camera = moved;
     turned_ = 0;
