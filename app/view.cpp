@@ -209,8 +209,8 @@ std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerR
     write_png(options.image, result.image);
     outputs.push_back(options.image);
   }
-  for (const std::string& file : {options.out, options.save_recording})
-    if (!file.empty()) outputs.push_back(file);
+  if (!options.out.empty() && !result.interrupted) outputs.push_back(options.out);
+  if (!options.save_recording.empty()) outputs.push_back(options.save_recording);
   return outputs;
 }
 
@@ -255,9 +255,11 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   const ViewerResult result = run_viewer(viewer);
 
   std::string lost_video = result.lost_video;
+  if (result.interrupted && record) lost_video = options.record + " was not finished";
   const std::vector<std::string> outputs = write_outputs(options, result, record.get(), lost_video);
   write_report(options.common, view_report(result, viewer.session), outputs);
   print_outputs(outputs);
+  if (result.interrupted) throw Interrupted();
   if (!lost_video.empty()) throw Error(lost_video);
 }
 

@@ -83,6 +83,8 @@ void Window::make_current() { glfwMakeContextCurrent(window_); }
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 
+void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+
 void Window::poll(bool idles) {
   if (fault_due("other-screen")) density_ = 3 - density_;
   const auto [width, height] = pixels();

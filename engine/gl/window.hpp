@@ -26,6 +26,7 @@ class Window : public Context {
   GLFWwindow* handle() const { return window_; }
 
   bool should_close() const;
+  void keep_open();  ///< although the user wanted it to close
   /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on;
   /// where the window is merely minimised, only if `idles`.
   void poll(bool idles);

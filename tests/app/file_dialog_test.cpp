@@ -32,7 +32,7 @@ class FileDialogTest : public ImGuiFrames {
     dialog_.open(mode, "pick", {".vtp"});
     for (int k = 0; k < 3; ++k) frame();
     type(folder_.path().string());
-    press(enter);
+    press(enter_key);
     frame();
   }
 
@@ -54,9 +54,9 @@ TEST_F(FileDialogTest, AFolderThatWasClickedIsEnteredWithEnter) {
   open(FileDialog::Mode::open);
   click_folder();
   frame();
-  press(enter);
+  press(enter_key);
   type("a.vtp");
-  press(enter);
+  press(enter_key);
   ASSERT_EQ(chosen_.size(), 1u);
   EXPECT_EQ(chosen_[0], folder_ / "inner" / "a.vtp");
 }
@@ -66,7 +66,7 @@ TEST_F(FileDialogTest, AfterAClickOnAFolderANameCanBeTyped) {
   click_folder();
   frame();
   type("b.vtp");
-  press(enter);
+  press(enter_key);
   ASSERT_EQ(chosen_.size(), 1u);
   EXPECT_EQ(chosen_[0], folder_ / "b.vtp");
 }
@@ -76,7 +76,7 @@ TEST_F(FileDialogTest, WhereItSavesAClickOnAFolderLeavesTheName) {
   type("c.vtp");
   click_folder();
   frame();
-  press(enter);
+  press(enter_key);
   ASSERT_EQ(chosen_.size(), 1u);
   EXPECT_EQ(chosen_[0], folder_ / "c.vtp");
 }

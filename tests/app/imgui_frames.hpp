@@ -15,8 +15,8 @@ class ImGuiFrames : public testing::Test {
     ImGuiIO& io = ImGui::GetIO();
     io.DisplaySize = ImVec2(width, height);
     io.IniFilename = nullptr;
-    io.KeyMap[ImGuiKey_Enter] = enter;
-    io.KeyMap[ImGuiKey_Escape] = escape;
+    io.KeyMap[ImGuiKey_Enter] = enter_key;
+    io.KeyMap[ImGuiKey_Escape] = escape_key;
     unsigned char* pixels;
     int across, down;
     io.Fonts->GetTexDataAsRGBA32(&pixels, &across, &down);
@@ -54,7 +54,7 @@ class ImGuiFrames : public testing::Test {
     }
   }
 
-  static constexpr int enter = 1, escape = 2;
+  static constexpr int enter_key = 1, escape_key = 2;
   bool over_ = false;  ///< the mouse was over something in the last frame
 };
 

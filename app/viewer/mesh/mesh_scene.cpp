@@ -56,9 +56,10 @@ void MeshScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   if (changed.has_any({"slice", "slice_at", "slice_field", "slice_range", "colormap"})) update_slice();
 }
 
-void MeshScene::settle_knobs(Session& session) {
+bool MeshScene::settle_knobs(Session& session) {
   const std::string proposal = std::exchange(proposal_, {});
   if (!proposal.empty()) session.settings.materials.isovalue = proposal;
+  return !proposal.empty();
 }
 
 void MeshScene::resume() {

@@ -39,7 +39,7 @@ class MeshScene : public Scene {
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
   std::uint64_t overlay_version() const override;
-  void settle_knobs(Session& session) override;
+  bool settle_knobs(Session& session) override;
   std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
   void begin_write(const std::filesystem::path& file) override;

@@ -1,11 +1,13 @@
 // Nacre: the menus of the viewer, its keys, and the dialogs that they open.
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <utility>
 
+#include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "app/viewer/panel/ui.hpp"
 #include "engine/io/reader.hpp"
@@ -181,23 +183,29 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests&
   ImGui::EndMainMenuBar();
 }
 
-/// Closes the uppermost of what lies over the picture; false: nothing does.
-bool Ui::leave() {
-  if (dialog_.is_open())
+/// Closes the topmost of what is open: menus and popups, the dialog, errors and help; a field that is being edited drops
+/// what was typed by itself. False: nothing is open.
+bool Ui::close_topmost() {
+  const int popups = ImGui::GetCurrentContext()->OpenPopupStack.Size;
+  if (dialog_.is_open() && popups <= 1) {
     dialog_.close();
-  else if (ImGui::IsPopupOpen("screenshot"))
-    leaves_shot_ = true;
-  else if (help_ || about_)
+    ImGui::ClosePopupToLevel(0, true);
+  } else if (popups > 0) {
+    ImGui::ClosePopupToLevel(popups - 1, true);
+  } else if (!error_.empty()) {
+    error_.clear();
+  } else if (help_ || about_) {
     help_ = about_ = false;
-  else
-    return false;
+  } else {
+    return ImGui::IsAnyItemActive();
+  }
   return true;
 }
 
 void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests) {
   for (const KeyPress& pressed : facts.keys) switch (pressed.key) {
       case 27:
-        if (!leave()) requests.cancel = true;
+        if (!close_topmost()) requests.cancel = true;
         break;
       case 'O': ask_open(); break;
       case 'S': ask_save("save session", {".json"}, "session.json", &UiRequests::save_session); break;
@@ -215,7 +223,12 @@ void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests)
 void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests) {
   const ImGuiIO& io = ImGui::GetIO();
   use_shortcuts(scene, facts, requests);
-  if (io.WantTextInput || dialog_.is_open()) return;
+  // Who has typed in a field may go on after it has lost the keys: that is no shortcut.
+  if (io.WantTextInput)
+    typed_ = true;
+  else if (ImGui::IsMousePosValid() && !io.WantCaptureMouse)
+    typed_ = false;
+  if (io.WantTextInput || dialog_.is_open() || typed_) return;
   Look& look = session.settings.look;
   for (const ImWchar key : io.InputQueueCharacters) {
     for (const NamedView& v : views)
@@ -240,7 +253,6 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
 void Ui::screenshot_window(const UiFacts& facts) {
   if (std::exchange(asks_shot_, false)) ImGui::OpenPopup("screenshot");
   if (!ImGui::BeginPopup("screenshot")) return;
-  if (std::exchange(leaves_shot_, false)) ImGui::CloseCurrentPopup();
   ImGui::SliderInt("scale", &shot_.scale, 1, 4, "%dx", ImGuiSliderFlags_AlwaysClamp);
   ImGui::Checkbox("without background", &shot_.transparent);
   ImGui::Checkbox("with panels, as on the screen", &shot_.panel);
@@ -254,6 +266,23 @@ void Ui::screenshot_window(const UiFacts& facts) {
       requests.screenshot = shot_;
     };
   }
+  ImGui::EndPopup();
+}
+
+/// Asked once more, or told to, the program quits.
+void Ui::quit_window(UiRequests& requests) {
+  if (quit_reasons_.empty()) return;
+  constexpr const char* title = "Quit?";
+  if (std::exchange(opens_quit_, false)) ImGui::OpenPopup(title);
+  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings)) {
+    quit_reasons_.clear();
+    return;
+  }
+  for (const std::string& reason : quit_reasons_) text(reason);
+  ImGui::Spacing();
+  if (ImGui::Button("Quit")) requests.quit = true;
+  ImGui::SameLine();
+  if (ImGui::Button("Stay")) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
 }
 

@@ -120,7 +120,7 @@ FreeArea Ui::free_area(const Look& look, int width, int height) const {
   return {left, above, std::max(16, width - left), std::max(16, height - above - below)};
 }
 
-void Ui::tell(const std::string& line) {
+void Ui::show_note(const std::string& line) {
   told_ = line;
   told_until_ = ImGui::GetTime() + 8;
 }
@@ -251,19 +251,19 @@ void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) 
   ImGui::End();
 }
 
-void Ui::complaint_window(const FreeArea& area) {
-  if (complaint_.empty()) return;
+void Ui::error_window(const FreeArea& area) {
+  if (error_.empty()) return;
   const float width = std::min(36 * ImGui::GetFontSize(), 0.9f * float(area.width));
   ImGui::SetNextWindowPos(ImVec2(float(area.x) + 0.5f * float(area.width), float(area.y) + ImGui::GetFontSize()),
                           ImGuiCond_Always, ImVec2(0.5f, 0));
   ImGui::SetNextWindowSize(ImVec2(width, 0));
   bool open = true;
   if (ImGui::Begin("this did not work", &open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse)) {
-    ImGui::TextWrapped("%s", complaint_.c_str());
+    ImGui::TextWrapped("%s", error_.c_str());
     if (ImGui::Button("close")) open = false;
   }
   ImGui::End();
-  if (!open) complaint_.clear();
+  if (!open) error_.clear();
 }
 
 UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
@@ -276,9 +276,10 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     status(scene, facts, requests);
     if (session.camera) probe_window(scene, facts.camera, area);
   }
-  complaint_window(area);
+  error_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, requests);
   help_windows(facts, area);
+  quit_window(requests);
   screenshot_window(facts);
   if (const auto files = dialog_.draw()) then_(*files, session, requests);
   return requests;

@@ -50,10 +50,17 @@ class Ui {
   /// Where the picture is to be, in a window of this size. As wide as the panel allows; never empty.
   FreeArea free_area(const Look& look, int width, int height) const;
 
-  /// A line at the bottom for some seconds: something was saved, or did not work.
-  void tell(const std::string& line);
-  /// Something went wrong: in a window of its own, panel or not, until that is closed.
-  void complain(const std::string& line) { complaint_ = line; }
+  /// A line at the bottom for some seconds: something was saved.
+  void show_note(const std::string& line);
+  /// Something did not work: in a window of its own, panel or not, until that is closed.
+  void show_error(const std::string& line) { error_ = line; }
+
+  /// Asks whether to quit although, a line for each reason; UiRequests::quit then means it.
+  void ask_quit(std::vector<std::string> reasons) {
+    quit_reasons_ = std::move(reasons);
+    opens_quit_ = true;
+  }
+  bool asks_quit() const { return !quit_reasons_.empty(); }
 
  private:
   using Then =
@@ -71,9 +78,10 @@ class Ui {
   void status(Scene& scene, const UiFacts& facts, UiRequests& requests);
   void screenshot_window(const UiFacts& facts);
   void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
-  void complaint_window(const FreeArea& area);
+  void error_window(const FreeArea& area);
+  void quit_window(UiRequests& requests);
   void help_windows(const UiFacts& facts, const FreeArea& area);
-  bool leave();
+  bool close_topmost();
   void ask_open();
   void ask_result(Scene& scene);
   void switch_film(const UiFacts& facts, UiRequests& requests);
@@ -84,8 +92,11 @@ class Ui {
   FileDialog dialog_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
-  bool help_ = false, about_ = false, asks_shot_ = false, leaves_shot_ = false, asks_record_ = false;
-  std::string filter_, told_, complaint_, drawn_tab_;
+  bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
+  bool typed_ = false;  ///< in a field, and the mouse has not been over the view since
+  bool opens_quit_ = false;
+  std::vector<std::string> quit_reasons_;  ///< not empty: it is asked whether to quit
+  std::string filter_, told_, error_, drawn_tab_;
   double told_until_ = 0, work_began_ = -1;  ///< on Dear ImGui's clock; -1: no work goes on
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "engine/scene/knobs.hpp"
 #include "engine/scene/session.hpp"
 
 namespace nacre {
@@ -30,6 +31,17 @@ class ChangedKnobs {
 inline ChangedKnobs changed_knobs(const Session& before, const Session& after) {
   std::optional<SessionEvent> change = session_change(before, after);
   return change ? ChangedKnobs(std::move(change->knobs)) : ChangedKnobs();
+}
+
+/// Does a result, a mesh or a texture, depend on one of these knobs? Those of what is drawn, and when, do not count.
+inline bool changes_result(const std::map<std::string, std::string>& changed) {
+  constexpr const char* groups[] = {"embedding", "flow", "materials", "fields", "sizing", "particles", "cells"};
+  Settings settings;
+  const std::vector<Knob> all = knobs(settings);
+  return std::any_of(all.begin(), all.end(), [&](const Knob& knob) {
+    return changed.contains(knob.name) && knob.name != "begin_at" &&
+           std::find(std::begin(groups), std::end(groups), knob.group) != std::end(groups);
+  });
 }
 
 }  // namespace nacre

@@ -70,8 +70,8 @@ class Scene {
   virtual Image overlay(int width, int height) = 0;
   virtual std::uint64_t overlay_version() const = 0;
 
-  /// Takes over into the session what the data have decided and the user had left open.
-  virtual void settle_knobs(Session&) {}
+  /// Takes over into the session what the data have decided and the user had left open. False: nothing.
+  virtual bool settle_knobs(Session&) { return false; }
   /// What a ray meets first; none: nothing. `along` is unit.
   virtual std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) = 0;
 

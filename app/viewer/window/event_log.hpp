@@ -27,7 +27,7 @@ class EventLog {
   }
 
   /// What did not work and is told in the window, too.
-  void complain(const std::string& line) { tell_new(complaint_, line); }
+  void add_error(const std::string& line) { tell_new(error_, line); }
 
  private:
   void tell_new(std::string& said, const std::string& line) {
@@ -38,7 +38,7 @@ class EventLog {
 
   std::function<void(const std::string&)> say_;
   std::size_t warnings_ = 0;
-  std::string failure_, remark_, complaint_;
+  std::string failure_, remark_, error_;
 };
 
 }  // namespace nacre

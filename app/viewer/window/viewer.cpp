@@ -44,6 +44,7 @@ class Viewer {
         time_(session_.settings.fps),
         started_(now()),
         event_log_(options.say) {
+    scripted_ = !session_.events.empty();
     session_.events.clear();
     session_.duration = 0;
     if (recording_.has_file()) recording_.begin(session_, time_.fps(), 0);
@@ -56,11 +57,16 @@ class Viewer {
 
   ViewerResult run() {
     try {
-      while (!done()) {
-        if (*options_.stop) throw Interrupted();
+      while (!done() && !result_.interrupted) {
         if (window_) window_->poll(!film_.on());
-        frame();
-        if (context_->lost()) begin_again();
+        if (window_ && window_->should_close()) {
+          window_->keep_open();
+          try_to_quit();
+        }
+        interruptible([&] {
+          frame();
+          if (context_->lost()) begin_again();
+        });
       }
     } catch (...) {
       write_recording();
@@ -88,6 +94,39 @@ class Viewer {
     captions_.emplace();
   }
 
+  /// An interruption ends a window as the user does, with all that is written then; without one it is the caller's.
+  template <class Work>
+  void interruptible(const Work& work) {
+    try {
+      if (*options_.stop) throw Interrupted();
+      work();
+    } catch (const Interrupted&) {
+      if (!window_) throw;
+      result_.interrupted = true;
+    }
+  }
+
+  void try_to_quit() {
+    std::vector<std::string> reasons = reasons_to_stay();
+    if (reasons.empty() || ui_.asks_quit())
+      quit_ = true;
+    else
+      ui_.ask_quit(std::move(reasons));
+  }
+
+  /// What would be lost, a sentence each. A file that is being written is waited for.
+  std::vector<std::string> reasons_to_stay() const {
+    std::vector<std::string> reasons;
+    const SceneProgress progress = scene().progress();
+    if (!progress.stage.empty())
+      reasons.push_back(fmt::format("The computation ({}) has not finished.", progress.stage));
+    if (film_.from_menu()) reasons.push_back("A video is being recorded.");
+    if (recording_.on() && !recording_.has_file()) reasons.push_back("Your actions are being recorded.");
+    if (unsaved_ && !recording_.has_file())
+      reasons.push_back("You have changed parameters and saved neither session nor result.");
+    return reasons;
+  }
+
   void drop_graphics() {
     open_.reset();  // before the context that all of it lives in
     frame_.reset();
@@ -106,7 +145,7 @@ class Viewer {
   }
 
   void open() {
-    if (const std::string lost = saving_.drop(); !lost.empty()) complain(lost);
+    if (const std::string lost = saving_.drop(); !lost.empty()) show_error(lost);
     open_.reset();
     captions_->forget();
     event_log_.forget();
@@ -126,15 +165,15 @@ class Viewer {
     const std::string why = scene().lost_device();
     if (why.empty() || spare_ || !window_) return;
     spare_ = true;
-    complain(fmt::format("{} stopped working ({}); the processor computes from now on", scene().device().name(), why));
+    show_error(
+        fmt::format("{} stopped working ({}); the processor computes from now on", scene().device().name(), why));
     open();
   }
 
   bool done() const {
     // What has no window and no end of its own ends with the mesh.
     const bool settled = !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene().settled();
-    const bool leaves = quit_ || (window_ && window_->should_close());
-    return (leaves && !saving_.on()) || settled || (!window_ && player_->ended()) ||
+    return (quit_ && !saving_.on()) || settled || (!window_ && player_->ended()) ||
            (options_.frames > 0 && counted_ >= options_.frames);
   }
 
@@ -147,7 +186,7 @@ class Viewer {
     const bool changed = take_changes();
     leave_lost_device();
     const bool advanced = advance_scene();
-    scene().settle_knobs(session_);
+    if (scene().settle_knobs(session_)) settled_knobs_ = true;
     if (options_.offscreen && !scene().failure().empty()) throw Error(scene().failure());
     const double begin = now();
     if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
@@ -194,7 +233,7 @@ class Viewer {
       film_.add(frame_->read());
     } catch (const Error& error) {
       if (!window_) throw;
-      complain(error.what());
+      show_error(error.what());
       if (!from_menu) result_.lost_video = error.what();
       scene().set_lockstep(waits());
     }
@@ -282,17 +321,17 @@ class Viewer {
     } catch (const Interrupted&) {
       throw;
     } catch (const std::exception& error) {
-      complain(error.what());
+      show_error(error.what());
     }
   }
 
-  void complain(const std::string& line) {
-    ui_.complain(line);
-    event_log_.complain(line);
+  void show_error(const std::string& line) {
+    ui_.show_error(line);
+    event_log_.add_error(line);
   }
 
   void obey(const UiRequests& requests) {
-    if (requests.quit) quit_ = true;
+    if (requests.quit) try_to_quit();
     if (requests.undo) undo_.undo(session_);
     if (requests.redo) undo_.redo(session_);
     if (requests.cancel) scene().cancel();
@@ -309,10 +348,11 @@ class Viewer {
   void tell_saved() {
     const std::optional<Saving::Outcome> saved = saving_.poll(scene());
     if (!saved) return;
+    if (saved->failure.empty()) unsaved_ = false;
     if (saved->failure.empty())
-      ui_.tell("saved " + saved->file.string());
+      ui_.show_note("saved " + saved->file.string());
     else
-      complain(saved->file.string() + " was not saved: " + saved->failure);
+      show_error(saved->file.string() + " was not saved: " + saved->failure);
   }
 
   void obey_recording(const UiRequests& requests) {
@@ -332,17 +372,19 @@ class Viewer {
     if (requests.end_film && film_.from_menu()) {
       attempt([&] {
         film_.finish();
-        ui_.tell(fmt::format("saved {} ({})", film_.file().string(), film_.length()));
+        ui_.show_note(fmt::format("saved {} ({})", film_.file().string(), film_.length()));
       });
       scene().set_lockstep(waits());
     }
   }
 
+  /// A session or a recording.
   void save(const std::filesystem::path& file, const std::string& text) {
     OutputFile out(file);
     out.write(text);
     out.commit();
-    ui_.tell("saved " + file.string());
+    unsaved_ = false;
+    ui_.show_note("saved " + file.string());
   }
 
   /// Its state; where it is a recording, that is played.
@@ -351,6 +393,7 @@ class Viewer {
     options_.check(loaded);
     player_.emplace(loaded);
     played_since_ = time_.seconds();
+    scripted_ = !loaded.events.empty();
     loaded.events.clear();
     loaded.duration = 0;
     if (!loaded.camera) framing_.forget();
@@ -376,6 +419,8 @@ class Viewer {
     const std::optional<SessionEvent> change = session_change(told_, session_);
     undo_.note(change ? &*change : nullptr, told_, session_, ImGuiLayer::busy());
     if (!change) return false;
+    const bool by_user = !scripted_ && !std::exchange(settled_knobs_, false);
+    if (by_user && changes_result(change->knobs)) unsaved_ = true;
     if (change->input)
       open();
     else if (!change->knobs.empty())
@@ -413,7 +458,7 @@ class Viewer {
 
   void finish() {
     if (options_.picture && frame_) result_.image = frame_->read();
-    if (!options_.out.empty()) scene().write_result(options_.out);
+    if (!options_.out.empty() && !result_.interrupted) scene().write_result(options_.out);
     scene().finish();
     const SceneTotals totals = scene().totals();
     result_.steps = totals.steps;
@@ -425,7 +470,7 @@ class Viewer {
     result_.backend = scene().device().backend();
     result_.driver_messages = context_->messages();
     result_.filmed_frames = film_.frames();
-    film_.finish();
+    if (!result_.interrupted) film_.finish();
   }
 
   const ViewerOptions& options_;
@@ -452,6 +497,9 @@ class Viewer {
   FreeArea area_;
   FrameClock clock_;
   bool quit_ = false, spare_ = false;
+  bool unsaved_ = false;        ///< the user has changed what a result depends on
+  bool scripted_ = false;       ///< changes are those of a recording
+  bool settled_knobs_ = false;  ///< the next change is the data's
   int counted_ = 0;
   EventLog event_log_;
   std::vector<std::filesystem::path> dropped_;

@@ -53,11 +53,12 @@ struct ViewerResult {
   int threads = 0;
   Image image;
   std::vector<std::filesystem::path> pictures;  ///< written for events
+  bool interrupted = false;                     ///< a window was ended by `stop`
   std::string lost_video;                       ///< why the video of a window could not be written; empty: it could
 };
 
 /// Runs until it is closed. Throws Error where there is no display, no OpenGL 4.5, or (offscreen) a stage fails;
-/// Interrupted where `stop` is set.
+/// Interrupted where `stop` is set and there is no window.
 ViewerResult run_viewer(const ViewerOptions& options);
 
 }  // namespace nacre
