@@ -55,6 +55,8 @@ class InputQueue {
   /// The next frame's. Within it modifiers come first, then the mouse, its buttons, letters, other keys; each key and
   /// button moves once. What follows a chord waits for what that may have opened: three frames.
   InputFrame next_frame();
+  /// Is there something for the next frame, or a pause that ends with one?
+  bool waits() const { return !waiting_.empty() || pause_ > 0; }
 
  private:
   bool held(int left, int right) const;

@@ -13,7 +13,7 @@ namespace nacre::test {
 class StillScene : public Scene {
  public:
   std::vector<Vec3d> points;
-  std::uint64_t version = 1;
+  std::uint64_t seen_changes = 1;
   bool legend = false;
   std::string what_failed;
   SceneProgress doing;
@@ -24,11 +24,11 @@ class StillScene : public Scene {
     points.clear();
     for (int k = 0; k < 8; ++k)
       points.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
-    ++version;
+    ++seen_changes;
   }
 
   const std::vector<Vec3d>& corners() const override { return points; }
-  std::uint64_t seen_version() const override { return version; }
+  std::uint64_t seen_version() const override { return seen_changes; }
   bool has_legend() const override { return legend; }
 
   void advance(double) override {}
@@ -40,6 +40,7 @@ class StillScene : public Scene {
   void draw(const View&) override {}
   Image overlay(int, int) override { return {}; }
   std::uint64_t overlay_version() const override { return 0; }
+  std::uint64_t version() const override { return 0; }
   std::optional<ProbeResult> probe(const Vec3d&, const Vec3d&) override { return {}; }
   void write_result(const std::filesystem::path&) override {}
   void begin_write(const std::filesystem::path&) override {}

@@ -45,6 +45,7 @@ FlowScene::~FlowScene() {
 }
 
 void FlowScene::set_settings(const Settings& settings, const ChangedKnobs& changed) {
+  ++version_;
   const std::string colours_before = settings_.colormap;
   settings_ = settings;
   if (changed.has("colormap")) {
@@ -171,6 +172,7 @@ bool FlowScene::begin_step(bool wait) {
 }
 
 void FlowScene::take(FlowEvent& event) {
+  ++version_;
   std::visit([this](auto& told) { take(told); }, event);
 }
 

@@ -34,6 +34,7 @@ class FlowScene : public Scene {
   void resume() override { worker_.resume(); }
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
+  std::uint64_t version() const override { return version_; }
   std::uint64_t overlay_version() const override { return look_version_ + time_version_; }
   std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
@@ -111,6 +112,7 @@ class FlowScene : public Scene {
   BoxPass box_pass_;
   std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
   FlowResults results_;
+  std::uint64_t version_ = 1;
   std::uint64_t surfaces_ = 0;  ///< read so far
   FlowArrows arrows_;
   std::shared_ptr<const std::vector<Vec3f>> vectors_;  ///< at the time that is shown

@@ -48,6 +48,7 @@ MeshScene::~MeshScene() {
 }
 
 void MeshScene::set_settings(const Settings& settings, const ChangedKnobs& changed) {
+  ++version_;
   settings_ = settings;
   worker_.set_settings(settings);
   if (changed.has("colormap")) particle_pass_.set_map(colormap(settings_.colormap).table);
@@ -132,6 +133,7 @@ std::uint64_t MeshScene::copied_bytes() const {
 }
 
 void MeshScene::take(MeshEvent& event) {
+  ++version_;
   std::visit([this](auto& told) { take(told); }, event);
 }
 

@@ -38,6 +38,7 @@ class MeshScene : public Scene {
   void resume() override;
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
+  std::uint64_t version() const override { return version_; }
   std::uint64_t overlay_version() const override;
   bool settle_knobs(Session& session) override;
   std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
@@ -108,7 +109,8 @@ class MeshScene : public Scene {
   MeshResults results_;
   TriangleTree rays_;
   std::vector<Vec3d> corners_, box_;  ///< of what is not outside; of all voxels
-  std::uint64_t volumes_ = 0;         ///< taken so far
+  std::uint64_t version_ = 1;
+  std::uint64_t volumes_ = 0;  ///< taken so far
   std::vector<std::string> warnings_;
   std::string failure_;
   std::string proposal_;                ///< an iso-value that the session shall take over

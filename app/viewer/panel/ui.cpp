@@ -125,6 +125,10 @@ void Ui::show_note(const std::string& line) {
   told_until_ = ImGui::GetTime() + 8;
 }
 
+bool Ui::animates() const {
+  return work_began_ >= 0 || ImGui::GetTime() < told_until_ + 1 || ImGui::GetIO().WantTextInput;
+}
+
 void Ui::knob_tab(Session& session) {
   ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
   ImGui::InputTextWithHint("##filter", "find a knob", &filter_);

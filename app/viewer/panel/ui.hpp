@@ -60,6 +60,8 @@ class Ui {
     quit_reasons_ = std::move(reasons);
     opens_quit_ = true;
   }
+  /// Does something on it change with time alone: how long it computes, a note, the cursor of a field?
+  bool animates() const;
   bool asks_quit() const { return !quit_reasons_.empty(); }
 
  private:

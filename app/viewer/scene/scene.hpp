@@ -69,6 +69,8 @@ class Scene {
   /// `overlay_version`.
   virtual Image overlay(int width, int height) = 0;
   virtual std::uint64_t overlay_version() const = 0;
+  /// Changes with all that is drawn or told, but for the progress and what time does.
+  virtual std::uint64_t version() const = 0;
 
   /// Takes over into the session what the data have decided and the user had left open. False: nothing.
   virtual bool settle_knobs(Session&) { return false; }

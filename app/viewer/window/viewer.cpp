@@ -16,6 +16,7 @@
 #include "app/viewer/scene/scene_view.hpp"
 #include "app/viewer/scene/worker.hpp"
 #include "app/viewer/window/camera_control.hpp"
+#include "app/viewer/window/draw_demand.hpp"
 #include "app/viewer/window/event_log.hpp"
 #include "app/viewer/window/film.hpp"
 #include "app/viewer/window/imgui_layer.hpp"
@@ -58,10 +59,11 @@ class Viewer {
   ViewerResult run() {
     try {
       while (!done() && !result_.interrupted) {
-        if (window_) window_->poll(!film_.on());
+        if (window_) window_->poll(!film_.on(), patience());
         if (window_ && window_->should_close()) {
           window_->keep_open();
           try_to_quit();
+          redraw_ = true;
         }
         interruptible([&] {
           frame();
@@ -189,26 +191,57 @@ class Viewer {
     if (scene().settle_knobs(session_)) settled_knobs_ = true;
     if (options_.offscreen && !scene().failure().empty()) throw Error(scene().failure());
     const double begin = now();
-    if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
-    draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
-    glFinish();
+    const DrawDemand::Shown shown = what_is_shown(width, height);
+    const bool draws = needs_frame(begin, shown, changed || !pictures.empty());
+    requests_ = {};
+    if (draws) {
+      if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
+      draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
+      glFinish();
+    }
     const double end = now();
-    if (advanced) add_to_video();
+    if (advanced && draws) add_to_video();
     if (requests_.screenshot) pictures.push_back(*requests_.screenshot);
     for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
     recording_.note(time, changed ? &told_ : nullptr, pictures);
-    note_times(begin, end);
+    if (draws) note_times(begin, end);
     count_time(begin, advanced);
     obey(requests_);
     tell_saved();
-    if (window_) window_->swap();
+    if (window_ && draws) window_->swap();
     event_log_.tell(scene());
     if (window_) {
       window_->set_title(window_title(scene(), film_.from_menu()));
       attempt([&] { recording_.keep(); });
     }
+    if (!draws) return;  // the loop waits for what the user does
+    demand_.drawn(begin, end, shown);
     // Where nothing has to be waited for, it is filmed as fast as it will be shown.
     rest(begin, film_.from_menu() ? 1.0 / time_.fps() : waits() ? 0 : shortest_frame);
+  }
+
+  /// A window is drawn where it has changed; not so where frames are counted or filmed.
+  bool draws_on_demand() const { return window_ && options_.frames == 0 && !film_.on(); }
+
+  /// How long the loop waits for the user where nothing has to be drawn, seconds: what compute tells is looked after.
+  double patience() const {
+    if (!draws_on_demand()) return 0;
+    return !scene().settled() && !scene().halted() ? shortest_frame : 0.1;
+  }
+
+  DrawDemand::Shown what_is_shown(int width, int height) const {
+    const SceneProgress progress = scene().progress();
+    return {{width, height},
+            scene().version(),
+            progress.stage.empty() ? "" : fmt::format("{} {:.3f}", progress.stage, progress.fraction),
+            fmt::format("{} {} {}", scene().halted(), saving_.name(), scene().failure())};
+  }
+
+  bool needs_frame(double time, const DrawDemand::Shown& shown, bool changed) {
+    if (!draws_on_demand()) return true;
+    if (window_->is_minimised()) return false;
+    const bool touched = std::exchange(redraw_, false) || changed || window_->touched() || session_.settings.orbit != 0;
+    return demand_.due(time, shown, touched, ui_.animates());
   }
 
   /// False: the frame that waits for compute is still to come, and what is drawn until then is for the user alone.
@@ -326,6 +359,7 @@ class Viewer {
   }
 
   void show_error(const std::string& line) {
+    redraw_ = true;
     ui_.show_error(line);
     event_log_.add_error(line);
   }
@@ -348,6 +382,7 @@ class Viewer {
   void tell_saved() {
     const std::optional<Saving::Outcome> saved = saving_.poll(scene());
     if (!saved) return;
+    redraw_ = true;
     if (saved->failure.empty()) unsaved_ = false;
     if (saved->failure.empty())
       ui_.show_note("saved " + saved->file.string());
@@ -496,7 +531,9 @@ class Viewer {
   Framing framing_;
   FreeArea area_;
   FrameClock clock_;
+  DrawDemand demand_;
   bool quit_ = false, spare_ = false;
+  bool redraw_ = false;         ///< the window has something to tell
   bool unsaved_ = false;        ///< the user has changed what a result depends on
   bool scripted_ = false;       ///< changes are those of a recording
   bool settled_knobs_ = false;  ///< the next change is the data's
