@@ -52,7 +52,7 @@ void FlowWorker::read() {
       vectors_->set_surface(prepare(vectors_->series().load(0), settings_.crease));
     } else {
       SurfaceSeries series =
-          session_.sample.empty() ? open_surface(session_.inputs) : make_sample(session_.sample, session_.detail);
+          input_.sample.empty() ? open_surface(input_.inputs) : make_sample(input_.sample, input_.detail);
       FlowNews news;
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
       news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };

@@ -29,14 +29,14 @@ std::string failure_of(const Work& work) {
 
 }  // namespace
 
-FlowWorker::FlowWorker(Session session, std::unique_ptr<Device> device, bool loop, bool low_priority)
-    : session_(std::move(session)),
+FlowWorker::FlowWorker(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority)
+    : input_(session),
       device_(std::move(device)),
       pipeline_(make_flow_pipeline(*device_)),
       loop_(loop),
       low_priority_(low_priority),
       due_{FlowStage::surface, FlowStage::embed, FlowStage::start},
-      wanted_(session_.settings) {
+      wanted_(session.settings) {
   if (wanted_.look.arrows) due_.add(FlowStage::arrows);
   pipeline_->watch(&interrupt_);
   thread_ = std::thread([this] { run(); });

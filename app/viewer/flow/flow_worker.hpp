@@ -103,7 +103,7 @@ class FlowWorker : public Worker<FlowEvent> {
  public:
   /// `loop`: after the last time comes the first again, without end; else it stands still there, as headless runs do.
   /// `low_priority`: see SceneOptions.
-  FlowWorker(Session session, std::unique_ptr<Device> device, bool loop, bool low_priority = false);
+  FlowWorker(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority = false);
   ~FlowWorker();
 
   Device& device() { return *device_; }
@@ -163,7 +163,7 @@ class FlowWorker : public Worker<FlowEvent> {
   std::vector<float> scalar(double time);
   std::shared_ptr<const std::vector<Vec3f>> vectors(double time);
 
-  Session session_;
+  const SessionInput input_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<FlowPipeline> pipeline_;
   bool loop_, low_priority_;

@@ -28,7 +28,7 @@ bool has_cells(const std::filesystem::path& file) {
 void MeshWorker::read() {
   note_progress({"read", 0, 0, 0, 0});
   StageTimers::Scope scope(pipeline_->timers(), "read");
-  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(session_, &interrupt_));
+  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(input_, &interrupt_));
 }
 
 void MeshWorker::choose_materials() {
@@ -54,7 +54,7 @@ void MeshWorker::choose_materials() {
 
 /// Who sits before a live view sees something first, and moves the iso-value then; a replay is told exactly.
 MeshVolume MeshWorker::materials_of(MaterialWords words, MeshInput& input) {
-  const bool sample = !session_.sample.empty();
+  const bool sample = !input_.sample.empty();
   std::string proposal;
   try {
     return make_materials(*volumes_, sample, words, input);

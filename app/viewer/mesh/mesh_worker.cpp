@@ -32,12 +32,12 @@ MeshStage mesh_restart(const Settings& before, const Settings& after) {
   return MeshStage::done;
 }
 
-MeshWorker::MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep, bool low_priority)
-    : session_(std::move(session)),
+MeshWorker::MeshWorker(const Session& session, std::unique_ptr<Device> device, bool lockstep, bool low_priority)
+    : input_(session),
       device_(std::move(device)),
       pipeline_(make_mesh_pipeline(*device_)),
       low_priority_(low_priority),
-      wanted_(session_.settings),
+      wanted_(session.settings),
       lockstep_(lockstep) {
   pipeline_->watch(&interrupt_);
   pipeline_->progress = [this](const MeshProgress& progress) { note_progress(progress); };

@@ -112,7 +112,7 @@ struct SliceRequest {
 class MeshWorker : public Worker<MeshEvent> {
  public:
   /// `lockstep`: each iteration, and the triangles, wait for a turn and for memory.
-  MeshWorker(Session session, std::unique_ptr<Device> device, bool lockstep, bool low_priority = false);
+  MeshWorker(const Session& session, std::unique_ptr<Device> device, bool lockstep, bool low_priority = false);
   ~MeshWorker();
 
   Device& device() { return *device_; }
@@ -173,7 +173,7 @@ class MeshWorker : public Worker<MeshEvent> {
   void show(const MeshProgress& progress, bool step);
   bool await_turn();
 
-  Session session_;
+  const SessionInput input_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<MeshPipeline> pipeline_;
   const bool low_priority_;

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "compute/pipeline/volume_frame.hpp"
 #include "engine/picture/material_colours.hpp"
 
 namespace nacre {
@@ -78,15 +79,11 @@ ValueSpread spread_of(const Volume& volume) {
 }
 
 Vec3d ViewedVolume::to_world(const Vec3d& voxel) const {
-  Vec3d p = input.origin;
-  for (int a = 0; a < 3; ++a) p = p + input.axes[std::size_t(a)] * (voxel[a] * input.spacing[a]);
-  return p;
+  return index_to_world(voxel, input.origin, input.spacing, input.axes);
 }
 
 Vec3d ViewedVolume::to_voxels(const Vec3d& world) const {
-  Vec3d voxel;
-  for (int a = 0; a < 3; ++a) voxel[a] = dot(world - input.origin, input.axes[std::size_t(a)]) / input.spacing[a];
-  return voxel;
+  return world_to_index(world, input.origin, input.spacing, input.axes);
 }
 
 std::optional<std::size_t> ViewedVolume::index_at(const Vec3d& world) const {
