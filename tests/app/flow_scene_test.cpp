@@ -317,7 +317,7 @@ TEST_F(FlowInView, TimesAreThoseOfTheDataFromTheFirst) {
   for (const int k : {0, 1}) {
     const std::string name = "a" + std::to_string(k) + ".vtp";
     write_surface(folder / name, make_sample("sphere", 24).load(0));
-    series << "<DataSet timestep=\"" << (k == 0 ? 17280.25 : 17281.5) << "\" file=\"" << name << "\"/>";
+    series << "<DataSet timestep=\"" << (k == 0 ? "17280.25" : "17281.5") << "\" file=\"" << name << "\"/>";
   }
   series << "</Collection></VTKFile>";
   series.close();
