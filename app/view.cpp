@@ -19,8 +19,9 @@
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/prepare.hpp"
 #if NACRE_HAS_VIEWER
-#include "app/viewer/scene.hpp"
-#include "app/viewer/viewer.hpp"
+#include "app/viewer/scene/scene.hpp"
+#include "app/viewer/scene/view_defaults.hpp"
+#include "app/viewer/window/viewer.hpp"
 #endif
 
 namespace nacre {
@@ -37,8 +38,7 @@ struct ViewOptions {
 #if NACRE_HAS_VIEWER
 
 constexpr const char* welcome_sample = "torus";
-constexpr int welcome_detail = 128;      // reads in a moment
-constexpr int welcome_resolution = 512;  // and moves soon after
+constexpr int welcome_detail = 128;  // reads in a moment
 
 /// The preset is for volumes: its constants are those of meshing.
 void apply_preset_kernel(const CommonOptions& common, const KnobOptions& knobs, Session& session) {
@@ -57,7 +57,7 @@ Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
   }
   const bool own_resolution = !common.session.empty() || knobs.given("resolution", common.set);
   Session session = asked_session(common, words, knobs, "view", [&](Settings& settings) {
-    if (!own_resolution) settings.flow.resolution = welcome_resolution;
+    if (!own_resolution) settings.flow.resolution = view_defaults().flow.resolution;
     if (options.preset == "source") apply_source_preset(settings);
   });
   if (options.preset == "source") apply_preset_kernel(options.common, knobs, session);
@@ -202,8 +202,8 @@ std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerR
     write_png(options.image, result.image);
     outputs.push_back(options.image);
   }
-  for (const std::string& file : {options.out, options.save_recording})
-    if (!file.empty()) outputs.push_back(file);
+  if (!options.out.empty() && !result.interrupted) outputs.push_back(options.out);
+  if (!options.save_recording.empty()) outputs.push_back(options.save_recording);
   return outputs;
 }
 
@@ -216,6 +216,11 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   check_view_outputs(options, viewer.session);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
   viewer.open_device = [&] { return open_device(options.common); };
+  viewer.open_spare_device = [&] {
+    CommonOptions spare = options.common;
+    spare.device = "cpu";
+    return open_device(spare);
+  };
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
   viewer.session.settings.look.panel = begins_with_panel(options, knobs, settings.look);
@@ -243,9 +248,11 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   const ViewerResult result = run_viewer(viewer);
 
   std::string lost_video = result.lost_video;
+  if (result.interrupted && record) lost_video = options.record + " was not finished";
   const std::vector<std::string> outputs = write_outputs(options, result, record.get(), lost_video);
   write_report(options.common, view_report(result, viewer.session), outputs);
   print_outputs(outputs);
+  if (result.interrupted) throw Interrupted();
   if (!lost_video.empty()) throw Error(lost_video);
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/bench/bench.hpp"
-#include "app/bench/source_figures.hpp"
+#include "app/bench/thesis_figures.hpp"
 
 namespace nacre {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "app/bench/bench.hpp"
-#include "app/bench/source_figures.hpp"
+#include "app/bench/thesis_figures.hpp"
 
 namespace nacre {
 namespace {

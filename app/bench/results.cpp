@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "app/bench/source_figures.hpp"
+#include "app/bench/thesis_figures.hpp"
 
 namespace nacre {
 namespace {

@@ -88,7 +88,7 @@ struct MeshInfo {
   std::int64_t seeded = 0, final = 0;
   std::int64_t seeded_on_surfaces = 0;  ///< of `seeded`; the others are on curves and at points
   std::int64_t points_final = 0, curves_final = 0, surfaces_final = 0;  ///< of `final`, by junction order
-  int iterations = 70;                                                  ///< of the surfaces
+  int iterations = 0;                                                   ///< of the surfaces
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
@@ -175,6 +175,9 @@ class MeshPipeline {
   virtual void relax() = 0;               ///< stages seed, relax, population
   virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, mend; world coordinates
 
+  /// How many particles the next `relax` makes room for: there are never more to be shown. Needs the fields. It is
+  /// `relax` that throws Error where they do not fit into the memory.
+  virtual std::int64_t particle_capacity() = 0;
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
   /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of `relax`.

@@ -37,6 +37,7 @@ class MeshPipelineOf : public MeshPipeline {
   void relax() override;
   SurfaceMesh triangulate() override;
 
+  std::int64_t particle_capacity() override;
   MeshParticles particles() const override;
   SurfaceDistance surface_distance(const SurfaceMesh& mesh) override;
   std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) override;
@@ -88,6 +89,7 @@ class MeshPipelineOf : public MeshPipeline {
   void relate_interfaces();
   void describe_fields();
   double require_room_for(double particles, const std::string& why);
+  double particles_to_expect();
   void make_solver();
   void add_points();
   bool by_marching_cubes() const;

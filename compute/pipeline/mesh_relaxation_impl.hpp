@@ -27,13 +27,29 @@ PopulationRule MeshPipelineOf<Backend>::population_rule(int order) const {
   return rule;
 }
 
+/// Crowded places relax to fewer, holes fill: half as many again has always been enough.
+inline double particle_room(double expected) { return 1.6 * expected + 20000; }
+
+/// How many particles there will be about, with the junctions, which have theirs as ever where the number of those on
+/// surfaces is given.
+template <class Backend>
+double MeshPipelineOf<Backend>::particles_to_expect() {
+  if (parameters.particles == 0) return info_.expected_particles;
+  return parameters.particles + info_.points + expected_particles(exec_, embedding_seeds(1));
+}
+
+template <class Backend>
+std::int64_t MeshPipelineOf<Backend>::particle_capacity() {
+  require_fields();
+  return std::int64_t(particle_room(particles_to_expect()));
+}
+
 /// How many particles the solver shall have room for. Throws Error where the memory is too small for that; `why` goes
 /// before their number.
 template <class Backend>
 double MeshPipelineOf<Backend>::require_room_for(double particles, const std::string& why) {
   const std::size_t free = exec_.arena().free_bytes();
-  // Crowded places relax to fewer, holes fill: half as many again has always been enough.
-  const double capacity = 1.6 * particles + 20000;
+  const double capacity = particle_room(particles);
   const double turns = parameters.solver == "tree" ? 0 : 2 * sizeof(Float4) + 3 * sizeof(float);  // SolverState
   const double bytes =
       capacity * (2 * (sizeof(Float4) * 3 + 4) + 12 + 20 + 40 + 2 * double(sizeof(TreeNode)) / 3 + turns);
@@ -50,12 +66,9 @@ template <class Backend>
 void MeshPipelineOf<Backend>::make_solver() {
   drop_particles();
   exec_.arena().rewind(mark_[field_stages]);
-  double expected = info_.expected_particles;
-  if (parameters.particles > 0)  // of the surfaces; junctions have theirs as ever
-    expected = parameters.particles + info_.points + expected_particles(exec_, embedding_seeds(1));
   const double capacity =
-      require_room_for(expected, parameters.particles > 0 ? "--particles asks, with the junctions, for "
-                                                          : "the sizing field asks for about ");
+      require_room_for(particles_to_expect(), parameters.particles > 0 ? "--particles asks, with the junctions, for "
+                                                                       : "the sizing field asks for about ");
   auto solver = std::make_unique<TreeSolver>(exec_, std::int64_t(capacity), std::int64_t(junctions_.size()),
                                              float(frame_.extent()));
   solver->particles().count = 0;

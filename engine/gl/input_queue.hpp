@@ -1,5 +1,5 @@
-// Nacre: what a user does at the keyboard and mouse, in order, handed out frame by frame. However long a frame takes, no
-// tap, click or chord is lost: what would undo or outrun something else of its frame waits for the next.
+// Nacre: what a user does at the keyboard and mouse, in order, handed out frame by frame. However long a frame takes,
+// no tap, click or chord is lost: what would undo or outrun something else of its frame waits for the next.
 #pragma once
 
 #include <deque>
@@ -55,6 +55,8 @@ class InputQueue {
   /// The next frame's. Within it modifiers come first, then the mouse, its buttons, letters, other keys; each key and
   /// button moves once. What follows a chord waits for what that may have opened: three frames.
   InputFrame next_frame();
+  /// Is there something for the next frame, or a pause that ends with one?
+  bool waits() const { return !waiting_.empty() || pause_ > 0; }
 
  private:
   bool held(int left, int right) const;

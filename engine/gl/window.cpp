@@ -74,6 +74,13 @@ void Window::listen() {
                          glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_MIDDLE) == GLFW_PRESS;
     if (!entered && !pulling) queue(window).add(MouseMoved{mouse_outside, mouse_outside});
   });
+  const auto damaged = [](GLFWwindow* window) {
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->damaged_ = true;
+  };
+  glfwSetWindowRefreshCallback(window_, damaged);
+  glfwSetWindowFocusCallback(window_, [](GLFWwindow* window, int) {
+    static_cast<Window*>(glfwGetWindowUserPointer(window))->damaged_ = true;
+  });
   glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) { queue(window).add(WheelTurned{x, y}); });
 }
 
@@ -83,13 +90,19 @@ void Window::make_current() { glfwMakeContextCurrent(window_); }
 
 bool Window::should_close() const { return glfwWindowShouldClose(window_); }
 
-void Window::poll(bool idles) {
-  if (fault_due("other-screen")) density_ = 3 - density_;
+void Window::keep_open() { glfwSetWindowShouldClose(window_, GLFW_FALSE); }
+
+bool Window::is_minimised() const { return glfwGetWindowAttrib(window_, GLFW_ICONIFIED); }
+
+void Window::poll(bool idles, double patience) {
+  if (fault_due("other-screen")) density_ = 3 - density_, damaged_ = true;
   const auto [width, height] = pixels();
-  if (width > 0 && height > 0 && !(idles && glfwGetWindowAttrib(window_, GLFW_ICONIFIED)))
-    glfwPollEvents();
-  else
+  if (width <= 0 || height <= 0 || (idles && is_minimised()))
     glfwWaitEventsTimeout(0.1);
+  else if (patience > 0 && !touched())
+    glfwWaitEventsTimeout(patience);
+  else
+    glfwPollEvents();
 }
 
 void Window::set_title(const std::string& title) {
@@ -98,7 +111,10 @@ void Window::set_title(const std::string& title) {
   glfwSetWindowTitle(window_, title.c_str());
 }
 
-void Window::swap() { glfwSwapBuffers(window_); }
+void Window::swap() {
+  damaged_ = false;
+  glfwSwapBuffers(window_);
+}
 
 std::array<int, 2> Window::pixels() const {
   std::array<int, 2> size{};

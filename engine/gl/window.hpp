@@ -26,9 +26,13 @@ class Window : public Context {
   GLFWwindow* handle() const { return window_; }
 
   bool should_close() const;
-  /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on; where
-  /// the window is merely minimised, only if `idles`.
-  void poll(bool idles);
+  void keep_open();  ///< although the user wanted it to close
+  /// Takes what the user has done. Waits for that, at most `patience` seconds; while there is nothing to draw on, at most
+  /// a tenth of a second, where the window is merely minimised only if `idles`.
+  void poll(bool idles, double patience = 0);
+  bool is_minimised() const;
+  /// Has the user done anything that no frame has seen, or has the window to be drawn anew?
+  bool touched() const { return damaged_ || input_.waits(); }
   void swap();
   void set_title(const std::string& title);
 
@@ -49,6 +53,7 @@ class Window : public Context {
   GLFWwindow* window_ = nullptr;
   std::string title_;
   InputQueue input_;
+  bool damaged_ = true;
   int density_ = 1;  ///< 2: acts as on a screen of twice the density; for tests
 };
 

@@ -39,13 +39,13 @@ void ArrowPass::set_arrows(std::span<const Arrow> arrows) {
   arrows_.update(arrows);
 }
 
-void ArrowPass::draw(const View& view, const Placement& placement, const ArrowLook& look) const {
+void ArrowPass::draw(const View& view, const Placement& placement, const ArrowStyle& style) const {
   if (count_ == 0) return;
   set_view(program_, view, placement);
-  program_.set("scale", look.scale);
-  program_.set("width", look.width);
-  program_.set("ink", look.ink);
-  program_.set("mapped", look.mapped ? 1 : 0);
+  program_.set("scale", style.scale);
+  program_.set("width", style.width);
+  program_.set("ink", style.ink);
+  program_.set("mapped", style.mapped ? 1 : 0);
   map_.bind(0);
   program_.set("colours", 0);
   glBindVertexArray(array_);

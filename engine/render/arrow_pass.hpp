@@ -17,7 +17,7 @@ struct Arrow {
   float shade = 0;  ///< 0..1, of the colour map
 };
 
-struct ArrowLook {
+struct ArrowStyle {
   float scale = 1;                              ///< of the vectors
   float width = 1;                              ///< of the head, world units; short arrows are thinner
   std::array<float, 3> ink{0.1f, 0.1f, 0.12f};  ///< encoded
@@ -36,7 +36,7 @@ class ArrowPass {
   void set_map(std::span<const std::array<float, 3>> colours);
   /// What is drawn from now on.
   void set_arrows(std::span<const Arrow> arrows);
-  void draw(const View& view, const Placement& placement, const ArrowLook& look) const;
+  void draw(const View& view, const Placement& placement, const ArrowStyle& style) const;
 
  private:
   Program program_;

@@ -68,4 +68,25 @@ Camera dolly(const Camera& camera, double factor, double x, double y, double asp
   return moved;
 }
 
+Camera look_at_depth(const Camera& camera, const Vec3d& point) {
+  const Vec3d forward = camera.forward();
+  const double before = length(camera.target - camera.eye), depth = dot(point - camera.eye, forward);
+  Camera moved = camera;
+  if (camera.orthographic) {
+    const Vec3d shift = forward * (depth - before);
+    moved.eye += shift;
+    moved.target += shift;
+  } else if (depth > 0) {
+    moved.target = camera.eye + forward * depth;
+    moved.height = camera.height * (depth / before);
+  }
+  return moved;
+}
+
+double limited_zoom(const Camera& camera, double factor, double extent) {
+  constexpr double nearest = 1e-4, farthest = 10;
+  const double least = std::min(nearest * extent, camera.height), most = std::max(farthest * extent, camera.height);
+  return std::clamp(camera.height * factor, least, most) / camera.height;
+}
+
 }  // namespace nacre

@@ -14,18 +14,18 @@ void MaterialPass::set_materials(std::span<const std::array<std::uint16_t, 2>> m
   materials_texture_ = BufferTexture(materials_, GL_R32UI);
 }
 
-void MaterialPass::set_looks(std::span<const MaterialLook> looks) {
-  looks_ = Buffer::of<MaterialLook>(looks);
-  looks_texture_ = BufferTexture(looks_, GL_RGBA32F);
-  ghosts_ = std::any_of(looks.begin(), looks.end(),
-                        [](const MaterialLook& look) { return look.opacity > 0 && look.opacity < 1; });
+void MaterialPass::set_styles(std::span<const MaterialStyle> styles) {
+  styles_ = Buffer::of<MaterialStyle>(styles);
+  styles_texture_ = BufferTexture(styles_, GL_RGBA32F);
+  ghosts_ = std::any_of(styles.begin(), styles.end(),
+                        [](const MaterialStyle& style) { return style.opacity > 0 && style.opacity < 1; });
 }
 
 void MaterialPass::draw(const View& view, const SurfaceBuffers& surface, const Placement& placement) const {
   set_view(program_, view, placement * surface.placement());
   materials_texture_.bind(0);
   program_.set("materials", 0);
-  looks_texture_.bind(1);
+  styles_texture_.bind(1);
   program_.set("material_look", 1);
   program_.set("ghosts", 0);
   glEnable(GL_DEPTH_TEST);

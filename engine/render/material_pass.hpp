@@ -11,8 +11,8 @@
 
 namespace nacre {
 
-/// How a material looks.
-struct MaterialLook {
+/// How a material is drawn.
+struct MaterialStyle {
   std::array<float, 3> colour{0.6f, 0.6f, 0.6f};  ///< encoded
   float opacity = 1;                              ///< 1 solid, between: a ghost, 0 hidden
 };
@@ -25,15 +25,15 @@ class MaterialPass {
   /// The two materials of each triangle, in the order of the geometry.
   void set_materials(std::span<const std::array<std::uint16_t, 2>> materials);
   /// One per material; number 0 is the outside. A triangle is as visible as the more visible of its two materials.
-  void set_looks(std::span<const MaterialLook> looks);
+  void set_styles(std::span<const MaterialStyle> styles);
 
   /// `placement`: of the mesh's coordinates in the world. Ghosts are drawn last, and do not hide what is behind them.
   void draw(const View& view, const SurfaceBuffers& surface, const Placement& placement) const;
 
  private:
   Program program_;
-  Buffer materials_, looks_;
-  BufferTexture materials_texture_, looks_texture_;
+  Buffer materials_, styles_;
+  BufferTexture materials_texture_, styles_texture_;
   bool ghosts_ = false;
 };
 

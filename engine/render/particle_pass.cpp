@@ -25,14 +25,14 @@ void ParticlePass::set_map(std::span<const std::array<float, 3>> colours) {
 }
 
 void ParticlePass::draw(const View& view, const Placement& placement, const Buffer& place, const Buffer& direction,
-                        std::size_t first, std::size_t count, const ParticleLook& look) const {
+                        std::size_t first, std::size_t count, const ParticleStyle& style) const {
   if (count == 0 || !place || !direction) return;
   constexpr std::size_t record = 4 * sizeof(float);
   set_view(program_, view, placement);
-  program_.set("size", look.size);
-  program_.set("face_camera", look.face_camera ? 1 : 0);
-  program_.set("by_energy", look.by_energy ? 1 : 0);
-  program_.set("range", look.range);
+  program_.set("size", style.size);
+  program_.set("face_camera", style.face_camera ? 1 : 0);
+  program_.set("by_energy", style.by_energy ? 1 : 0);
+  program_.set("range", style.range);
   map_.bind(0);
   program_.set("colours", 0);
   glVertexArrayVertexBuffer(array_, 0, place.id(), GLintptr(first * record), record);

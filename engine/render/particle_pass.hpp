@@ -11,7 +11,7 @@
 
 namespace nacre {
 
-struct ParticleLook {
+struct ParticleStyle {
   float size = 0.36f;                ///< radius of a disc, in h
   bool face_camera = false;          ///< particles of curves and points have no normal
   bool by_energy = true;             ///< colour by energy, else by h
@@ -31,7 +31,7 @@ class ParticlePass {
 
   /// Particles first .. first + count - 1, into what is bound.
   void draw(const View& view, const Placement& placement, const Buffer& place, const Buffer& direction,
-            std::size_t first, std::size_t count, const ParticleLook& look) const;
+            std::size_t first, std::size_t count, const ParticleStyle& style) const;
 
  private:
   Program program_;

@@ -19,16 +19,16 @@ SegmentPass::SegmentPass() : program_("segments.vert", "lines.frag") {
 SegmentPass::~SegmentPass() { glDeleteVertexArrays(1, &array_); }
 
 void SegmentPass::draw(const View& view, const Placement& placement, const Buffer& segments,
-                       const SegmentLook& look) const {
+                       const LineStyle& style) const {
   if (!segments) return;
   set_view(program_, view, placement);
-  program_.set("colour", look.colour);
-  program_.set("width", look.width);
+  program_.set("colour", style.colour);
+  program_.set("width", style.width);
   program_.set("lift", view.camera.orthographic ? 1e-5f : 8e-4f);
   program_.use();
   glVertexArrayVertexBuffer(array_, 0, segments.id(), 0, sizeof(Segment));
   glBindVertexArray(array_);
-  if (look.through)
+  if (style.through)
     glDisable(GL_DEPTH_TEST);
   else
     glEnable(GL_DEPTH_TEST);

@@ -14,7 +14,7 @@ struct Segment {
   Vec3f from, to;
 };
 
-struct SegmentLook {
+struct LineStyle {
   std::array<float, 4> colour{0, 0, 0, 1};  ///< encoded, with opacity
   float width = 2;                          ///< pixels
   bool through = false;                     ///< also where something lies before them
@@ -28,7 +28,7 @@ class SegmentPass {
   SegmentPass(const SegmentPass&) = delete;
   SegmentPass& operator=(const SegmentPass&) = delete;
 
-  void draw(const View& view, const Placement& placement, const Buffer& segments, const SegmentLook& look) const;
+  void draw(const View& view, const Placement& placement, const Buffer& segments, const LineStyle& style) const;
 
  private:
   Program program_;

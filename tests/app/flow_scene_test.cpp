@@ -1,16 +1,21 @@
 // Nacre: a flow in the viewer's loop, on an OpenGL context without a display.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/flow_scene.hpp"
+#include "app/viewer/flow/flow_scene.hpp"
+
+#include <imgui.h>
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <set>
 #include <thread>
 
-#include "app/viewer/interface.hpp"
+#include "app/viewer/panel/flow_panel.hpp"
+#include "app/viewer/window/imgui_layer.hpp"
 #include "engine/gl/framebuffer.hpp"
 #include "engine/io/surface_writer.hpp"
 #include "engine/picture/png.hpp"
@@ -43,8 +48,9 @@ class FlowInView : public test::Offscreen {
   }
 
   void change(const std::function<void(Settings&)>& how) {
+    const Session before = session_;
     how(session_.settings);
-    scene_->set_settings(session_.settings);
+    scene_->set_settings(session_.settings, changed_knobs(before, session_));
   }
 
   void advance() { scene_->advance_and_wait(stop_); }
@@ -97,11 +103,12 @@ TEST_F(FlowInView, OffersTheArraysOfTheData) {
   session.inputs = {folder / "a.vtp"};
   open(session);
   using Names = std::vector<std::string>;
-  EXPECT_EQ(scene_->choices("vectors"), (Names{"", "@swirl", "@rotation"})) << "before anything is read";
+  EXPECT_EQ(flow_choices(scene_->results().offer, "vectors"), (Names{"", "@swirl", "@rotation"}))
+      << "before anything is read";
   advance();
-  EXPECT_EQ(scene_->choices("vectors"), (Names{"", "velocity", "shear", "@swirl", "@rotation"}));
-  EXPECT_EQ(scene_->choices("color"), (Names{"speed", "none", "velocity", "pressure", "shear"}));
-  EXPECT_TRUE(scene_->choices("time").empty());
+  EXPECT_EQ(flow_choices(scene_->results().offer, "vectors"), (Names{"", "velocity", "shear", "@swirl", "@rotation"}));
+  EXPECT_EQ(flow_choices(scene_->results().offer, "color"), (Names{"speed", "none", "velocity", "pressure", "shear"}));
+  EXPECT_TRUE(flow_choices(scene_->results().offer, "time").empty());
 }
 
 TEST_F(FlowInView, StandsStillWhereItDoesNotPlay) {
@@ -172,12 +179,12 @@ TEST_F(FlowInView, ProbesWhatARayMeets) {
   for (const Vec3d& p : scene_->corners()) low = min(low, p), high = max(high, p);
   const Vec3d middle = (low + high) * 0.5;
   const auto start = std::chrono::steady_clock::now();
-  std::optional<Probed> probed = scene_->probe(middle - Vec3d(0, 50, 0), along);
+  std::optional<ProbeResult> probed = scene_->probe(middle - Vec3d(0, 50, 0), along);
   ASSERT_TRUE(probed);
-  EXPECT_NEAR(probed->place.y, low.y, 0.01 * (high.y - low.y));
+  EXPECT_NEAR(probed->position.y, low.y, 0.01 * (high.y - low.y));
   std::string all;
   for (const std::string& line : probed->lines) all += line + "\n";
-  for (const char* name : {"place: ", "triangle: ", "velocity: ", "magnitude: ", "speed: ", "time: "})
+  for (const char* name : {"position: ", "triangle: ", "velocity: ", "magnitude: ", "speed: ", "time: "})
     EXPECT_NE(all.find(name), std::string::npos) << name << all;
   EXPECT_FALSE(scene_->probe(middle - Vec3d(0, 50, 0), {0, -1, 0}));
   change([](Settings& s) { s.look.play = false; });
@@ -203,7 +210,7 @@ TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
   scene_->draw(view);
   const auto probed = scene_->probe(camera.target - Vec3d(0, 50, 0), {0, 1, 0});
   ASSERT_TRUE(probed);
-  EXPECT_GT(probed->place.y, camera.target.y);
+  EXPECT_GT(probed->position.y, camera.target.y);
 }
 
 TEST_F(FlowInView, SourceTreesAreDrawnToo) {
@@ -284,13 +291,14 @@ TEST_F(FlowInView, PanelShowsFiguresAndChangesNothingByItself) {
   const Framebuffer frame(420, 420);
   Image image;
   {
-    Interface interface(nullptr);
+    FlowPanel panel(scene_->results());
+    ImGuiLayer imgui(nullptr);
     for (int k = 0; k < 3; ++k) {  // sizes are known from the second one on
       frame.bind();
       frame.clear({1, 1, 1, 1});
-      interface.begin(420, 420, 0.1, session_.settings.look);
-      scene_->result_panel(session_);
-      interface.end();
+      imgui.begin(420, 420, 0.1, session_.settings.look);
+      panel.result_tab(session_);
+      imgui.end();
     }
     image = frame.read();
   }
@@ -301,6 +309,50 @@ TEST_F(FlowInView, PanelShowsFiguresAndChangesNothingByItself) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) colours.insert({image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]});
   EXPECT_GT(colours.size(), 15u);  // of letters, frames, the plot's line; an empty window has five
+}
+
+TEST_F(FlowInView, TimesAreThoseOfTheDataFromTheFirst) {
+  EXPECT_EQ(time_text(17280), "17280");
+  EXPECT_EQ(time_text(0.1 + 0.2), "0.3");
+  const test::TemporaryFolder folder;
+  std::ofstream series(folder / "a.pvd");
+  series << "<VTKFile type=\"Collection\" version=\"0.1\"><Collection>";
+  for (const int k : {0, 1}) {
+    const std::string name = "a" + std::to_string(k) + ".vtp";
+    write_surface(folder / name, make_sample("sphere", 24).load(0));
+    series << "<DataSet timestep=\"" << (k == 0 ? "17280.25" : "17281.5") << "\" file=\"" << name << "\"/>";
+  }
+  series << "</Collection></VTKFile>";
+  series.close();
+  Session session = small_session();
+  session.sample.clear();
+  session.inputs = {folder / "a.pvd"};
+  open(session);
+  std::set<std::string> states;
+  while (!scene_->complete()) {
+    scene_->advance(0);
+    states.insert(scene_->state());
+    ASSERT_EQ(scene_->failure(), "");
+  }
+  states.erase("");  // nothing was known
+  EXPECT_EQ(states.begin()->substr(0, 13), "time 17280.25") << *states.begin();
+  EXPECT_EQ(states.rbegin()->substr(0, 9), "time 1728") << *states.rbegin();
+}
+
+TEST_F(FlowInView, WhatCanBeTickedInALightPopupIsSeen) {
+  ImGuiLayer imgui(nullptr);
+  for (const char* theme : {"light", "dark"}) {
+    session_.settings.look.theme = theme;
+    imgui.begin(100, 100, 0.1, session_.settings.look);
+    const ImVec4* colours = ImGui::GetStyle().Colors;
+    const ImVec4 box = colours[ImGuiCol_FrameBg];
+    for (const ImGuiCol behind : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) {
+      const ImVec4 paper = colours[behind];
+      const float differs = box.w * (std::abs(box.x - paper.x) + std::abs(box.y - paper.y) + std::abs(box.z - paper.z));
+      EXPECT_GT(differs, 0.15f) << theme << " " << ImGui::GetStyleColorName(behind);
+    }
+    imgui.end();
+  }
 }
 
 TEST_F(FlowInView, WritesItsValues) {

@@ -1,71 +1,16 @@
 // Nacre: a fitted camera stays fitted until somebody moves it.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/framing.hpp"
+#include "app/viewer/scene/framing.hpp"
 
 #include <gtest/gtest.h>
 
 #include "engine/picture/legend.hpp"
 #include "engine/render/camera_motion.hpp"
+#include "tests/app/still_scene.hpp"
 
 namespace nacre::test {
 namespace {
-
-/// Corners, and nothing else.
-class Corners : public Scene {
- public:
-  std::vector<Vec3d> points;
-  std::uint64_t version = 1;
-  bool legend = false;
-
-  Corners(const Vec3d& low, const Vec3d& high) { set(low, high); }
-  void set(const Vec3d& low, const Vec3d& high) {
-    points.clear();
-    for (int k = 0; k < 8; ++k)
-      points.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
-    ++version;
-  }
-
-  const std::vector<Vec3d>& corners() const override { return points; }
-  std::uint64_t seen_version() const override { return version; }
-  bool has_legend() const override { return legend; }
-
-  void advance(double) override {}
-  bool advance_and_wait(const std::atomic<bool>&, double) override { return true; }
-  void set_settings(const Settings&) override {}
-  void cancel() override {}
-  void resume() override {}
-  bool halted() const override { return false; }
-  void draw(const View&) override {}
-  Image overlay(int, int) override { return {}; }
-  std::uint64_t overlay_version() const override { return 0; }
-  void data_panel(Session&) override {}
-  void result_panel(Session&) override {}
-  std::optional<Probed> probe(const Vec3d&, const Vec3d&) override { return {}; }
-  void write_result(const std::filesystem::path&) override {}
-  void begin_write(const std::filesystem::path&) override {}
-  std::optional<std::string> take_written() override { return {}; }
-  std::vector<std::string> result_formats() const override { return {}; }
-  bool complete() const override { return true; }
-  bool settled() const override { return true; }
-  std::string title() const override { return ""; }
-  std::string state() const override { return ""; }
-  SceneProgress progress() const override { return {}; }
-  const std::string& failure() const override { return nothing_; }
-  const std::vector<std::string>& warnings() const override { return none_; }
-  std::string remark() const override { return ""; }
-  int steps() const override { return 0; }
-  std::uint64_t copied_bytes() const override { return 0; }
-  StageTimers timers() const override { return {}; }
-  std::size_t peak_bytes() const override { return 0; }
-  const Device& device() const override { return *device_; }
-  void finish() override {}
-
- private:
-  std::string nothing_;
-  std::vector<std::string> none_;
-  std::unique_ptr<Device> device_ = make_cpu_device();
-};
 
 class KeptInTheFreePart : public testing::Test {
  protected:
@@ -93,7 +38,7 @@ class KeptInTheFreePart : public testing::Test {
     return most < 1 && most > 0.6 && most_right < 2 * kept.left - 1;
   }
 
-  Corners scene_{{-3, -1, -1}, {3, 1, 1}};  // lies across, and under a legend
+  StillScene scene_{{-3, -1, -1}, {3, 1, 1}};  // lies across, and under a legend
   Session session_;
   Framing framing_;
   FreeArea area_;

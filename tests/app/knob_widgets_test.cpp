@@ -1,10 +1,12 @@
 // Nacre: knobs of the panel, turned with the mouse. No OpenGL here.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/knob_widgets.hpp"
+#include "app/viewer/panel/knob_widgets.hpp"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+
+#include "app/viewer/scene/view_defaults.hpp"
 
 namespace nacre {
 namespace {
@@ -83,6 +85,16 @@ TEST_F(KnobWidgets, AResetStopsThereToo) {
   settings_.mesh.min_size = 3;
   for (const int button : {-1, -1, 1, -1}) frame("max_size", 230, button);  // its name, to the right of the slider
   EXPECT_DOUBLE_EQ(settings_.mesh.max_size, 3) << "1, if it could";
+}
+
+TEST_F(KnobWidgets, ResetGivesWhatTheViewerBeganWith) {
+  settings_ = view_defaults();
+  settings_.flow.resolution = 100;
+  settings_.flow.ttl = 9;
+  reset_knobs(settings_, "flow");
+  EXPECT_EQ(settings_.flow.resolution, view_defaults().flow.resolution);
+  EXPECT_NE(settings_.flow.resolution, Settings().flow.resolution) << "which other commands begin with";
+  EXPECT_EQ(settings_.flow.ttl, Settings().flow.ttl);
 }
 
 }  // namespace

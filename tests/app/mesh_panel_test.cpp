@@ -1,6 +1,9 @@
 // Nacre: the buttons of the tab "result" of a mesh, each clicked where it is found. No OpenGL here.
 #if NACRE_HAS_VIEWER
 
+#include "app/viewer/panel/mesh_panel.hpp"
+
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -8,9 +11,7 @@
 #include <memory>
 #include <set>
 
-#include "app/viewer/material_list.hpp"
-#include "app/viewer/mesh_results.hpp"
-#include "app/viewer/words.hpp"
+#include "app/viewer/panel/imgui_text.hpp"
 #include "engine/picture/material_colours.hpp"
 
 namespace nacre {
@@ -36,7 +37,7 @@ MeshResults small_results() {
   return results;
 }
 
-class MeshPanel : public testing::Test {
+class MeshPanelTest : public testing::Test {
  protected:
   static constexpr int width = 420, height = 900;
 
@@ -65,7 +66,7 @@ class MeshPanel : public testing::Test {
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(width, height));
     ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
-    draw_mesh_results(results_, materials_, session_);
+    panel_.result_tab(session_);
     ImGui::End();
     const bool over = ImGui::IsAnyItemHovered();
     ImGui::EndFrame();
@@ -99,14 +100,14 @@ class MeshPanel : public testing::Test {
 
   const Camera start_{{0, 0, 20}, {0, 0, 0}, {0, 1, 0}, 10, false};
   MeshResults results_ = small_results();
-  MaterialList materials_;
+  MeshPanel panel_{results_};
   Session session_;
   std::set<std::string> hidden_, ghosts_;
   std::map<double, Camera> cameras_;  ///< by what they look at
   std::map<double, int> highlighted_;
 };
 
-TEST_F(MeshPanel, MaterialsAreHiddenGhostedAndShownAlone) {
+TEST_F(MeshPanelTest, MaterialsAreHiddenGhostedAndShownAlone) {
   click_everything();
   EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7", "4,7"}));  // "only" hides the other one
   EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4", "7", "4,7"}));
@@ -118,7 +119,7 @@ TEST_F(MeshPanel, MaterialsAreHiddenGhostedAndShownAlone) {
   EXPECT_EQ(ghosts_, (std::set<std::string>{"7", "", "4,7"}));
 }
 
-TEST_F(MeshPanel, AClickOnOneOfTheWorstLooksAtIt) {
+TEST_F(MeshPanelTest, AClickOnOneOfTheWorstLooksAtIt) {
   click_everything();
   ASSERT_EQ(cameras_.size(), 2u);
   for (const WorstTriangle& worst : results_.measures->worst) {
@@ -147,7 +148,7 @@ MeshResults many_materials() {
   return results;
 }
 
-TEST_F(MeshPanel, OfManyMaterialsThoseThatAreFoundAreHiddenAtOnce) {
+TEST_F(MeshPanelTest, OfManyMaterialsThoseThatAreFoundAreHiddenAtOnce) {
   results_ = many_materials();
   frame(-1, -1, false);
   click_everything();
@@ -187,7 +188,7 @@ TEST(Words, LongNumbersAreGrouped) {
   EXPECT_EQ(grouped(-999), "-999");
 }
 
-TEST_F(MeshPanel, OuterTrianglesAreSeenFromOutsideAndStandOut) {
+TEST_F(MeshPanelTest, OuterTrianglesAreSeenFromOutsideAndStandOut) {
   session_.camera->eye = {3, 4, -20};
   click_everything();
   ASSERT_EQ(cameras_.size(), 2u);
@@ -197,7 +198,7 @@ TEST_F(MeshPanel, OuterTrianglesAreSeenFromOutsideAndStandOut) {
   EXPECT_EQ(highlighted_.rbegin()->second, 1);
 }
 
-TEST_F(MeshPanel, FlatViewsAreTurnedTowardsTheTriangle) {
+TEST_F(MeshPanelTest, FlatViewsAreTurnedTowardsTheTriangle) {
   session_.camera->eye = {20, 0, 0};  // along its plane
   click_everything();
   ASSERT_EQ(cameras_.size(), 2u);

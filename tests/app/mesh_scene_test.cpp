@@ -1,13 +1,13 @@
 // Nacre: a mesh in the viewer's loop, on an OpenGL context without a display.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/mesh_scene.hpp"
+#include "app/viewer/mesh/mesh_scene.hpp"
 
 #include <chrono>
 #include <functional>
 #include <thread>
 
-#include "app/viewer/scene_view.hpp"
+#include "app/viewer/scene/scene_view.hpp"
 #include "engine/gl/framebuffer.hpp"
 #include "engine/io/nrrd_writer.hpp"
 #include "tests/engine/gl/offscreen.hpp"
@@ -35,8 +35,9 @@ class MeshInView : public test::Offscreen {
   }
 
   void change(const std::function<void(Settings&)>& how) {
+    const Session before = session_;
     how(session_.settings);
-    scene_->set_settings(session_.settings);
+    scene_->set_settings(session_.settings, changed_knobs(before, session_));
   }
 
   void advance() { scene_->advance_and_wait(stop_); }
@@ -63,7 +64,7 @@ class MeshInView : public test::Offscreen {
   }
 
   /// The line of a probe that begins like this.
-  static std::string line(const Probed& probed, const std::string& name) {
+  static std::string line(const ProbeResult& probed, const std::string& name) {
     for (const std::string& one : probed.lines)
       if (one.starts_with(name + ": ")) return one.substr(name.size() + 2);
     return "";
@@ -154,26 +155,30 @@ TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
   ASSERT_TRUE(settles());
   const std::vector<Vec3d>& corners = scene_->corners();
   const Vec3d middle = (corners.front() + corners.back()) * 0.5, from = middle - Vec3d(100, 0, 0), along(1, 0, 0);
-  const std::optional<Probed> probed = scene_->probe(from, along);
+  const std::optional<ProbeResult> probed = scene_->probe(from, along);
   ASSERT_TRUE(probed);
-  EXPECT_NEAR(probed->place.x, corners.front().x, 1.5);
+  EXPECT_NEAR(probed->position.x, corners.front().x, 1.5);
   EXPECT_EQ(line(*probed, "between"), "outside and 1");
   const double ratio = std::stod(line(*probed, "radius ratio"));
   EXPECT_TRUE(ratio > 0.3 && ratio <= 1) << ratio;
-  EXPECT_NE(line(*probed, "wanted size"), "");
+  const Vec3d spacing = scene_->results().volume->input.spacing;
+  ASSERT_NE(spacing.x, 1) << "or voxels could not be told from the world's units";
+  const double size = std::stod(line(*probed, "wanted size"));  // voxels
+  EXPECT_GE(size, 0.999 * session_.settings.mesh.min_size);
+  EXPECT_LE(size, 1.001 * session_.settings.mesh.max_size);
   change([](Settings& s) { s.look.hidden = "1"; });
-  const std::optional<Probed> behind = scene_->probe(from, along);
+  const std::optional<ProbeResult> behind = scene_->probe(from, along);
   ASSERT_TRUE(behind);
   EXPECT_EQ(line(*behind, "between"), "1 and 2");
   change([](Settings& s) { s.look.clip = "x", s.look.clip_at = 0.9; });
-  const std::optional<Probed> beyond = scene_->probe(from, along);
+  const std::optional<ProbeResult> beyond = scene_->probe(from, along);
   ASSERT_TRUE(beyond);
   EXPECT_EQ(line(*beyond, "between"), "outside and 2");
   change([](Settings& s) { s.look.slice = "x", s.look.slice_at = 0.1; });
   advance();
-  const std::optional<Probed> slice = scene_->probe(from, along);
+  const std::optional<ProbeResult> slice = scene_->probe(from, along);
   ASSERT_TRUE(slice);
-  EXPECT_LT(slice->place.x, beyond->place.x);
+  EXPECT_LT(slice->position.x, beyond->position.x);
   EXPECT_NE(line(*slice, "material"), "");
   EXPECT_FALSE(scene_->probe(from, along * -1.0));
 }
@@ -193,8 +198,8 @@ TEST_F(MeshInView, AProbeTellsTheProbabilityOfWhatIsThere) {
   open(true);
   advance();
   change([](Settings& s) { s.look.slice = "z"; });
-  const std::optional<Probed> left = scene_->probe({2, 4, 100}, {0, 0, -1}),
-                              right = scene_->probe({9, 4, 100}, {0, 0, -1});
+  const std::optional<ProbeResult> left = scene_->probe({2, 4, 100}, {0, 0, -1}),
+                                   right = scene_->probe({9, 4, 100}, {0, 0, -1});
   ASSERT_TRUE(left && right);
   EXPECT_EQ(line(*left, "material"), "1 left");
   EXPECT_EQ(line(*left, "left"), "200");

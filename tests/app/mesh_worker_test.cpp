@@ -1,13 +1,15 @@
 // Nacre: the thread that meshes beside the frames: what it tells, and which stages run again after a knob was changed.
 #if NACRE_HAS_VIEWER
 
-#include "app/viewer/mesh_worker.hpp"
+#include "app/viewer/mesh/mesh_worker.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
+#include "engine/io/nrrd_writer.hpp"
 #include "engine/scene/settings/knobs.hpp"
+#include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
 namespace {
@@ -30,11 +32,13 @@ struct WorkerRun {
   SliceFilled slice;
   std::unique_ptr<MeshWorker> worker;
 
-  explicit WorkerRun(bool lockstep = false, int threads = 2) {
+  explicit WorkerRun(
+      bool lockstep = false, int threads = 2, const std::function<void(Session&)>& preset = [](Session&) {}) {
     session.sample = "two-spheres";
     session.detail = 20;
     session.settings.mesh.iterations = 30;
     session.settings.mesh.mend = 1;
+    preset(session);
     worker = std::make_unique<MeshWorker>(session, make_cpu_device(threads), lockstep);
   }
 
@@ -266,6 +270,38 @@ TEST(MeshWorker, SlicesAreFilledWhileItWorksAndAfterChanges) {
   run.worker->ask_slice({2, 0, 0.5, MeshField::size});
   run.settle();
   EXPECT_EQ(run.slice.number, 2);
+}
+
+/// Bricks of three materials, of which three meet along many lines.
+Volume brick_wall() {
+  Volume volume;
+  volume.dims = {30, 30, 30};
+  std::vector<std::uint8_t> labels;
+  for (int z = 0; z < 30; ++z)
+    for (int y = 0; y < 30; ++y)
+      for (int x = 0; x < 30; ++x) {
+        const int row = y / 3, column = (x + (row % 2 ? 3 : 0)) / 6;
+        labels.push_back(std::uint8_t(1 + (column - (row + 1) / 2 - row + 60) % 3));
+      }
+  volume.values = std::move(labels);
+  return volume;
+}
+
+TEST(MeshWorker, ParticlesOfJunctionsAreShownHoweverFewAreAskedForOnSurfaces) {
+  const test::TemporaryFolder folder;
+  write_nrrd(folder / "wall.nrrd", brick_wall());
+  WorkerRun run(false, 2, [&](Session& session) {
+    session.sample.clear();
+    session.inputs = {folder / "wall.nrrd"};
+    session.settings.mesh.particles = 1;
+    session.settings.mesh.min_size = session.settings.mesh.max_size = 0.05;
+    session.settings.mesh.iterations = 1;
+  });
+  run.settle([&] { return !run.counts.empty(); });
+  ASSERT_EQ(run.failure, "");
+  ASSERT_FALSE(run.counts.empty());
+  EXPECT_GT(run.counts.front(), 30000) << "there are more than the surfaces alone would have had room for";
+  EXPECT_LE(run.counts.front(), run.capacity);
 }
 
 TEST(MeshWorker, EndsAtOnce) {

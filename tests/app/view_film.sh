@@ -38,5 +38,5 @@ film filmed
 xdotool windowsize "$window" 720 560 windowmove "$window" 0 0
 sleep 2
 ffmpeg -v error -y -f x11grab -video_size 720x560 -i "$DISPLAY" -frames:v 1 "$screen"
-xdotool windowfocus "$window" key ctrl+q
-wait $viewer
+xdotool windowfocus "$window"
+quit_window

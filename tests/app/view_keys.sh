@@ -25,5 +25,4 @@ press click 4    # nearer
 press key ctrl+o # the dialog: keys are its own now
 press key Escape
 press type p # no panels
-press key ctrl+q
-wait $viewer
+quit_window

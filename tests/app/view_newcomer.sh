@@ -85,6 +85,6 @@ gets "the video" filmed end_film
 gets "the labels" labels_shown open_file "$labels"
 until_true "the mesh" meshed
 gets "the file" exported export_mesh
-does key ctrl+q
-wait $viewer
+actions=$((actions + 1))
+quit_window
 echo "$actions actions"

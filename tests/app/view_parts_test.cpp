@@ -5,10 +5,10 @@
 
 #include <fstream>
 
-#include "app/viewer/camera_control.hpp"
-#include "app/viewer/recent_files.hpp"
-#include "app/viewer/session_clock.hpp"
-#include "app/viewer/undo.hpp"
+#include "app/viewer/scene/free_area.hpp"
+#include "app/viewer/window/recent_files.hpp"
+#include "app/viewer/window/session_clock.hpp"
+#include "app/viewer/window/undo.hpp"
 #include "tests/app/program.hpp"
 
 namespace nacre::test {
@@ -20,79 +20,97 @@ Session with_ttl(int ttl) {
   return session;
 }
 
-TEST(Undo, TakesChangesBackAndMakesThemAgain) {
+/// Frames of the loop: what is changed in one is noted in the next.
+struct Frames {
   Undo undo;
-  Session now = with_ttl(4);
-  undo.note(now, false);
-  EXPECT_FALSE(undo.can_undo());
-  now.settings.flow.ttl = 5;
-  undo.note(now, false);
-  now.settings.flow.ttl = 6;
-  undo.note(now, false);
-  undo.undo(now);
-  EXPECT_EQ(now.settings.flow.ttl, 5);
-  undo.note(now, false);
-  undo.undo(now);
-  EXPECT_EQ(now.settings.flow.ttl, 4);
-  EXPECT_FALSE(undo.can_undo());
-  undo.redo(now);
-  undo.redo(now);
-  EXPECT_EQ(now.settings.flow.ttl, 6);
-  EXPECT_FALSE(undo.can_redo());
+  Session now, before;
+
+  explicit Frames(const Session& begin) : now(begin), before(begin) {}
+  void next(bool busy = false) {
+    const std::optional<SessionEvent> change = session_change(before, now);
+    undo.note(change ? &*change : nullptr, before, now, busy);
+    before = now;
+  }
+  int& ttl() { return now.settings.flow.ttl; }
+};
+
+TEST(Undo, TakesChangesBackAndMakesThemAgain) {
+  Frames frames(with_ttl(4));
+  frames.next();
+  EXPECT_FALSE(frames.undo.can_undo());
+  frames.ttl() = 5;
+  frames.next();
+  frames.ttl() = 6;
+  frames.next();
+  frames.undo.undo(frames.now);
+  EXPECT_EQ(frames.ttl(), 5);
+  frames.next();
+  frames.undo.undo(frames.now);
+  EXPECT_EQ(frames.ttl(), 4);
+  EXPECT_FALSE(frames.undo.can_undo());
+  frames.next();
+  frames.undo.redo(frames.now);
+  frames.next();
+  frames.undo.redo(frames.now);
+  frames.next();
+  EXPECT_EQ(frames.ttl(), 6);
+  EXPECT_FALSE(frames.undo.can_redo());
 }
 
 TEST(Undo, OneStepForAllThatASliderDoes) {
-  Undo undo;
-  Session now = with_ttl(4);
-  undo.note(now, false);
-  for (int ttl = 5; ttl < 9; ++ttl) now.settings.flow.ttl = ttl, undo.note(now, true);
-  undo.note(now, false);
-  undo.undo(now);
-  EXPECT_EQ(now.settings.flow.ttl, 4);
+  Frames frames(with_ttl(4));
+  for (int ttl = 5; ttl < 9; ++ttl) frames.ttl() = ttl, frames.next(true);
+  frames.next();
+  frames.undo.undo(frames.now);
+  EXPECT_EQ(frames.ttl(), 4);
+}
+
+TEST(Undo, ASliderThatIsBackWhereItWasIsNoChange) {
+  Frames frames(with_ttl(4));
+  for (const int ttl : {5, 6, 4}) frames.ttl() = ttl, frames.next(true);
+  frames.next();
+  EXPECT_FALSE(frames.undo.can_undo());
 }
 
 TEST(Undo, AnotherChangeForgetsWhatWasTakenBack) {
-  Undo undo;
-  Session now = with_ttl(4);
-  undo.note(now, false);
-  now.settings.flow.ttl = 5;
-  undo.note(now, false);
-  undo.undo(now);
-  now.settings.flow.ttl = 7;
-  undo.note(now, false);
-  EXPECT_FALSE(undo.can_redo());
+  Frames frames(with_ttl(4));
+  frames.ttl() = 5;
+  frames.next();
+  frames.undo.undo(frames.now);
+  frames.next();
+  frames.ttl() = 7;
+  frames.next();
+  EXPECT_FALSE(frames.undo.can_redo());
 }
 
 TEST(Undo, CamerasStayUnlessTheInputChanges) {
-  Undo undo;
-  Session now = with_ttl(4);
-  now.sample = "torus";
-  now.camera = Camera();
-  undo.note(now, false);
-  now.settings.flow.ttl = 5;
-  undo.note(now, false);
-  now.camera->eye = {5, 5, 5};
-  undo.note(now, false);
-  undo.undo(now);
-  EXPECT_EQ(now.settings.flow.ttl, 4);
-  EXPECT_EQ(now.camera->eye.x, 5);
-  now.sample = "sphere";
-  now.camera.reset();
-  undo.note(now, false);
-  undo.undo(now);
-  EXPECT_EQ(now.sample, "torus");
-  EXPECT_TRUE(now.camera);
+  Frames frames(with_ttl(4));
+  frames.now.sample = "torus";
+  frames.now.camera = Camera();
+  frames.next();
+  frames.ttl() = 5;
+  frames.next();
+  frames.now.camera->eye = {5, 5, 5};
+  frames.next();
+  frames.undo.undo(frames.now);
+  EXPECT_EQ(frames.ttl(), 4);
+  EXPECT_EQ(frames.now.camera->eye.x, 5);
+  frames.next();
+  frames.now.sample = "sphere";
+  frames.now.camera.reset();
+  frames.next();
+  frames.undo.undo(frames.now);
+  EXPECT_EQ(frames.now.sample, "torus");
+  EXPECT_TRUE(frames.now.camera);
 }
 
 TEST(Undo, WhatTheWindowDoesItselfIsNoChange) {
-  Undo undo;
-  Session now = with_ttl(4);
-  undo.note(now, false);
-  now.settings.width = 300;
-  now.settings.look.play = false;
-  now.settings.look.tab = "knobs";
-  undo.note(now, false);
-  EXPECT_FALSE(undo.can_undo());
+  Frames frames(with_ttl(4));
+  frames.now.settings.width = 300;
+  frames.now.settings.look.play = false;
+  frames.now.settings.look.tab = "knobs";
+  frames.next();
+  EXPECT_FALSE(frames.undo.can_undo());
 }
 
 TEST(RecentFiles, TheLatestFirstAndKept) {
@@ -145,9 +163,9 @@ TEST(SessionClock, FramesOfAVideoPassAsFastInAWindowWhateverItsRate) {
 
 TEST(FreeArea, PlacesRunFromTheLeftLowerCorner) {
   const FreeArea area{100, 20, 400, 200};
-  EXPECT_EQ(place_in(area, 100, 220), (std::array<double, 2>{-1, -1}));
-  EXPECT_EQ(place_in(area, 300, 120), (std::array<double, 2>{0, 0}));
-  EXPECT_EQ(place_in(area, 500, 20), (std::array<double, 2>{1, 1}));
+  EXPECT_EQ(position_in(area, 100, 220), (std::array<double, 2>{-1, -1}));
+  EXPECT_EQ(position_in(area, 300, 120), (std::array<double, 2>{0, 0}));
+  EXPECT_EQ(position_in(area, 500, 20), (std::array<double, 2>{1, 1}));
 }
 
 }  // namespace

@@ -19,5 +19,4 @@ refused() {
   said 'larger than'
 }
 until_true "the complaint" refused
-xdotool key ctrl+q
-wait $viewer
+quit_window

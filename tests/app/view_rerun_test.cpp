@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "app/viewer/flow_rerun.hpp"
+#include "app/viewer/flow/flow_rerun.hpp"
 #include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {

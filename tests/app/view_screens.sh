@@ -21,5 +21,5 @@ xdotool windowunmap "$window"
 sleep 0.5
 xdotool windowmap "$window" windowmove "$window" 0 0
 sleep 0.5
-xdotool windowfocus "$window" key ctrl+q
-wait $viewer
+xdotool windowfocus "$window"
+quit_window

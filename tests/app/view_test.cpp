@@ -220,6 +220,18 @@ TEST_F(View, KeysAndMouseInTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
+TEST_F(View, AWindowAsksBeforeSomethingIsLostAndCtrlCWritesWhatQuittingWrites) {
+  const Outcome outcome =
+      run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_quit.sh", NACRE_PROGRAM, folder.path().string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "130\n")) << outcome.out;
+  const nlohmann::json report = read_json(folder / "r.json");
+  EXPECT_GT(report.at("view").at("frames"), 0);
+  EXPECT_TRUE(fs::exists(folder / "p.png"));
+  EXPECT_FALSE(read_json(folder / "done.json").at("events").empty());
+}
+
 /// The panel as a window draws it with this fault, without the lines that tell steps and times; empty where there is no
 /// Xvfb.
 Image panel_in_window(const std::string& fault, const fs::path& png, const Words& more) {

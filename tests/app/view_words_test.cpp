@@ -74,5 +74,17 @@ TEST_F(ViewWords, FlagsAreThoseOfFlowAndMesh) {
   EXPECT_EQ(knobs.at("time_stamp"), false);
 }
 
+TEST_F(ViewWords, KnobsThatAreOnOrOffAreOptions) {
+  const Words flags = {"--edges", "--boxes", "--no-play", "--no-curves", "--no-by-density", "--clip-back"};
+  const Words rest = {"--sample",       "two-spheres", "--detail",       "16",
+                      "--frames-count", "1",           "--save-session", path("s.json")};
+  ASSERT_EQ(nacre(start_ + flags + rest).status, 0);
+  const nlohmann::json knobs = read_json(path("s.json")).at("knobs");
+  for (const char* on : {"edges", "boxes", "clip_back", "triangles"}) EXPECT_EQ(knobs.at(on), true) << on;
+  for (const char* off : {"play", "curves", "by_density"}) EXPECT_EQ(knobs.at(off), false) << off;
+  ASSERT_EQ(nacre(start_ + Words{"--edges", "--no-edges"} + rest).status, 0);
+  EXPECT_EQ(read_json(path("s.json")).at("knobs").at("edges"), false) << "the last one counts";
+}
+
 }  // namespace
 }  // namespace nacre::test

@@ -8,7 +8,7 @@
 #include <functional>
 #include <thread>
 
-#include "app/viewer/flow_worker.hpp"
+#include "app/viewer/flow/flow_worker.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/scene/samples/samples.hpp"

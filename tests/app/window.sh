@@ -35,6 +35,16 @@ open_window() {
   xdotool windowfocus "$(xdotool search --name 'Nacre$' | head -1)"
 }
 
+# quit_window: quits as a user does, once more where it asks whether to; gives the viewer's status.
+quit_window() {
+  local end=$((SECONDS + 120))
+  while kill -0 "$viewer" 2>/dev/null && ((SECONDS < end)); do
+    xdotool key ctrl+q 2>/dev/null || true
+    sleep 0.5
+  done
+  wait "$viewer"
+}
+
 # titled PATTERN: does the window's title match? It says how far the work is and what is open: "relax 40% - a.nrrd - Nacre".
 titled() { [[ -n $(xdotool search --name "$1" 2>/dev/null) ]]; }
 

@@ -96,19 +96,31 @@ SessionRecorder::SessionRecorder(const Session& start, int fps) : start_(start),
 }
 
 void SessionRecorder::note(double time, const Session& now, const std::vector<Screenshot>& pictures) {
+  begin_frame(time);
+  static_cast<SessionInput&>(now_) = now;
+  now_.settings = now.settings;
+  now_.camera = now.camera;
+  changed_ = true;
+  pictures_.insert(pictures_.end(), pictures.begin(), pictures.end());
+}
+
+void SessionRecorder::note_unchanged(double time, const std::vector<Screenshot>& pictures) {
+  begin_frame(time);
+  pictures_.insert(pictures_.end(), pictures.begin(), pictures.end());
+}
+
+void SessionRecorder::begin_frame(double time) {
   // Nothing may change after a picture in the same frame: a replay makes all changes before it takes pictures.
   const long next = pictures_.empty() ? frame_ : frame_ + 1;
   const long frame = std::max(next, long(std::ceil(time * fps_ - 1e-6)));
   if (frame > frame_) close_frame();
   frame_ = frame;
-  static_cast<SessionInput&>(now_) = now;
-  now_.settings = now.settings;
-  now_.camera = now.camera;
-  pictures_.insert(pictures_.end(), pictures.begin(), pictures.end());
 }
 
 void SessionRecorder::close_frame() {
-  SessionEvent event = session_change(before_, now_).value_or(SessionEvent());
+  const bool changed = std::exchange(changed_, false);
+  SessionEvent event;
+  if (changed) event = session_change(before_, now_).value_or(SessionEvent());
   event.time = double(frame_) / fps_;
   const std::optional<Camera> camera = std::exchange(event.camera, std::nullopt);
   if (fits_camera(event))
@@ -123,7 +135,7 @@ void SessionRecorder::close_frame() {
     events_.back().screenshot = pictures_[k];
   }
   pictures_.clear();
-  before_ = now_;
+  if (changed) before_ = now_;
 }
 
 std::optional<Camera>& SessionRecorder::camera_of_opened() {

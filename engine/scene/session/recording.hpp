@@ -50,6 +50,8 @@ class SessionRecorder {
   /// The session as it is at `time` (seconds since the start, never less than at the last call), and the pictures taken
   /// of it.
   void note(double time, const Session& now, const std::vector<Screenshot>& pictures = {});
+  /// The same where the session is as it was at the last call: it need not be compared.
+  void note_unchanged(double time, const std::vector<Screenshot>& pictures = {});
 
   /// From the start to what was noted last.
   Session recording() const;
@@ -57,12 +59,14 @@ class SessionRecorder {
   std::size_t events() const { return events_.size(); }  ///< of frames that are over
 
  private:
+  void begin_frame(double time);
   void close_frame();
   std::optional<Camera>& camera_of_opened();  ///< of what was opened last and waits for one
 
   Session start_, before_, now_;  ///< before_: at the end of the last frame of the clock that is written
   int fps_;
-  long frame_ = 0;  ///< of the clock: not written yet
+  long frame_ = 0;        ///< of the clock: not written yet
+  bool changed_ = false;  ///< since `before_`
   std::vector<Screenshot> pictures_;
   std::vector<SessionEvent> events_;
 };

@@ -89,7 +89,7 @@ class MaterialScene {
   }
 
   Image draw(float first, float second) {
-    pass_.set_looks(std::vector<MaterialLook>{{}, {{1, 0, 0}, first}, {{0, 0, 1}, second}});
+    pass_.set_styles(std::vector<MaterialStyle>{{}, {{1, 0, 0}, first}, {{0, 0, 1}, second}});
     const View view = front();
     return picture(view, [&] { pass_.draw(view, buffers_, world); });
   }
@@ -134,7 +134,7 @@ TEST_F(Pass, MaterialsLookAsInPicturesWithoutOpenGl) {
   const SurfaceBuffers buffers(make_surface_geometry(squares.points, squares.triangles, {}));
   MaterialPass pass;
   pass.set_materials(std::vector<std::array<std::uint16_t, 2>>{{0, 1}, {1, 2}});
-  pass.set_looks(std::vector<MaterialLook>{{}, {{0.9f, 0.5f, 0.2f}, 1}, {{0.1f, 0.5f, 0.8f}, 1}});
+  pass.set_styles(std::vector<MaterialStyle>{{}, {{0.9f, 0.5f, 0.2f}, 1}, {{0.1f, 0.5f, 0.8f}, 1}});
   const View view = front();
   const Image image = picture(view, [&] { pass.draw(view, buffers, world); });
   MeshPictureOptions options;
@@ -158,7 +158,7 @@ TEST_F(Pass, EdgesAreDrawnOnceBeforeTheirTriangles) {
   const SurfaceBuffers buffers(geometry);
   MaterialPass fill;
   fill.set_materials(std::vector<std::array<std::uint16_t, 2>>{{0, 1}, {0, 1}});
-  fill.set_looks(std::vector<MaterialLook>{{}, {{1, 0, 0}, 1}});
+  fill.set_styles(std::vector<MaterialStyle>{{}, {{1, 0, 0}, 1}});
   const EdgePass edges;
   for (const bool orthographic : {false, true}) {
     View view = front();
@@ -238,7 +238,7 @@ TEST_F(Pass, ParticlesAreDiscsOnTheirSurface) {
   View view = front();
   view.camera.orthographic = true;
   const auto draw = [&](std::size_t first, std::size_t count, bool face) {
-    ParticleLook look;
+    ParticleStyle look;
     look.size = 0.2f;
     look.face_camera = face;
     return picture(view, [&] { pass.draw(view, world, place, heading, first, count, look); });
@@ -259,7 +259,7 @@ Image arrow_picture(float scale, const Vec3f& vector, bool mapped = false) {
   pass.set_map(colormap("sea").table);
   pass.set_arrows(std::vector<Arrow>{{{0, 0, 0}, vector, {0, -1, 0}, 1}});
   const View view = front();
-  ArrowLook look;
+  ArrowStyle look;
   look.scale = scale;
   look.width = 0.3f;
   look.ink = {0, 0, 0.8f};

@@ -1,0 +1,63 @@
+// Nacre: what is under the cursor on the surface of a flow.
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "app/viewer/flow/flow_scene.hpp"
+
+namespace nacre {
+namespace {
+
+/// The part of a ray that the plane leaves; low > high: none of it.
+Range kept_part(const std::optional<ClipPlane>& clip, const Vec3d& from, const Vec3d& along) {
+  Range part{0, std::numeric_limits<double>::infinity()};
+  if (!clip) return part;
+  const double before = clip->offset - dot(clip->normal, from), rate = dot(clip->normal, along);
+  if (rate > 0) part.low = std::max(0.0, before / rate);
+  if (rate < 0) part.high = before / rate;
+  if (rate == 0 && before > 0) part.high = -1;
+  return part;
+}
+
+template <class Value>
+auto interpolate(const std::vector<Value>& values, const Triangle& t, const Vec3d& weights) {
+  using Scalar = float;
+  return values[t.a] * Scalar(weights.x) + values[t.b] * Scalar(weights.y) + values[t.c] * Scalar(weights.z);
+}
+
+}  // namespace
+
+std::optional<ProbeResult> FlowScene::probe(const Vec3d& from, const Vec3d& along) {
+  if (!results_.tree) return {};
+  const Range part = kept_part(view_.clip, from, along);
+  const std::optional<TriangleHit> hit = results_.tree->first(from, along, part.low, part.high);
+  if (!hit) return {};
+  return ProbeResult{hit->place, describe(*hit)};
+}
+
+std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
+  const Triangle& t = results_.tree->triangles()[hit.triangle];
+  std::vector<std::string> lines{fmt::format("position: {:.5g} {:.5g} {:.5g}", hit.place.x, hit.place.y, hit.place.z),
+                                 fmt::format("triangle: {}", hit.triangle)};
+  if (vectors_) {
+    const Vec3f v = interpolate(*vectors_, t, hit.weights);
+    lines.push_back(fmt::format("{}: {:.4g} {:.4g} {:.4g}", results_.data.array, v.x, v.y, v.z));
+    lines.push_back(fmt::format("magnitude: {:.4g}", length(v)));
+  }
+  if (!scalar_.empty())
+    lines.push_back(fmt::format("{}: {:.4g}", results_.data.color, interpolate(scalar_, t, hit.weights)));
+  lines.push_back("time: " + time_text(results_.time));
+  if (!shown_) return lines;
+  // The texture's value lies on the device of compute: the worker looks it up between its steps.
+  const double near = shown_->info.cell_size;
+  if (!asked_ || asked_step_ != taken_ || length(*asked_ - hit.place) > 0.5 * near) {
+    worker_.sample(hit.place);
+    asked_ = hit.place;
+    asked_step_ = taken_;
+  }
+  if (sampled_ && length(sampled_->place - hit.place) <= near)
+    lines.push_back(fmt::format("texture: {:.2f}", sampled_->value));
+  return lines;
+}
+
+}  // namespace nacre

@@ -1,0 +1,42 @@
+// Nacre: what has to run again when knobs of the flow have changed.
+#include "app/viewer/flow/flow_rerun.hpp"
+
+#include <tuple>
+
+namespace nacre {
+namespace {
+
+auto of_embedding(const FlowParameters& p) {
+  return std::tie(p.method, p.octree, p.neighbour_index, p.resolution, p.refine, p.subcells, p.radius);
+}
+
+// With the speed: the vectors in the slots are scaled already; a start fills them anew.
+auto of_start(const Settings& s) {
+  const FlowParameters& p = s.flow;
+  return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power);
+}
+
+auto of_steps(const FlowParameters& p) { return std::tie(p.sharpen, p.jitter, p.equalise, p.streaks, p.contrast); }
+
+auto of_arrows(const Look& l) { return std::tie(l.arrows, l.arrow_count); }
+
+}  // namespace
+
+void FlowRerun::add(const FlowRerun& other) {
+  for (std::size_t k = 0; k < has_.size(); ++k) has_[k] = has_[k] || other.has_[k];
+}
+
+FlowRerun flow_rerun(const Settings& before, const Settings& after) {
+  using enum FlowStage;
+  FlowRerun rerun;
+  if (before.crease != after.crease) rerun.add({surface, embed, start});
+  if (before.vectors != after.vectors) rerun.add({vectors, start});
+  if (before.color != after.color) rerun.add(colours);
+  if (of_arrows(before.look) != of_arrows(after.look)) rerun.add(arrows);
+  if (of_embedding(before.flow) != of_embedding(after.flow)) rerun.add({embed, start});
+  if (of_start(before) != of_start(after)) rerun.add(start);
+  if (of_steps(before.flow) != of_steps(after.flow)) rerun.add(step);
+  return rerun;
+}
+
+}  // namespace nacre

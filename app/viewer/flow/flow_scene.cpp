@@ -1,0 +1,332 @@
+// Nacre: a flow as the viewer shows it.
+#include "app/viewer/flow/flow_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/viewer/scene/captions.hpp"
+#include "compute/device/error.hpp"
+#include "engine/picture/colormap.hpp"
+
+namespace nacre {
+namespace {
+
+SurfaceTexture surface_texture(const FlowEmbedded& told) {
+  const FlowLookup& l = told.lookup;
+  if (l.kind == FlowLookup::Kind::grid) return SparseTexture(sparse_lookup(l), told.rimmed);
+  return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer, l.child});
+}
+
+constexpr double least_box = 14;  ///< pixels: boxes that are smaller on the screen would cover it
+constexpr std::array<float, 4> box_colour{0.1f, 0.25f, 0.5f, 0.25f};
+
+}  // namespace
+
+FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
+    : lookup(surface_texture(told)),
+      info(told.info),
+      boxes(told.boxes),
+      number(told.number),
+      values(device, told.lookup.values * sizeof(float), GL_R32F) {}
+
+FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority)
+    : worker_(session, std::move(device), loop, low_priority), settings_(session.settings) {
+  colours_.set_map(colormap(settings_.colormap).table);
+  arrow_pass_.set_map(colormap(settings_.colormap).table);
+}
+
+FlowScene::~FlowScene() {
+  worker_.finish();  // nobody writes to the memory any more
+  shown_.reset();
+  next_.reset();
+}
+
+void FlowScene::set_settings(const Settings& settings, const ChangedKnobs& changed) {
+  ++version_;
+  const std::string colours_before = settings_.colormap;
+  settings_ = settings;
+  if (changed.has("colormap")) {
+    try {
+      const Colormap& map = colormap(settings.colormap);
+      colours_.set_map(map.table);
+      arrow_pass_.set_map(map.table);
+    } catch (const Error& error) {
+      warnings_.push_back(error.what());
+      settings_.colormap = colours_before;
+    }
+  }
+  if (changed.has("color_range")) find_range();
+  const FlowRerun rerun = worker_.set_settings(settings);
+  if (!(rerun == FlowRerun())) failure_.clear();
+  stale_ = stale_ || rerun.has(FlowStage::step);
+  ++look_version_;
+}
+
+SceneTotals FlowScene::totals() const {
+  return {results_.steps, copied_bytes(), worker_.timers(), worker_.peak_bytes()};
+}
+
+void FlowScene::write_result(const std::filesystem::path& file) {
+  begin_write(file);
+  static const std::atomic<bool> never{false};
+  while (!written_)
+    if (std::optional<FlowEvent> event = worker_.wait(never)) take(*event);
+  if (const std::string why = *take_written(); !why.empty()) throw Error(why);
+}
+
+void FlowScene::begin_write(const std::filesystem::path& file) {
+  written_.reset();
+  worker_.write(file);
+}
+
+bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy(); }
+std::string FlowScene::title() const { return name_.empty() ? "" : name_ + ": " + results_.data.array; }
+
+std::string FlowScene::state() const {
+  if (results_.data.array.empty()) return "";
+  return fmt::format("time {}   step {}{}", time_text(results_.time), results_.steps,
+                     worker_.cancelled() ? "   cancelled" : "");
+}
+
+/// Before the data are known, what was asked for counts.
+bool FlowScene::has_legend() const {
+  return settings_.legend && (results_.data.array.empty() ? settings_.color : results_.data.color) != "none";
+}
+
+FlowCaption FlowScene::caption() const {
+  FlowCaption caption;
+  if (has_legend() && !results_.data.array.empty()) caption.map = &colormap(settings_.colormap);
+  caption.low = results_.range.low;
+  caption.high = results_.range.high;
+  caption.title = results_.data.color == "speed" ? results_.data.array : results_.data.color;
+  if (settings_.time_stamp && complete() && results_.data.time.high > results_.data.time.low)
+    caption.time = results_.time;
+  caption.frame_time = results_.span.frame_time;
+  return caption;
+}
+
+/// The legend is kept, so that a step draws no more than the time.
+Image FlowScene::overlay(int width, int height) {
+  FlowCaption wanted = caption();
+  if (!wanted.map && !wanted.time) return {};
+  const std::optional<double> time = std::exchange(wanted.time, {});
+  if (legend_.width != width || legend_.height != height || legend_version_ != look_version_) {
+    legend_ = clear_sheet(width, height, paper_of(settings_.background));
+    draw_caption(legend_, wanted);
+    legend_version_ = look_version_;
+  }
+  Image sheet = legend_;
+  wanted.map = nullptr;
+  wanted.time = time;
+  draw_caption(sheet, wanted);
+  return sheet;
+}
+
+void FlowScene::advance(double now) {
+  while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
+  ask_boxes();
+  if (wants_step() && now - last_step_ >= 1.0 / settings_.fps && begin_step(false)) last_step_ = now;
+}
+
+bool FlowScene::advance_and_wait(const std::atomic<bool>& stop, double patience) {
+  const std::uint64_t before = taken_;
+  while (taken_ == before && !stop) {
+    if (!failure_.empty()) throw Error(failure_);
+    const bool boxes_come = ask_boxes();
+    if (worker_.ready() && !(wants_step() && begin_step(true)) && !boxes_come) return true;
+    std::optional<FlowEvent> event = worker_.wait(stop, patience);
+    if (event)
+      take(*event);
+    else if (!worker_.busy() && !worker_.ready())
+      return true;  // cancelled
+    else if (patience < endless)
+      return false;
+  }
+  return true;
+}
+
+/// Where boxes are wanted, they are written once for an embedding. True while they are on their way.
+bool FlowScene::ask_boxes() {
+  Texture* const texture = written();
+  if (!texture || !settings_.look.boxes || texture->boxes.count() == 0) return false;
+  if (!texture->codes) {
+    const std::size_t bytes = texture->boxes.count() * sizeof(std::uint64_t);
+    texture->codes = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RG32UI);
+    worker_.show_boxes(static_cast<std::uint64_t*>(texture->codes->begin_write(true)), texture->number);
+  }
+  return texture->codes->writing();
+}
+
+bool FlowScene::begin_step(bool wait) {
+  if (!no_texture_.empty()) return failure_ = no_texture_, false;  // what is shown has no room for the newest values
+  Texture* const texture = written();
+  if (!texture || texture->values.writing() || !worker_.ready()) return false;
+  void* memory = texture->values.begin_write(wait);
+  if (!memory) return false;
+  worker_.step(static_cast<float*>(memory));
+  stale_ = false;
+  return true;
+}
+
+void FlowScene::take(FlowEvent& event) {
+  ++version_;
+  std::visit([this](auto& told) { take(told); }, event);
+}
+
+void FlowScene::take(SurfaceRead& told) {
+  surface_ = SurfaceBuffers(told.geometry);
+  results_.corners = std::move(told.corners);
+  ++surfaces_;
+  name_ = std::move(told.name);
+  results_.tree = std::move(told.tree);
+  area_ = told.area;
+  failure_.clear();
+}
+
+void FlowScene::take(FlowData& told) {
+  if (told.reason.empty()) told.reason = results_.data.reason;
+  results_.data = std::move(told);
+  if (!complete() && results_.steps == 0) results_.time = results_.data.time.low;
+  for (std::string& warning : results_.data.warnings) warnings_.push_back(std::move(warning));
+  results_.data.warnings.clear();
+  find_range();
+  show_colours(results_.data.scalar);
+  vectors_ = results_.data.vectors;
+  move_arrows();
+  failure_.clear();
+  ++look_version_;
+}
+
+/// The knob's where that means something, else the data's.
+void FlowScene::find_range() {
+  try {
+    results_.range = color_range(settings_, results_.data.colours);
+  } catch (const Error& error) {
+    results_.range = results_.data.colours;
+    warnings_.push_back(error.what());
+  }
+  colours_.set_range(results_.range.low, results_.range.high);
+}
+
+void FlowScene::show_colours(const std::vector<float>& scalar) {
+  if (scalar.empty())
+    colours_.clear_scalar();
+  else
+    colours_.set_scalar(scalar, results_.range.low, results_.range.high);
+  scalar_ = scalar;
+}
+
+void FlowScene::take(FlowArrows& told) {
+  arrows_ = std::move(told);
+  move_arrows();
+}
+
+void FlowScene::take(FlowEmbedded& told) {
+  failure_.clear();
+  no_texture_.clear();
+  next_.reset();
+  try {
+    next_ = std::make_unique<Texture>(told, worker_.device());
+  } catch (const std::exception& error) {
+    no_texture_ = error.what();
+  }
+}
+
+void FlowScene::take(FlowBoxed& told) {
+  for (Texture* texture : {shown_.get(), next_.get()})
+    if (texture && texture->number == told.embedding) texture->codes->end_write(), texture->boxed = true;
+}
+
+void FlowScene::take(FlowStarted& told) {
+  results_.span = told.span;
+  if (!complete()) results_.time = told.span.start;
+  results_.steps = 0;
+  stale_ = true;
+  failure_.clear();
+}
+
+void FlowScene::take(FlowStepped& told) {
+  written()->values.end_write();
+  if (next_) {
+    if (shown_) copied_ += shown_->copied_bytes();
+    shown_ = std::move(next_);
+    surface_pass_.set_texture(std::move(shown_->lookup));
+    results_.embedding = shown_->info;
+  }
+  results_.time = told.time;
+  results_.steps = told.number;
+  ++taken_;
+  results_.step_seconds.push_back(float(told.seconds));
+  if (results_.step_seconds.size() > 240) results_.step_seconds.erase(results_.step_seconds.begin());
+  show_colours(told.scalar);
+  vectors_ = std::move(told.vectors);
+  move_arrows();
+  if (settings_.time_stamp) ++time_version_;
+}
+
+void FlowScene::take(FlowInterrupted&) {
+  if (shown_) shown_->values.cancel_write();
+  if (next_) next_->values.cancel_write();
+  stale_ = true;
+}
+
+void FlowScene::draw(const View& view) {
+  view_ = view;
+  if (!surface_) return;
+  surface_pass_.draw(view, surface_, colours_, shown_ ? &shown_->values.texture() : nullptr);
+  if (settings_.look.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
+  if (settings_.look.arrows) draw_arrows(view);
+  if (settings_.look.boxes && shown_ && shown_->boxed) draw_boxes(view);
+  if (shown_) shown_->values.drawn();
+}
+
+/// Those of the finest level that is not too small to be told apart.
+void FlowScene::draw_boxes(const View& view) const {
+  const FlowBoxes& boxes = shown_->boxes;
+  std::size_t level = boxes.level_start.size() - 2;
+  double width = boxes.width;
+  for (; level > 0 && width * view.height / view.camera.height < least_box; --level) width *= 2;
+  const std::uint64_t first = boxes.level_start[level], last = boxes.level_start[level + 1];
+  box_pass_.draw_codes(view, place_grid(boxes.origin, width), shown_->codes->shown(), first, last - first, 1,
+                       box_colour);
+  shown_->codes->drawn();
+}
+
+/// As far as the reference speed goes at length 1.
+double FlowScene::arrow_spacing() const {
+  return arrows_.places.empty() ? 0 : std::sqrt(area_ / double(arrows_.places.size()));
+}
+
+/// The vectors of the time that is shown, where arrows stand.
+void FlowScene::move_arrows() {
+  std::vector<Arrow> arrows;
+  const double speed = std::max(results_.data.statistics.percentile_98, 1e-300), spacing = arrow_spacing();
+  for (std::size_t k = 0; k < arrows_.places.size() && vectors_ && results_.tree; ++k) {
+    const SurfacePlace& place = arrows_.places[k];
+    const Triangle& t = results_.tree->triangles()[place.triangle];
+    Vec3d point{};
+    Vec3f vector{};
+    for (int c = 0; c < 3; ++c) {
+      point += results_.tree->points()[t[c]] * double(place.weights[c]);
+      vector += (*vectors_)[t[c]] * place.weights[c];
+    }
+    const Vec3f normal = arrows_.normals[k], along = vector - normal * dot(vector, normal);
+    const float share = float(length(along) / speed);
+    arrows.push_back(
+        {Vec3f((point - surface_.origin()) / surface_.size()), along * float(spacing / speed), normal, share});
+  }
+  arrow_pass_.set_arrows(arrows);
+}
+
+void FlowScene::draw_arrows(const View& view) {
+  ArrowStyle look;
+  look.scale = float(settings_.look.arrow_length);
+  look.width = float(0.3 * arrow_spacing());
+  look.mapped = results_.data.color == "none";  // dark where they would vanish in the surface's colours
+  arrow_pass_.draw(view, surface_.placement(), look);
+}
+
+}  // namespace nacre

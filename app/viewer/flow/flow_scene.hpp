@@ -1,0 +1,136 @@
+// Nacre: a flow as the viewer shows it: what the worker has told, on the graphics device.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/flow/flow_worker.hpp"
+#include "app/viewer/scene/scene.hpp"
+#include "engine/interop/shared_buffer.hpp"
+#include "engine/picture/caption.hpp"
+#include "engine/render/arrow_pass.hpp"
+#include "engine/render/line_passes.hpp"
+#include "engine/render/surface_pass.hpp"
+
+namespace nacre {
+
+class FlowScene : public Scene {
+ public:
+  FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority = false);
+  ~FlowScene() override;
+  FlowScene(const FlowScene&) = delete;
+  FlowScene& operator=(const FlowScene&) = delete;
+
+  void advance(double now) override;
+  bool advance_and_wait(const std::atomic<bool>& stop, double patience = endless) override;
+  void set_settings(const Settings& settings, const ChangedKnobs& changed) override;
+  void cancel() override { worker_.cancel(); }
+  bool halted() const override { return worker_.cancelled() || !failure_.empty(); }
+  std::string lost_device() const override { return worker_.lost_device(); }
+  void resume() override { worker_.resume(); }
+  void draw(const View& view) override;
+  Image overlay(int width, int height) override;
+  std::uint64_t version() const override { return version_; }
+  std::uint64_t overlay_version() const override { return look_version_ + time_version_; }
+  std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
+  void write_result(const std::filesystem::path& file) override;
+  void begin_write(const std::filesystem::path& file) override;
+  std::optional<std::string> take_written() override { return std::exchange(written_, {}); }
+  std::vector<std::string> result_formats() const override { return {".vtp"}; }
+
+  const std::vector<Vec3d>& corners() const override { return results_.corners; }
+  std::uint64_t seen_version() const override { return surfaces_; }
+  bool has_legend() const override;
+  bool complete() const override { return shown_ != nullptr; }
+  bool settled() const override;
+  std::string title() const override;
+  std::string state() const override;
+  SceneProgress progress() const override { return {worker_.stage(), -1}; }
+  const std::string& failure() const override { return failure_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  std::string remark() const override { return shown_ ? shown_->values.remark() : std::string(); }
+  SceneTotals totals() const override;
+  int steps() const { return results_.steps; }
+  std::uint64_t copied_bytes() const { return copied_ + (shown_ ? shown_->copied_bytes() : 0); }
+  const FlowResults& results() const { return results_; }
+  const Device& device() const override { return worker_.device(); }
+  void finish() override { worker_.finish(); }
+
+ private:
+  /// A texture on the surface: how values are found, and the values; and the boxes that it lies in, where they are
+  /// shown.
+  struct Texture {
+    SurfaceTexture lookup;
+    EmbeddingInfo info;
+    FlowBoxes boxes;
+    int number;  ///< of the embedding
+    SharedBuffer values;
+    std::unique_ptr<SharedBuffer> codes;  ///< of the boxes, once they have been asked for
+    bool boxed = false;                   ///< they are there
+
+    Texture(const FlowEmbedded& told, Device& device);
+    std::uint64_t copied_bytes() const { return values.copied_bytes() + (codes ? codes->copied_bytes() : 0); }
+  };
+
+  void take(FlowEvent& event);
+  void take(SurfaceRead& told);
+  void take(FlowOffer& told) { results_.offer = std::move(told); }
+  void take(FlowData& told);
+  void take(FlowArrows& told);
+  void take(FlowEmbedded& told);
+  void take(FlowBoxed& told);
+  void take(FlowStarted& told);
+  void take(FlowStepped& told);
+  void take(FlowSampled& told) { sampled_ = told; }
+  void take(FlowWritten& told) { written_ = std::move(told.failure); }
+  void take(FlowInterrupted& told);
+  void take(FlowFailed& told) { failure_ = std::move(told.what); }
+  bool wants_step() const { return settings_.look.play || stale_; }
+  bool begin_step(bool wait);
+  bool ask_boxes();
+  /// That of the newest embedding; null: there is none.
+  Texture* written() const { return !no_texture_.empty() ? nullptr : next_ ? next_.get() : shown_.get(); }
+  void show_colours(const std::vector<float>& scalar);
+  void find_range();
+  FlowCaption caption() const;
+  void draw_arrows(const View& view);
+  void draw_boxes(const View& view) const;
+  void move_arrows();
+  double arrow_spacing() const;
+  std::vector<std::string> describe(const TriangleHit& hit);
+
+  FlowWorker worker_;  // before what it writes to, whose device it owns
+  SurfaceBuffers surface_;
+  SurfaceColours colours_;
+  SurfacePass surface_pass_;
+  EdgePass edge_pass_;
+  ArrowPass arrow_pass_;
+  BoxPass box_pass_;
+  std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
+  FlowResults results_;
+  std::uint64_t version_ = 1;
+  std::uint64_t surfaces_ = 0;  ///< read so far
+  FlowArrows arrows_;
+  std::shared_ptr<const std::vector<Vec3f>> vectors_;  ///< at the time that is shown
+  std::vector<float> scalar_;
+  std::vector<std::string> warnings_;
+  std::string name_, failure_;
+  std::string no_texture_;              ///< why the newest embedding has none; empty: it has
+  std::optional<std::string> written_;  ///< how the writing that was asked for went
+  std::optional<FlowSampled> sampled_;
+  std::optional<Vec3d> asked_;  ///< of the worker: the texture's value there, after that step
+  std::uint64_t asked_step_ = 0;
+  Settings settings_;
+  View view_;  ///< of the last frame
+  double last_step_ = -1e9, area_ = 0;
+  bool stale_ = true;  ///< knobs have changed what the next step shows
+  std::uint64_t copied_ = 0, taken_ = 0;
+  std::uint64_t look_version_ = 1, time_version_ = 0, legend_version_ = 0;  ///< of the overlay
+  Image legend_;
+};
+
+}  // namespace nacre

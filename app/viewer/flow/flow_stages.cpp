@@ -1,0 +1,201 @@
+// Nacre: the stages of the flow's worker, each on its thread.
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "app/viewer/flow/flow_worker.hpp"
+#include "compute/device/error.hpp"
+#include "engine/io/flow_values.hpp"
+#include "engine/io/reader.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
+
+namespace nacre {
+namespace {
+
+/// A flow that loops is one that is this many times as long: a power of two, so that the times of its steps are the
+/// very numbers of a flow that ends.
+int rounds(int steps, bool loop) {
+  int n = 1;
+  while (loop && n < 1 << 16 && steps > 0 && steps < (1 << 29) / n) n *= 2;
+  return n;
+}
+
+SurfaceRead describe(const VectorsInTime& vectors) {
+  const PreparedSurface& surface = vectors.surface();
+  SurfaceRead told;
+  told.name = vectors.series().name;
+  told.geometry = make_surface_geometry(surface.points, surface.triangles, surface.corner_normals);
+  for (const SurfaceVertex& v : told.geometry.vertices) told.corners.push_back(surface.points[v.point]);
+  told.tree = std::make_shared<TriangleTree>(surface.points, surface.triangles);
+  told.area = surface_area(surface.points, surface.triangles);
+  return told;
+}
+
+FlowOffer offer_of(const Surface& surface) {
+  FlowOffer offer;
+  for (const PointArray& array : surface.arrays) {
+    offer.arrays.push_back(array.name);
+    if (array.components == 3) offer.vectors.push_back(array.name);
+  }
+  return offer;
+}
+
+}  // namespace
+
+void FlowWorker::read() {
+  std::string reason;
+  std::vector<std::string> warnings;
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "read");
+    if (vectors_) {
+      vectors_->set_surface(prepare(vectors_->series().load(0), settings_.crease));
+    } else {
+      SurfaceSeries series =
+          input_.sample.empty() ? open_surface(input_.inputs) : make_sample(input_.sample, input_.detail);
+      FlowNews news;
+      news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
+      news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
+      news.read = [&](const Surface& first) { tell(offer_of(first)); };
+      vectors_ = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings_, news, &interrupt_));
+      shown_time_ = vectors_->start();
+    }
+    tell(describe(*vectors_));
+  }
+  tell_data(reason, std::move(warnings));
+}
+
+/// Vectors and colours, whichever have changed.
+void FlowWorker::choose() {
+  std::string reason;
+  std::vector<std::string> warnings;
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "read");
+    if (doing_ == FlowStage::vectors) {
+      const VectorChoice choice = choose_vectors(vectors_->series().load(0), settings_.vectors);
+      vectors_->set_vectors(choice.name);
+      reason = choice.reason;
+      FlowNews news;
+      news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
+      warn_of_vectors(*vectors_, news);
+    } else {
+      vectors_->set_color(settings_.color);
+    }
+  }
+  tell_data(reason, std::move(warnings));
+}
+
+void FlowWorker::tell_data(std::string reason, std::vector<std::string> warnings) {
+  FlowData told;
+  told.array = vectors_->array();
+  told.color = vectors_->color();
+  told.reason = std::move(reason);
+  told.statistics = vectors_->statistics();
+  told.time = {vectors_->start(), vectors_->end()};
+  told.colours = {vectors_->color_low(), vectors_->color_high()};
+  told.scalar = scalar(shown_time_);
+  told.vectors = vectors(shown_time_);
+  told.warnings = std::move(warnings);
+  tell(std::move(told));
+}
+
+void FlowWorker::place_arrows() {
+  FlowArrows told;
+  const PreparedSurface& surface = vectors_->surface();
+  if (settings_.look.arrows)
+    told.places = spread_places(surface.points, surface.triangles, settings_.look.arrow_count, settings_.flow.seed);
+  for (const SurfacePlace& place : told.places) {
+    Vec3f normal{};
+    for (int k = 0; k < 3; ++k)
+      normal += surface.corner_normals[3 * place.triangle + std::size_t(k)] * place.weights[k];
+    told.normals.push_back(normalized(normal));
+  }
+  tell(std::move(told));
+}
+
+void FlowWorker::embed() {
+  has_values_ = false;
+  ++embeddings_;
+  pipeline_->parameters = settings_.flow;
+  const PreparedSurface& surface = vectors_->surface();
+  pipeline_->embed({surface.points, surface.triangles, surface.corner_normals});
+  take_timers(*pipeline_);
+  check_device();
+  const FlowMethod& flow = pipeline_->flow();
+  FlowEmbedded told{flow.lookup(), {}, flow.embedding(), flow.boxes(), embeddings_};
+  if (told.lookup.kind == FlowLookup::Kind::grid) told.rimmed = with_rims(sparse_lookup(told.lookup));
+  tell(std::move(told));
+}
+
+void FlowWorker::start() {
+  has_values_ = false;
+  span_ = flow_span(settings_, {vectors_->start(), vectors_->end()});
+  const int n = rounds(settings_.flow.steps, loop_);
+  const double end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
+  FlowVectors vectors = flow_vectors(*vectors_, span_.start, end);
+  vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->vectors(wrapped(t), out); };
+  steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
+  pipeline_->parameters = settings_.flow;
+  pipeline_->parameters.steps = steps_in_all_;
+  pipeline_->flow().start(vectors);
+  has_values_ = true;
+  steps_made_ = 0;
+  {
+    std::scoped_lock lock(mutex_);
+    started_ = !due_.has(FlowStage::embed) && !due_.has(FlowStage::start) && !due_.has(FlowStage::surface) &&
+               !due_.has(FlowStage::vectors);
+  }
+  tell(FlowStarted{span_});
+}
+
+void FlowWorker::make_step() {
+  const auto before = std::chrono::steady_clock::now();
+  pipeline_->parameters = settings_.flow;
+  pipeline_->parameters.steps = steps_in_all_;
+  pipeline_->flow().show_into(memory_);
+  pipeline_->flow().step();
+  FlowStepped told;
+  told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  told.number = ++steps_made_;
+  told.time = shown_time_ = wrapped(pipeline_->flow().time());
+  told.scalar = scalar(told.time);
+  told.vectors = vectors(told.time);
+  take_timers(*pipeline_);
+  check_device();
+  tell(std::move(told));
+}
+
+void FlowWorker::answer_sample(const Vec3d& place) {
+  if (has_values_) tell(FlowSampled{place, pipeline_->flow().sample_shown({&place, 1}).front()});
+}
+
+void FlowWorker::write_boxes(std::uint64_t* memory, int embedding) {
+  if (embedding != embeddings_) return;
+  pipeline_->flow().show_boxes(memory);
+  tell(FlowBoxed{embedding});
+}
+
+void FlowWorker::write_values(const std::filesystem::path& file) {
+  if (!has_values_) throw Error("there is no flow to write yet", "", "wait for the texture");
+  StageTimers::Scope scope(pipeline_->timers(), "write");
+  write_flow_values(pipeline_->flow(), file, wrapped(pipeline_->flow().time()));
+}
+
+double FlowWorker::wrapped(double time) const {
+  const double period = span_.end - span_.first;
+  if (!loop_ || !(period > 0)) return time;
+  const double since = std::fmod(time - span_.first, period);
+  return since > (1 - 1e-9) * period ? span_.first : span_.first + since;
+}
+
+std::vector<float> FlowWorker::scalar(double time) {
+  return vectors_->colored() ? vectors_->scalar(time) : std::vector<float>();
+}
+
+std::shared_ptr<const std::vector<Vec3f>> FlowWorker::vectors(double time) {
+  auto values = std::make_shared<std::vector<Vec3f>>(vectors_->surface().points.size());
+  vectors_->vectors(time, *values);
+  return values;
+}
+
+}  // namespace nacre

@@ -1,0 +1,257 @@
+// Nacre: a mesh in the making as the viewer shows it: how it looks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "app/viewer/mesh/mesh_scene.hpp"
+#include "compute/particles/energy.hpp"
+#include "engine/picture/colormap.hpp"
+#include "engine/picture/legend.hpp"
+#include "engine/picture/material_colours.hpp"
+#include "engine/scene/settings/ranges.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr float ghost_opacity = 0.25f;
+constexpr std::array<float, 4> worst_colour{0.93f, 0.05f, 0.45f, 1};
+
+/// Of the colours, in ideal energies: where particles are split, and where they are deleted.
+std::array<double, 2> energy_range(const MeshParameters& p) { return {p.add_below, std::min(p.delete_above, 3.0)}; }
+
+MeshField field_of(const std::string& name) {
+  return name == "distance" ? MeshField::distance : name == "size" ? MeshField::size : MeshField::material;
+}
+
+}  // namespace
+
+/// Every material is solid unless the look says otherwise; the outside has no say.
+void MeshScene::update_material_styles() {
+  if (!results_.volume) return;
+  const std::vector<std::int64_t>& labels = results_.volume->input.labels;
+  material_styles_.assign(labels.size(), {});
+  for (std::size_t m = 1; m < labels.size(); ++m) material_styles_[m].colour = material_colour(int(m));
+  material_styles_[0].opacity = 0;
+  const auto apply = [&](const std::string& words, float opacity, const char* knob) {
+    for (const std::int64_t label : labels_of(words)) {
+      const auto found = std::find(labels.begin() + 1, labels.end(), label);
+      if (found == labels.end())
+        warn_once(fmt::format("{}: there is no label {}", knob, label));
+      else
+        material_styles_[std::size_t(found - labels.begin())].opacity = opacity;
+    }
+  };
+  apply(settings_.look.ghosts, ghost_opacity, "ghosts");
+  apply(settings_.look.hidden, 0, "hidden");
+  material_pass_.set_styles(material_styles_);
+  update_edges();
+  update_worst();
+}
+
+/// Of a triangle, as the pass has it.
+static float opacity_of(const std::vector<MaterialStyle>& looks, const std::array<std::uint16_t, 2>& pair) {
+  return pair[0] == 0 ? looks[pair[1]].opacity : std::max(looks[pair[0]].opacity, looks[pair[1]].opacity);
+}
+
+/// Edges and junctions of the solid triangles; of ghosts, junctions alone.
+void MeshScene::update_edges() {
+  if (!surface_) return;
+  std::vector<float> opacity(drawing_.geometry.edges.size(), 0);
+  for (std::size_t t = 0; t < drawing_.edge_of.size(); ++t)
+    for (const std::uint32_t e : drawing_.edge_of[t])
+      opacity[e] = std::max(opacity[e], opacity_of(material_styles_, drawing_.materials[t]));
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (std::size_t e = 0; e < opacity.size(); ++e)
+    if (opacity[e] == 1) edges.push_back(drawing_.geometry.edges[e]);
+  surface_.set_edges(edges);
+  std::vector<Segment> curves;
+  for (const std::uint32_t e : drawing_.junctions) {
+    const auto& [a, b] = drawing_.geometry.edges[e];
+    if (opacity[e] > 0)
+      curves.push_back({drawing_.geometry.vertices[a].position, drawing_.geometry.vertices[b].position});
+  }
+  curves_ = Buffer::of<Segment>(curves);
+}
+
+void MeshScene::update_worst() {
+  worst_ = Buffer();
+  if (!results_.measures || settings_.look.worst <= 0) return;
+  std::vector<Segment> outlines;
+  int left = settings_.look.worst;
+  for (const WorstTriangle& worst : results_.measures->worst) {
+    if (opacity_of(material_styles_, drawing_.materials[worst.triangle]) <= 0) continue;
+    if (left-- == 0) break;
+    const Triangle& t = drawing_.geometry.triangles[worst.triangle];
+    for (int k = 0; k < 3; ++k)
+      outlines.push_back(
+          {drawing_.geometry.vertices[t[k]].position, drawing_.geometry.vertices[t[(k + 1) % 3]].position});
+  }
+  worst_ = Buffer::of<Segment>(outlines);
+}
+
+/// The knob's; before there is anything else to see, the middle of the volume.
+std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
+  const int axis = slice_axis(settings_.look);
+  if (axis >= 0) return VolumePlane{axis, settings_.look.slice_at};
+  if (!complete()) return VolumePlane{2, 0.5};
+  return {};
+}
+
+/// Values of the volume are made here and now. Fields are the worker's: until it answers, the volume stands in for
+/// them.
+void MeshScene::update_slice() {
+  if (!results_.volume) return;
+  const int axis = slice_axis(settings_.look);
+  if (axis < 0 || settings_.look.slice_field == "volume") {
+    worker_.drop_slice();
+    slice_of_field_ = false;
+    if (const std::optional<VolumePlane> plane = shown_plane())
+      show_volume_slice(plane->axis, plane->at);
+    else
+      slice_pass_.set_image({}, false);
+    return;
+  }
+  const MeshField field = field_of(settings_.look.slice_field);
+  if (!slice_of_field_) show_volume_slice(axis, settings_.look.slice_at);
+  request_ = {request_.number + 1, axis, settings_.look.slice_at, field};
+  worker_.ask_slice(request_);
+}
+
+/// The knob's where that means something, else nearly all of the values.
+std::array<double, 2> MeshScene::volume_range() {
+  const ValueSpread& spread = results_.volume->spread;
+  if (!settings_.look.slice_range.empty()) try {
+      const auto [low, high] = parse_pair(settings_.look.slice_range, ':', "slice_range");
+      if (low < high) return {low, high};
+      warn_once(fmt::format("slice_range {} holds nothing", settings_.look.slice_range));
+    } catch (const Error& error) {
+      warn_once(error.what());
+    }
+  return {spread.low, spread.high};
+}
+
+/// Values of a volume are gray, as scanners show them; fields have the colours that were chosen.
+const Colormap& MeshScene::slice_map() const {
+  return colormap(settings_.look.slice_field == "volume" ? "gray" : settings_.colormap);
+}
+
+void MeshScene::show_volume_slice(int axis, double at) {
+  const ViewedVolume& volume = *results_.volume;
+  const SlicePlane plane = slice_plane(volume.input, axis, at);
+  slice_values_ = volume.input.kind == MeshVolume::Kind::scalar;
+  slice_range_ = volume_range();
+  slice_pass_.set_image(volume_slice(volume, plane, slice_map(), slice_range_[0], slice_range_[1]), slice_values_);
+  slice_pass_.set_place(plane.corner, plane.across, plane.up);
+}
+
+void MeshScene::take(SliceFilled& told) {
+  if (told.number != request_.number) return;
+  slice_of_field_ = true;
+  slice_values_ = told.field != MeshField::material;
+  if (slice_values_) {
+    slice_range_ = slice_range(told.values, told.field);
+    slice_pass_.set_image(colour_values(told.values, told.columns, told.rows, slice_range_[0], slice_range_[1],
+                                        colormap(settings_.colormap)),
+                          true);
+  } else {
+    slice_pass_.set_image(colour_materials(told.values, told.columns, told.rows), false);
+  }
+  slice_pass_.set_place(told.plane.corner, told.plane.across, told.plane.up);
+}
+
+/// Sizes: those of the interfaces and up to what the slice has; distances: as far as any slice has looked.
+std::array<double, 2> MeshScene::slice_range(const std::vector<float>& values, MeshField field) {
+  double low = std::numeric_limits<double>::max(), high = 0;
+  for (const float v : values)
+    if (std::isfinite(v)) low = std::min(low, double(v)), high = std::max(high, double(v));
+  if (field == MeshField::size) return {std::min(low, high), high};
+  farthest_ = std::max(farthest_, high);
+  return {0, farthest_};
+}
+
+std::array<double, 2> MeshScene::size_range() const {
+  const double low = results_.info.smallest_size, high = results_.info.largest_size;
+  return {low, high > low ? high : low * 1.0001 + 1e-12};
+}
+
+bool MeshScene::particles_drawn() const {
+  return settings_.look.particles && counts_.total() > 0 && !triangles_drawn();
+}
+
+void MeshScene::draw(const View& frame) {
+  View view = frame, whole = frame;
+  whole.clip.reset();
+  view.light =
+      turned_light(mesh_light(view.camera), view.camera, settings_.look.light_azimuth, settings_.look.light_height);
+  const bool begun = complete();
+  if (shown_plane()) slice_pass_.draw(view);
+  if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
+  if (particles_drawn()) draw_particles(view);
+  if (triangles_drawn()) draw_triangles(view);
+  if (settings_.look.boxes && boxes_ && box_count_ > 0) {
+    box_pass_.draw_corners(view, voxels_, boxes_->shown(), {sizeof(ShownBox), 0, sizeof(Vec3f)}, 0,
+                           std::size_t(box_count_), {0.1f, 0.25f, 0.5f, 0.25f});
+    boxes_->drawn();
+  }
+}
+
+/// Surfaces, curves and points apart: curves have lower energies, and no normal to lie across.
+void MeshScene::draw_particles(const View& view) const {
+  const bool by_energy = settings_.look.particle_color == "energy";
+  const double ideal = settings_.mesh.ideal_energy > 0 ? settings_.mesh.ideal_energy : hexagonal_energy;
+  const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
+  const auto range = [&](double energy) {
+    return by_energy ? std::array{float(energies[0] * energy), float(energies[1] * energy)}
+                     : std::array{float(sizes[0]), float(sizes[1])};
+  };
+  const auto draw = [&](std::int64_t first, std::int64_t count, const ParticleStyle& look) {
+    particle_pass_.draw(view, voxels_, place_->shown(), direction_->shown(), std::size_t(first), std::size_t(count),
+                        look);
+  };
+  const std::int64_t points = counts_.points, curves = counts_.curves;
+  draw(points + curves, counts_.surfaces, {0.44f, false, by_energy, range(ideal)});
+  draw(points, curves, {0.3f, true, by_energy, range(ideal * row_energy / hexagonal_energy)});
+  draw(0, points, {0.45f, true, by_energy, by_energy ? std::array{-1.0f, 1.0f} : range(0)});  // these have no energy
+  place_->drawn();
+  direction_->drawn();
+}
+
+void MeshScene::draw_triangles(const View& view) const {
+  const Placement world(1.0), model = surface_.placement();
+  material_pass_.draw(view, surface_, world);
+  if (settings_.look.edges) edge_pass_.draw(view, surface_, world, {0, 0, 0, 0.5f});
+  if (settings_.look.curves) segment_pass_.draw(view, model, curves_, {{0.08f, 0.08f, 0.1f, 1}, 2, false});
+  std::array<float, 4> faint = worst_colour;
+  faint[3] = 0.35f;
+  segment_pass_.draw(view, model, worst_, {faint, 2.5f, true});
+  segment_pass_.draw(view, model, worst_, {worst_colour, 2.5f, false});
+}
+
+std::uint64_t MeshScene::overlay_version() const {
+  const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
+  const std::string key =
+      fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", settings_.legend, energies[0], energies[1], particles_drawn(),
+                  settings_.look.particle_color, sizes[0], sizes[1], slice_axis(settings_.look), slice_values_,
+                  slice_range_[0], slice_range_[1], settings_.colormap + settings_.look.slice_field);
+  return std::hash<std::string>()(key);
+}
+
+/// A legend of what the colours of particles mean; without these, of the slice's.
+Image MeshScene::overlay(int width, int height) {
+  Image image(width, height);
+  std::fill(image.pixels.begin(), image.pixels.end(), std::uint8_t(0));
+  if (!has_legend()) return image;
+  const Colormap& map = colormap(settings_.colormap);
+  if (particles_drawn()) {
+    const bool by_energy = settings_.look.particle_color == "energy";
+    const std::array<double, 2> range = by_energy ? energy_range(settings_.mesh) : size_range();
+    draw_legend(image, map, range[0], range[1], by_energy ? "energy / ideal" : "size, voxels");
+  } else {
+    draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], settings_.look.slice_field);
+  }
+  return image;
+}
+
+}  // namespace nacre

@@ -1,0 +1,150 @@
+// Nacre: a mesh in the making as the viewer shows it: what the worker has told, on the graphics device.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/viewer/mesh/mesh_results.hpp"
+#include "app/viewer/mesh/mesh_worker.hpp"
+#include "app/viewer/scene/scene.hpp"
+#include "engine/interop/shared_buffer.hpp"
+#include "engine/render/line_passes.hpp"
+#include "engine/render/material_pass.hpp"
+#include "engine/render/particle_pass.hpp"
+#include "engine/render/segment_pass.hpp"
+#include "engine/render/slice_pass.hpp"
+
+namespace nacre {
+
+/// Particles are drawn until there are triangles, which they would pierce; and where triangles are switched off.
+class MeshScene : public Scene {
+ public:
+  MeshScene(const Session& session, const SceneOptions& options);
+  ~MeshScene() override;
+  MeshScene(const MeshScene&) = delete;
+  MeshScene& operator=(const MeshScene&) = delete;
+
+  void advance(double now) override;
+  bool advance_and_wait(const std::atomic<bool>& stop, double patience = endless) override;
+  void set_lockstep(bool lockstep) override;
+  void set_settings(const Settings& settings, const ChangedKnobs& changed) override;
+  void cancel() override { worker_.cancel(); }
+  bool halted() const override { return worker_.halted(); }
+  std::string lost_device() const override { return worker_.lost_device(); }
+  void resume() override;
+  void draw(const View& view) override;
+  Image overlay(int width, int height) override;
+  std::uint64_t version() const override { return version_; }
+  std::uint64_t overlay_version() const override;
+  bool settle_knobs(Session& session) override;
+  std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
+  void write_result(const std::filesystem::path& file) override;
+  void begin_write(const std::filesystem::path& file) override;
+  std::optional<std::string> take_written() override;
+  std::vector<std::string> result_formats() const override;
+
+  const std::vector<Vec3d>& corners() const override { return corners_; }
+  const std::vector<Vec3d>& seen() const override { return shown_plane() ? box_ : corners_; }
+  std::uint64_t seen_version() const override { return 2 * volumes_ + (shown_plane() ? 1 : 0); }
+  bool has_legend() const override { return settings_.legend && (particles_drawn() || slice_has_legend()); }
+  bool complete() const override { return results_.mesh || counts_.total() > 0; }
+  bool settled() const override { return worker_.settled(); }
+  std::string title() const override;
+  std::string state() const override;
+  SceneProgress progress() const override;
+  const std::string& failure() const override { return failure_; }
+  const std::vector<std::string>& warnings() const override { return warnings_; }
+  std::string remark() const override { return place_ ? place_->remark() : std::string(); }
+  SceneTotals totals() const override { return {steps_, copied_bytes(), worker_.timers(), worker_.peak_bytes()}; }
+  int steps() const { return steps_; }
+  std::uint64_t copied_bytes() const;
+  const MeshResults& results() const { return results_; }
+  const Device& device() const override { return worker_.device(); }
+  void finish() override { worker_.finish(); }
+
+ private:
+  void take(MeshEvent& event);
+  void take(IsovalueProposed& told) { proposal_ = std::move(told.isovalue); }
+  void take(VolumeRead& told);
+  void take(RelaxBegun& told);
+  void take(MeshIterated& told);
+  void take(MeshTriangulated& told);
+  void take(MeshMeasured& told);
+  void take(SliceFilled& told);
+  void take(MeshWritten& told);
+  void take(MeshFailed& told);
+  void lend(bool wait);
+  void drop_memory();
+  void warn_once(const std::string& warning);
+  void update_material_styles();
+  void update_edges();
+  void update_worst();
+  void update_slice();
+  struct VolumePlane {
+    int axis;
+    double at;
+  };
+  std::optional<VolumePlane> shown_plane() const;
+  void show_volume_slice(int axis, double at);
+  std::array<double, 2> volume_range();
+  const Colormap& slice_map() const;
+  std::array<double, 2> slice_range(const std::vector<float>& values, MeshField field);
+  void draw_particles(const View& view) const;
+  void draw_triangles(const View& view) const;
+  bool particles_drawn() const;
+  bool slice_has_legend() const { return slice_axis(settings_.look) >= 0 && slice_values_; }
+  bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.look.triangles; }
+  std::array<double, 2> size_range() const;
+  std::optional<TriangleHit> first_seen(const Vec3d& from, const Vec3d& along) const;
+  void describe_hit(ProbeResult& probed, const TriangleHit& hit) const;
+
+  MeshWorker worker_;  // before what it writes to, whose device it owns
+  bool lockstep_;
+  const std::atomic<bool>* stop_;
+  Settings settings_;
+  MeshResults results_;
+  TriangleTree rays_;
+  std::vector<Vec3d> corners_, box_;  ///< of what is not outside; of all voxels
+  std::uint64_t version_ = 1;
+  std::uint64_t volumes_ = 0;  ///< taken so far
+  std::vector<std::string> warnings_;
+  std::string failure_;
+  std::string proposal_;                ///< an iso-value that the session shall take over
+  std::optional<std::string> written_;  ///< how the writing that was asked for went
+
+  // Particles and boxes, which the worker writes.
+  std::unique_ptr<SharedBuffer> place_, direction_, boxes_;
+  std::int64_t capacity_ = 0;
+  ShownCounts counts_;
+  std::int64_t box_count_ = 0, box_capacity_ = 0;
+  int lease_ = 0, steps_ = 0;
+  bool lent_ = false, boxes_lent_ = false;
+  std::uint64_t copied_ = 0;
+  ParticlePass particle_pass_;
+  BoxPass box_pass_;
+  Placement voxels_{1.0};
+
+  // Triangles; `stale_`: the particles have moved on since.
+  MeshDrawing drawing_;
+  SurfaceBuffers surface_;
+  bool stale_ = false;
+  std::vector<MaterialStyle> material_styles_;
+  MaterialPass material_pass_;
+  EdgePass edge_pass_;
+  SegmentPass segment_pass_;
+  Buffer curves_, worst_, outline_;
+  Placement outline_place_{1.0};
+
+  // The slice, and what it was asked for.
+  SlicePass slice_pass_;
+  SliceRequest request_;
+  bool slice_of_field_ = false, slice_values_ = false;
+  std::array<double, 2> slice_range_{0, 1};
+  double farthest_ = 0;  ///< distance seen in slices so far
+};
+
+}  // namespace nacre

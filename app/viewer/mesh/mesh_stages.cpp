@@ -1,0 +1,180 @@
+// Nacre: the mesh pipeline on a thread of its own: what its stages do.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "app/viewer/mesh/mesh_worker.hpp"
+#include "compute/device/error.hpp"
+#include "compute/meshing/tetrahedra.hpp"
+#include "engine/io/mesh_writer.hpp"
+#include "engine/scene/volume/materials.hpp"
+#include "engine/system/extension.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int slice_pixels = 512;         ///< along the longer side of a slice of a field
+constexpr std::size_t most_worst = 1000;  ///< triangles that can be told apart as the worst
+
+bool has_cells(const std::filesystem::path& file) {
+  const std::string extension = lower_extension(file);
+  const std::vector<std::string> known = tetrahedral_mesh_extensions();
+  return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+}  // namespace
+
+void MeshWorker::read() {
+  note_progress({"read", 0, 0, 0, 0});
+  StageTimers::Scope scope(pipeline_->timers(), "read");
+  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(input_, &interrupt_));
+}
+
+void MeshWorker::choose_materials() {
+  note_progress({"materials", 0, 0, 0, 0});
+  MaterialWords words;
+  {
+    std::scoped_lock lock(mutex_);
+    words = wanted_.materials;
+  }
+  auto viewed = std::make_shared<ViewedVolume>();
+  MeshVolume volume;
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "classify");
+    volume = materials_of(words, viewed->input);
+    if (volume.kind == MeshVolume::Kind::scalar) viewed->spread = spread_of(volumes_->front());
+  }
+  pipeline_->load(volume);
+  viewed->volumes = volumes_;
+  viewed->material = std::move(volume.material);
+  viewed_ = std::move(viewed);
+  tell(VolumeRead{viewed_, viewed_->corners(), pipeline_->voxel_frame()});
+}
+
+/// Who sits before a live view sees something first, and moves the iso-value then; a replay is told exactly.
+MeshVolume MeshWorker::materials_of(MaterialWords words, MeshInput& input) {
+  const bool sample = !input_.sample.empty();
+  std::string proposal;
+  try {
+    return make_materials(*volumes_, sample, words, input);
+  } catch (const MissingIsovalue& missing) {
+    std::scoped_lock lock(mutex_);
+    if (lockstep_) throw;
+    proposal = fmt::format("{:.4g}", missing.proposal());
+    wanted_.materials.isovalue = words.isovalue = proposal;
+  }
+  MeshVolume volume = make_materials(*volumes_, sample, words, input);
+  input.warnings.push_back(fmt::format(
+      "{} is no label map: it was cut at the iso-value {}, which the tab 'data' changes", input.name, proposal));
+  tell(IsovalueProposed{proposal});
+  return volume;
+}
+
+void MeshWorker::build_fields() { pipeline_->build_fields(); }
+
+void MeshWorker::relax() {
+  RelaxBegun told{pipeline_->info(), 0, 0, 0};
+  told.capacity = told.box_capacity = pipeline_->particle_capacity();
+  {
+    std::scoped_lock lock(mutex_);
+    lent_.reset();
+    told.lease = ++lease_;
+  }
+  tell(told);
+  pipeline_->relax();
+}
+
+void MeshWorker::triangulate() {
+  auto mesh = std::make_shared<SurfaceMesh>(pipeline_->triangulate());
+  MeshTriangulated told{mesh, make_mesh_drawing(*mesh), TriangleTree(mesh->points, mesh->triangles), pipeline_->info()};
+  if (!await_turn()) throw Interrupted();
+  mesh_ = std::move(mesh);
+  MeshProgress last;
+  {
+    std::scoped_lock lock(mutex_);
+    last = progress_;
+  }
+  last.particles = told.info.final;
+  show(last, false);
+  tell(std::move(told));
+}
+
+void MeshWorker::measure() {
+  note_progress({"quality", 0.95, 0, 0, 0});
+  auto measures = std::make_shared<MeshMeasures>();
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "quality");
+    measures->topology = check_topology(*mesh_, int(viewed_->input.labels.size()));
+    measures->quality = surface_quality(*mesh_);
+    measures->worst = worst_triangles(*mesh_, most_worst);
+  }
+  if (interrupt_) throw Interrupted();
+  measures->distance = pipeline_->surface_distance(*mesh_);
+  measures->size = pipeline_->field_at(MeshField::size, mesh_->points);
+  for (float& size : measures->size) size /= float(viewed_->voxel_length());
+  tell(MeshMeasured{std::move(measures)});
+}
+
+void MeshWorker::fill_slice() {
+  SliceRequest request;
+  {
+    std::scoped_lock lock(mutex_);
+    if (!slice_due()) return;
+    request = *slice_;
+  }
+  SliceFilled told;
+  told.number = request.number;
+  told.field = request.field;
+  told.plane = slice_plane(viewed_->input, request.axis, request.at);
+  const double width = length(told.plane.across), height = length(told.plane.up), longer = std::max(width, height);
+  told.columns = std::max(1, int(slice_pixels * width / longer));
+  told.rows = std::max(1, int(slice_pixels * height / longer));
+  told.values = pipeline_->field_at(request.field, told.plane.places(told.columns, told.rows));
+  {
+    std::scoped_lock lock(mutex_);
+    if (slice_ && slice_->number == request.number) slice_filled_ = true;
+    events_.push_back(std::move(told));
+  }
+  told_.notify_all();
+}
+
+void MeshWorker::write_result() {
+  std::filesystem::path file;
+  bool complete;
+  double max_cell;
+  {
+    std::scoped_lock lock(mutex_);
+    file = *std::exchange(file_, std::nullopt);
+    complete = next_ == MeshStage::done;
+    max_cell = wanted_.max_cell;
+    progress_ = {"write", -1, 0, 0, 0};
+    writing_ = true;
+  }
+  MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; let it be made first"};
+  const auto write = [&] {
+    const MeshInput& input = viewed_->input;
+    if (has_cells(file)) {
+      TetrahedralMesh cells;
+      {
+        StageTimers::Scope scope(pipeline_->timers(), "tetrahedra");
+        cells = fill_with_tetrahedra(*mesh_, longest_edge(max_cell, input.spacing), &interrupt_);
+      }
+      StageTimers::Scope scope(pipeline_->timers(), "write");
+      write_tetrahedral_mesh(file, cells, *mesh_, input.labels, input.names);
+    } else {
+      StageTimers::Scope scope(pipeline_->timers(), "write");
+      write_surface_mesh(file, *mesh_, input.labels, input.names);
+    }
+    told.failure.clear();
+  };
+  if (complete)
+    if (const std::optional<std::string> failure = failure_of(write)) told.failure = *failure;
+  {
+    std::scoped_lock lock(mutex_);
+    all_turns_ = writing_ = false;
+  }
+  tell(std::move(told));
+}
+
+}  // namespace nacre

@@ -1,0 +1,203 @@
+// Nacre: a volume that is being meshed, as the viewer keeps it to look at.
+#include "app/viewer/mesh/viewed_volume.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <type_traits>
+
+#include "compute/pipeline/volume_frame.hpp"
+#include "engine/picture/material_colours.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr Color outside_colour{0.93f, 0.93f, 0.94f};
+
+void put(Image& image, std::size_t pixel, const Color& colour) {
+  for (std::size_t k = 0; k < 3; ++k) image.pixels[4 * pixel + k] = std::uint8_t(std::lround(255 * colour[k]));
+}
+
+Color material_pixel(int material) { return material == 0 ? outside_colour : material_colour(material); }
+
+/// Colours of the materials that occur, made once each.
+class MaterialColours {
+ public:
+  const Color& operator[](std::uint16_t material) {
+    while (made_.size() <= material) made_.push_back(material_pixel(int(made_.size())));
+    return made_[material];
+  }
+
+ private:
+  std::vector<Color> made_;
+};
+
+const Color& mapped(const Colormap& map, double value, double low, double high) {
+  const double share = high > low ? std::clamp((value - low) / (high - low), 0.0, 1.0) : 0.5;
+  return map.table[std::size_t(std::lround(share * double(map.table.size() - 1)))];
+}
+
+}  // namespace
+
+ValueSpread spread_of(const Volume& volume) {
+  constexpr std::size_t bins = 8192;  // a CT's values are whole, and some thousands
+  constexpr double beyond = 0.005;    // on either side
+  const VolumeStatistics statistics = volume_statistics(volume);
+  ValueSpread spread;
+  spread.min = spread.low = statistics.min;
+  spread.max = spread.high = statistics.max;
+  const double range = spread.max - spread.min;
+  if (!(range > 0)) return spread;
+  std::vector<std::size_t> count(bins, 0);
+  std::size_t total = 0;
+  std::visit(
+      [&](const auto& values) {
+        for (const auto v : values) {
+          if (!std::isfinite(double(v))) continue;
+          ++count[std::min(bins - 1, std::size_t((double(v) - spread.min) / range * bins))], ++total;
+        }
+      },
+      volume.values);
+  const auto bin_below = [&](double share) {
+    std::size_t sum = 0, bin = 0;
+    while (bin + 1 < bins && double(sum + count[bin]) <= share * double(total)) sum += count[bin++];
+    return bin;
+  };
+  const std::size_t first = bin_below(beyond), last = bin_below(1 - beyond);
+  if (last > first) {
+    spread.low = spread.min + range * double(first) / bins;
+    spread.high = spread.min + range * double(last + 1) / bins;
+  }
+  std::array<double, std::tuple_size_v<decltype(spread.histogram)>> voxels{};
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const double value = spread.min + range * (double(bin) + 0.5) / bins;
+    const double share = (value - spread.low) / (spread.high - spread.low);
+    if (share >= 0 && share < 1) voxels[std::size_t(share * double(voxels.size()))] += double(count[bin]);
+  }
+  for (std::size_t k = 0; k < voxels.size(); ++k) spread.histogram[k] = float(std::sqrt(voxels[k]));
+  return spread;
+}
+
+Vec3d ViewedVolume::to_world(const Vec3d& voxel) const {
+  return index_to_world(voxel, input.origin, input.spacing, input.axes);
+}
+
+Vec3d ViewedVolume::to_voxels(const Vec3d& world) const {
+  return world_to_index(world, input.origin, input.spacing, input.axes);
+}
+
+std::optional<std::size_t> ViewedVolume::index_at(const Vec3d& world) const {
+  const Vec3d p = to_voxels(world);
+  std::size_t index = 0;
+  for (int a = 2; a >= 0; --a) {
+    const double nearest = std::floor(p[a] + 0.5);
+    if (!(nearest >= 0 && nearest < input.dims[a])) return {};
+    index = index * std::size_t(input.dims[a]) + std::size_t(nearest);
+  }
+  return index;
+}
+
+double ViewedVolume::value(std::size_t index, std::size_t file) const {
+  return std::visit([&](const auto& values) { return double(values[index]); }, (*volumes)[file].values);
+}
+
+std::vector<Vec3d> ViewedVolume::corners() const {
+  Vec3d low(input.dims), high(0);
+  std::size_t index = 0;
+  for (int z = 0; z < input.dims.z; ++z)
+    for (int y = 0; y < input.dims.y; ++y)
+      for (int x = 0; x < input.dims.x; ++x) {
+        if (material[index++] == 0) continue;
+        low = min(low, Vec3d(x, y, z));
+        high = max(high, Vec3d(x + 1, y + 1, z + 1));
+      }
+  return corners_of(low, high);
+}
+
+std::vector<Vec3d> ViewedVolume::box() const { return corners_of(Vec3d(0), Vec3d(input.dims)); }
+
+/// Of the voxels from `low` to before `high`.
+std::vector<Vec3d> ViewedVolume::corners_of(const Vec3d& low, const Vec3d& high) const {
+  std::vector<Vec3d> corner;
+  for (int k = 0; k < 8; ++k)
+    corner.push_back(
+        to_world({(k & 1 ? high.x : low.x) - 0.5, (k & 2 ? high.y : low.y) - 0.5, (k & 4 ? high.z : low.z) - 0.5}));
+  return corner;
+}
+
+std::vector<Vec3d> SlicePlane::places(int columns, int rows) const {
+  std::vector<Vec3d> place;
+  place.reserve(std::size_t(columns) * std::size_t(rows));
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x)
+      place.push_back(corner + across * ((x + 0.5) / columns) + up * ((y + 0.5) / rows));
+  return place;
+}
+
+SlicePlane slice_plane(const MeshInput& input, int axis, double at) {
+  int across = 0;
+  for (int a = 1; a < 3; ++a)
+    if (std::fabs(input.axes[std::size_t(a)][axis]) > std::fabs(input.axes[std::size_t(across)][axis])) across = a;
+  const bool turned = input.axes[std::size_t(across)][axis] < 0;
+  const double along = (turned ? 1 - at : at) * input.dims[across] - 0.5;
+  SlicePlane plane{};
+  plane.across_axis = across == 0 ? 1 : 0;
+  plane.up_axis = across == 2 ? 1 : 2;
+  plane.width = input.dims[plane.across_axis];
+  plane.height = input.dims[plane.up_axis];
+  plane.first[across] = std::clamp(int(std::floor(along + 0.5)), 0, input.dims[across] - 1);
+  const auto step = [&](int a) { return input.axes[std::size_t(a)] * input.spacing[a]; };
+  plane.across = step(plane.across_axis) * plane.width;
+  plane.up = step(plane.up_axis) * plane.height;
+  plane.corner = input.origin + step(across) * along - step(plane.across_axis) * 0.5 - step(plane.up_axis) * 0.5;
+  return plane;
+}
+
+int slice_axis(const Look& look) { return look.slice == "x" ? 0 : look.slice == "y" ? 1 : look.slice == "z" ? 2 : -1; }
+
+Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colormap& map, double low, double high) {
+  Image image(plane.width, plane.height);
+  const std::size_t stride[] = {1, std::size_t(v.input.dims.x), std::size_t(v.input.dims.x) * v.input.dims.y};
+  std::size_t first = 0;
+  for (int a = 0; a < 3; ++a) first += stride[a] * std::size_t(plane.first[a]);
+  const auto each = [&](const auto& colour_of) {
+    for (int y = 0; y < plane.height; ++y)
+      for (int x = 0; x < plane.width; ++x)
+        put(image, std::size_t(y) * plane.width + x,
+            colour_of(first + stride[plane.across_axis] * std::size_t(x) + stride[plane.up_axis] * std::size_t(y)));
+  };
+  if (v.input.kind == MeshVolume::Kind::scalar) {
+    std::visit(
+        [&](const auto& values) {
+          each([&](std::size_t i) -> const Color& {
+            return std::isnan(double(values[i])) ? outside_colour : mapped(map, double(values[i]), low, high);
+          });
+        },
+        v.volumes->front().values);
+  } else {
+    MaterialColours colours;
+    each([&](std::size_t i) -> const Color& { return colours[v.material[i]]; });
+  }
+  return image;
+}
+
+Image colour_values(const std::vector<float>& values, int width, int height, double low, double high,
+                    const Colormap& map) {
+  Image image(width, height);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isnan(values[i]))
+      std::fill_n(&image.pixels[4 * i], 4, std::uint8_t(0));
+    else
+      put(image, i, mapped(map, std::isinf(values[i]) ? high : double(values[i]), low, high));
+  }
+  return image;
+}
+
+Image colour_materials(const std::vector<float>& materials, int width, int height) {
+  Image image(width, height);
+  MaterialColours colours;
+  for (std::size_t i = 0; i < materials.size(); ++i) put(image, i, colours[std::uint16_t(materials[i])]);
+  return image;
+}
+
+}  // namespace nacre

@@ -1,0 +1,124 @@
+// Nacre: a flow in the panel.
+#include "app/viewer/panel/flow_panel.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/viewer/panel/imgui_text.hpp"
+#include "app/viewer/panel/knob_widgets.hpp"
+#include "engine/scene/surface/prepare.hpp"
+
+namespace nacre {
+namespace {
+
+std::string range_text(const Range& range) { return fmt::format("{:.7g}:{:.7g}", range.low, range.high); }
+
+}  // namespace
+
+std::vector<std::string> flow_choices(const FlowOffer& offer, const std::string& knob) {
+  std::vector<std::string> all;
+  if (knob == "vectors") {
+    all = offer.vectors;
+    all.insert(all.begin(), "");  // the likeliest
+    for (const std::string& field : analytic_vector_names()) all.push_back(field);
+  } else if (knob == "color") {
+    all = offer.arrays;
+    all.insert(all.begin(), {"speed", "none"});
+  }
+  return all;
+}
+
+/// True where they were changed and let go, and are a range.
+bool FlowPanel::edit_range(const char* label, RangeEdit& edit, const Range& now) {
+  if (!edit.active) edit.ends = {now.low, now.high};
+  ImGui::InputScalarN(label, ImGuiDataType_Double, edit.ends.data(), 2, nullptr, nullptr, "%.7g");
+  edit.active = ImGui::IsItemActive();
+  const auto [low, high] = edit.ends;
+  return ImGui::IsItemDeactivatedAfterEdit() && std::isfinite(low) && std::isfinite(high) && low < high;
+}
+
+void FlowPanel::data_tab(Session& session) {
+  for (const char* name : {"vectors", "color", "colormap"})
+    knob_widget(session.settings, name, flow_choices(results_.offer, name));
+  if (!results_.tree || results_.corners.empty()) return;
+  Vec3d low = results_.corners.front(), high = low;
+  for (const Vec3d& p : results_.corners) low = min(low, p), high = max(high, p);
+  const Vec3d size = high - low;
+  ImGui::Separator();
+  text(fmt::format("{} triangles, {} points", grouped((long long)results_.tree->triangles().size()),
+                   grouped((long long)results_.tree->points().size())));
+  text(fmt::format("{:.4g} x {:.4g} x {:.4g} in the data's unit", size.x, size.y, size.z));
+  const Range& time = results_.data.time;
+  if (time.high > time.low) text(fmt::format("time {} to {}", time_text(time.low), time_text(time.high)));
+}
+
+void FlowPanel::look_tab(Session& session) {
+  for (const char* name : {"play", "fps", "contrast", "edges", "boxes", "arrows", "arrow_count", "arrow_length"})
+    knob_widget(session.settings, name);
+}
+
+void FlowPanel::result_tab(Session& session) {
+  if (results_.data.array.empty()) return text("nothing read yet");
+  ImGui::PushID("flow");                            // the rest of the panel has a "play", too
+  ImGui::PushItemWidth(-9 * ImGui::GetFontSize());  // room for a label and a button
+  show_time(session);
+  show_range(session);
+  ImGui::PopItemWidth();
+  ImGui::PopID();
+  show_vectors();
+  if (results_.embedding) show_embedding();
+}
+
+void FlowPanel::show_time(Session& session) {
+  Settings& settings = session.settings;
+  const FlowSpan& span = results_.span;
+  ImGui::Checkbox("play", &settings.look.play);
+  ImGui::SameLine();
+  text(fmt::format("time {}   step {}", time_text(results_.time), results_.steps));
+  if (!(results_.data.time.high > results_.data.time.low)) return text("steady: one time only");
+  const double period = std::max(span.end - span.first, 1e-300);
+  if (!sliding_) slider_ = float(std::clamp((results_.time - span.first) / period, 0.0, 1.0));
+  ImGui::SliderFloat("begin at", &slider_, 0, 1, "%.3f");
+  sliding_ = ImGui::IsItemActive();
+  if (ImGui::IsItemDeactivatedAfterEdit()) settings.begin_at = std::clamp(double(slider_), 0.0, 1.0);
+  if (edit_range("time", time_edit_, {span.first, span.end})) settings.time = range_text(time_edit_.range());
+  ImGui::SameLine();
+  if (ImGui::Button("all")) settings.time.clear();
+}
+
+void FlowPanel::show_range(Session& session) {
+  if (results_.data.color == "none") return;
+  std::string& knob = session.settings.color_range;
+  if (edit_range("colours", colours_edit_, results_.range)) knob = range_text(colours_edit_.range());
+  ImGui::SameLine();
+  bool locked = !knob.empty();
+  if (ImGui::Checkbox("lock", &locked)) knob = locked ? range_text(results_.range) : "";
+}
+
+void FlowPanel::show_vectors() const {
+  const VectorStatistics& s = results_.data.statistics;
+  ImGui::Separator();
+  text(fmt::format("{} ({})", results_.data.array, results_.data.reason));
+  text(fmt::format("speed: most {:.4g}, 98% below {:.4g}", s.max_speed, s.percentile_98));
+  text(fmt::format("normal to the surface {:.1f}%   zero {:.1f}%", 100 * s.normal_share, 100 * s.zero_share));
+}
+
+void FlowPanel::show_embedding() const {
+  const EmbeddingInfo& e = *results_.embedding;
+  ImGui::Separator();
+  text(fmt::format("{} of {} x {} x {}", e.kind, e.dimensions.x, e.dimensions.y, e.dimensions.z));
+  text(fmt::format("{} cells, {} on the surface", grouped((long long)e.cells), grouped((long long)e.surface_cells)));
+  text(fmt::format("{:.1f} bytes a cell, {:.2f}% sparse", double(e.bytes) / double(std::max<std::uint64_t>(1, e.cells)),
+                   100 * (1 - double(e.bytes) / std::max(1.0, double(e.dense_bytes)))));
+  const std::vector<float>& seconds = results_.step_seconds;
+  if (seconds.empty()) return;
+  const float most = *std::max_element(seconds.begin(), seconds.end());
+  text(fmt::format("{:.3f} s the last step", seconds.back()));
+  ImGui::PlotLines("##steps", seconds.data(), int(seconds.size()), 0, nullptr, 0, 1.1f * most,
+                   ImVec2(ImGui::GetContentRegionAvail().x, 48));
+}
+
+}  // namespace nacre

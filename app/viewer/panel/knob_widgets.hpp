@@ -1,0 +1,22 @@
+// Nacre: widgets for the knobs of the table.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/session/session.hpp"
+
+namespace nacre {
+
+/// One knob by its name, with its unit and help. Numbers are clamped to their range, min_size and max_size to each
+/// other; sliders and text take effect when they are let go. `choices`: for a knob that takes words; none: any.
+void knob_widget(Settings& settings, const std::string& name, const std::vector<std::string>& choices = {});
+
+/// All knobs of a job ("flow", "mesh") in their groups, those that contain `filter` in name or help; without those of
+/// the look. Changed ones are marked, a right click resets.
+void knob_groups(Settings& settings, const std::string& job, const std::string& filter);
+
+/// All knobs of `job` as they are by default; the look, and what is shown of which arrays, stay.
+void reset_knobs(Settings& settings, const std::string& job);
+
+}  // namespace nacre

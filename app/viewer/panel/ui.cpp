@@ -1,0 +1,292 @@
+// Nacre: the frame of the user interface: keys, panel, status line.
+#include "app/viewer/panel/ui.hpp"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/viewer/panel/imgui_text.hpp"
+#include "app/viewer/panel/knob_widgets.hpp"
+#include "app/viewer/scene/free_area.hpp"
+#include "engine/render/camera_motion.hpp"
+#include "engine/scene/samples/phantoms.hpp"
+#include "engine/scene/samples/samples.hpp"
+
+namespace nacre {
+namespace {
+
+/// Pixels that the parts take.
+struct Layout {
+  float menu, status, panel;
+};
+
+Layout layout(int width) {
+  const float row = ImGui::GetFontSize() + 2 * ImGui::GetStyle().FramePadding.y;
+  return {row, 1.6f * row, std::floor(std::min(27 * ImGui::GetFontSize(), 0.6f * float(width)))};
+}
+
+/// "12 s", "3:05 min"
+std::string lasting(double seconds) {
+  const int whole = int(seconds);
+  return whole < 100 ? fmt::format("{} s", whole) : fmt::format("{}:{:02} min", whole / 60, whole % 60);
+}
+
+const char* job_of(const Session& session) { return is_mesh_input(session) ? "mesh" : "flow"; }
+
+void stage_table(const StageTimers& timers) {
+  if (!ImGui::BeginTable("stages", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) return;
+  for (const char* head : {"stage", "calls", "total s", "mean ms"}) ImGui::TableSetupColumn(head);
+  ImGui::TableHeadersRow();
+  for (const StageTimers::Stage& stage : timers.stages()) {
+    const auto column = [](const std::string& words) {
+      ImGui::TableNextColumn();
+      text(words);
+    };
+    column(stage.name);
+    column(fmt::format("{}", stage.calls));
+    column(fmt::format("{:.2f}", stage.seconds));
+    column(fmt::format("{:.1f}", 1e3 * stage.seconds / double(std::max(1L, stage.calls))));
+  }
+  ImGui::EndTable();
+}
+
+void timings_tab(const Scene& scene, const UiFacts& facts) {
+  const SceneTotals totals = scene.totals();
+  const double frame = facts.clock.mean_seconds();
+  text(fmt::format("{:.1f} frames/s, {:.1f} ms drawing", frame > 0 ? 1 / frame : 0, 1e3 * frame));
+  const std::array<float, 120> history = facts.clock.milliseconds();
+  const float top = std::max(20.0f, *std::max_element(history.begin(), history.end()));
+  const std::string slowest =
+      fmt::format("the last {}: {:.0f} ms at most", history.size(), *std::max_element(history.begin(), history.end()));
+  ImGui::PlotLines("##frames", history.data(), int(history.size()), 0, slowest.c_str(), 0, top,
+                   ImVec2(ImGui::GetContentRegionAvail().x, 3 * ImGui::GetFontSize()));
+  stage_table(totals.timers);
+  ImGui::Spacing();
+  ImGui::TextWrapped("compute: %s (%s)", scene.device().name().c_str(), scene.device().backend().c_str());
+  ImGui::TextWrapped("drawing: %s", facts.renderer.c_str());
+  text(fmt::format("memory: {:.0f} MiB of the device", double(totals.peak_bytes) / (1 << 20)));
+  text(fmt::format("copied between compute and drawing: {} bytes", totals.copied_bytes));
+}
+
+void sample_choice(Session& session) {
+  const auto offer = [&](const std::string& name, const std::string& help) {
+    if (ImGui::Selectable(name.c_str(), session.sample == name) && session.sample != name)
+      static_cast<SessionInput&>(session) = {{}, name, 0}, session.camera.reset();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
+  };
+  if (!ImGui::BeginCombo("sample", session.sample.empty() ? "(a file)" : session.sample.c_str())) return;
+  ImGui::TextDisabled("flow on surfaces");
+  for (const SampleInfo& sample : samples()) offer(sample.name, sample.help);
+  ImGui::TextDisabled("volumes to mesh");
+  for (const PhantomInfo& phantom : phantoms()) offer(phantom.name, phantom.help);
+  ImGui::EndCombo();
+}
+
+void data_tab(Session& session, const Scene& scene, ScenePanel& panel) {
+  sample_choice(session);
+  if (!session.sample.empty()) {
+    ImGui::InputInt("detail", &session.detail, 0, 0, ImGuiInputTextFlags_EnterReturnsTrue);
+    session.detail = std::clamp(session.detail, 0, 4096);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("cells along the longest side; 0: its own");
+  }
+  for (const auto& file : session.inputs) ImGui::TextWrapped("%s", file.string().c_str());
+  ImGui::Separator();
+  panel.data_tab(session);
+  for (const std::string& warning : scene.warnings()) ImGui::TextWrapped("! %s", warning.c_str());
+}
+
+void look_tab(Session& session, ScenePanel& panel) {
+  panel.look_tab(session);
+  Settings& settings = session.settings;
+  const auto several = [&](std::initializer_list<const char*> names) {
+    for (const char* name : names) knob_widget(settings, name);
+  };
+  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back"});
+  if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
+  if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
+  if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size"});
+}
+
+}  // namespace
+
+FreeArea Ui::free_area(const Look& look, int width, int height) const {
+  if (!look.panel) return {0, 0, width, height};
+  const Layout l = layout(width);
+  const int left = int(l.panel), above = int(l.menu), below = int(l.status);
+  return {left, above, std::max(16, width - left), std::max(16, height - above - below)};
+}
+
+void Ui::show_note(const std::string& line) {
+  told_ = line;
+  told_until_ = ImGui::GetTime() + 8;
+}
+
+bool Ui::animates() const {
+  return work_began_ >= 0 || ImGui::GetTime() < told_until_ + 1 || ImGui::GetIO().WantTextInput;
+}
+
+void Ui::knob_tab(Session& session) {
+  ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  ImGui::InputTextWithHint("##filter", "find a knob", &filter_);
+  ImGui::SameLine();
+  if (ImGui::Button("reset all")) reset_knobs(session.settings, job_of(session));
+  if (ImGui::BeginChild("knobs")) knob_groups(session.settings, job_of(session), filter_);
+  ImGui::EndChild();
+}
+
+/// The session's tab is shown, whoever chose it; a click on another changes the session.
+void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
+  std::string& tab = session.settings.look.tab;
+  const bool told = tab != drawn_tab_;
+  const auto item = [&](const char* name, const auto& content) {
+    if (!ImGui::BeginTabItem(name, nullptr, told && tab == name ? ImGuiTabItemFlags_SetSelected : 0)) return;
+    if (!told) tab = name;
+    content();
+    ImGui::EndTabItem();
+  };
+  if (!ImGui::BeginTabBar("tabs")) return;
+  item("data", [&] { data_tab(session, scene, facts.panel); });
+  item("knobs", [&] { knob_tab(session); });
+  item("look", [&] { look_tab(session, facts.panel); });
+  item("result", [&] { facts.panel.result_tab(session); });
+  item("timings", [&] { timings_tab(scene, facts); });
+  ImGui::EndTabBar();
+  drawn_tab_ = tab;
+}
+
+/// At the bottom of the panel, so that nothing above moves under the cursor. Returns its height; 0: nothing failed.
+float Ui::failure_window(const Scene& scene, const UiFacts& facts) {
+  if (scene.failure().empty()) return 0;
+  const Layout l = layout(facts.width);
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const std::string& line = scene.failure();
+  const float wrap = l.panel - 2 * style.WindowPadding.x;
+  const float high = std::min(ImGui::CalcTextSize(line.c_str(), nullptr, false, wrap).y + 2 * style.WindowPadding.y,
+                              0.4f * float(facts.height));
+  ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - l.status - high));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, high));
+  const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
+  if (ImGui::Begin("failure", nullptr, fixed)) {
+    ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.95f, 0.4f, 0.3f, 1));
+    ImGui::TextWrapped("%s", line.c_str());
+    ImGui::PopStyleColor();
+  }
+  ImGui::End();
+  return high;
+}
+
+void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
+  const Layout l = layout(facts.width);
+  const float below = l.status + failure_window(scene, facts);
+  ImGui::SetNextWindowPos(ImVec2(0, l.menu));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, std::max(50.0f, float(facts.height) - l.menu - below)));
+  const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_NoBringToFrontOnFocus;
+  if (ImGui::Begin("panel", nullptr, fixed)) {
+    const char* refused = facts.can_undo ? "not opened; ctrl z brings back what was there" : "not opened";
+    const std::string title = scene.title();
+    ImGui::TextWrapped("%s", !title.empty() ? title.c_str() : scene.failure().empty() ? "opening ..." : refused);
+    ImGui::TextWrapped("%s", title.empty() ? "" : scene.state().c_str());
+    tabs(session, scene, facts);
+  }
+  ImGui::End();
+}
+
+/// What goes on, how far it is, and a way to end it; what is under the cursor.
+void Ui::status(Scene& scene, const UiFacts& facts, UiRequests& requests) {
+  const float high = layout(facts.width).status;
+  ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - high));
+  ImGui::SetNextWindowSize(ImVec2(float(facts.width), high));
+  const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoNav;
+  if (ImGui::Begin("status", nullptr, fixed)) {
+    const SceneProgress progress = scene.progress();
+    if (!progress.stage.empty()) {
+      if (ImGui::Button("cancel")) requests.cancel = true;
+      ImGui::SameLine();
+      ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
+      if (progress.fraction >= 0)
+        ImGui::ProgressBar(float(progress.fraction), ImVec2(14 * ImGui::GetFontSize(), 0), progress.stage.c_str());
+      else
+        text(progress.stage + " ...");
+      ImGui::SameLine();
+      if (work_began_ < 0) work_began_ = ImGui::GetTime();
+      text(lasting(ImGui::GetTime() - work_began_));
+      ImGui::SameLine();
+    } else if (scene.halted()) {
+      if (ImGui::Button("compute")) requests.resume = true;
+      ImGui::SameLine();
+    }
+    if (progress.stage.empty()) work_began_ = -1;
+    const double frame = facts.clock.mean_seconds();
+    text(fmt::format("{:.0f} ms a frame   {:.0f} MiB of memory", 1e3 * frame,
+                     double(scene.totals().peak_bytes) / (1 << 20)));
+    ImGui::SameLine();
+    if (facts.recording) text("   recording");
+    ImGui::SameLine();
+    if (!facts.film.empty()) text("   filming: " + facts.film + "; frames wait for compute");
+    ImGui::SameLine();
+    if (!facts.saving.empty()) text("   saving " + facts.saving);
+    ImGui::SameLine();
+    if (ImGui::GetTime() < told_until_) text("   " + told_);
+  }
+  ImGui::End();
+}
+
+void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
+  if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return;
+  const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
+  const auto [from, along] = ray_under(camera, x, y, area.aspect());
+  const std::optional<ProbeResult> probed = scene.probe(from, along);
+  if (!probed) return;
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y) + 8));  // the time stands in the corner below
+  ImGui::SetNextWindowBgAlpha(0.7f);
+  const auto quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                     ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+  if (ImGui::Begin("under the cursor", nullptr, quiet))
+    for (const std::string& line : probed->lines) text(line);
+  ImGui::End();
+}
+
+void Ui::error_window(const FreeArea& area) {
+  if (error_.empty()) return;
+  const float width = std::min(36 * ImGui::GetFontSize(), 0.9f * float(area.width));
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 0.5f * float(area.width), float(area.y) + ImGui::GetFontSize()),
+                          ImGuiCond_Always, ImVec2(0.5f, 0));
+  ImGui::SetNextWindowSize(ImVec2(width, 0));
+  bool open = true;
+  if (ImGui::Begin("this did not work", &open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse)) {
+    ImGui::TextWrapped("%s", error_.c_str());
+    if (ImGui::Button("close")) open = false;
+  }
+  ImGui::End();
+  if (!open) error_.clear();
+}
+
+UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
+  UiRequests requests;
+  use_keys(session, scene, facts, requests);
+  const FreeArea area = free_area(session.settings.look, facts.width, facts.height);
+  if (session.settings.look.panel) {
+    menus(session, scene, facts, requests);
+    panel(session, scene, facts);
+    status(scene, facts, requests);
+    if (session.camera) probe_window(scene, facts.camera, area);
+  }
+  error_window(area);
+  if (std::exchange(asks_record_, false)) switch_recording(facts, requests);
+  help_windows(facts, area);
+  quit_window(requests);
+  screenshot_window(facts);
+  if (const auto files = dialog_.draw()) then_(*files, session, requests);
+  return requests;
+}
+
+}  // namespace nacre

@@ -1,0 +1,105 @@
+// Nacre: menus, panel and dialogs over the picture. They change the session; what concerns the program they wish for.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/panel/file_dialog.hpp"
+#include "app/viewer/panel/frame_clock.hpp"
+#include "app/viewer/panel/scene_panel.hpp"
+#include "app/viewer/scene/free_area.hpp"
+#include "app/viewer/scene/scene.hpp"
+#include "engine/gl/window.hpp"
+
+namespace nacre {
+
+/// What the loop tells about itself.
+struct UiFacts {
+  ScenePanel& panel;
+  const FrameClock& clock;
+  std::string renderer;
+  const std::vector<std::filesystem::path>& recent;
+  bool can_undo = false, can_redo = false;
+  bool recording = false;  ///< of what the user does
+  std::string film;        ///< how long the video is to which every frame goes; empty: none
+  std::string saving;      ///< a file that is being written; empty: none
+  int width = 0, height = 0;
+  Camera camera;               ///< of what is seen
+  std::vector<KeyPress> keys;  ///< since the last frame
+};
+
+/// What the user wants of the program.
+struct UiRequests {
+  bool quit = false, undo = false, redo = false, cancel = false, resume = false;
+  bool record = false;  ///< begin
+  bool end_film = false;
+  std::string look_from;  ///< a view such as "+x"
+  bool fit = false;
+  std::optional<std::filesystem::path> load_session, save_session, save_result, save_recording, film;
+  std::optional<Screenshot> screenshot;
+};
+
+class Ui {
+ public:
+  /// Makes all of it, between ImGuiLayer::begin and end.
+  UiRequests draw(Session& session, Scene& scene, const UiFacts& facts);
+
+  /// Where the picture is to be, in a window of this size. As wide as the panel allows; never empty.
+  FreeArea free_area(const Look& look, int width, int height) const;
+
+  /// A line at the bottom for some seconds: something was saved.
+  void show_note(const std::string& line);
+  /// Something did not work: in a window of its own, panel or not, until that is closed.
+  void show_error(const std::string& line) { error_ = line; }
+
+  /// Asks whether to quit although, a line for each reason; UiRequests::quit then means it.
+  void ask_quit(std::vector<std::string> reasons) {
+    quit_reasons_ = std::move(reasons);
+    opens_quit_ = true;
+  }
+  /// Does something on it change with time alone: how long it computes, a note, the cursor of a field?
+  bool animates() const;
+  bool asks_quit() const { return !quit_reasons_.empty(); }
+
+ private:
+  using Then =
+      std::function<void(const std::vector<std::filesystem::path>& files, Session& session, UiRequests& requests)>;
+
+  void use_keys(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void view_menu(Session& session, UiRequests& requests);
+  void panel(Session& session, Scene& scene, const UiFacts& facts);
+  float failure_window(const Scene& scene, const UiFacts& facts);
+  void tabs(Session& session, Scene& scene, const UiFacts& facts);
+  void knob_tab(Session& session);
+  void status(Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void screenshot_window(const UiFacts& facts);
+  void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
+  void error_window(const FreeArea& area);
+  void quit_window(UiRequests& requests);
+  void help_windows(const UiFacts& facts, const FreeArea& area);
+  bool close_topmost();
+  void ask_open();
+  void ask_result(Scene& scene);
+  void switch_film(const UiFacts& facts, UiRequests& requests);
+  void switch_recording(const UiFacts& facts, UiRequests& requests);
+  void ask_save(const std::string& title, std::vector<std::string> extensions, const std::string& name,
+                std::optional<std::filesystem::path> UiRequests::*wish);
+
+  FileDialog dialog_;
+  Then then_;  ///< what happens to the dialog's files
+  Screenshot shot_;
+  bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
+  bool typed_ = false;  ///< in a field, and the mouse has not been over the view since
+  bool opens_quit_ = false;
+  std::vector<std::string> quit_reasons_;  ///< not empty: it is asked whether to quit
+  std::string filter_, told_, error_, drawn_tab_;
+  double told_until_ = 0, work_began_ = -1;  ///< on Dear ImGui's clock; -1: no work goes on
+};
+
+}  // namespace nacre

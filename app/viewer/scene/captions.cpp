@@ -1,0 +1,55 @@
+// Nacre: what stands over a frame and belongs to the picture.
+#include "app/viewer/scene/captions.hpp"
+
+#include <fmt/format.h>
+
+#include "engine/picture/legend.hpp"
+
+namespace nacre {
+
+Rgba paper_of(const std::string& background) {
+  const bool colour = background.size() == 7 && background[0] == '#' &&
+                      background.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+  if (!colour) return {255, 255, 255, 0};
+  const int rgb = std::stoi(background.substr(1), nullptr, 16);
+  return {std::uint8_t(rgb >> 16), std::uint8_t(rgb >> 8), std::uint8_t(rgb), 255};
+}
+
+void Captions::draw(Scene& scene, const View& view, const Settings& settings) {
+  draw_scene(scene, view);
+  if (settings.legend) draw_triad(view, settings.background);
+}
+
+void Captions::draw_scene(Scene& scene, const View& view) {
+  const Made wanted{view.width, view.height, scene.overlay_version()};
+  if (drawn_ != wanted) scene_.set_image(scene.overlay(view.width, view.height));
+  drawn_ = wanted;
+  scene_.draw(view);
+}
+
+void Captions::draw_triad(const View& view, const std::string& background) {
+  const Vec3f forward(view.camera.forward()), right(view.camera.right()), up = cross(right, forward);
+  Seen wanted{view.width, view.height, {}, background};
+  for (int k = 0; k < 3; ++k) {
+    const auto at = std::size_t(k);
+    wanted.axes[at] = right[k], wanted.axes[3 + at] = up[k], wanted.axes[6 + at] = forward[k];
+  }
+  if (seen_ != wanted)
+    triad_.set_image(orientation_sheet(view.width, view.height, paper_of(background), right, up, forward));
+  seen_ = wanted;
+  triad_.draw(view);
+}
+
+std::string window_title(const Scene& scene, bool filming) {
+  const SceneProgress progress = scene.progress();
+  std::string words = filming ? "film - " : "";
+  if (!progress.stage.empty()) {
+    words += progress.stage;
+    if (progress.fraction >= 0) words += fmt::format(" {:.0f}%", 100 * progress.fraction);
+    words += " - ";
+  }
+  if (!scene.title().empty()) words += scene.title() + " - ";
+  return words + "Nacre";
+}
+
+}  // namespace nacre

@@ -1,0 +1,48 @@
+// Nacre: what stands over a frame and belongs to the picture: the scene's legend and stamp, the triad of axes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "app/viewer/scene/scene.hpp"
+#include "engine/picture/compose.hpp"
+#include "engine/render/overlay_pass.hpp"
+
+namespace nacre {
+
+class Captions {
+ public:
+  /// Draws into what is bound. Images are made and go up only where they differ from the last ones.
+  void draw(Scene& scene, const View& view, const Settings& settings);
+  /// Of another scene.
+  void forget() { drawn_ = {}; }
+
+ private:
+  void draw_scene(Scene& scene, const View& view);
+  void draw_triad(const View& view, const std::string& background);
+
+  /// What an image was made for.
+  struct Made {
+    int width = 0, height = 0;
+    std::uint64_t version = 0;
+    bool operator==(const Made&) const = default;
+  };
+  struct Seen {
+    int width = 0, height = 0;
+    std::array<float, 9> axes{};
+    std::string background;
+    bool operator==(const Seen&) const = default;
+  };
+  OverlayPass scene_, triad_;
+  Made drawn_;
+  Seen seen_;
+};
+
+/// How far the work is and what is open, also for who looks at other windows meanwhile: "relax 40% - head.nrrd -
+/// Nacre", or with "film" before all that.
+std::string window_title(const Scene& scene, bool filming);
+
+/// The background behind a frame: `#rrggbb`; white without opacity for any other word, such as transparent.
+Rgba paper_of(const std::string& background);
+
+}  // namespace nacre

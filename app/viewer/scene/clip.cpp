@@ -1,0 +1,19 @@
+// Nacre: the plane that cuts a scene.
+#include "app/viewer/scene/clip.hpp"
+
+#include <algorithm>
+
+namespace nacre {
+
+std::optional<ClipPlane> clip_plane(const Look& look, std::span<const Vec3d> corners) {
+  const int axis = look.clip == "x" ? 0 : look.clip == "y" ? 1 : look.clip == "z" ? 2 : -1;
+  if (axis < 0 || corners.empty()) return {};
+  double low = corners.front()[axis], high = low;
+  for (const Vec3d& p : corners) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
+  const double place = low + look.clip_at * (high - low), side = look.clip_back ? -1 : 1;
+  ClipPlane plane{{0, 0, 0}, side * place};
+  plane.normal[axis] = side;
+  return plane;
+}
+
+}  // namespace nacre

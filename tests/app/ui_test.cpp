@@ -1,0 +1,147 @@
+// Nacre: menus and panel of the viewer, by mouse and keys. No OpenGL here.
+#if NACRE_HAS_VIEWER
+
+#include "app/viewer/panel/ui.hpp"
+
+#include <imgui_internal.h>
+
+#include <utility>
+
+#include "app/viewer/panel/frame_clock.hpp"
+#include "tests/app/imgui_frames.hpp"
+#include "tests/app/still_scene.hpp"
+
+namespace nacre::test {
+namespace {
+
+class EmptyPanel : public ScenePanel {
+ public:
+  void data_tab(Session&) override {}
+  void look_tab(Session&) override {}
+  void result_tab(Session&) override {}
+};
+
+class UiTest : public ImGuiFrames {
+ protected:
+  static constexpr int width = 800, height = 600;
+
+  void SetUp() override {
+    begin(width, height);
+    session_.sample = "sphere";
+    for (int k = 0; k < 3; ++k) frame();  // sizes are known from the second one on
+  }
+
+  void draw() override {
+    const UiFacts facts{panel_,
+                        clock_,
+                        "renderer",
+                        recent_,
+                        false,
+                        false,
+                        false,
+                        "",
+                        "",
+                        width,
+                        height,
+                        Camera(),
+                        std::exchange(keys_, {})};
+    const UiRequests requests = ui_.draw(session_, scene_, facts);
+    cancelled_ = cancelled_ || requests.cancel;
+  }
+
+  /// As the window tells it: to the menus and to Dear ImGui.
+  void escape() {
+    keys_ = {{27, false, false}};
+    press(ImGuiFrames::escape_key);
+    frame();
+  }
+
+  static bool shows(const char* window) {
+    const ImGuiWindow* found = ImGui::FindWindowByName(window);
+    return found && found->Active;
+  }
+
+  const std::string& tab() const { return session_.settings.look.tab; }
+
+  StillScene scene_{{-1, -1, -1}, {1, 1, 1}};
+  EmptyPanel panel_;
+  FrameClock clock_;
+  std::vector<std::filesystem::path> recent_;
+  Session session_;
+  Ui ui_;
+  std::vector<KeyPress> keys_;
+  bool cancelled_ = false;
+};
+
+TEST_F(UiTest, AFailureDoesNotMoveTheTabs) {
+  float y = 20;
+  for (; y < height && tab() != "knobs"; y += 4) click(70, y);
+  ASSERT_EQ(tab(), "knobs");
+  y -= 4;
+  session_.settings.look.tab = "data";
+  frame();
+  frame();
+  scene_.what_failed = "a volume that cannot be read (it is shorter than its header says); give the whole file";
+  frame();
+  frame();
+  click(70, y);
+  EXPECT_EQ(tab(), "knobs");
+}
+
+TEST_F(UiTest, EscapeClosesWhatIsOpenBeforeItCancels) {
+  scene_.doing = {"relax 4", 0.4};
+  ui_.show_error("a file could not be written");
+  click(12, 8);  // the menu "File"
+  ASSERT_TRUE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup));
+  escape();
+  EXPECT_FALSE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) << "first the menu";
+  keys_ = {{'O', true, false}};
+  frame();
+  frame();
+  ASSERT_TRUE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup));
+  escape();
+  EXPECT_FALSE(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) << "then the dialog";
+  EXPECT_TRUE(shows("this did not work"));
+  escape();
+  EXPECT_FALSE(shows("this did not work")) << "then the error";
+  EXPECT_FALSE(cancelled_);
+  escape();
+  EXPECT_TRUE(cancelled_);
+}
+
+TEST_F(UiTest, ItAsksBeforeItQuits) {
+  ui_.ask_quit({"A video is being recorded."});
+  frame();
+  frame();
+  EXPECT_TRUE(ui_.asks_quit());
+  escape();
+  frame();
+  EXPECT_FALSE(ui_.asks_quit()) << "it stays";
+  EXPECT_FALSE(cancelled_);
+}
+
+TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
+  session_.settings.look.tab = "knobs";
+  for (int k = 0; k < 3; ++k) frame();
+  float y = 20;
+  const auto over_field = [&] { return ImGui::GetMouseCursor() == ImGuiMouseCursor_TextInput; };
+  for (; y < height && !over_field(); y += 4) move(30, y), frame();
+  ASSERT_LT(y, height);
+  click(30, y - 4);
+  type("t");
+  press(enter_key);  // the field is left
+  frame();
+  const std::string theme = session_.settings.look.theme;
+  type("t");
+  EXPECT_EQ(session_.settings.look.theme, theme);
+  move(600, 300);  // over the view
+  frame();
+  frame();
+  type("t");
+  EXPECT_NE(session_.settings.look.theme, theme);
+}
+
+}  // namespace
+}  // namespace nacre::test
+
+#endif
