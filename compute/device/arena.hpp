@@ -14,7 +14,8 @@
 namespace nacre {
 
 /// One block of a device. Permanent arrays grow from its head, temporary ones from its tail, so that the two are never
-/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the tail.
+/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the
+/// tail.
 class Arena {
  public:
   Arena(Device& device, std::size_t bytes)
@@ -44,8 +45,8 @@ class Arena {
     return array;
   }
 
-  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the array
-  /// as it was, when the block is full.
+  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the
+  /// array as it was, when the block is full.
   template <class T>
   void resize_last(Array<T>& array, std::size_t count) {
     const std::size_t start = std::size_t(reinterpret_cast<std::uint8_t*>(array.data()) - block_), head = head_;
@@ -88,9 +89,10 @@ class Arena {
   std::size_t peak_bytes() const { return peak_; }
   Device& device() const { return device_; }
 
- private:
+  /// What an array of so many bytes takes.
   static std::size_t aligned(std::size_t bytes) { return (bytes + 255) / 256 * 256; }
 
+ private:
   bool fits(std::size_t count, std::size_t size) const {
     return count <= free_bytes() / size && aligned(count * size) <= free_bytes();
   }

@@ -18,8 +18,8 @@
 
 namespace nacre {
 
-/// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp). Lengths are in voxels: edges of the
-/// volume's smallest voxel spacing.
+/// What can be turned. Ranges and help are in the knob table (engine/scene/knobs.hpp). Lengths are in voxels: edges of
+/// the volume's smallest voxel spacing.
 struct MeshParameters {
   std::string solver = "tree";         ///< tree (ch. 4), redblack (sec. 3.2), serial (sec. 3.1)
   double tighten = 1.2;                ///< width of the smoothing of label boundaries; 0: keep the stairs
@@ -88,7 +88,7 @@ struct MeshInfo {
   std::int64_t seeded = 0, final = 0;
   std::int64_t seeded_on_surfaces = 0;  ///< of `seeded`; the others are on curves and at points
   std::int64_t points_final = 0, curves_final = 0, surfaces_final = 0;  ///< of `final`, by junction order
-  int iterations = 70;                                                  ///< of the surfaces
+  int iterations = 0;                                                   ///< of the surfaces
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
@@ -138,8 +138,8 @@ struct ShownBox {
   Vec3f low, high;
 };
 
-/// From voxels, the coordinates of what is shown, to the world: origin + x axes[0] + y axes[1] + z axes[2]. The axes are
-/// at right angles and of one length, that of a voxel, so that directions turn with them; they may be left-handed.
+/// From voxels, the coordinates of what is shown, to the world: origin + x axes[0] + y axes[1] + z axes[2]. The axes
+/// are at right angles and of one length, that of a voxel, so that directions turn with them; they may be left-handed.
 struct VoxelFrame {
   Vec3d origin;
   std::array<Vec3d, 3> axes;
@@ -154,10 +154,10 @@ enum class MeshField {
 };
 
 /// load, build_fields, relax, triangulate, in this order; `parameters` may be changed between calls and are read by the
-/// step that they belong to. A step may be repeated without those before it, and gives what a fresh pipeline would. Throws
-/// Error for bad input and too little memory, Interrupted when the watched flag is set. After an Interrupted any step up to
-/// the interrupted one may be called again (after that from `load`: `load`); after one from `relax`, `watch(nullptr)` and
-/// `triangulate` give the mesh of the particles so far.
+/// step that they belong to. A step may be repeated without those before it, and gives what a fresh pipeline would.
+/// Throws Error for bad input and too little memory, Interrupted when the watched flag is set. After an Interrupted any
+/// step up to the interrupted one may be called again (after that from `load`: `load`); after one from `relax`,
+/// `watch(nullptr)` and `triangulate` give the mesh of the particles so far.
 ///
 /// All calls belong to one thread, also those that look; those marked so may be made within `progress`.
 class MeshPipeline {
@@ -169,27 +169,30 @@ class MeshPipeline {
 
   /// Stage materials. The volume is not needed after it.
   virtual void load(const MeshVolume& volume) = 0;
-  /// Stages tighten, distance, sizing, embed: those that `parameters` concern since they ran last, and those behind them.
-  /// False where none had to run; else the particles are dropped.
+  /// Stages tighten, distance, sizing, embed: those that `parameters` concern since they ran last, and those behind
+  /// them. False where none had to run; else the particles are dropped.
   virtual bool build_fields() = 0;
   virtual void relax() = 0;               ///< stages seed, relax, population
   virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, mend; world coordinates
 
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
-  /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of `relax`.
+  /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of
+  /// `relax`.
   virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;
   /// A field at points of the world, as MeshField says; distance and size are NaN beyond the volume and the 8 voxels of
   /// outside around it. Needs the fields; also within `progress` of `relax`.
   virtual std::vector<float> field_at(MeshField field, std::span<const Vec3d> points) = 0;
 
+  /// For how many particles `relax` makes room with the present parameters: there are never more. Needs the fields.
+  virtual std::int64_t particle_capacity() const = 0;
   /// Stage show. A kernel writes the particles as they are now into `memory`; nothing where they do not fit, which the
   /// counts tell. None before `relax`; also within `progress` of `relax` and `triangulate`, where points and curves are
   /// alone at first.
   virtual ShownCounts show_particles(const ShownParticles& memory) = 0;
   /// The same for the boxes around particles: the nodes of the tree that was built last, level by level from the roots;
-  /// while the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns how
-  /// many there are.
+  /// while the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns
+  /// how many there are.
   virtual std::int64_t show_boxes(ShownBox* memory, std::int64_t capacity) = 0;
   virtual VoxelFrame voxel_frame() const = 0;  ///< of the volume that was loaded
 
