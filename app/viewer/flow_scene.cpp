@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/parameter_names.hpp"
 #include "app/viewer/captions.hpp"
 #include "compute/device/error.hpp"
 #include "engine/picture/colormap.hpp"
@@ -221,7 +222,7 @@ void FlowScene::take(FlowEmbedded& told) {
   try {
     next_ = std::make_unique<Texture>(told, worker_.device());
   } catch (const std::exception& error) {
-    no_texture_ = error.what();
+    no_texture_ = with_knobs(error.what());
   }
 }
 
