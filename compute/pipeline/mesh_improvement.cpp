@@ -13,15 +13,15 @@ namespace {
 
 constexpr int most_further = 4;  ///< rounds of an attempt after its first
 
-/// How an attempt changes what is around bad points.
-struct AttemptWay {
+/// What an attempt does to the particles around bad points.
+struct AttemptKind {
   int turns;    ///< of smoothing; 0: none
   bool shakes;  ///< smoothing begins at random places
   bool mends;
 };
 /// Tried in turn: as it is done at first; by less, where that made particles flip to and fro; without moving others;
 /// from elsewhere.
-constexpr std::array<AttemptWay, 4> attempt_ways{
+constexpr std::array<AttemptKind, 4> attempt_kinds{
     {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
 
 /// The points of the mesh at places that are given by particles. The mesh leaves some particles out and keeps their
@@ -115,17 +115,17 @@ bool MeshImprovement::improve(Triangulated& made) {
   return begin_attempt(made, bad);
 }
 
-/// Changes what is around the points `bad`, each time in the next of the ways. False where none changes anything.
+/// Changes what is around the points `bad`, by the next of the kinds of attempts. False where none changes anything.
 bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uint8_t> bad) {
   before_ = particles_.download();
   attempt_.emplace(before_.count(), made.view(), bad, worst_defects);
   further_ = 0;
-  for (std::size_t k = 0; k < attempt_ways.size(); ++k) {
+  for (std::size_t k = 0; k < attempt_kinds.size(); ++k) {
     const std::uint32_t number = tried_++;
-    const AttemptWay& way = attempt_ways[number % attempt_ways.size()];
-    const bool moves = way.turns > 0 && rule_.smooth > 0;
-    const bool moved = moves && smooth(made, bad, {way.turns, way.shakes ? number : 0}) > 0;
-    const bool mended = way.mends && mend(made, worst_defects);
+    const AttemptKind& kind = attempt_kinds[number % attempt_kinds.size()];
+    const bool moves = kind.turns > 0 && rule_.smooth > 0;
+    const bool moved = moves && smooth(made, bad, {kind.turns, kind.shakes ? number : 0}) > 0;
+    const bool mended = kind.mends && mend(made, worst_defects);
     if (moved || mended) return true;
   }
   attempt_.reset();

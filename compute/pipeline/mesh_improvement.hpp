@@ -79,7 +79,7 @@ class MeshImprovement {
   Delaunay delaunay_;
   int smoothed_ = 0, mended_ = 0;             ///< rounds so far
   std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began
-  std::uint32_t tried_ = 0;                   ///< ways of attempts so far
+  std::uint32_t tried_ = 0;                   ///< kinds of attempts so far
   std::optional<Attempt> attempt_;            ///< the one that is under way,
   HostParticles before_;                      ///< what was there before it,
   int further_ = 0;                           ///< and its rounds after the first

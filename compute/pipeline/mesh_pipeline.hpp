@@ -175,6 +175,9 @@ class MeshPipeline {
   virtual void relax() = 0;               ///< stages seed, relax, population
   virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, mend; world coordinates
 
+  /// How many particles the next `relax` makes room for: there are never more to be shown. Needs the fields. It is
+  /// `relax` that throws Error where they do not fit into the memory.
+  virtual std::int64_t particle_capacity() const = 0;
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
   /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of
@@ -184,8 +187,6 @@ class MeshPipeline {
   /// outside around it. Needs the fields; also within `progress` of `relax`.
   virtual std::vector<float> field_at(MeshField field, std::span<const Vec3d> points) = 0;
 
-  /// For how many particles `relax` makes room with the present parameters: there are never more. Needs the fields.
-  virtual std::int64_t particle_capacity() const = 0;
   /// Stage show. A kernel writes the particles as they are now into `memory`; nothing where they do not fit, which the
   /// counts tell. None before `relax`; also within `progress` of `relax` and `triangulate`, where points and curves are
   /// alone at first.
