@@ -16,16 +16,15 @@ constexpr int most_further = 4;  ///< rounds of an attempt after its first
 /// What an attempt does to the particles around bad points.
 struct AttemptKind {
   int turns;    ///< of smoothing; 0: none
-  bool shakes;  ///< smoothing begins at random places
+  bool shakes;  ///< smoothing begins from random positions
   bool mends;
 };
-/// Tried in turn: as it is done at first; by less, where that made particles flip to and fro; without moving others;
-/// from elsewhere.
+/// Tried in turn: smoothing and mending together; fewer steps, for particles that flip to and fro; mending alone, which
+/// leaves the other particles where they are; and both again from a random start.
 constexpr std::array<AttemptKind, 4> attempt_kinds{
     {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
 
-/// The points of the mesh at places that are given by particles. The mesh leaves some particles out and keeps their
-/// order.
+/// `places` in terms of the mesh's points instead of particles. The mesh has some of the particles, in the same order.
 std::vector<std::array<std::uint32_t, 2>> points_of_places(std::vector<std::array<std::uint32_t, 2>> places,
                                                            const std::vector<std::uint32_t>& point_of) {
   for (auto& place : places)

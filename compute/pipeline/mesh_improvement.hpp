@@ -1,9 +1,12 @@
-// Nacre: triangles from the particles, and particles changed until the triangles are good.
+// Nacre: makes triangles of the particles, and changes particles until the triangles are good.
 //
-// The words, each for one operation: particles are *smoothed* when they move within the rings of triangles around them,
-// and *mended* when those that spoil triangles go and missing ones come. An *attempt* smooths or mends bad places
-// alone, and is taken back where triangles are no better for it. *Repair* changes labels of Delaunay cells, never
-// particles. *Improvement* is all of this together.
+// Each operation has one name:
+// - to smooth: particles move within the rings of triangles around them;
+// - to mend: particles that spoil triangles are removed, and missing ones are added;
+// - an attempt: smoothing or mending at bad triangles only, undone where the triangles are no better afterwards;
+// - to project: particles are brought onto their interfaces, on the fields themselves;
+// - to repair: labels of Delaunay cells are changed (repair.hpp); particles are not;
+// - to improve: all of this together. (improve_cells.hpp improves tetrahedra, which have nothing to do with it.)
 #pragma once
 
 #include <array>
@@ -23,12 +26,12 @@
 
 namespace nacre {
 
-/// How much of it there shall be, and what it needs to know.
+/// How many rounds of improvement there may be, and on how many threads.
 struct ImprovementRule {
   int smooth = 2;                           ///< rounds of smoothing all particles
   int mend = 12;                            ///< rounds of mending, at most; each attempt counts as one
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
-  const std::atomic<bool>* stop = nullptr;  ///< set by others: Interrupted
+  const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
 };
 
 /// A mesh and how many of its particles are at points, on curves, on surfaces.
@@ -37,12 +40,11 @@ struct ImprovedMesh {
   std::array<std::int64_t, 3> particles{};
 };
 
-/// Triangulates particles, and changes them for better triangles until none is to be had: first the clear defects are
-/// mended, then all particles are smoothed, at last there are attempts at bad places. Of these last meshes the best
-/// counts.
+/// Triangulates particles and changes them until the triangles get no better. First the clear defects are mended, then
+/// all particles are smoothed, at last there are attempts at what is still bad. The best mesh after smoothing is kept.
 class MeshImprovement {
  public:
-  /// All must outlive it.
+  /// All arguments must outlive the object.
   MeshImprovement(MovableParticles& particles, const JunctionTable& table, const VolumeFrame& frame,
                   const ImprovementRule& rule, const TellStage& tell);
 
