@@ -48,7 +48,7 @@ TEST(ParameterNames, TheNumericsNameKnobsWithoutDashes) {
       }
     }
   }
-  EXPECT_GT(named, 30);
+  EXPECT_GT(named, 20);
 }
 
 TEST(ParameterNames, TheProgramPrintsOptions) {
