@@ -11,6 +11,7 @@
 
 #include "app/commands.hpp"
 #include "app/common.hpp"
+#include "app/parameter_names.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/vtk_child.hpp"
 #include "engine/scene/settings/knobs.hpp"
@@ -92,12 +93,12 @@ int main(int argc, char** argv) {
     nacre::remove_unfinished_files();
     return interrupted;
   } catch (const nacre::UsageError& error) {
-    return fail(usage, std::string(error.what()));
+    return fail(usage, nacre::with_options(error.what()));
   } catch (const std::bad_alloc&) {
     nacre::remove_unfinished_files();
     return fail(failed, "out of memory; lower --resolution (flow), or raise --max-size and --min-size (mesh)");
   } catch (const std::exception& error) {
     nacre::remove_unfinished_files();
-    return fail(nacre::interrupt_flag() ? interrupted : failed, error.what());
+    return fail(nacre::interrupt_flag() ? interrupted : failed, nacre::with_options(error.what()));
   }
 }

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "app/parameter_names.hpp"
+
 namespace nacre {
 namespace {
 
@@ -34,7 +36,7 @@ void Bench::row(BenchTable& table, const std::string& name, const std::string& i
     work(row);
   } catch (const Error& error) {
     if (std::string(error.what()).find("memory") == std::string::npos) throw;
-    return leave_out(table, name, row.input, error.what());
+    return leave_out(table, name, row.input, with_options(error.what()));
   }
   table.rows.push_back(std::move(row));
   print_last_row(table);

@@ -10,6 +10,7 @@
 #include "app/bench/bench.hpp"
 #include "app/bench/figures.hpp"
 #include "app/commands.hpp"
+#include "app/parameter_names.hpp"
 #include "app/run.hpp"
 #include "engine/scene/settings/knobs.hpp"
 
@@ -115,8 +116,8 @@ void measure(const BenchOptions& options, Bench& bench, json& report) {
     if (std::none_of(bench.tables().begin(), bench.tables().end(), has_rows)) return;
     try {
       write_results(options, bench, report);
-    } catch (const std::exception& error) {  // reported only: the first error ends the command
-      warn(options.common, error.what());
+    } catch (const std::exception& error) {  // beside the first reason, which ends the command
+      warn(options.common, with_options(error.what()));
     }
   };
   try {
@@ -126,7 +127,7 @@ void measure(const BenchOptions& options, Bench& bench, json& report) {
       bench.end();
     }
   } catch (const std::exception& error) {
-    keep(error.what());
+    keep(with_options(error.what()));
     throw;
   }
   add_tables();

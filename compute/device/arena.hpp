@@ -88,9 +88,10 @@ class Arena {
   std::size_t peak_bytes() const { return peak_; }
   Device& device() const { return device_; }
 
- private:
+  /// What an array of so many bytes takes.
   static std::size_t aligned(std::size_t bytes) { return (bytes + 255) / 256 * 256; }
 
+ private:
   bool fits(std::size_t count, std::size_t size) const {
     return count <= free_bytes() / size && aligned(count * size) <= free_bytes();
   }

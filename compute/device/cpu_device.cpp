@@ -145,7 +145,7 @@ std::unique_ptr<Device> make_cpu_device(int threads, bool remote) {
 int cuda_device_count() { return 0; }
 
 std::unique_ptr<Device> make_cuda_device(std::size_t) {
-  throw Error("no CUDA backend", "this build has none", "use --device cpu, or build with a CUDA toolkit");
+  throw Error("no CUDA backend", "this build has none", "use `device` cpu, or build with a CUDA toolkit");
 }
 #endif
 

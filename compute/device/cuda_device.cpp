@@ -81,7 +81,7 @@ int cuda_device_count() {
 std::unique_ptr<Device> make_cuda_device(std::size_t arena_limit) {
   if (cuda_device_count() == 0)
     throw Error("no CUDA device", "no GPU, no driver for it, or a GPU that this build has no code for",
-                "use --device cpu or --device auto");
+                "use `device` cpu or `device` auto");
   return std::make_unique<CudaDevice>(arena_limit);
 }
 

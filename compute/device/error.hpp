@@ -9,7 +9,8 @@
 namespace nacre {
 
 /// Bad input or a failed request, told in three parts: what is wrong, why, and what to do about it.
-/// The program prints it on one line: "what (why); advice". Broken promises between our own functions are assertions.
+/// The program prints it on one line: "what (why); advice". A parameter is named in backquotes, `min_size`: the program
+/// prints it as the option or the knob that it is there. Broken promises between our own functions are assertions.
 class Error : public std::runtime_error {
  public:
   explicit Error(std::string what, std::string why = {}, std::string advice = {})

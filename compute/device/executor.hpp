@@ -4,9 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <string_view>
 
 #include "compute/device/arena.hpp"
 #include "compute/device/backend.hpp"
@@ -14,9 +12,6 @@
 #include "compute/device/team.hpp"
 
 namespace nacre {
-
-/// How far a long stage is: `fraction` in 0..1.
-using ProgressCallback = std::function<void(std::string_view stage, double fraction)>;
 
 /// What a part that is repeated leaves behind from call to call; empty at first. One for each such part.
 struct Steps {

@@ -177,7 +177,7 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
     Array<std::uint32_t> number;
     grid.brick_count = number_places(exec, pairs, number);
     grid.cells = std::uint64_t(grid.brick_count) * sub * sub * sub;
-    if (grid.cells >= none) throw Error("the grid is too fine", "over 2^32 cells", "lower --resolution");
+    if (grid.cells >= none) throw Error("the grid is too fine", "over 2^32 cells", "lower `resolution`");
     Array<std::uint64_t> list_start = arena.temporary<std::uint64_t>(grid.brick_count + 1);
     grid.brick_code = arena.permanent<std::uint64_t>(grid.brick_count);
     exec.for_each(pairs.size(), detail::BrickStart{pairs.size(), grid.brick_count, bricks, pairs.data(), number.data(),

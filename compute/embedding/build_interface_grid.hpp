@@ -8,11 +8,9 @@
 #include "compute/device/executor.hpp"
 #include "compute/embedding/find_junctions.hpp"
 #include "compute/embedding/interface_grid.hpp"
+#include "compute/embedding/junction_table.hpp"
 #include "compute/field/sizing.hpp"
-
 namespace nacre {
-
-inline constexpr std::size_t most_interfaces = 65000;  ///< the tree's keys have 16 bits for them
 
 /// The interfaces of a volume and their embedding, in permanent memory.
 struct InterfaceGrid {
@@ -40,8 +38,8 @@ struct InterfaceGrid {
 
 namespace detail {
 
-/// Keys (coarse cell << 24 | interface) of the bricks that the stencils of an interface's particles can meet: those within
-/// 3 cells of a cell that it passes through.
+/// Keys (coarse cell << 24 | interface) of the bricks that the stencils of an interface's particles can meet: those
+/// within 3 cells of a cell that it passes through.
 struct BricksAround {
   const FoundJunction* found;
   const Junction* table;
@@ -173,8 +171,8 @@ struct EmbedInterface {
   /// How far Newton's steps can lead, and the distance of known points from each other.
   NACRE_HD float farthest() const { return min(5 / cells_per_voxel, newton_steps * newton_stride) + 0.35f; }
 
-  /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p. False
-  /// also for a surface farther away than the stencils around its points reach, two cells along each axis.
+  /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p.
+  /// False also for a surface farther away than the stencils around its points reach, two cells along each axis.
   NACRE_HD bool first_guess(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
     float away = 0;
     const std::uint32_t q = distance.closest(p, away);
@@ -226,8 +224,8 @@ struct BorrowClosestPoint {
 
 }  // namespace detail
 
-/// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where there
-/// are none, or more than `most_interfaces`.
+/// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where
+/// there are none, or more than `most_interfaces`.
 template <class Backend>
 InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b, const DistanceField& distance,
                                const SizingField& size, double cells_per_voxel) {
@@ -248,7 +246,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   if (search.table.empty()) throw Error("no interface in the volume", "it holds one material only");
   if (search.table.size() > most_interfaces)
     throw Error("too many interfaces", std::to_string(search.table.size()) + " pairs and triples of materials meet",
-                "merge materials with --merge or keep fewer with --materials");
+                "merge materials with `merge` or keep fewer with `materials`");
   grid.junctions = search.table;
   grid.junction = arena.permanent_copy<Junction>(search.table);
   const detail::BricksAround around{search.found.data(), grid.junction.data(), std::uint32_t(search.table.size()),
@@ -265,7 +263,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   exec.for_each(total, detail::NewKey{keys.data(), number.data()});
   grid.bricks = exec.exclusive_scan(number.data(), number.data(), total);
   if (grid.bricks >= std::int64_t(1) << 26)
-    throw Error("embedding too large", "more than 2^26 bricks", "lower --mesh-subcells");
+    throw Error("embedding too large", "more than 2^26 bricks", "lower `mesh_subcells`");
   grid.brick_interface = arena.permanent<std::uint32_t>(grid.bricks);
   grid.brick_coarse = arena.permanent<std::uint32_t>(grid.bricks);
   exec.for_each(

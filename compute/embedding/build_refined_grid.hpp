@@ -282,7 +282,7 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
   const std::uint32_t blocks = exec.exclusive_scan(fine.block.data(), fine.block.data(), coarse.cells);
   fine.cells = std::uint64_t(blocks) * refine * refine * refine;
   if (fine.cells >= RefinedGridView::extended)
-    throw Error("the texture grid is too fine", "over 2^31 cells", "lower --resolution");
+    throw Error("the texture grid is too fine", "over 2^31 cells", "lower `resolution`");
   fine.block_cell = arena.permanent<std::uint32_t>(blocks);
   exec.for_each(coarse.cells, detail::NumberBlocks{grid.offset, reach, fine.block.data(), fine.block_cell.data()});
 

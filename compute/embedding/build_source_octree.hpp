@@ -100,8 +100,8 @@ void build_source_nodes(Executor<Backend>& exec, SourceOctree& tree) {
     exec.for_each(count, NodeHead{code.data(), number.data()});
     const std::uint32_t nodes = exec.exclusive_scan(number.data(), number.data(), count);
     if (total + nodes >= none)
-      throw Error("the grid is too fine for --octree source", "over 2^32 nodes",
-                  "lower --resolution, or use --octree brick");
+      throw Error("the grid is too fine for `octree` source", "over 2^32 nodes",
+                  "lower `resolution`, or use `octree` brick");
     arena.resize_last(tree.node, total + nodes);
     arena.device().fill(tree.node.data() + total, 0xff, nodes * sizeof(SourceNode));
     Array<std::uint64_t> node_code = arena.temporary<std::uint64_t>(nodes);

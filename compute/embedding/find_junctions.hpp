@@ -277,7 +277,7 @@ JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, 
   Arena& arena = exec.arena();
   const std::int64_t cells = std::int64_t(coarse.x) * coarse.y * coarse.z;
   if (cells >= std::int64_t(1) << 32)
-    throw Error("embedding too large", "more than 2^32 coarse cells", "lower --mesh-subcells");
+    throw Error("embedding too large", "more than 2^32 coarse cells", "lower `mesh_subcells`");
   const detail::SearchCoarseCell search{b.view(), coarse, cells_per_voxel};
   JunctionSearch result;
   Array<std::uint32_t> start = arena.temporary<std::uint32_t>(cells + 1);

@@ -248,7 +248,7 @@ std::vector<Subgrid> subgrids_near(Executor<Backend>& exec, const MeshView& mesh
   exec.for_each(triangles, near);
   const std::uint64_t pairs = exec.exclusive_scan(start.data(), start.data(), triangles);
   if (pairs >= none)
-    throw Error("the mesh is too large", "over 2^32 pairs of triangle and sub-grid", "use --octree brick");
+    throw Error("the mesh is too large", "over 2^32 pairs of triangle and sub-grid", "use `octree` brick");
   triangle = arena.temporary<std::uint32_t>(pairs);
 
   Arena::Scope scope(arena);
@@ -295,7 +295,7 @@ class SubgridBuilder {
     if (!fits(totals)) {
       if (sub.bits == 0)
         throw Error("not enough memory for the triangles around one cell", std::to_string(totals.entries) + " of them",
-                    "use --octree brick, which keeps no such lists");
+                    "use `octree` brick, which keeps no such lists");
       for (std::uint64_t k = 0; k < 8; ++k) add({sub.code << 3 | k, sub.bits - 1, sub.first, sub.last});
       return;
     }
@@ -341,8 +341,8 @@ class SubgridBuilder {
 
   void find(const Subgrid& sub, const SubgridTotals& totals) {
     if (total_ + totals.cells >= none)
-      throw Error("the grid is too fine for --octree source", "over 2^32 cells",
-                  "lower --resolution, or use --octree brick");
+      throw Error("the grid is too fine for `octree` source", "over 2^32 cells",
+                  "lower `resolution`, or use `octree` brick");
     Arena& arena = exec_.arena();
     CellChunk chunk{sub.code << 3 * sub.bits, total_, arena.temporary<std::uint32_t>(totals.cells)};
     arena.resize_last(point_, total_ + totals.cells);

@@ -244,7 +244,7 @@ MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const V
   if (crowded.download()[0])
     throw Error(
         "too many materials in one place", "more than " + std::to_string(max_block_materials) + " within a few voxels",
-        "merge some with --merge, drop speckle with --min-component, or name the ones to keep with --materials");
+        "merge some with `merge`, drop speckle with `min_component`, or name the ones to keep with `materials`");
   const std::uint32_t total = exec.exclusive_scan(b.block_start.data(), b.block_start.data(), blocks + 1);
   b.bricks = total + 2;
   b.brick_material = arena.permanent<std::uint16_t>(b.bricks);

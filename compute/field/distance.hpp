@@ -19,7 +19,8 @@ struct InterfacePoint {
   Junction surface;
 };
 
-/// The cells that distances and sizes are known on: as large as the voxels, or larger where particles will be far apart.
+/// The cells that distances and sizes are known on: as large as the voxels, or larger where particles will be far
+/// apart.
 struct Lattice {
   Int3 cells{};
   Vec3f spacing{1, 1, 1};  ///< voxels
@@ -31,15 +32,6 @@ struct Lattice {
   }
   NACRE_HD Vec3f centre(const Int3& c) const { return Vec3f(c.x + 0.5f, c.y + 0.5f, c.z + 0.5f) * spacing; }
   NACRE_HD bool holds(const Int3& c) const { return is_within(c, cells); }
-  /// The cell of a point; the nearest one for points outside.
-  NACRE_HD Int3 cell_at(const Vec3f& p) const {
-    Int3 c;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int k = int(std::floor(p[axis] / spacing[axis]));
-      c[axis] = k < 0 ? 0 : k >= cells[axis] ? cells[axis] - 1 : k;
-    }
-    return c;
-  }
   bool operator==(const Lattice&) const = default;
 
   /// Tiles of 8^3 cells, for work that much of the lattice does without.
@@ -63,7 +55,8 @@ struct Lattice {
   }
 };
 
-/// For each cell of a lattice within `reach` voxels of an interface: which interface point is the closest to its centre.
+/// For each cell of a lattice within `reach` voxels of an interface: which interface point is the closest to its
+/// centre.
 struct DistanceFieldView {
   Lattice lattice;
   const std::uint32_t* nearest = nullptr;  ///< per cell: number of an interface point, or `none`
@@ -91,14 +84,6 @@ struct DistanceFieldView {
   }
 };
 
-/// Signed distance from `p` to the nearest interface, positive in `material`; `reach` where none is near.
-NACRE_HD inline float signed_distance(const DistanceFieldView& d, const MaterialBricksView& field, const Vec3f& p,
-                                      std::uint32_t material) {
-  float distance = d.reach;
-  if (d.closest(p, distance) == none || distance > d.reach) distance = d.reach;
-  return material_at(field, p) == material ? distance : -distance;
-}
-
 namespace detail {
 
 /// For a lattice cell: the voxel in it, nearest to its middle, that has a neighbour of another material.
@@ -117,7 +102,8 @@ struct BoundaryVoxel {
       high[axis] = high[axis] > n[axis] - 1 ? n[axis] - 1 : high[axis];
     }
     if (low.x >= high.x || low.y >= high.y || low.z >= high.z) return false;
-    // Blocks list what lies within 4 voxels of them: without a list, there is no boundary in a small cell that begins here.
+    // Blocks list what lies within 4 voxels of them: without a list, there is no boundary in a small cell that begins
+    // here.
     const std::int64_t block = field.block_number(low.x / block_size, low.y / block_size, low.z / block_size);
     const bool small = high.x - low.x <= 4 && high.y - low.y <= 4 && high.z - low.z <= 4;
     if (small && field.block_start[block] == field.block_start[block + 1]) return false;
@@ -214,7 +200,8 @@ struct FindInterfacePoints {
   }
 };
 
-/// Tiles that can be within reach of an interface: those with a block that lists materials not farther away than `margin`.
+/// Tiles that can be within reach of an interface: those with a block that lists materials not farther away than
+/// `margin`.
 struct MarkNearTiles {
   MaterialBricksView field;
   Lattice lattice;
@@ -300,8 +287,8 @@ inline Lattice lattice_over(const MaterialBricks& b, float spacing) {
   return lattice;
 }
 
-/// Points of all interfaces, at least one per boundary cell of `lattice_over`, flooded out to `reach` voxels. The points
-/// are exact; the distances are those to the nearest of them.
+/// Points of all interfaces, at least one per boundary cell of `lattice_over`, flooded out to `reach` voxels. The
+/// points are exact; the distances are those to the nearest of them.
 template <class Backend>
 DistanceField distance_field(Executor<Backend>& exec, const MaterialBricks& b, float spacing, float reach) {
   Arena& arena = exec.arena();

@@ -80,9 +80,4 @@ NACRE_HD inline FieldSample cell_indicator(const FieldSample* inside, int count)
   return j;
 }
 
-/// Projection vector of two materials (Eq. 3.12), towards the first; zero where their gradients agree.
-NACRE_HD inline Vec3f projection_vector(const FieldSample& first, const FieldSample& second) {
-  return normalized(first.gradient - second.gradient);
-}
-
 }  // namespace nacre

@@ -19,7 +19,8 @@ struct DefectRule {
   bool fills = true;
 };
 
-/// The least that is asked of a mesh, with a margin: what particles go and come for once all have been smoothed.
+/// The least that is asked of a mesh, with a margin. Once all particles have been smoothed, only triangles below it make
+/// particles come and go.
 inline constexpr DefectRule worst_defects{0, 0.31, 0.17, false};
 /// Triangles with a smaller ratio are worth further rounds of smoothing.
 inline constexpr double wanted_ratio = 0.5;
@@ -57,7 +58,7 @@ void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& orde
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
                         const DefectRule& rule);
 
-/// What no fitness is above: better triangles are all alike.
+/// The largest fitness: triangles that are better still are not told apart.
 inline double best_fitness(const DefectRule& rule) { return wanted_ratio / rule.ratio; }
 
 /// The least fitness of all triangles.

@@ -51,9 +51,9 @@ constexpr std::size_t dear_removal = 50;  // taking a point out costs less than 
 void check_points(std::span<const Vec3d> points) {
   const std::string what = "the particles cannot be triangulated";
   if (points.size() >= std::size_t(std::numeric_limits<std::int32_t>::max()) / 8)
-    throw Error(what, "there are more than 268 million", "choose a larger --min-size");
+    throw Error(what, "there are more than 268 million", "choose a larger `min_size`");
   if (points.size() < 4)
-    throw Error(what, "there are fewer than four", "choose a smaller --max-size, or more --particles");
+    throw Error(what, "there are fewer than four", "choose a smaller `max_size`, or more `particles`");
   for (const Vec3d& p : points)
     if (!is_finite(p)) throw Error(what, "one of them is not at a finite place");
 }

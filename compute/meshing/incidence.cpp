@@ -14,7 +14,7 @@ namespace {
 
 void check_count(std::span<const Triangle> triangles) {
   if (triangles.size() > std::numeric_limits<std::uint32_t>::max() / 3)
-    throw Error("the mesh cannot be examined", "it has more than 1.4 billion triangles", "choose a larger --min-size");
+    throw Error("the mesh cannot be examined", "it has more than 1.4 billion triangles", "choose a larger `min_size`");
 }
 
 /// The ends of a use, smaller first.

@@ -138,7 +138,7 @@ class Octree {
       }
       if (parents.size() > most_leaves / 8)
         throw Error("the volume cannot be filled with tetrahedra", "there would be too many",
-                    "choose a larger --min-size");
+                    "choose a larger `min_size`");
       sort_unique(parents);
     }
     sort_unique(split_[0]);

@@ -163,7 +163,7 @@ TetrahedralMesh fill_with_tetrahedra(const SurfaceMesh& mesh, const EdgeLength& 
     improve_cells(points, mesh.points.size(), filled, stop);
     return {std::move(points), std::move(filled.cells.vertices), std::move(filled.material)};
   }
-  cannot_fill("points within it break its triangles", "choose a smaller --max-size");
+  cannot_fill("points within it break its triangles", "choose a smaller `max_size`");
 }
 
 }  // namespace nacre

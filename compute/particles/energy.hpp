@@ -16,8 +16,8 @@ struct PairEnergy {
 };
 
 /// Eq. 3.1 and 3.4 for 0 < d; zero from d = 1 on. With x = d pi/2: E = cot x + x - pi/2, E' = -(pi/2) cot^2 x,
-/// E'' = (pi^2/2) cot x / sin^2 x. cot x = 1/x + x P(x^2), the series with a mended tail: E is right to 2e-5, E' to 1.3e-4 of
-/// itself. d is kept above 0.02, where the energy is 30.
+/// E'' = (pi^2/2) cot x / sin^2 x. cot x = 1/x + x P(x^2), the series with a mended tail: E is right to 2e-5, E' to
+/// 1.3e-4 of itself. d is kept above 0.02, where the energy is 30.
 NACRE_HD_INLINE PairEnergy cotangent_energy(float d) {
   const float x = (d > 0.02f ? (d < 1 ? d : 1.0f) : 0.02f) * (0.5f * pi);
   const float y = x * x;
@@ -34,36 +34,19 @@ NACRE_HD_INLINE PairEnergy cotangent_energy(float d) {
           inside * (0.5f * pi * pi) * cot * (1 + cot * cot)};
 }
 
-/// Energy of a particle among the six neighbours of a hexagonal lattice with spacing h: 6 E(1/sqrt 3) = 0.7108 (the 3.462
-/// of sec. 3.1.3 is six scaled distances; see the source notes).
+/// Energy of a particle among the six neighbours of a hexagonal lattice with spacing h: 6 E(1/sqrt 3) = 0.7108 (the
+/// 3.462 of sec. 3.1.3 is six scaled distances; see the source notes).
 inline constexpr float hexagonal_energy = 0.7108f;
-/// ... among the two neighbours of a row with spacing h, the rim of such a lattice: 2 E(1/sqrt 3). (At a scaled distance of
-/// 1/2, which would be the next round number, the rim's edges are an eighth too short for the triangles on them.)
+/// ... among the two neighbours of a row with spacing h, the rim of such a lattice: 2 E(1/sqrt 3). (At a scaled
+/// distance of 1/2, which would be the next round number, the rim's edges are an eighth too short for the triangles on
+/// them.)
 inline constexpr float row_energy = hexagonal_energy / 3;
 
-/// Distance, in h, of the particles of a hexagonal lattice (`row`: of a row) in which each has this energy.
-inline double lattice_spacing(double energy, bool row = false) {
-  const auto of = [&](double spacing) {
-    const double lattice_rings[] = {1, std::sqrt(3.0), 2}, row_rings[] = {1, 2, 3};
-    double sum = 0;
-    for (const double r : row ? row_rings : lattice_rings) {
-      const double d = spacing * r / support;
-      if (d < 1) sum += (row ? 2 : 6) * (1 / std::tan(d * pi / 2) + d * pi / 2 - pi / 2);
-    }
-    return sum;
-  };
-  double low = 0.2, high = 1.8;
-  for (int k = 0; k < 60; ++k) {
-    const double middle = 0.5 * (low + high);
-    (of(middle) > energy ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-/// How much two particles of one surface concern each other: not at all where their normals are 120 degrees apart or more, so
-/// that two sheets close together (whose normals are opposite: one interface between) do not push each other apart. Up to a
-/// right angle fully: were it less where a sheet bends, particles there would seem to have room for more. Those nearer than a
-/// third of h (scaled distance d) are on one sheet, however much it bends there: the sizing field keeps sheets farther apart.
+/// How much two particles of one surface concern each other: not at all where their normals are 120 degrees apart or
+/// more, so that two sheets close together (whose normals are opposite: one interface between) do not push each other
+/// apart. Up to a right angle fully: were it less where a sheet bends, particles there would seem to have room for
+/// more. Those nearer than a third of h (scaled distance d) are on one sheet, however much it bends there: the sizing
+/// field keeps sheets farther apart.
 NACRE_HD_INLINE float normal_weight(float cosine, float d) {
   const float bend = 1 + 2 * cosine;
   const float agree = bend > 0 ? (bend < 1 ? bend : 1.0f) : 0.0f;

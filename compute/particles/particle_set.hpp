@@ -2,17 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "compute/device/arena.hpp"
 #include "compute/device/array.hpp"
+#include "compute/device/error.hpp"
 #include "compute/field/interface.hpp"
 #include "compute/grid/lanes.hpp"
 #include "compute/particles/energy.hpp"
 
 namespace nacre {
 
-/// All particles that matter to one junction order: first the `fixed` ones of lower orders, then those that move. Arrays
-/// are larger than `count` and hold nothing behind it.
+/// All particles that matter to one junction order: first the `fixed` ones of lower orders, then those that move.
+/// Arrays are larger than `count` and hold nothing behind it.
 struct ParticleSet {
   std::int64_t fixed = 0, count = 0;
   Array<Float4> place;             ///< x, y, z in voxels; h, the sizing field there
@@ -21,8 +23,25 @@ struct ParticleSet {
   std::int64_t capacity() const { return std::int64_t(place.size()); }
 };
 
-/// When particles are added and deleted (sec. 3.1.3 and the source notes: a random share of the deviation decides, so that
-/// neighbours do not all split at once).
+/// Particles with room for `capacity`, in permanent memory: an Arena, or an AllocationPlan.
+template <class Memory>
+ParticleSet allocate_particle_set(Memory& memory, std::int64_t capacity) {
+  ParticleSet set;
+  set.place = memory.template permanent<Float4>(capacity);
+  set.direction = memory.template permanent<Float4>(capacity);
+  set.interface = memory.template permanent<std::uint32_t>(capacity);
+  return set;
+}
+
+/// Throws Error where a set has no room for `count` particles.
+inline void require_capacity(const ParticleSet& set, std::int64_t count) {
+  if (count > set.capacity())
+    throw Error("more particles than expected", std::to_string(count) + " of at most " + std::to_string(set.capacity()),
+                "raise `min_size` or `epsilon`");
+}
+
+/// When particles are added and deleted (sec. 3.1.3 and the source notes: a random share of the deviation decides, so
+/// that neighbours do not all split at once).
 struct PopulationRule {
   float ideal_energy = hexagonal_energy;
   float add_below = 0.65f, delete_above = 1.75f;  ///< shares of the ideal energy
@@ -41,9 +60,9 @@ struct IterationResult {
   std::int64_t added = 0, deleted = 0;
 };
 
-/// The size that scales the distance of two particles in the tree solver: the mean. With the smaller of the two, as Eq. 3.2
-/// has it, a particle's neighbours stand at its own distance where h grows and closer where it falls: triangles are squeezed
-/// along the slope of h.
+/// The size that scales the distance of two particles in the tree solver: the mean. With the smaller of the two, as Eq.
+/// 3.2 has it, a particle's neighbours stand at its own distance where h grows and closer where it falls: triangles are
+/// squeezed along the slope of h.
 NACRE_HD_INLINE float pair_size(float h_p, float h_q) { return 0.5f * (h_p + h_q); }
 
 /// The force on a particle at p from one at q: E, and dE/dp through the scaled distance |p - q| / (support pair_size)

@@ -1,9 +1,9 @@
-// Nacre: where particles are added and deleted, so that each has the energy of its ideal neighbourhood (sec. 3.1.3;
-// source notes on the original program). The rule is shared by all solvers; so is the way through the second buffer.
+// Nacre: which particles the serial and the red-black solver add and delete, so that each has the energy of its ideal
+// neighbourhood (sec. 3.1.3; source notes on the original program), and how the new set is written. control.hpp runs
+// it; the tree solver has a rule of its own (tree_population.hpp).
 #pragma once
 
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "compute/device/random.hpp"
@@ -192,10 +192,6 @@ struct WritePopulation {
   }
 };
 
-}  // namespace detail
-
-namespace detail {
-
 /// Surplus and want of the moving particles, 2^-20 of a particle.
 struct Balance {
   std::int64_t surplus = 0, want = 0;
@@ -254,10 +250,7 @@ IterationResult apply_population(Executor<Backend>& exec, ParticleSet& set, Part
   const detail::Population change = exec.reduce(set.count - set.fixed, detail::Population{},
                                                 detail::PopulationOf{plan.copies + set.fixed}, detail::AddPopulation{});
   const std::int64_t count = set.count + change.added - change.deleted;
-  if (count > set.capacity())
-    throw Error("too many particles",
-                std::to_string(count) + " are wanted, there is room for " + std::to_string(set.capacity()),
-                "allow larger distances (--max-size, --epsilon), or fewer particles (--particles)");
+  require_capacity(set, count);
   if (change.added == 0 && change.deleted == 0) return {};
   Arena::Scope scope(exec.arena());
   Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(set.count);

@@ -6,21 +6,17 @@
 
 #include "compute/device/random.hpp"
 #include "compute/meshing/triangle_rings.hpp"
-#include "compute/particles/tree_solver.hpp"
+#include "compute/particles/projectors.hpp"
+#include "compute/particles/smoothing_rule.hpp"
 
 namespace nacre {
 
-/// How particles move while the triangles stay.
-struct SmoothingRule {
-  int turns = 6;            ///< simultaneous steps in a row; even
-  std::uint32_t shake = 0;  ///< not 0: the first of them goes anywhere, by this seed
-};
-
 namespace detail {
 
-/// How ill-shaped a triangle is, by its apex in the plane: x along the side of length u opposite, measured from its middle, y
-/// across, with derivatives. The inverse of the mean ratio, f = (sum of squared sides) / (4 sqrt(3) area): 1 where it is
-/// equilateral, infinite where it is flat, and convex in (x, y) for y > 0 (Knupp 2001, algebraic mesh quality).
+/// How ill-shaped a triangle is, by its apex in the plane: x along the side of length u opposite, measured from its
+/// middle, y across, with derivatives. The inverse of the mean ratio, f = (sum of squared sides) / (4 sqrt(3) area): 1
+/// where it is equilateral, infinite where it is flat, and convex in (x, y) for y > 0 (Knupp 2001, algebraic mesh
+/// quality).
 struct InverseMeanRatio {
   float fx, fy, fxx, fxy, fyy;
   NACRE_HD InverseMeanRatio(float x, float y, float u) {
@@ -33,9 +29,9 @@ struct InverseMeanRatio {
   }
 };
 
-/// One simultaneous step of every particle that has a ring: `share` of Newton's on the sum of f over its triangles, in the
-/// tangent plane of its surface or along its curve, then back onto the interface. Points stay, as do particles that would
-/// leave their interface.
+/// One simultaneous step of every particle that has a ring: `share` of Newton's on the sum of f over its triangles, in
+/// the tangent plane of its surface or along its curve, then back onto the interface. Points stay, as do particles that
+/// would leave their interface.
 template <class Ground>
 struct SmoothInRing {
   Ground ground;
@@ -108,6 +104,19 @@ struct SmoothInRing {
     const float size = length(v), most = longest * least;
     return size > most ? v * (most / size) : v;
   }
+};
+
+/// Memory to move `particles` within rings of `edges` sides, in an Arena or an AllocationPlan.
+struct SmoothingScratch {
+  Array<std::uint32_t> first;
+  Array<RingEdge> edge;
+  Array<Float4> moved;
+
+  template <class Memory>
+  SmoothingScratch(Memory& memory, std::size_t particles, std::size_t edges)
+      : first(memory.template temporary<std::uint32_t>(particles + 1)),
+        edge(memory.template temporary<RingEdge>(edges)),
+        moved(memory.template temporary<Float4>(particles)) {}
 };
 
 }  // namespace detail

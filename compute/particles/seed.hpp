@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "compute/device/executor.hpp"
 #include "compute/device/random.hpp"
@@ -73,8 +72,9 @@ struct CountSeeds {
   }
 };
 
-/// Seeds stand beside their places, along the interface: two places may be at one point (two cells across a flat interface
-/// have the same closest one), and particles there would never part. Those of a place that has several spread over its cell.
+/// Seeds stand beside their places, along the interface: two places may be at one point (two cells across a flat
+/// interface have the same closest one), and particles there would never part. Those of a place that has several spread
+/// over its cell.
 template <class Source>
 struct WriteSeeds {
   Source source;
@@ -131,8 +131,8 @@ double expected_particles(Executor<Backend>& exec, const Source& source) {
   return double(exec.reduce(source.places(), std::uint64_t(0), detail::SumShares<Source>{source}, Add{})) / 16777216.0;
 }
 
-/// Puts seeds behind the particles of a set; returns how many. `scale`: times as many as the sizing field asks for; `random`:
-/// seed of the random numbers. Throws Error where they do not fit.
+/// Puts seeds behind the particles of a set; returns how many. `scale`: times as many as the sizing field asks for;
+/// `random`: seed of the random numbers. Throws Error where they do not fit.
 template <class Backend, class Source>
 std::int64_t seed_particles(Executor<Backend>& exec, const Source& source, double scale, std::uint32_t random,
                             ParticleSet& set, Array<Float4>& velocity) {
@@ -157,10 +157,7 @@ std::int64_t seed_particles(Executor<Backend>& exec, const Source& source, doubl
   Array<std::uint32_t> count = arena.temporary<std::uint32_t>(n), start = arena.temporary<std::uint32_t>(n);
   exec.for_each(n, detail::CountSeeds{sum.data(), total, n, count.data()});
   const std::int64_t seeds = exec.exclusive_scan(count.data(), start.data(), n);
-  if (set.count + seeds > set.capacity())
-    throw Error("more particles than expected",
-                std::to_string(set.count + seeds) + " of at most " + std::to_string(set.capacity()),
-                "raise --min-size or --epsilon");
+  require_capacity(set, set.count + seeds);
   exec.for_each(
       n, detail::WriteSeeds<Source>{source, place.data(), start.data(), count.data(), random, set.count,
                                     set.place.data(), set.direction.data(), set.interface.data(), velocity.data()});

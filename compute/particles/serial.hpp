@@ -134,7 +134,7 @@ IterationResult serial_iteration(Executor<Backend>& exec, ParticleSet& set, Solv
                                  const SolverParameters& parameters) {
   if constexpr (!std::is_same_v<Backend, Cpu>) {
     throw Error("the serial solver runs on the CPU only", "it moves one particle at a time",
-                "use --device cpu, or another --solver");
+                "use `device` cpu, or another `solver`");
   } else {
     if (set.count <= set.fixed) return {};
     exec.for_each(set.count - set.fixed, detail::ReadSize<Surface>{surface, set.place.data() + set.fixed});

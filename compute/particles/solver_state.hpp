@@ -32,11 +32,7 @@ struct SolverState {
 /// Particles with room for `capacity`, in permanent memory.
 template <class Backend>
 ParticleSet make_particle_set(Executor<Backend>& exec, std::int64_t capacity) {
-  ParticleSet set;
-  set.place = exec.arena().template permanent<Float4>(capacity);
-  set.direction = exec.arena().template permanent<Float4>(capacity);
-  set.interface = exec.arena().template permanent<std::uint32_t>(capacity);
-  return set;
+  return allocate_particle_set(exec.arena(), capacity);
 }
 
 namespace detail {
@@ -77,14 +73,21 @@ void forget(Executor<Backend>& exec, SolverState& state, const SolverParameters&
   exec.for_each(state.damping.size(), detail::SetDamping{parameters.first_damping, state.damping.data()});
 }
 
+/// The arrays of a state for up to `capacity` particles, in permanent memory: an Arena, or an AllocationPlan.
+template <class Memory>
+SolverState allocate_solver_state(Memory& memory, std::int64_t capacity) {
+  SolverState state;
+  state.spare = allocate_particle_set(memory, capacity);
+  state.damping = memory.template permanent<float>(capacity);
+  state.spare_damping = memory.template permanent<float>(capacity);
+  return state;
+}
+
 /// State for a set that has no history; `set.capacity()` bounds the number of particles from now on.
 template <class Backend>
 SolverState make_solver_state(Executor<Backend>& exec, const ParticleSet& set,
                               const SolverParameters& parameters = {}) {
-  SolverState state;
-  state.spare = make_particle_set(exec, set.capacity());
-  state.damping = exec.arena().template permanent<float>(set.capacity());
-  state.spare_damping = exec.arena().template permanent<float>(set.capacity());
+  SolverState state = allocate_solver_state(exec.arena(), set.capacity());
   forget(exec, state, parameters);
   return state;
 }

@@ -43,8 +43,8 @@ struct TreeView {
   const Float4* direction = nullptr;  ///< sorted
   float theta = 0;
 
-  /// Walks from `root` to all that may be felt in the box by particles that reach `reach` in their own size (how far two of
-  /// them feel each other is the mean of their reaches): calls particles(first, last) for leaves, and far(node)
+  /// Walks from `root` to all that may be felt in the box by particles that reach `reach` in their own size (how far
+  /// two of them feel each other is the mean of their reaches): calls particles(first, last) for leaves, and far(node)
   /// for nodes that count as one particle: smaller than theta times their distance from the box (their own, not that of
   /// the particle's node as sec. 4.1 has it). Nodes that the box may lie in are always opened.
   template <class Particles, class Far>
@@ -279,10 +279,15 @@ class Tree {
  public:
   template <class Backend>
   Tree(Executor<Backend>& exec, std::int64_t capacity, std::int64_t interfaces)
+      : Tree(exec.arena(), capacity, interfaces) {}
+
+  /// `Memory` is an Arena, or an AllocationPlan.
+  template <class Memory>
+  Tree(Memory& memory, std::int64_t capacity, std::int64_t interfaces)
       : interfaces_(interfaces),
-        node_(exec.arena().template permanent<TreeNode>(capacity / 3 + 9 * interfaces + 4096)),
-        leaf_(exec.arena().template permanent<std::uint32_t>(node_.size())),
-        sizes_(exec.arena().template permanent<detail::TreeSizes>(1)) {}
+        node_(memory.template permanent<TreeNode>(most_nodes(capacity, interfaces))),
+        leaf_(memory.template permanent<std::uint32_t>(most_nodes(capacity, interfaces))),
+        sizes_(memory.template permanent<detail::TreeSizes>(1)) {}
 
   /// Builds the tree over particles that are sorted by `key`.
   template <class Backend>
@@ -322,7 +327,7 @@ class Tree {
     const detail::TreeSizes sizes = sizes_.download()[0];
     if (sizes.full)
       throw Error("the tree of particles is full", std::to_string(node_.size()) + " nodes",
-                  "use another --seed or raise --min-size");
+                  "use another `seed` or raise `min_size`");
     level_.assign(1, 0);
     for (int l = 0; l <= TreeView::bits && sizes.begin[l + 1] > sizes.begin[l]; ++l)
       level_.push_back(sizes.begin[l + 1]);
@@ -349,6 +354,10 @@ class Tree {
   std::int64_t bounded_nodes() const { return bounded_; }
 
  private:
+  static std::size_t most_nodes(std::int64_t capacity, std::int64_t interfaces) {
+    return std::size_t(capacity / 3 + 9 * interfaces + 4096);
+  }
+
   /// Of a tree of `levels` levels, perhaps fewer, which has at most `most` nodes.
   template <class Backend>
   void list_leaves(Executor<Backend>& exec, int levels, std::int64_t most) {

@@ -1,7 +1,10 @@
-// Nacre: what the stages of the mesh pipeline's fields are built from, so that those that stay the same need not run again.
+// Nacre: what the stages of the mesh pipeline's fields are built from, so that those that stay the same need not run
+// again.
 #pragma once
 
+#include "compute/field/build_material_bricks.hpp"
 #include "compute/field/sizing.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
 
 namespace nacre {
 
@@ -21,12 +24,13 @@ struct FieldRecipe {
   double cells_per_voxel = 0;    ///< embed; limited by the sizing field
 
   /// How many stages, from the first, are built alike by `other`.
-  int alike(const FieldRecipe& other) const {
-    if (width != other.width || stairs != other.stairs) return tighten_stage;
-    if (kernel != other.kernel || !(lattice == other.lattice) || reach != other.reach) return distance_stage;
-    if (!(rule == other.rule)) return sizing_stage;
-    return cells_per_voxel != other.cells_per_voxel ? embed_stage : field_stages;
-  }
+  int alike(const FieldRecipe& other) const;
 };
+
+/// The recipe that `parameters` ask for on a volume of this kind, laid out as `bricks`. The cells of the embedding are
+/// limited by `small`, SizingField::small of the present sizing field: where that is to be built anew, so is the
+/// embedding.
+FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
+                         float small);
 
 }  // namespace nacre

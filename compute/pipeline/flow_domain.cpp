@@ -56,9 +56,9 @@ FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
         (int(std::ceil(cells + 0.37)) + 2 * domain.margin + parameters.subcells) / parameters.subcells;
     if (domain.bricks[axis] > max_bricks) {
       const int limit = (max_bricks - 1) * parameters.subcells - 2 * domain.margin - 2;
-      throw Error("--resolution " + std::to_string(parameters.resolution) + " is too fine",
+      throw Error("`resolution` " + std::to_string(parameters.resolution) + " is too fine",
                   "at most 1024 coarse cells per axis",
-                  "use --resolution " + std::to_string(limit * parameters.refine) + " or a larger --refine");
+                  "use `resolution` " + std::to_string(limit * parameters.refine) + " or a larger `refine`");
     }
   }
   return domain;
@@ -97,15 +97,15 @@ int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, F
   if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
   const int n = parameters.resolution;
   if (n > max_octree_resolution)
-    throw Error("--resolution " + std::to_string(n) + " is too fine", "at most 2^20 cells per axis",
-                "use --resolution " + std::to_string(max_octree_resolution) + " or less");
+    throw Error("`resolution` " + std::to_string(n) + " is too fine", "at most 2^20 cells per axis",
+                "use `resolution` " + std::to_string(max_octree_resolution) + " or less");
   domain.radius = parameters.radius > 0 ? parameters.radius : octree_radius;
-  if (domain.radius < 1) throw Error("--radius is too small for an octree", "", "use 1 or more, or 0");
+  if (domain.radius < 1) throw Error("`radius` is too small for an octree", "", "use 1 or more, or 0");
   domain.margin = int(std::ceil(domain.radius)) + 1;
   const int inner = n - 2 * domain.margin - 1;
   if (inner < 1)
-    throw Error("--resolution " + std::to_string(n) + " is too coarse", "the band fills it",
-                "use --resolution " + std::to_string(2 * domain.margin + 16) + " or more");
+    throw Error("`resolution` " + std::to_string(n) + " is too coarse", "the band fills it",
+                "use `resolution` " + std::to_string(2 * domain.margin + 16) + " or more");
   domain.cell_size = longest / inner;
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = (b.upper[axis] - b.lower[axis]) / domain.cell_size;
@@ -156,9 +156,9 @@ void require(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t
     smaller.resolution = std::max(least_resolution, smaller.resolution * 15 / 16);
   const bool fits = estimate(mesh, smaller) <= double(available);
   throw Error(
-      "--resolution " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
+      "`resolution` " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
       gibibytes(double(available)) + " are free" + (fits ? "" : ", too few for these triangles at any resolution"),
-      fits ? "use --resolution " + std::to_string(smaller.resolution) : "free some, or use fewer triangles");
+      fits ? "use `resolution` " + std::to_string(smaller.resolution) : "free some, or use fewer triangles");
 }
 }  // namespace
 

@@ -18,8 +18,8 @@
 
 namespace nacre {
 
-/// What can be turned. Ranges and help are in the knob table (engine/scene/settings/knobs.hpp). Lengths are in voxels: edges of the
-/// volume's smallest voxel spacing.
+/// What can be turned. Ranges and help are in the knob table (engine/scene/settings/knobs.hpp). Lengths are in voxels: edges of
+/// the volume's smallest voxel spacing.
 struct MeshParameters {
   std::string solver = "tree";         ///< tree (ch. 4), redblack (sec. 3.2), serial (sec. 3.1)
   double tighten = 1.2;                ///< width of the smoothing of label boundaries; 0: keep the stairs
@@ -138,8 +138,8 @@ struct ShownBox {
   Vec3f low, high;
 };
 
-/// From voxels, the coordinates of what is shown, to the world: origin + x axes[0] + y axes[1] + z axes[2]. The axes are
-/// at right angles and of one length, that of a voxel, so that directions turn with them; they may be left-handed.
+/// From voxels, the coordinates of what is shown, to the world: origin + x axes[0] + y axes[1] + z axes[2]. The axes
+/// are at right angles and of one length, that of a voxel, so that directions turn with them; they may be left-handed.
 struct VoxelFrame {
   Vec3d origin;
   std::array<Vec3d, 3> axes;
@@ -154,10 +154,10 @@ enum class MeshField {
 };
 
 /// load, build_fields, relax, triangulate, in this order; `parameters` may be changed between calls and are read by the
-/// step that they belong to. A step may be repeated without those before it, and gives what a fresh pipeline would. Throws
-/// Error for bad input and too little memory, Interrupted when the watched flag is set. After an Interrupted any step up to
-/// the interrupted one may be called again (after that from `load`: `load`); after one from `relax`, `watch(nullptr)` and
-/// `triangulate` give the mesh of the particles so far.
+/// step that they belong to. A step may be repeated without those before it, and gives what a fresh pipeline would.
+/// Throws Error for bad input and too little memory, Interrupted when the watched flag is set. After an Interrupted any
+/// step up to the interrupted one may be called again (after that from `load`: `load`); after one from `relax`,
+/// `watch(nullptr)` and `triangulate` give the mesh of the particles so far.
 ///
 /// All calls belong to one thread, also those that look; those marked so may be made within `progress`.
 class MeshPipeline {
@@ -169,18 +169,19 @@ class MeshPipeline {
 
   /// Stage materials. The volume is not needed after it.
   virtual void load(const MeshVolume& volume) = 0;
-  /// Stages tighten, distance, sizing, embed: those that `parameters` concern since they ran last, and those behind them.
-  /// False where none had to run; else the particles are dropped.
+  /// Stages tighten, distance, sizing, embed: those that `parameters` concern since they ran last, and those behind
+  /// them. False where none had to run; else the particles are dropped.
   virtual bool build_fields() = 0;
   virtual void relax() = 0;               ///< stages seed, relax, population
   virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, mend; world coordinates
 
   /// How many particles the next `relax` makes room for: there are never more to be shown. Needs the fields. It is
   /// `relax` that throws Error where they do not fit into the memory.
-  virtual std::int64_t particle_capacity() = 0;
+  virtual std::int64_t particle_capacity() const = 0;
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
-  /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of `relax`.
+  /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of
+  /// `relax`.
   virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;
   /// A field at points of the world, as MeshField says; distance and size are NaN beyond the volume and the 8 voxels of
   /// outside around it. Needs the fields; also within `progress` of `relax`.
@@ -191,8 +192,8 @@ class MeshPipeline {
   /// alone at first.
   virtual ShownCounts show_particles(const ShownParticles& memory) = 0;
   /// The same for the boxes around particles: the nodes of the tree that was built last, level by level from the roots;
-  /// while the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns how
-  /// many there are.
+  /// while the serial or the red-black solver runs, which know no tree, their bins that hold moving particles. Returns
+  /// how many there are.
   virtual std::int64_t show_boxes(ShownBox* memory, std::int64_t capacity) = 0;
   virtual VoxelFrame voxel_frame() const = 0;  ///< of the volume that was loaded
 

@@ -3,6 +3,8 @@
 
 #include <tuple>
 
+#include "compute/pipeline/mesh_choices.hpp"
+
 namespace nacre {
 namespace {
 
@@ -24,7 +26,7 @@ auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.mend); 
 MeshRerun mesh_rerun(const MeshParameters& before, const MeshParameters& after) {
   if (of_fields(before) != of_fields(after)) return MeshRerun::fields;
   if (of_relax(before) != of_relax(after)) return MeshRerun::relax;
-  const bool tree = after.solver == "tree";
+  const bool tree = after.solver == to_string(Solver::tree);
   if (tree ? of_tree(before) != of_tree(after) : before.by_density != after.by_density) return MeshRerun::relax;
   return of_triangles(before) != of_triangles(after) ? MeshRerun::triangulate : MeshRerun::nothing;
 }

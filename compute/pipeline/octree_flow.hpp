@@ -73,7 +73,7 @@ inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
     lookup.node.push_back(node.children);
   }
   lookup.level_start = tree.nodes.level_start.download();
-  if (tree.surface_cells > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower --resolution");
+  if (tree.surface_cells > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower `resolution`");
   lookup.layer.reserve(24 * std::size_t(tree.brick_count));
   for (const OctreeBrick& brick : tree.brick.download())
     for (int z = 0; z < BrickOctreeView::width; ++z) {
@@ -87,7 +87,7 @@ inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
 inline void fill_lookup(const SourceOctree& tree, FlowLookup& lookup) {
   lookup.kind = FlowLookup::Kind::source;
   const std::vector<SourceNode> nodes = tree.node.download();
-  if (8 * nodes.size() > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower --resolution");
+  if (8 * nodes.size() > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower `resolution`");
   lookup.child.reserve(8 * nodes.size());
   for (const SourceNode& node : nodes) lookup.child.insert(lookup.child.end(), node.child, node.child + 8);
 }

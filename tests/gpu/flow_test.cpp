@@ -109,7 +109,7 @@ TEST(CudaDevice, TooLittleMemoryIsAnErrorThatNamesAResolution) {
     pipeline->embed(shape.mesh());
     FAIL() << "embedded in 160 MiB";
   } catch (const Error& error) {
-    EXPECT_NE(error.advice().find("--resolution"), std::string::npos) << error.what();
+    EXPECT_NE(error.advice().find("`resolution`"), std::string::npos) << error.what();
   }
   pipeline->parameters.resolution = 128;
   EXPECT_NO_THROW(pipeline->embed(shape.mesh())) << "the pipeline works on";
@@ -136,7 +136,7 @@ TEST(NoCudaDevice, IsAnErrorWithAdviceAndAutoTakesTheCpu) {
     make_device("cuda");
     FAIL() << "made a device without one";
   } catch (const Error& error) {
-    EXPECT_NE(error.advice().find("--device cpu"), std::string::npos);
+    EXPECT_NE(error.advice().find("`device` cpu"), std::string::npos);
   }
   EXPECT_EQ(make_device("auto")->backend(), "cpu");
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/viewer/scene/captions.hpp"
+#include "app/parameter_names.hpp"
 #include "compute/device/error.hpp"
 #include "engine/picture/colormap.hpp"
 
@@ -231,7 +232,7 @@ void FlowScene::take(FlowEmbedded& told) {
   try {
     next_ = std::make_unique<Texture>(told, worker_.device());
   } catch (const std::exception& error) {
-    no_texture_ = error.what();
+    no_texture_ = with_knobs(error.what());
   }
 }
 

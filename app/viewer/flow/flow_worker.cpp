@@ -5,6 +5,7 @@
 #include <new>
 #include <utility>
 
+#include "app/parameter_names.hpp"
 #include "compute/device/error.hpp"
 #include "engine/system/faults.hpp"
 #include "engine/system/priority.hpp"
@@ -22,7 +23,7 @@ std::string failure_of(const Work& work) {
   } catch (const std::bad_alloc&) {
     return "out of memory; lower resolution";
   } catch (const std::exception& error) {
-    return error.what();
+    return with_knobs(error.what());
   }
   return {};
 }

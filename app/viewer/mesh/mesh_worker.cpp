@@ -7,6 +7,7 @@
 #include <tuple>
 #include <utility>
 
+#include "app/parameter_names.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/mesh_rerun.hpp"
 #include "engine/system/faults.hpp"
@@ -220,7 +221,7 @@ std::optional<std::string> MeshWorker::failure_of(const std::function<void()>& w
   } catch (const std::bad_alloc&) {
     return "out of memory; raise min_size and max_size";
   } catch (const std::exception& error) {
-    return error.what();
+    return with_knobs(error.what());
   }
   return {};
 }

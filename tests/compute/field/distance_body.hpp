@@ -74,6 +74,14 @@ void CellsKnowTheirNearestPoint(Executor<Backend>& exec) {
   expect_nearest(exec, flat, 2.5f, 6);  // cells larger than voxels
 }
 
+/// Signed distance from `p` to the nearest interface, positive in `material`; `reach` where none is near.
+NACRE_HD inline float signed_distance(const DistanceFieldView& d, const MaterialBricksView& field, const Vec3f& p,
+                                      std::uint32_t material) {
+  float distance = d.reach;
+  if (d.closest(p, distance) == none || distance > d.reach) distance = d.reach;
+  return material_at(field, p) == material ? distance : -distance;
+}
+
 struct DistanceAt {
   DistanceFieldView distance;
   MaterialBricksView field;

@@ -115,7 +115,7 @@ void TooManyInOnePlaceIsAnError(Executor<Backend>& exec) {
     bricks_of(exec, volume);
     FAIL() << "513 materials in one block";
   } catch (const Error& error) {
-    EXPECT_NE(error.advice().find("--merge"), std::string::npos) << error.what();
+    EXPECT_NE(error.advice().find("`merge`"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("64"), std::string::npos);
   }
 }

@@ -116,11 +116,5 @@ TEST(SmoothMaximum, ValuesFarApartDoNotOverflow) {
   EXPECT_TRUE(is_finite(s.gradient));
 }
 
-TEST(SmoothMaximum, TheProjectionVectorPointsToTheFirstMaterial) {
-  const Vec3f n = projection_vector({0, Vec3f(3, 0, 0)}, {0, Vec3f(-1, 0, 0)});
-  EXPECT_EQ(n, Vec3f(1, 0, 0));
-  EXPECT_EQ(projection_vector({0, Vec3f(1, 2, 3)}, {1, Vec3f(1, 2, 3)}), Vec3f());
-}
-
 }  // namespace
 }  // namespace nacre

@@ -1,5 +1,6 @@
 // Nacre: population control on the CPU, and its rule by itself.
 #include "compute/device/executor_cpu.hpp"
+#include "tests/compute/particles/lattice_spacing.hpp"
 #include "tests/compute/particles/population_body.hpp"
 
 namespace nacre::test {

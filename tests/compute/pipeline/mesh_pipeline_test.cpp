@@ -188,6 +188,22 @@ void expect_error(const std::function<void()>& call, const std::string& part) {
   }
 }
 
+/// Also where the number of particles on surfaces is given and there are more on the junctions.
+TEST(MeshPipeline, TellsForHowManyParticlesItHasRoom) {
+  const auto device = make_cpu_device();
+  const auto pipeline = make_mesh_pipeline(*device);
+  expect_error([&] { pipeline->particle_capacity(); }, "no fields");
+  pipeline->load(three_balls());
+  pipeline->build_fields();
+  const std::int64_t capacity = pipeline->particle_capacity();
+  EXPECT_EQ(capacity, std::int64_t(1.6 * pipeline->info().expected_particles + 20000));
+  pipeline->parameters.particles = 1;
+  EXPECT_LT(pipeline->particle_capacity(), capacity);
+  EXPECT_GT(pipeline->particle_capacity(), 20000 + 1.6 * 20) << "for those on junctions, too";
+  pipeline->parameters.particles = 1000000;
+  EXPECT_GT(pipeline->particle_capacity(), 1600000 + 20000);
+}
+
 TEST(MeshPipeline, SaysWhatItCannotDo) {
   const auto device = make_cpu_device();
   const auto pipeline = make_mesh_pipeline(*device);

@@ -1,0 +1,33 @@
+// Nacre: how the tree solver's particles get back onto their interface after a step in its tangent space.
+#pragma once
+
+#include "compute/embedding/interface_grid.hpp"
+#include "compute/field/interface.hpp"
+#include "compute/field/sizing.hpp"
+
+namespace nacre {
+
+/// How particles get back onto their interface: by Newton's method on the fields themselves, for the last steps ...
+struct FieldGround {
+  MaterialBricksView field;
+  const Junction* junction;
+  SizingFieldView size;
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
+    JunctionPoint at;
+    if (!nacre::project(field, junction[interface], p, 1, at, 0.01f)) return false;
+    on = {at.p, at.direction, size(at.p), junction_margin(field, junction[interface], at.p, at.steepness)};
+    return true;
+  }
+};
+
+/// ... or by the closest points of the embedding (sec. 4.2.1), wherever particles are farther apart than its cells.
+struct EmbeddedGround {
+  InterfaceGridView grid;
+  FieldGround fields;
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on) const {
+    return h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
+                                           : nacre::project(grid, interface, p, on);
+  }
+};
+
+}  // namespace nacre

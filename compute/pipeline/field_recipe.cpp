@@ -1,0 +1,37 @@
+// Nacre: what the stages of the mesh pipeline's fields are built from, so that those that stay the same need not run
+// again.
+#include "compute/pipeline/field_recipe.hpp"
+
+#include <algorithm>
+
+#include "compute/pipeline/mesh_choices.hpp"
+
+namespace nacre {
+
+int FieldRecipe::alike(const FieldRecipe& other) const {
+  if (width != other.width || stairs != other.stairs) return tighten_stage;
+  if (kernel != other.kernel || !(lattice == other.lattice) || reach != other.reach) return distance_stage;
+  if (!(rule == other.rule)) return sizing_stage;
+  return cells_per_voxel != other.cells_per_voxel ? embed_stage : field_stages;
+}
+
+FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
+                         float small) {
+  FieldRecipe recipe;
+  if (kind == MeshVolume::Kind::labels) recipe.width = parameters.tighten;
+  if (recipe.width > 0) recipe.stairs = parameters.stairs;
+  recipe.kernel = kernel_from_string(parameters.kernel);
+  recipe.rule = {float(parameters.epsilon), float(parameters.delta), float(parameters.min_size),
+                 float(std::max(parameters.min_size, parameters.max_size)), parameters.curvature};
+  recipe.spacing = 0.5f * recipe.rule.min_size;
+  recipe.lattice = lattice_over(bricks, recipe.spacing);
+  recipe.reach = std::min(recipe.rule.reach() + 2, 64.0f);
+  // Cells of two thirds of the smallest distance of particles suffice for the stencils. They are searched voxel by
+  // voxel for what meets there, so that a few are no cheaper than many, and one that is larger than the volume takes
+  // forever.
+  constexpr double fewest = 0.125, to_a_size = 1.5;
+  recipe.cells_per_voxel = std::clamp(to_a_size / small, fewest, double(parameters.subcells));
+  return recipe;
+}
+
+}  // namespace nacre

@@ -1,0 +1,45 @@
+// Nacre: the particles on the host, where the improvement of the mesh takes some out and puts others in.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compute/embedding/junction_table.hpp"
+#include "compute/grid/lanes.hpp"
+#include "compute/meshing/attempt.hpp"
+#include "compute/meshing/defects.hpp"
+#include "compute/pipeline/volume_frame.hpp"
+
+namespace nacre {
+
+/// Particles in the order of a ParticleSet, which says what each array holds.
+struct HostParticles {
+  std::vector<Float4> place, direction;
+  std::vector<std::uint32_t> interface;
+
+  std::size_t count() const { return place.size(); }
+};
+
+/// Takes out the particles that `gone` marks, and puts new ones behind those that stay, of size 0 and without
+/// direction: as many as there is room for in `capacity`, on interfaces that `table` has. Returns how many stay.
+std::size_t replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
+                              std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
+                              const VolumeFrame& frame, std::size_t capacity);
+
+/// The particles that an attempt has taken back: each from `before` or from `now`.
+HostParticles take_back(std::span<const Attempt::Source> sources, const HostParticles& before,
+                        const HostParticles& now);
+
+/// World coordinates.
+std::vector<Vec3d> world_positions(std::span<const Float4> place, const VolumeFrame& frame);
+
+/// How many particles are at points, on curves and on surfaces.
+std::array<std::int64_t, 3> count_by_order(std::span<const std::uint32_t> interface, const JunctionTable& table);
+
+/// What is told of particles to those outside.
+MeshParticles describe_particles(const HostParticles& particles, const JunctionTable& table, const VolumeFrame& frame);
+
+}  // namespace nacre

@@ -1,0 +1,63 @@
+// Nacre: the choices among MeshParameters, which are words there, as enums.
+#include "compute/pipeline/mesh_choices.hpp"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "compute/device/error.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+
+namespace nacre {
+namespace {
+
+template <class Choice>
+using Word = std::pair<std::string_view, Choice>;
+
+constexpr std::array<Word<Solver>, 3> solvers{
+    {{"tree", Solver::tree}, {"redblack", Solver::redblack}, {"serial", Solver::serial}}};
+constexpr std::array<Word<CubicKernel>, 2> kernels{
+    {{"catmull-rom", CubicKernel::catmull_rom}, {"b-spline", CubicKernel::b_spline}}};
+enum class Seeds { automatic, embedding, marching_cubes };
+constexpr std::array<Word<Seeds>, 3> seed_words{
+    {{"auto", Seeds::automatic}, {"embedding", Seeds::embedding}, {"marching-cubes", Seeds::marching_cubes}}};
+
+template <class Choice>
+Choice choice_of(std::span<const Word<Choice>> words, const std::string& parameter, std::string_view word) {
+  std::string all;
+  for (const auto& [name, choice] : words) {
+    if (name == word) return choice;
+    all += (all.empty() ? "" : ", ") + std::string(name);
+  }
+  throw Error("`" + parameter + "` cannot be '" + std::string(word) + "'", "", "choose one of " + all);
+}
+
+template <class Choice>
+std::string word_of(std::span<const Word<Choice>> words, Choice choice) {
+  return std::string(
+      std::find_if(words.begin(), words.end(), [&](const Word<Choice>& word) { return word.second == choice; })->first);
+}
+
+}  // namespace
+
+std::string to_string(Solver solver) { return word_of<Solver>(solvers, solver); }
+std::string to_string(CubicKernel kernel) { return word_of<CubicKernel>(kernels, kernel); }
+
+Solver solver_from_string(std::string_view word) { return choice_of<Solver>(solvers, "solver", word); }
+CubicKernel kernel_from_string(std::string_view word) { return choice_of<CubicKernel>(kernels, "kernel", word); }
+
+SeedOrigin seeds_from_string(std::string_view word, Solver solver) {
+  switch (choice_of<Seeds>(seed_words, "seeds", word)) {
+    case Seeds::embedding: return SeedOrigin::embedding;
+    case Seeds::marching_cubes: return SeedOrigin::marching_cubes;
+    default: return solver == Solver::tree ? SeedOrigin::embedding : SeedOrigin::marching_cubes;
+  }
+}
+
+MeshChoices::MeshChoices(const MeshParameters& parameters)
+    : solver(solver_from_string(parameters.solver)),
+      kernel(kernel_from_string(parameters.kernel)),
+      seeds(seeds_from_string(parameters.seeds, solver)) {}
+
+}  // namespace nacre

@@ -1,0 +1,197 @@
+// Nacre: triangles from the particles, and particles changed until the triangles are good.
+#include "compute/pipeline/mesh_improvement.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "compute/device/error.hpp"
+#include "compute/meshing/interfaces.hpp"
+#include "compute/meshing/triangle_rings.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int most_further = 4;  ///< rounds of an attempt after its first
+
+/// What an attempt does to the particles around bad points.
+struct AttemptKind {
+  int turns;    ///< of smoothing; 0: none
+  bool shakes;  ///< smoothing begins from random positions
+  bool mends;
+};
+/// Tried in turn: smoothing and mending together; fewer steps, for particles that flip to and fro; mending alone, which
+/// leaves the other particles where they are; and both again from a random start.
+constexpr std::array<AttemptKind, 4> attempt_kinds{
+    {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
+
+/// `places` in terms of the mesh's points instead of particles. The mesh has some of the particles, in the same order.
+std::vector<std::array<std::uint32_t, 2>> points_of_places(std::vector<std::array<std::uint32_t, 2>> places,
+                                                           const std::vector<std::uint32_t>& point_of) {
+  for (auto& place : places)
+    for (std::uint32_t& p : place)
+      p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
+  return places;
+}
+
+/// Marks the points of the mesh at triangles that are worth further work, and where it touches itself.
+std::vector<std::uint8_t> bad_points(const SurfaceMesh& mesh, std::span<const std::array<std::uint32_t, 2>> touching) {
+  std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, mesh);
+  for (const auto& place : touching)
+    for (const std::uint32_t point : place) bad[point] = 1;
+  return bad;
+}
+
+}  // namespace
+
+MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTable& table, const VolumeFrame& frame,
+                                 const ImprovementRule& rule, const TellStage& tell)
+    : particles_(particles), table_(table), frame_(frame), rule_(rule), tell_(tell), delaunay_(rule.threads) {}
+
+ImprovedMesh MeshImprovement::run() {
+  std::optional<Triangulated> best;
+  HostParticles best_particles;
+  for (bool again = true; again;) {
+    tell_("triangulate", fraction(), 0, 0);
+    Triangulated made = triangulate();
+    if (attempt_) {
+      if (continue_attempt(made)) continue;
+      if (take_back_attempt()) made = triangulate();
+    }
+    if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->fitness)) {
+      best = made;
+      best_particles = particles_.download();
+    }
+    again = improve(made);
+  }
+  particles_.upload(best_particles);
+  return {std::move(best->mesh), count_by_order(best_particles.interface, table_)};
+}
+
+double MeshImprovement::fraction() const {
+  return 0.85 + 0.09 * (smoothed_ + mended_) / std::max(1, rule_.smooth + rule_.mend);
+}
+
+MeshImprovement::Triangulated MeshImprovement::triangulate() {
+  Triangulated made;
+  particles_.in_stage("triangulate", [&] {
+    const HostParticles particles = particles_.download();
+    const std::vector<Vec3d> points = world_positions(particles.place, frame_);
+    const DelaunayCells cells = delaunay_.cells(points, rule_.stop);
+    std::vector<std::uint16_t> label = particles_.material_at(cells.circumcentres);
+    const LabelRepair repair = repair_labels(points, cells, label, rule_.stop);
+    made.mesh = extract_interfaces(points, cells, label, &made.point_of);
+    check_stop(rule_.stop);
+    for (const std::uint32_t i : made.point_of) {
+      made.order.push_back(table_.order[particles.interface[i]]);
+      made.size.push_back(particles.place[i].w * float(frame_.unit));
+    }
+    lift_off_junctions(made.mesh, made.order);
+    made.touching = points_of_places(repair.places, made.point_of);
+    made.fitness =
+        made.touching.empty() ? fitness(made.mesh, made.order, worst_defects) : -double(made.touching.size());
+  });
+  return made;
+}
+
+/// Changes the particles before they are triangulated again; false where there is nothing to change.
+bool MeshImprovement::improve(Triangulated& made) {
+  if (smoothed_ + mended_ == 0 && rule_.mend > 0) {
+    ++mended_;
+    if (mend(made, DefectRule())) return true;
+  }
+  if (smoothed_ < rule_.smooth) {
+    ++smoothed_;
+    smooth(made, std::vector<std::uint8_t>(made.mesh.points.size(), 1));
+    if (smoothed_ == rule_.smooth && rule_.mend > 0) mend(made, worst_defects);
+    return true;
+  }
+  const std::vector<std::uint8_t> bad = bad_points(made.mesh, made.touching);
+  const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
+  const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * bad_);
+  if (mended_ >= rule_.mend || !worth) return false;
+  ++mended_;
+  bad_ = count;
+  return begin_attempt(made, bad);
+}
+
+/// Changes what is around the points `bad`, by the next of the kinds of attempts. False where none changes anything.
+bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uint8_t> bad) {
+  before_ = particles_.download();
+  attempt_.emplace(before_.count(), made.view(), bad, worst_defects);
+  further_ = 0;
+  for (std::size_t k = 0; k < attempt_kinds.size(); ++k) {
+    const std::uint32_t number = tried_++;
+    const AttemptKind& kind = attempt_kinds[number % attempt_kinds.size()];
+    const bool moves = kind.turns > 0 && rule_.smooth > 0;
+    const bool moved = moves && smooth(made, bad, {kind.turns, kind.shakes ? number : 0}) > 0;
+    const bool mended = kind.mends && mend(made, worst_defects);
+    if (moved || mended) return true;
+  }
+  attempt_.reset();
+  return false;
+}
+
+/// Goes on with an attempt where triangles have become no better: it may take more than one round. False where it has
+/// ended.
+bool MeshImprovement::continue_attempt(Triangulated& made) {
+  attempt_->judge(made.view());
+  const std::vector<std::uint8_t> open = attempt_->open(made.view());
+  if (open.empty() || further_ == most_further || mended_ >= rule_.mend) return false;
+  ++further_, ++mended_;
+  std::vector<std::uint8_t> moving = bad_points(made.mesh, made.touching);
+  for (std::size_t v = 0; v < moving.size(); ++v) moving[v] &= open[v];
+  const bool moved = rule_.smooth > 0 && smooth(made, moving) > 0;
+  return mend(made, worst_defects, open) || moved;
+}
+
+/// Ends an attempt: particles go back to where they were before, in those patches whose triangles are no better since.
+/// True where there are some.
+bool MeshImprovement::take_back_attempt() {
+  const std::vector<Attempt::Source> sources = attempt_->taken_back();
+  attempt_.reset();
+  if (sources.empty()) return false;
+  particles_.upload(take_back(sources, before_, particles_.download()));
+  return true;
+}
+
+/// Moves the particles at points `moving` of the mesh to where their triangles are best, and the mesh's points with
+/// them. How many have moved by more than a hundredth of their size.
+std::int64_t MeshImprovement::smooth(Triangulated& made, std::span<const std::uint8_t> moving,
+                                     const SmoothingRule& rule) {
+  const std::vector<Float4> before = particles_.download().place;
+  TriangleRings rings;
+  particles_.in_stage("smooth", [&] { rings = triangle_rings(made.mesh, made.point_of, moving, before.size()); });
+  particles_.smooth(rings, rule, [&](int turns) { tell_("smooth", fraction(), turns, 0); });
+  const std::vector<Float4> after = particles_.download().place;
+  std::int64_t far = 0;
+  for (std::size_t v = 0; v < made.point_of.size(); ++v) {
+    const Float4 a = before[made.point_of[v]], b = after[made.point_of[v]];
+    const Vec3d position(b.x, b.y, b.z);
+    far += length(position - Vec3d(a.x, a.y, a.z)) > 0.01 * a.w;
+    made.mesh.points[v] = frame_.to_world(position);
+    made.size[v] = b.w * float(frame_.unit);
+  }
+  return far;
+}
+
+/// Takes away the particles that spoil triangles, and adds some where a surface touches itself or a rim has a gap; only
+/// at the mesh's points `there`, where these are marked. False where nothing is to be changed.
+bool MeshImprovement::mend(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there) {
+  bool changed = false;
+  particles_.in_stage("mend", [&] {
+    MeshDefects defects = find_defects(made.mesh, made.order, made.size, made.touching, rule);
+    if (!there.empty()) {
+      std::erase_if(defects.remove, [&](std::uint32_t v) { return !there[v]; });
+      std::erase_if(defects.insert, [&](const MeshDefects::NewPoint& p) { return !there[p.at]; });
+    }
+    changed = !defects.remove.empty() || !defects.insert.empty();
+    if (!changed) return;
+    std::vector<std::uint8_t> gone(std::size_t(particles_.count()), 0);
+    for (const std::uint32_t v : defects.remove) gone[made.point_of[v]] = 1;
+    const std::size_t count = particles_.replace(gone, defects.insert);
+    if (attempt_) attempt_->change(gone, count);
+  });
+  return changed;
+}
+
+}  // namespace nacre

@@ -1,0 +1,90 @@
+// Nacre: makes triangles of the particles, and changes particles until the triangles are good.
+//
+// Each operation has one name:
+// - to smooth: particles move within the rings of triangles around them;
+// - to mend: particles that spoil triangles are removed, and missing ones are added;
+// - an attempt: smoothing or mending at bad triangles only, undone where the triangles are no better afterwards;
+// - to project: particles are brought onto their interfaces, on the fields themselves;
+// - to repair: labels of Delaunay cells are changed (repair.hpp); particles are not;
+// - to improve: all of this together. (improve_cells.hpp improves tetrahedra, which have nothing to do with it.)
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compute/meshing/attempt.hpp"
+#include "compute/meshing/defects.hpp"
+#include "compute/meshing/delaunay.hpp"
+#include "compute/meshing/repair.hpp"
+#include "compute/meshing/surface_mesh.hpp"
+#include "compute/pipeline/movable_particles.hpp"
+#include "compute/pipeline/stage_progress.hpp"
+
+namespace nacre {
+
+/// How many rounds of improvement there may be, and on how many threads.
+struct ImprovementRule {
+  int smooth = 2;                           ///< rounds of smoothing all particles
+  int mend = 12;                            ///< rounds of mending, at most; each attempt counts as one
+  int threads = 0;                          ///< of the Delaunay triangulation; 0: all
+  const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
+};
+
+/// A mesh and how many of its particles are at points, on curves, on surfaces.
+struct ImprovedMesh {
+  SurfaceMesh mesh;
+  std::array<std::int64_t, 3> particles{};
+};
+
+/// Triangulates particles and changes them until the triangles get no better. First the clear defects are mended, then
+/// all particles are smoothed, at last there are attempts at what is still bad. The best mesh after smoothing is kept.
+class MeshImprovement {
+ public:
+  /// All arguments must outlive the object.
+  MeshImprovement(MovableParticles& particles, const JunctionTable& table, const VolumeFrame& frame,
+                  const ImprovementRule& rule, const TellStage& tell);
+
+  /// Leaves the particles that the mesh was made of. Throws Error where there are too few particles to triangulate.
+  ImprovedMesh run();
+
+ private:
+  /// A mesh of the particles as they are.
+  struct Triangulated {
+    SurfaceMesh mesh;
+    std::vector<std::uint32_t> point_of;                 ///< the particle at each of its points, ascending
+    std::vector<std::array<std::uint32_t, 2>> touching;  ///< where it touches itself: two of its points, or one twice
+    std::vector<std::uint8_t> order;                     ///< per point: of the junction that the mesh has there
+    std::vector<float> size;                             ///< per point, world units
+    double fitness = 0;  ///< see nacre::fitness; below 0: it touches itself at so many places
+
+    Attempt::View view() const { return {mesh, point_of, order, touching}; }
+  };
+
+  Triangulated triangulate();
+  bool improve(Triangulated& made);
+  bool begin_attempt(Triangulated& made, std::span<const std::uint8_t> bad);
+  bool continue_attempt(Triangulated& made);
+  bool take_back_attempt();
+  std::int64_t smooth(Triangulated& made, std::span<const std::uint8_t> moving, const SmoothingRule& rule = {});
+  bool mend(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there = {});
+  double fraction() const;
+
+  MovableParticles& particles_;
+  const JunctionTable& table_;
+  const VolumeFrame& frame_;
+  ImprovementRule rule_;
+  const TellStage& tell_;
+  Delaunay delaunay_;
+  int smoothed_ = 0, mended_ = 0;             ///< rounds so far
+  std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began
+  std::uint32_t tried_ = 0;                   ///< kinds of attempts so far
+  std::optional<Attempt> attempt_;            ///< the one that is under way,
+  HostParticles before_;                      ///< what was there before it,
+  int further_ = 0;                           ///< and its rounds after the first
+};
+
+}  // namespace nacre

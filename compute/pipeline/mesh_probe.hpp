@@ -1,0 +1,155 @@
+// Nacre: the fields of a volume at points of the world.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "compute/pipeline/mesh_fields.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+
+namespace nacre {
+
+namespace detail {
+
+struct MaterialAt {
+  MaterialBricksView field;
+  const Vec3f* point;
+  std::uint16_t* material;
+  NACRE_HD void operator()(std::int64_t i) const { material[i] = std::uint16_t(material_at(field, point[i])); }
+};
+
+/// The same for pictures, sooner: a voxel whose 26 neighbours are of its material is taken to be whole.
+struct PictureMaterialAt {
+  MaterialBricksView field;
+  const Vec3f* point;
+  float* material;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Vec3f p = point[i];
+    material[i] = 0;
+    if (!field.inside(p, 2)) return;
+    const Vec3f u = p * field.cells_per_unit;
+    const std::int64_t row = field.blocks.x * block_size, slab = row * field.blocks.y * block_size;
+    const std::uint16_t* voxel = field.voxel_material + field.voxel_number(int(u.x), int(u.y), int(u.z));
+    bool whole = true;
+    for (int z = -1; z <= 1; ++z)
+      for (int y = -1; y <= 1; ++y) {
+        const std::uint16_t* line = voxel + z * slab + y * row;
+        whole = whole && line[-1] == *voxel && line[0] == *voxel && line[1] == *voxel;
+      }
+    material[i] = whole ? float(*voxel) : float(nacre::material_at(field, p));
+  }
+};
+
+struct SizeAt {
+  MaterialBricksView field;
+  SizingFieldView size;
+  const Vec3f* point;
+  float* h;
+  NACRE_HD void operator()(std::int64_t i) const { h[i] = field.inside(point[i], 0) ? size(point[i]) : NAN; }
+};
+
+/// Unsigned distance from the interfaces: the interface point that is the nearest stands for a disc as wide as the
+/// lattice, since distances from the points alone would show where they lie.
+struct DistanceAt {
+  MaterialBricksView field;
+  DistanceFieldView distances;
+  const Vec3f* point;
+  float* distance;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Vec3f p = point[i];
+    distance[i] = NAN;
+    if (!field.inside(p, 0)) return;
+    float away = 0;
+    const std::uint32_t q = distances.closest(p, away);
+    distance[i] = INFINITY;
+    if (q == none || away > distances.reach) return;
+    const Float4 n = distances.point[q].normal;
+    const Vec3f s = distances.lattice.spacing;
+    const float along = dot(p - distances.place(q), Vec3f(n.x, n.y, n.z));
+    const float beside = std::sqrt(std::fmax(away * away - along * along, 0.0f)) - std::fmax(s.x, std::fmax(s.y, s.z));
+    distance[i] = beside > 0 ? std::sqrt(along * along + beside * beside) : std::fabs(along);
+  }
+};
+
+/// Distance of a point from the interface of a facet's two materials, in voxels; negative where it cannot be found.
+struct DistanceToInterface {
+  MaterialBricksView field;
+  const Vec3f* point;
+  const Junction* junction;
+  float* distance;
+  NACRE_HD void operator()(std::int64_t i) const {
+    JunctionPoint on;
+    distance[i] = -1;
+    if (!field.inside(point[i], 3) || !project(field, junction[i], point[i], 3, on)) return;
+    distance[i] = length(on.p - point[i]);
+  }
+};
+
+/// Points of the world as the fields' kernels take them, temporary in the caller's scope; those far off are brought
+/// nearer, and what is no number becomes such a point.
+template <class Backend>
+Array<Vec3f> upload_points(Executor<Backend>& exec, const VolumeFrame& frame, std::span<const Vec3d> points) {
+  std::vector<Vec3f> host(points.size());
+  const float far = 1e6f;
+  std::transform(points.begin(), points.end(), host.begin(), [&](const Vec3d& w) {
+    const Vec3f p(frame.to_voxels(w));
+    return is_finite(p) ? max(min(p, Vec3f(far)), Vec3f(-far)) : Vec3f(-far);
+  });
+  Array<Vec3f> array = exec.arena().template temporary<Vec3f>(host.size());
+  array.upload(host);
+  return array;
+}
+
+}  // namespace detail
+
+/// The material at each point.
+template <class Backend>
+std::vector<std::uint16_t> material_at(Executor<Backend>& exec, const MeshFields<Backend>& fields,
+                                       std::span<const Vec3d> points) {
+  Arena::Scope scope(exec.arena());
+  const Array<Vec3f> place = detail::upload_points(exec, fields.frame(), points);
+  Array<std::uint16_t> material = exec.arena().template temporary<std::uint16_t>(points.size());
+  exec.for_each(std::int64_t(points.size()), detail::MaterialAt{fields.bricks().view(), place.data(), material.data()});
+  return material.download();
+}
+
+/// A field at each point, as MeshField says.
+template <class Backend>
+std::vector<float> field_at(Executor<Backend>& exec, const MeshFields<Backend>& fields, MeshField field,
+                            std::span<const Vec3d> points) {
+  Arena::Scope scope(exec.arena());
+  const Array<Vec3f> place = detail::upload_points(exec, fields.frame(), points);
+  Array<float> value = exec.arena().template temporary<float>(points.size());
+  const MaterialBricksView bricks = fields.bricks().view();
+  const std::int64_t n = std::int64_t(points.size());
+  if (field == MeshField::material) {
+    exec.for_each(n, detail::PictureMaterialAt{bricks, place.data(), value.data()});
+    return value.download();
+  }
+  if (field == MeshField::distance)
+    exec.for_each(n, detail::DistanceAt{bricks, fields.distance().view(), place.data(), value.data()});
+  else
+    exec.for_each(n, detail::SizeAt{bricks, fields.size().view(), place.data(), value.data()});
+  std::vector<float> result = value.download();
+  for (float& x : result) x *= float(fields.frame().unit);
+  return result;
+}
+
+/// How far each point is from the interface of its two materials, voxels; negative where that cannot be found.
+template <class Backend>
+std::vector<float> distance_to_interfaces(Executor<Backend>& exec, const MeshFields<Backend>& fields,
+                                          std::span<const Vec3d> points, std::span<const Junction> interfaces) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  const Array<Vec3f> place = detail::upload_points(exec, fields.frame(), points);
+  Array<Junction> junction = arena.template temporary<Junction>(interfaces.size());
+  junction.upload(interfaces);
+  Array<float> distance = arena.template temporary<float>(points.size());
+  exec.for_each(std::int64_t(points.size()),
+                detail::DistanceToInterface{fields.bricks().view(), place.data(), junction.data(), distance.data()});
+  return distance.download();
+}
+
+}  // namespace nacre

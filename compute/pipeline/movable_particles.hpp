@@ -1,0 +1,39 @@
+// Nacre: the particles of a mesh as its improvement sees them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "compute/meshing/triangle_rings.hpp"
+#include "compute/particles/smoothing_rule.hpp"
+#include "compute/pipeline/host_particles.hpp"
+
+namespace nacre {
+
+/// What the improvement of a mesh asks of the particles, which lie on a device and know the fields. A test can stand in
+/// for them with particles of its own.
+class MovableParticles {
+ public:
+  virtual ~MovableParticles() = default;
+
+  virtual std::int64_t count() const = 0;
+  virtual HostParticles download() const = 0;
+  /// Instead of those that there are; all are then at rest.
+  virtual void upload(const HostParticles& particles) = 0;
+  /// As `replace_particles`; the new ones are brought onto their interfaces and get their sizes, and those that find
+  /// none are left out. Returns how many particles there are then.
+  virtual std::size_t replace(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born) = 0;
+  /// Moves the particles that have rings within them, `rule.turns` times; `turned(k)` is called after each second time.
+  virtual void smooth(const TriangleRings& rings, const SmoothingRule& rule,
+                      const std::function<void(int)>& turned) = 0;
+  /// The material at points of the world.
+  virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;
+  /// Does `work` as a part of the stage of that name.
+  virtual void in_stage(std::string_view name, const std::function<void()>& work) = 0;
+};
+
+}  // namespace nacre

@@ -1,0 +1,30 @@
+// Nacre: what the knobs tell the solvers: steps, population, and room for how many particles.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "compute/particles/tree_solver.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+
+namespace nacre {
+
+TreeRule tree_rule(const MeshParameters& parameters);
+
+/// For particles of a junction order. On curves thresholds are wider, since a curve's particle has two neighbours only.
+PopulationRule population_rule(const MeshParameters& parameters, int order);
+
+/// How many particles are kept room for where `expected` are. Crowded places relax to fewer, holes fill: half as many
+/// again has always been enough.
+double particle_capacity(double expected);
+
+/// What the solver and its temporaries take for so many particles, bytes.
+double solver_bytes(std::int64_t capacity, std::int64_t interfaces, const MeshParameters& parameters);
+
+/// The capacity for `expected` particles on `interfaces` interfaces. Throws Error where `free` bytes are too few for
+/// that; `why` goes before their number.
+std::int64_t require_room_for(double expected, std::int64_t interfaces, std::size_t free,
+                              const MeshParameters& parameters, const std::string& why);
+
+}  // namespace nacre

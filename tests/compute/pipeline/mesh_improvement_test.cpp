@@ -1,0 +1,145 @@
+// Nacre: the improvement of a mesh alone, on particles of a sphere that stand in for those of the pipeline.
+#include "compute/pipeline/mesh_improvement.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "compute/device/error.hpp"
+#include "compute/meshing/quality.hpp"
+#include "compute/meshing/topology.hpp"
+#include "tests/compute/pipeline/mesh_volumes.hpp"
+
+namespace nacre::test {
+namespace {
+
+/// Particles on a sphere, in voxels that are the world's, with material 1 in it.
+class SphereParticles : public MovableParticles {
+ public:
+  static constexpr double radius = 6;
+
+  explicit SphereParticles(const std::vector<Vec3d>& directions) {
+    for (const Vec3d& d : directions) add(d);
+  }
+
+  std::int64_t count() const override { return std::int64_t(particles_.count()); }
+  HostParticles download() const override { return particles_; }
+  void upload(const HostParticles& particles) override { particles_ = particles; }
+  std::size_t replace(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born) override {
+    const std::size_t kept = replace_particles(particles_, gone, born, table, frame, 100000);
+    removed += gone.size() - kept;
+    for (std::size_t i = kept; i < particles_.count(); ++i) put(i, world(i));
+    return particles_.count();
+  }
+  /// Towards the middle of the corners around; enough for a sphere.
+  void smooth(const TriangleRings& rings, const SmoothingRule& rule, const std::function<void(int)>& turned) override {
+    ++smoothings;
+    for (int k = 0; k < rule.turns; k += 2) {
+      for (std::size_t i = 0; i + 1 < rings.first.size(); ++i) {
+        Vec3d sum;
+        for (std::uint32_t e = rings.first[i]; e < rings.first[i + 1]; ++e)
+          sum += world(rings.edge[e].a) + world(rings.edge[e].b);
+        if (rings.first[i] < rings.first[i + 1])
+          put(i, world(i) * 0.5 + sum / (4.0 * (rings.first[i + 1] - rings.first[i])));
+      }
+      turned(k + 2);
+    }
+  }
+  std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) override {
+    std::vector<std::uint16_t> material;
+    for (const Vec3d& p : points) material.push_back(length(p) < radius ? 1 : 0);
+    return material;
+  }
+  void in_stage(std::string_view name, const std::function<void()>& work) override {
+    stages.insert(std::string(name));
+    work();
+  }
+
+  void add(const Vec3d& direction) {
+    particles_.place.push_back({});
+    particles_.direction.push_back({});
+    particles_.interface.push_back(0);
+    put(particles_.count() - 1, direction);
+  }
+
+  const JunctionTable table = make_junction_table(std::vector<Junction>{{0, 1}}, {});
+  const VolumeFrame frame{[] {
+    MeshVolume volume;
+    volume.origin = Vec3d(volume_padding + 0.5);  // so that voxels are the world's
+    volume.dims = {20, 20, 20};
+    return volume;
+  }()};
+  std::size_t removed = 0;
+  int smoothings = 0;
+  std::set<std::string> stages;
+
+ private:
+  Vec3d world(std::size_t i) const {
+    const Float4& p = particles_.place[i];
+    return frame.to_world({p.x, p.y, p.z});
+  }
+  void put(std::size_t i, const Vec3d& near) {
+    const Vec3d n = near / length(near), p = frame.to_voxels(n * radius);
+    particles_.place[i] = {float(p.x), float(p.y), float(p.z), 1};
+    particles_.direction[i] = {float(n.x), float(n.y), float(n.z), 0};
+  }
+
+  HostParticles particles_;
+};
+
+ImprovedMesh improve(SphereParticles& particles, int smooth, int mend) {
+  const ImprovementRule rule{smooth, mend, 1, nullptr};
+  const TellStage tell = [](std::string_view, double fraction, int, double) {
+    EXPECT_GE(fraction, 0.85);
+    EXPECT_LE(fraction, 0.94);
+  };
+  return MeshImprovement(particles, particles.table, particles.frame, rule, tell).run();
+}
+
+/// About a particle to the area of a hexagonal lattice with spacing 1.
+const int even = int(4 * M_PI * 36 / 0.866);
+
+TEST(MeshImprovement, MakesAClosedMeshOfTheParticles) {
+  SphereParticles particles(even_directions(even));
+  const ImprovedMesh made = improve(particles, 0, 0);
+  EXPECT_TRUE(check_topology(made.mesh, 2).sound());
+  EXPECT_EQ(made.mesh.points.size(), std::size_t(even));
+  EXPECT_EQ(made.mesh.triangles.size(), std::size_t(2 * even - 4));  // Euler
+  EXPECT_EQ(made.particles, (std::array<std::int64_t, 3>{0, 0, even}));
+  EXPECT_EQ(particles.smoothings, 0);
+  EXPECT_EQ(particles.removed, 0u);
+  EXPECT_EQ(particles.stages, (std::set<std::string>{"triangulate"}));
+}
+
+TEST(MeshImprovement, SmoothingMakesTheWorstTriangleBetter) {
+  SphereParticles as_they_are(even_directions(even)), smoothed(even_directions(even));
+  const double before = surface_quality(improve(as_they_are, 0, 0).mesh).all.radius_ratio_min;
+  const double after = surface_quality(improve(smoothed, 2, 0).mesh).all.radius_ratio_min;
+  EXPECT_EQ(smoothed.smoothings, 2);
+  EXPECT_GT(after, before + 0.05);
+}
+
+/// Pairs of particles that stand together: one of each goes, whatever smoothing does.
+TEST(MeshImprovement, MendingTakesOutWhatSpoilsTriangles) {
+  std::vector<Vec3d> directions = even_directions(even);
+  for (int k = 0; k < 5; ++k) directions.push_back(directions[std::size_t(40 + 70 * k)] + Vec3d(0.01, 0.01, 0));
+  SphereParticles particles(directions);
+  const ImprovedMesh made = improve(particles, 2, 12);
+  EXPECT_GE(particles.removed, 5u);
+  EXPECT_TRUE(check_topology(made.mesh, 2).sound());
+  EXPECT_GT(surface_quality(made.mesh).all.radius_ratio_min, worst_defects.ratio);
+  EXPECT_EQ(std::size_t(particles.count()), made.mesh.points.size()) << "the particles are those of the mesh";
+  EXPECT_TRUE(particles.stages.contains("mend"));
+}
+
+TEST(MeshImprovement, StopsWhenAsked) {
+  SphereParticles particles(even_directions(even));
+  const std::atomic<bool> stop = true;
+  const TellStage tell = [](std::string_view, double, int, double) {};
+  EXPECT_THROW(MeshImprovement(particles, particles.table, particles.frame, {2, 12, 1, &stop}, tell).run(),
+               Interrupted);
+}
+
+}  // namespace
+}  // namespace nacre::test
