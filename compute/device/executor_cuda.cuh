@@ -1,7 +1,6 @@
 // Nacre: the launches on CUDA and CUB. Included by `*_cuda.cu` only.
 #pragma once
 
-#include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
 #include <thrust/iterator/transform_iterator.h>
 
@@ -19,26 +18,11 @@
 #include "compute/device/cuda_check.hpp"
 #include "compute/device/cuda_device.hpp"
 #include "compute/device/cuda_graph.hpp"
+#include "compute/device/cuda_launch.cuh"
 #include "compute/device/cuda_stage_clock.hpp"
 #include "compute/device/executor.hpp"
 
 namespace nacre {
-
-template <class Kernel>
-__global__ void for_each_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
-  const std::int64_t stride = std::int64_t(gridDim.x) * blockDim.x;
-  for (std::int64_t i = std::int64_t(blockIdx.x) * blockDim.x + threadIdx.x; i < n; i += stride) kernel(i);
-}
-
-template <class Kernel>
-__global__ void for_each_team_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
-  extern __shared__ __align__(16) unsigned char scratch[];
-  Team team(scratch);
-  for (std::int64_t i = blockIdx.x; i < n; i += gridDim.x) {
-    kernel(team, i);
-    __syncthreads();
-  }
-}
 
 template <>
 class Executor<Cuda> : public ExecutorBase {
@@ -131,7 +115,7 @@ class Executor<Cuda> : public ExecutorBase {
     static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     constexpr int threads = 256;
     const auto blocks = unsigned(std::min<std::int64_t>((n + threads - 1) / threads, 1 << 20));
-    for_each_kernel<<<blocks, threads, 0, stream_>>>(n, kernel);
+    launch_elements(blocks, threads, stream_, n, kernel);
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 
@@ -146,7 +130,7 @@ class Executor<Cuda> : public ExecutorBase {
           cudaFuncSetAttribute(for_each_team_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(scratch)),
           "shared memory of a team");
     const auto blocks = unsigned(std::min<std::int64_t>(n, 1 << 20));
-    for_each_team_kernel<<<blocks, Team::lanes, scratch, stream_>>>(n, kernel);
+    launch_teams(blocks, scratch, stream_, n, kernel);
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 

@@ -110,6 +110,7 @@ unit_tests() {
 # Bodies with teams, scans and sorts under the sanitizer's three tools, half a minute each.
 sanitizer_tests() {
   local tool status sanitizer filter='Team.*:Executor.*:Tree.*:RefinedGrid.*:Distance.*'
+  local time_up=([0]='' [124]=', then time was up') findings='^========= (Invalid|Error|Barrier|Program hit)'
   sanitizer=$(command -v compute-sanitizer || command -v /usr/local/cuda/bin/compute-sanitizer) || {
     say "compute-sanitizer is not installed: not run"
     return
@@ -118,10 +119,10 @@ sanitizer_tests() {
     status=0
     timeout 30 "$sanitizer" --tool "$tool" --error-exitcode 9 "$pack/bin/test_bodies_cuda" "--gtest_filter=$filter" \
       >"$out/$tool.log" 2>&1 || status=$?
-    if ((status != 0 && status != 124)) || grep -qE '^========= (Invalid|Error|Barrier|Program hit)' "$out/$tool.log"; then
+    if [[ ! -v time_up[status] ]] || grep -qE "$findings" "$out/$tool.log"; then
       failures+=("$tool (status $status, see $tool.log)")
     else
-      say "$tool: nothing found in $(grep -c '^\[       OK' "$out/$tool.log") tests$( ((status == 0)) || echo ', then time was up')"
+      say "$tool: nothing found in $(grep -c '^\[       OK' "$out/$tool.log") tests${time_up[status]}"
     fi
   done
 }
