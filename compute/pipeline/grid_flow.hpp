@@ -72,6 +72,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     for (Array<float>* noise : {&carried_, &value_, &ahead_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
     this->warm_up();
     show();
+    ++launched_;
     for (int k = first_; k < 0; ++k) advance(k);
   }
 
@@ -111,6 +112,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   void advance(int k) override {
     this->look_ahead(k);
     exec_.repeat(steps_, [&] { launch(k); });
+    ++launched_;  // not inside: a graph that cannot be made is launched again, one by one
   }
 
   /// What follows the look ahead; nothing in it waits for the device.
@@ -152,7 +154,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     exec_.for_each(n, Equalise{texture, value_.data(), ahead_.data(), moments, whole, float(parameters_.equalise),
                                float(parameters_.contrast), shown_.data(), output_, detail_.data()});
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
-                                       seed_, std::uint32_t(++launched_), carried_.data()});
+                                       seed_, std::uint32_t(launched_ + 1), carried_.data()});
   }
 
   /// Local moments of `value_` over a window of about a dozen texture cells, in one of two buffers.

@@ -14,6 +14,10 @@
 #define __grid_constant__
 #define __shared__ static  // blocks run one after the other
 
+struct alignas(8) short4 {
+  short x, y, z, w;
+};
+
 namespace emulated {
 
 struct Index {

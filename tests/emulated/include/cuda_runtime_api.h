@@ -11,6 +11,7 @@ enum cudaError_t {
   cudaSuccess = 0,
   cudaErrorInvalidValue = 1,
   cudaErrorMemoryAllocation = 2,
+  cudaErrorInsufficientDriver = 35,
   cudaErrorInvalidDevice = 101,
   cudaErrorNotReady = 600,
   cudaErrorStreamCaptureUnsupported = 900,
@@ -20,7 +21,11 @@ enum cudaError_t {
   cudaErrorGraphExecUpdateFailure = 910
 };
 enum cudaMemcpyKind { cudaMemcpyHostToDevice = 1, cudaMemcpyDeviceToHost, cudaMemcpyDeviceToDevice };
-enum cudaStreamCaptureMode { cudaStreamCaptureModeGlobal, cudaStreamCaptureModeThreadLocal };
+enum cudaStreamCaptureMode {
+  cudaStreamCaptureModeGlobal,
+  cudaStreamCaptureModeThreadLocal,
+  cudaStreamCaptureModeRelaxed
+};
 enum cudaFuncAttribute { cudaFuncAttributeMaxDynamicSharedMemorySize = 8 };
 enum { cudaStreamNonBlocking = 1, cudaEventRecordDefault = 0, cudaEventRecordExternal = 1 };
 
@@ -52,6 +57,8 @@ cudaError_t cudaGetDevice(int* device);
 cudaError_t cudaGetDeviceCount(int* count);
 cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int device);
 cudaError_t cudaDeviceSynchronize();
+cudaError_t cudaDriverGetVersion(int* version);
+cudaError_t cudaRuntimeGetVersion(int* version);
 
 cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total);
 cudaError_t cudaMalloc(void** block, std::size_t bytes);
@@ -64,6 +71,7 @@ cudaError_t cudaStreamCreateWithFlags(cudaStream_t* stream, unsigned flags);
 cudaError_t cudaStreamDestroy(cudaStream_t stream);
 cudaError_t cudaStreamSynchronize(cudaStream_t stream);
 cudaError_t cudaStreamBeginCapture(cudaStream_t stream, cudaStreamCaptureMode mode);
+cudaError_t cudaThreadExchangeStreamCaptureMode(cudaStreamCaptureMode* mode);
 cudaError_t cudaStreamEndCapture(cudaStream_t stream, cudaGraph_t* graph);
 
 cudaError_t cudaGraphDestroy(cudaGraph_t graph);
@@ -95,8 +103,13 @@ void launch(const Launch& launch, cudaStream_t stream, std::function<void()> lan
 /// Puts work of the host at the end of a stream. Two graphs are of one shape where the kinds of their nodes agree.
 cudaError_t enqueue(cudaStream_t stream, std::string kind, std::function<void()> work);
 
-/// What cudaFuncSetAttribute says about a kernel.
+/// What cudaFuncSetAttribute says about a kernel, and what cudaFuncGetAttributes asks: that loads it, which is forbidden during
+/// a capture, as a launch of a kernel is that was not loaded.
 cudaError_t allow_shared_memory(const void* function, int bytes);
+cudaError_t load_kernel(const void* function);
+
+/// The next captures of this many end in a failure.
+void break_captures(int count);
 
 }  // namespace emulated
 
@@ -105,7 +118,7 @@ cudaError_t cudaFuncSetAttribute(Function* function, cudaFuncAttribute, int valu
   return emulated::allow_shared_memory(reinterpret_cast<const void*>(function), value);
 }
 template <class Function>
-cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* attributes, Function*) {
+cudaError_t cudaFuncGetAttributes(cudaFuncAttributes* attributes, Function* function) {
   *attributes = {90, 90, 32};
-  return cudaSuccess;
+  return emulated::load_kernel(reinterpret_cast<const void*>(function));
 }

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "compute/device/cuda_reservation.hpp"
+#include "compute/device/error.hpp"
 #include "tests/emulated/runtime/settings.hpp"
 #include "tests/emulated/runtime/stream.hpp"
 
@@ -16,6 +18,7 @@ namespace {
 
 constexpr std::size_t page = 4096;
 constexpr int rubbish = 0xcb;  // what memory holds at first
+constexpr std::size_t piece = std::size_t(16) << 20;
 
 struct Memory {
   std::map<void*, std::size_t> blocks;
@@ -25,8 +28,6 @@ Memory& memory() {
   static Memory all;
   return all;
 }
-
-constexpr std::size_t piece = std::size_t(16) << 20;
 
 /// A file of rubbish that blocks are mapped from: pages are copied when they are first written, so that a large block whose
 /// most is not touched costs nothing.
@@ -43,7 +44,25 @@ int rubbish_file() {
   return file;
 }
 
-std::size_t mapped_bytes(std::size_t bytes) { return (bytes + page - 1) / page * page + page; }
+std::size_t whole_pages(std::size_t bytes) { return (bytes + page - 1) / page * page; }
+
+/// Addresses that cannot be touched, and a page behind them.
+char* reserve_addresses(std::size_t bytes) {
+  void* start = mmap(nullptr, whole_pages(bytes) + page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return start == MAP_FAILED ? nullptr : static_cast<char*>(start);
+}
+void give_addresses_back(void* start, std::size_t bytes) { munmap(start, whole_pages(bytes) + page); }
+
+/// Puts rubbish behind reserved addresses; false where that is more than the device has.
+bool take_memory(char* start, std::size_t bytes) {
+  if (bytes > settings().memory - memory().used) return false;
+  for (std::size_t at = 0; at < bytes; at += piece)
+    if (mmap(start + at, whole_pages(std::min(piece, bytes - at)), PROT_READ | PROT_WRITE,
+             MAP_PRIVATE | MAP_FIXED | MAP_NORESERVE, rubbish_file(), 0) == MAP_FAILED)
+      broken("memory cannot be mapped");
+  memory().used += bytes;
+  return true;
+}
 
 }  // namespace
 
@@ -68,6 +87,13 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int device) {
   return cudaSuccess;
 }
 
+cudaError_t cudaDriverGetVersion(int* version) {
+  *version = 13000;
+  return cudaSuccess;
+}
+
+cudaError_t cudaRuntimeGetVersion(int* version) { return cudaDriverGetVersion(version); }
+
 cudaError_t cudaDeviceSynchronize() {
   const std::scoped_lock held(lock());
   if (this_thread_captures()) return fail(cudaErrorStreamCaptureUnsupported);
@@ -86,17 +112,15 @@ cudaError_t cudaMemGetInfo(std::size_t* free, std::size_t* total) {
 cudaError_t cudaMalloc(void** block, std::size_t bytes) {
   const std::scoped_lock held(lock());
   if (this_thread_captures()) return fail(cudaErrorStreamCaptureUnsupported);
-  if (bytes > settings().memory - memory().used) return fail(cudaErrorMemoryAllocation);
-  const std::size_t mapped = mapped_bytes(bytes);
-  void* const start = mmap(nullptr, mapped, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (start == MAP_FAILED) return fail(cudaErrorMemoryAllocation);
-  for (std::size_t at = 0; at < mapped - page; at += piece)
-    if (mmap(static_cast<char*>(start) + at, std::min(piece, mapped - page - at), PROT_READ | PROT_WRITE,
-             MAP_PRIVATE | MAP_FIXED | MAP_NORESERVE, rubbish_file(), 0) == MAP_FAILED)
-      broken("a block cannot be mapped");
+  if (bytes > settings().memory) return fail(cudaErrorMemoryAllocation);
+  char* const start = reserve_addresses(bytes);
+  if (!start) return fail(cudaErrorMemoryAllocation);
+  if (!take_memory(start, bytes)) {
+    give_addresses_back(start, bytes);
+    return fail(cudaErrorMemoryAllocation);
+  }
+  memory().blocks[start] = bytes;
   *block = start;
-  memory().blocks[*block] = bytes;
-  memory().used += bytes;
   return cudaSuccess;
 }
 
@@ -109,7 +133,7 @@ cudaError_t cudaFree(void* block) {
   const auto found = memory().blocks.find(block);
   if (found == memory().blocks.end()) broken("memory is given back that was not allocated, or twice");
   memory().used -= found->second;
-  munmap(block, mapped_bytes(found->second));
+  give_addresses_back(block, found->second);
   memory().blocks.erase(found);
   return cudaSuccess;
 }
@@ -134,3 +158,39 @@ cudaError_t cudaMemcpyAsync(void* to, const void* from, std::size_t bytes, cudaM
 cudaError_t cudaMemsetAsync(void* to, int value, std::size_t bytes, cudaStream_t stream) {
   return enqueue(stream, "fill", [=] { std::memset(to, value, bytes); });
 }
+
+namespace nacre {
+
+// In place of compute/device/cuda_reservation.cpp, in smaller pieces: what touches memory that was not asked for, crashes.
+CudaReservation::CudaReservation(int device, std::size_t bytes) : device_(device), piece_bytes_(std::size_t(1) << 16) {
+  const std::scoped_lock held(lock());
+  piece_.resize((bytes + piece_bytes_ - 1) / piece_bytes_);
+  bytes_ = piece_.size() * piece_bytes_;
+  char* const start = reserve_addresses(bytes_);
+  if (!start) throw Error("no addresses");
+  address_ = reinterpret_cast<unsigned long long>(start);
+}
+
+CudaReservation::~CudaReservation() {
+  const std::scoped_lock held(lock());
+  run_all_streams();
+  memory().used -= committed_;
+  give_addresses_back(data(), bytes_);
+}
+
+std::size_t CudaReservation::commit(std::size_t from, std::size_t to) {
+  const std::size_t before = committed_;
+  for (std::size_t k = from / piece_bytes_; k * piece_bytes_ < to; ++k)
+    if (!piece_[k]) take(k);
+  return committed_ - before;
+}
+
+void CudaReservation::take(std::size_t k) {
+  const std::scoped_lock held(lock());
+  if (!take_memory(static_cast<char*>(data()) + k * piece_bytes_, piece_bytes_))
+    throw Error("not enough memory on the GPU", "", "lower the resolution or use --device cpu");
+  piece_[k] = 1;
+  committed_ += piece_bytes_;
+}
+
+}  // namespace nacre

@@ -16,12 +16,18 @@ namespace {
 cudaError_t last_error = cudaSuccess;
 std::vector<Stream*> streams;
 thread_local Stream* captured_here = nullptr;
+thread_local cudaStreamCaptureMode mode_here = cudaStreamCaptureModeThreadLocal;
+int captures_to_break = 0;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-std::map<const void*, std::size_t>& allowed_shared_memory() {
-  static std::map<const void*, std::size_t> bytes;
-  return bytes;
+struct LoadedKernel {
+  bool loaded = false;
+  std::size_t shared_bytes = 0;  ///< allowed
+};
+LoadedKernel& kernel(const void* function) {
+  static std::map<const void*, LoadedKernel> all;
+  return all[function];
 }
 
 }  // namespace
@@ -37,7 +43,12 @@ cudaError_t fail(cudaError_t error) {
   return last_error = error;
 }
 
-bool this_thread_captures() { return captured_here != nullptr; }
+bool this_thread_captures() { return captured_here && mode_here != cudaStreamCaptureModeRelaxed; }
+
+void break_captures(int count) {
+  const std::scoped_lock held(lock());
+  captures_to_break = count;
+}
 
 void Stream::run_all() {
   while (!queue.empty()) {
@@ -76,13 +87,21 @@ cudaError_t enqueue(cudaStream_t stream, std::string kind, std::function<void()>
 cudaError_t allow_shared_memory(const void* function, int bytes) {
   const std::scoped_lock held(lock());
   if (bytes < 0 || std::size_t(bytes) > shared_limit) return fail(cudaErrorInvalidValue);
-  allowed_shared_memory()[function] = std::size_t(bytes);
+  kernel(function).shared_bytes = std::size_t(bytes);
+  return cudaSuccess;
+}
+
+cudaError_t load_kernel(const void* function) {
+  const std::scoped_lock held(lock());
+  if (!kernel(function).loaded && this_thread_captures()) return fail(cudaErrorStreamCaptureUnsupported);
+  kernel(function).loaded = true;
   return cudaSuccess;
 }
 
 void launch(const Launch& launch, cudaStream_t stream, std::function<void()> lane) {
   const std::scoped_lock held(lock());
-  const std::size_t allowed = std::max(shared_unasked, allowed_shared_memory()[launch.function]);
+  const std::size_t allowed = std::max(shared_unasked, kernel(launch.function).shared_bytes);
+  if (load_kernel(launch.function) != cudaSuccess) return;
   if (launch.blocks == 0 || launch.shared_bytes > allowed) {
     fail(cudaErrorInvalidValue);
     return;
@@ -134,8 +153,14 @@ cudaError_t cudaStreamBeginCapture(cudaStream_t stream, cudaStreamCaptureMode mo
   if (!stream || stream->captured || captured_here || !stream->queue.empty()) return fail(cudaErrorInvalidValue);
   stream->captured = new Graph;
   stream->capturing_thread = std::this_thread::get_id();
-  stream->capture_broken = false;
+  stream->capture_broken = captures_to_break > 0;
+  captures_to_break -= stream->capture_broken;
   captured_here = stream;
+  return cudaSuccess;
+}
+
+cudaError_t cudaThreadExchangeStreamCaptureMode(cudaStreamCaptureMode* mode) {
+  std::swap(*mode, mode_here);
   return cudaSuccess;
 }
 

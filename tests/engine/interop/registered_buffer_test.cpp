@@ -60,7 +60,7 @@ class InteropOnCuda : public testing::Test {
 };
 
 TEST_F(InteropOnCuda, WritesStraightIntoOpenGl) {
-  if (!cuda_draws_here()) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
+  if (!cuda_draws_here(*device_)) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
   SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F);
   ASSERT_EQ(buffer.path(), Path::registered);
   EXPECT_EQ(seen(buffer), std::vector<float>(count, 0.0f));
@@ -74,7 +74,7 @@ TEST_F(InteropOnCuda, WritesStraightIntoOpenGl) {
 }
 
 TEST_F(InteropOnCuda, AnInterruptedWriteIsNotShown) {
-  if (!cuda_draws_here()) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
+  if (!cuda_draws_here(*device_)) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
   SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F, Path::registered);
   write(buffer, 3);
   device_->fill(buffer.begin_write(true), 0x55, count * sizeof(float));
@@ -85,7 +85,7 @@ TEST_F(InteropOnCuda, AnInterruptedWriteIsNotShown) {
 }
 
 TEST_F(InteropOnCuda, ABufferMayDieWhileItIsWritten) {
-  if (!cuda_draws_here()) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
+  if (!cuda_draws_here(*device_)) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
   {
     SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F, Path::registered);
     device_->fill(buffer.begin_write(true), 0x55, count * sizeof(float));
