@@ -21,7 +21,8 @@ endfunction()
 
 # nacre_device_body_source(FILE HEADER...): writes the source that instantiates these bodies on CUDA.
 function(nacre_device_body_source file)
-  set(content "// Nacre: test bodies on CUDA, a list that CMake writes.\n#include \"compute/device/executor_cuda.cuh\"\n")
+  set(content "// Nacre: test bodies on CUDA, a list that CMake writes.\n")
+  string(APPEND content "#include \"compute/device/executor_cuda.cuh\"\n")
   foreach(header IN LISTS ARGN)
     string(APPEND content "#include \"${header}\"\n")
   endforeach()

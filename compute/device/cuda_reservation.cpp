@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t least_piece = std::size_t(64) << 20;
 
-/// The driver's function of that name: the program does not link the driver, which a machine without a GPU lacks. Throws
-/// Error where it has none.
+/// The driver's function of that name: the program does not link the driver, which a machine without a GPU lacks.
+/// Throws Error where it has none.
 template <class Function>
 Function* driver_function(const char* name) {
   void* found = nullptr;

@@ -17,8 +17,8 @@ class CudaReservation {
   CudaReservation& operator=(const CudaReservation&) = delete;
 
   void* data() const { return reinterpret_cast<void*>(address_); }
-  /// Puts memory behind bytes `from` to `to`, in pieces; those that have some keep it. Returns how many bytes were taken.
-  /// Throws Error, and keeps what it got so far, where the device has no more.
+  /// Puts memory behind bytes `from` to `to`, in pieces; those that have some keep it. Returns how many bytes were
+  /// taken. Throws Error, and keeps what it got so far, where the device has no more.
   std::size_t commit(std::size_t from, std::size_t to);
   std::size_t committed_bytes() const { return committed_; }
 

@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does at
-/// once would overtake them: it is forbidden then, on every backend.
+/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does
+/// at once would overtake them: it is forbidden then, on every backend.
 class Recording {
  public:
   Recording() { ++depth_; }
@@ -62,15 +62,16 @@ class Device {
 /// copy runs: any other access is a segmentation fault, so that a missing copy fails without a GPU.
 std::unique_ptr<Device> make_cpu_device(int threads = 0, bool remote = false);
 
-/// Number of CUDA devices: 0 where the first cannot be used, without a driver, on a GPU that this build has no code for, or in
-/// a build without CUDA.
+/// Number of CUDA devices: 0 where the first cannot be used, without a driver, on a GPU that this build has no code
+/// for, or in a build without CUDA.
 int cuda_device_count();
 
-/// Why a machine with NVIDIA's driver does not use its GPU, as a sentence; empty where it can, or where there is no driver.
+/// Why a machine with NVIDIA's driver does not use its GPU, as a sentence; empty where it can, or where there is no
+/// driver.
 std::string why_no_cuda();
 
-/// CUDA device `number`. Its arenas reserve four fifths of what is free when they are made, but at most `arena_limit` bytes
-/// (0: no limit), and take what they use. Throws Error where there is no such device or the build has no CUDA.
+/// CUDA device `number`. Its arenas reserve four fifths of what is free when they are made, but at most `arena_limit`
+/// bytes (0: no limit), and take what they use. Throws Error where there is no such device or the build has no CUDA.
 std::unique_ptr<Device> make_cuda_device(std::size_t arena_limit = 0, int number = 0);
 
 /// `request`: "auto" (CUDA where usable, else CPU), "cpu", "cuda" or "cuda:NUMBER".

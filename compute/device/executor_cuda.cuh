@@ -36,6 +36,7 @@ class Executor<Cuda> : public ExecutorBase {
     cuda_.use();
     const char* graphs = std::getenv("NACRE_GRAPHS");
     graphs_ = !graphs || std::string_view(graphs) != "0";
+    strict_ = graphs && std::string_view(graphs) == "strict";
     if (graphs_) cuda_check(cudaStreamCreateWithFlags(&capture_stream_, cudaStreamNonBlocking), "making a stream");
   }
   ~Executor() {
@@ -83,9 +84,10 @@ class Executor<Cuda> : public ExecutorBase {
     clock_.collect(ExecutorBase::timers());
   }
 
-  /// The first call launches one by one, so that most kernels are loaded before they are captured. Where a graph cannot be
-  /// made, the call launches one by one, too; after `most_failures` of them none is tried any more. NACRE_GRAPHS=0 makes all
-  /// calls do so. `body` may therefore be called twice: what it does besides launching must bear that.
+  /// The first call launches one by one, so that most kernels are loaded before they are captured. Where a graph cannot
+  /// be made, the call launches one by one, too; after `most_failures` of them none is tried any more. NACRE_GRAPHS=0
+  /// makes all calls do so, NACRE_GRAPHS=strict makes a failure an error. `body` may therefore be called twice: what it
+  /// does besides launching must bear that.
   template <class Body>
   void repeat(Steps& steps, const Body& body) {
     if (capturing_) return body();
@@ -261,6 +263,7 @@ class Executor<Cuda> : public ExecutorBase {
       diversion.keep_stages();
       return true;
     } catch (const Error&) {  // a mistake of ours and the user's wish to stop are others
+      if (strict_) throw;
       if (++failures_ >= most_failures) graphs_ = false;
       return false;
     }
@@ -293,7 +296,7 @@ class Executor<Cuda> : public ExecutorBase {
   cudaStream_t stream_;         ///< where launches go
   cudaStream_t device_stream_;  ///< where they run
   cudaStream_t capture_stream_ = nullptr;
-  bool graphs_ = true, capturing_ = false;
+  bool graphs_ = true, strict_ = false, capturing_ = false;
   int failures_ = 0;  ///< graphs that could not be made
   CudaStageClock clock_;
 };

@@ -170,8 +170,8 @@ struct SearchCoarseCell {
   }
 
   /// Materials around a point, ascending: of its eight voxels, and where those are of two or more and there are more in
-  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels. `complete` becomes
-  /// false where there are more than `most`.
+  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels. `complete`
+  /// becomes false where there are more than `most`.
   NACRE_HD int materials_around(const Vec3f& p, std::uint32_t* material, bool& complete) const {
     const Int3 low = voxel(p);
     int count = 0;
@@ -202,8 +202,8 @@ struct SearchCoarseCell {
   }
 };
 
-/// Launched twice: without `found` it counts a cell's junctions, with it lists them. One kernel, so that both decide alike
-/// where rounding decides.
+/// Launched twice: without `found` it counts a cell's junctions, with it lists them. One kernel, so that both decide
+/// alike where rounding decides.
 struct SearchJunctions {
   SearchCoarseCell search;
   std::uint32_t* count;    // when it counts
@@ -302,8 +302,8 @@ JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, 
   return result;
 }
 
-/// The junction points. Where several lie within a third of h of each other, as where more than four materials meet, the
-/// first stands for all. Returns how many stand for junctions of other materials, too.
+/// The junction points. Where several lie within a third of h of each other, as where more than four materials meet,
+/// the first stands for all. Returns how many stand for junctions of other materials, too.
 template <class Backend>
 int junction_points(Executor<Backend>& exec, const MaterialBricks& b, const SizingField& size,
                     const JunctionSearch& search, const Int3& coarse, float cells_per_voxel,

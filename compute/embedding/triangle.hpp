@@ -101,9 +101,10 @@ NACRE_HD inline Vec3d barycentric(const Corners& t, const Vec3d& p) {
   return {u / sum, v / sum, w / sum};
 }
 
-/// `barycentric` in single precision but for the differences of positions: consumer GPUs have a 64th of the rate in double.
-/// Off by 1e-5 at most: rounding (6e-8, a handful of operations each) over the triangle's area, which is at least a tenth of
-/// the square of its longest edge at the first corner. Thinner triangles, and points beside, take the other function.
+/// `barycentric` in single precision but for the differences of positions: consumer GPUs have a 64th of the rate in
+/// double. Off by 1e-5 at most: rounding (6e-8, a handful of operations each) over the triangle's area, which is at
+/// least a tenth of the square of its longest edge at the first corner. Thinner triangles, and points beside, take the
+/// other function.
 NACRE_HD inline Vec3f barycentric_in_float(const Corners& t, const Vec3d& p) {
   const Vec3f ab(t.b - t.a), ac(t.c - t.a), ap(p - t.a), n = cross(ab, ac);
   const float area = dot(n, n), bb = dot(ab, ab), cc = dot(ac, ac), longest = bb > cc ? bb : cc;

@@ -88,7 +88,8 @@ class Embedding : public EachBackend {
     EXPECT_GT(looked_at, 10000u);
   }
 
-  /// The same for the cells of the texture, whose seeds name no triangle: those that differ must lie on the surface, too.
+  /// The same for the cells of the texture, whose seeds name no triangle: those that differ must lie on the surface,
+  /// too.
   static void expect_seeds(const HostEmbedding& found, const HostEmbedding& expected, const Reference& reference) {
     ASSERT_EQ(found.seed.size(), expected.seed.size());
     ASSERT_EQ(found.block_cell, expected.block_cell);

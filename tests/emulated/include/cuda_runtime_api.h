@@ -1,4 +1,5 @@
-// Nacre: the part of CUDA's runtime that Nacre uses, on a device that is emulated on the CPU. Names and values are CUDA's.
+// Nacre: the part of CUDA's runtime that Nacre uses, on a device that is emulated on the CPU. Names and values are
+// CUDA's.
 #pragma once
 
 #include <cstddef>
@@ -103,8 +104,8 @@ void launch(const Launch& launch, cudaStream_t stream, std::function<void()> lan
 /// Puts work of the host at the end of a stream. Two graphs are of one shape where the kinds of their nodes agree.
 cudaError_t enqueue(cudaStream_t stream, std::string kind, std::function<void()> work);
 
-/// What cudaFuncSetAttribute says about a kernel, and what cudaFuncGetAttributes asks: that loads it, which is forbidden during
-/// a capture, as a launch of a kernel is that was not loaded.
+/// What cudaFuncSetAttribute says about a kernel, and what cudaFuncGetAttributes asks: that loads it, which is
+/// forbidden during a capture, as a launch of a kernel is that was not loaded.
 cudaError_t allow_shared_memory(const void* function, int bytes);
 cudaError_t load_kernel(const void* function);
 

@@ -23,8 +23,8 @@ namespace {
 constexpr unsigned char shared_rubbish = 0xfb;
 constexpr std::size_t margin = 64;  // behind a block's shared memory, to see who writes there
 
-/// A block's shared memory and lanes. There are several, which blocks take in random order: for ThreadSanitizer, those of two
-/// blocks are other threads.
+/// A block's shared memory and lanes. There are several, which blocks take in random order: for ThreadSanitizer, those
+/// of two blocks are other threads.
 struct Multiprocessor {
   TeamRun team;
   volatile unsigned char* shared = static_cast<unsigned char*>(

@@ -29,8 +29,8 @@ Memory& memory() {
   return all;
 }
 
-/// A file of rubbish that blocks are mapped from: pages are copied when they are first written, so that a large block whose
-/// most is not touched costs nothing.
+/// A file of rubbish that blocks are mapped from: pages are copied when they are first written, so that a large block
+/// whose most is not touched costs nothing.
 int rubbish_file() {
   static const int file = [] {
     const int made = memfd_create("rubbish", 0);
@@ -161,7 +161,8 @@ cudaError_t cudaMemsetAsync(void* to, int value, std::size_t bytes, cudaStream_t
 
 namespace nacre {
 
-// In place of compute/device/cuda_reservation.cpp, in smaller pieces: what touches memory that was not asked for, crashes.
+// In place of compute/device/cuda_reservation.cpp, in smaller pieces: what touches memory that was not asked for,
+// crashes.
 CudaReservation::CudaReservation(int device, std::size_t bytes) : device_(device), piece_bytes_(std::size_t(1) << 16) {
   const std::scoped_lock held(lock());
   piece_.resize((bytes + piece_bytes_ - 1) / piece_bytes_);
