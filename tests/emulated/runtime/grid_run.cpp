@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <numeric>
 #include <random>
 #include <string>
@@ -39,10 +40,16 @@ unsigned char* shared_now = nullptr;
 std::mt19937 random_order{settings().seed};
 char block_ends;
 
-/// ThreadSanitizer shall not see this: it orders blocks by nothing.
+#if defined(__SANITIZE_THREAD__)
+/// The sanitizer shall not see this: it orders blocks by nothing.
 [[gnu::no_sanitize("thread")]] void spoil(volatile unsigned char* shared, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; ++k) shared[k] = shared_rubbish;
 }
+#else
+void spoil(volatile unsigned char* shared, std::size_t bytes) {
+  std::memset(const_cast<unsigned char*>(shared), shared_rubbish, bytes);
+}
+#endif
 [[gnu::no_sanitize("thread")]] bool is_spoilt(const volatile unsigned char* shared, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; ++k)
     if (shared[k] != shared_rubbish) return false;

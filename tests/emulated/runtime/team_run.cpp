@@ -1,8 +1,10 @@
 // Nacre: a team's lanes as fibers.
 #include "tests/emulated/runtime/team_run.hpp"
 
-#include <algorithm>
+#include <cstdint>
 #include <numeric>
+#include <string>
+#include <utility>
 
 #include "cuda_runtime.h"
 #include "tests/emulated/runtime/settings.hpp"
@@ -26,7 +28,7 @@ void TeamRun::lane_entry() {
   broken("a lane went on after its end", team.kernel_);
 }
 
-void TeamRun::run(const std::function<void()>& lane, const std::string& kernel, std::mt19937& random) {
+void TeamRun::run(const std::function<void()>& lane, const char* kernel, std::mt19937& random) {
   work_ = &lane;
   kernel_ = kernel;
   running_team = this;
@@ -49,12 +51,21 @@ void TeamRun::run(const std::function<void()>& lane, const std::string& kernel, 
   running_team = nullptr;
 }
 
-void TeamRun::shuffle(std::array<int, lanes>& order, std::mt19937& random) const {
+/// Half of the times the lanes of one warp come first. Called at every barrier: a plain generator is random enough.
+void TeamRun::shuffle(std::array<int, lanes>& order, std::mt19937& random) {
   if (settings().ordered) return;
-  std::shuffle(order.begin(), order.end(), random);
-  if (random() % 2) return;
-  const int ahead = int(random() % 2);
-  std::stable_partition(order.begin(), order.end(), [&](int k) { return k / warp == ahead; });
+  std::uint64_t state = random();
+  const auto below = [&](int n) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return int((state >> 33) * std::uint64_t(n) >> 31);
+  };
+  for (int k = lanes - 1; k > 0; --k) std::swap(order[k], order[below(k + 1)]);
+  if (below(2)) return;
+  const int ahead = below(2);
+  std::array<int, lanes> sorted;
+  int first = 0, second = warp;
+  for (const int k : order) sorted[k / warp == ahead ? first++ : second++] = k;
+  order = sorted;
 }
 
 void TeamRun::resume(int k) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <functional>
 #include <random>
-#include <string>
 
 #include "tests/emulated/runtime/fiber.hpp"
 
@@ -17,7 +16,7 @@ class TeamRun {
   static constexpr int lanes = 64, warp = 32;
 
   /// Runs `lane` in all lanes, with `thread_index` set.
-  void run(const std::function<void()>& lane, const std::string& kernel, std::mt19937& random);
+  void run(const std::function<void()>& lane, const char* kernel, std::mt19937& random);
 
   /// Called by the lane that runs. `place`: where in the code.
   void wait(const void* place);
@@ -37,7 +36,7 @@ class TeamRun {
   };
 
   static void lane_entry();
-  void shuffle(std::array<int, lanes>& order, std::mt19937& random) const;
+  static void shuffle(std::array<int, lanes>& order, std::mt19937& random);
   void resume(int k);
   void stop(State state, const void* place);
   bool count_votes(int first);
@@ -46,7 +45,7 @@ class TeamRun {
   std::array<Lane, lanes> lane_;
   int running_ = -1;
   const std::function<void()>* work_ = nullptr;
-  std::string kernel_;
+  const char* kernel_ = "";
   char met_[3][4] = {};  ///< what lanes meet at, by kind and phase: a lane far ahead must not pass for one that waits
 };
 
