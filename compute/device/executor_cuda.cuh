@@ -234,7 +234,12 @@ class Executor<Cuda> : public ExecutorBase {
 
   void begin_launch() {
     ExecutorBase::begin_launch();
-    cuda_.use();
+    use_device();
+  }
+
+  /// Not during a capture, which has begun on the device and asks for as little besides launches as can be.
+  void use_device() const {
+    if (!capturing_) cuda_.use();
   }
 
   /// CUDA loads a kernel when it is first launched, which waits for the device: not during a capture.
@@ -271,7 +276,7 @@ class Executor<Cuda> : public ExecutorBase {
 
   long launches() { return ExecutorBase::timers().launches(); }
   cudaEvent_t mark() {
-    cuda_.use();
+    use_device();
     return clock_.mark(stream_, capturing_);
   }
 
