@@ -68,10 +68,19 @@ int columns_of_terminal() {
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
 }
 
+/// The message where `word` is no "cuda:N".
+std::string is_gpu_number(const std::string& word) {
+  const std::string start = "cuda:";
+  const std::string digits = word.rfind(start, 0) == 0 ? word.substr(start.size()) : "";
+  const bool number = !digits.empty() && digits.find_first_not_of("0123456789") == std::string::npos;
+  return number ? "" : word + " is not cuda:N";
+}
+
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options, const CommonWords& words) {
-  command.add_option("--device", options.device, "auto, cpu or cuda")->check(CLI::IsMember({"auto", "cpu", "cuda"}));
+  command.add_option("--device", options.device, "auto, cpu, cuda, or cuda:N for the GPU number N")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}) | CLI::Validator(is_gpu_number, "cuda:N"));
   command
       .add_option_function<int>(
           "--threads",

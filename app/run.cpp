@@ -44,6 +44,9 @@ std::unique_ptr<Device> open_device(const CommonOptions& options) {
   std::unique_ptr<Device> device = make_device(options.device, options.threads);
   say(options, fmt::format("device: {} ({}, {} thread{})", device->backend(), device->name(), device->threads(),
                            device->threads() == 1 ? "" : "s"));
+  if (!device->remark().empty()) say(options, device->remark());
+  if (const std::string why = options.device == "auto" && device->backend() == "cpu" ? why_no_cuda() : ""; !why.empty())
+    say(options, "the GPU is not used: " + why);
   return device;
 }
 

@@ -14,15 +14,16 @@
 namespace nacre {
 
 /// One block of a device. Permanent arrays grow from its head, temporary ones from its tail, so that the two are never
-/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the tail.
+/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the
+/// tail.
 class Arena {
  public:
   Arena(Device& device, std::size_t bytes)
       : device_(device),
         capacity_(bytes / 256 * 256),
-        block_(static_cast<std::uint8_t*>(device.allocate(capacity_))),
+        block_(static_cast<std::uint8_t*>(device.reserve(capacity_))),
         tail_(capacity_) {}
-  ~Arena() { device_.deallocate(block_, capacity_); }
+  ~Arena() { device_.release(block_, capacity_); }
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
@@ -31,7 +32,9 @@ class Arena {
   Array<T> permanent(std::size_t count) {
     const std::size_t start = head_;
     require(count, sizeof(T));
-    head_ += aligned(count * sizeof(T));
+    const std::size_t end = start + aligned(count * sizeof(T));
+    device_.commit(block_, start, end);
+    head_ = end;
     note_peak();
     return {device_, reinterpret_cast<T*>(block_ + start), count};
   }
@@ -44,18 +47,19 @@ class Arena {
     return array;
   }
 
-  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the array
-  /// as it was, when the block is full.
+  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the
+  /// array as it was, when the block is full.
   template <class T>
   void resize_last(Array<T>& array, std::size_t count) {
     const std::size_t start = std::size_t(reinterpret_cast<std::uint8_t*>(array.data()) - block_), head = head_;
     assert(start + aligned(array.bytes()) == head_);
     head_ = start;
-    if (!fits(count, sizeof(T))) {
-      head_ = head;
-      require(count, sizeof(T));
-    }
-    head_ += aligned(count * sizeof(T));
+    const bool enough = fits(count, sizeof(T));
+    head_ = head;
+    if (!enough) require(count, sizeof(T));
+    const std::size_t end = start + aligned(count * sizeof(T));
+    device_.commit(block_, start, end);
+    head_ = end;
     note_peak();
     array = {device_, array.data(), count};
   }
@@ -64,7 +68,9 @@ class Arena {
   template <class T>
   Array<T> temporary(std::size_t count) {
     require(count, sizeof(T));
-    tail_ -= aligned(count * sizeof(T));
+    const std::size_t start = tail_ - aligned(count * sizeof(T));
+    device_.commit(block_, start, tail_);
+    tail_ = start;
     note_peak();
     return {device_, reinterpret_cast<T*>(block_ + tail_), count};
   }

@@ -144,7 +144,9 @@ std::unique_ptr<Device> make_cpu_device(int threads, bool remote) {
 #if !NACRE_HAS_CUDA
 int cuda_device_count() { return 0; }
 
-std::unique_ptr<Device> make_cuda_device(std::size_t) {
+std::string why_no_cuda() { return {}; }
+
+std::unique_ptr<Device> make_cuda_device(std::size_t, int) {
   throw Error("no CUDA backend", "this build has none", "use `device` cpu, or build with a CUDA toolkit");
 }
 #endif
@@ -152,7 +154,12 @@ std::unique_ptr<Device> make_cuda_device(std::size_t) {
 std::unique_ptr<Device> make_device(const std::string& request, int threads) {
   if (request == "cpu") return make_cpu_device(threads);
   if (request == "cuda") return make_cuda_device();
-  if (request != "auto") throw Error("no device '" + request + "'", "", "use auto, cpu or cuda");
+  if (request.rfind("cuda:", 0) == 0) {
+    const std::string digits = request.substr(5);
+    if (!digits.empty() && digits.size() < 4 && digits.find_first_not_of("0123456789") == std::string::npos)
+      return make_cuda_device(0, std::stoi(digits));
+  }
+  if (request != "auto") throw Error("no device '" + request + "'", "", "use auto, cpu, cuda or cuda:NUMBER");
   return cuda_device_count() > 0 ? make_cuda_device() : make_cpu_device(threads);
 }
 

@@ -5,7 +5,8 @@
 
 __global__ void nacre_probe() {}
 
-bool nacre::cuda_code_runs() {
-  cudaFuncAttributes attributes{};
-  return cudaFuncGetAttributes(&attributes, nacre_probe) == cudaSuccess;
+nacre::CudaCode nacre::cuda_code() {
+  cudaFuncAttributes made{};
+  if (cudaFuncGetAttributes(&made, nacre_probe) != cudaSuccess) return CudaCode::none;
+  return made.binaryVersion > made.ptxVersion ? CudaCode::portable : CudaCode::ready;
 }

@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does at
-/// once would overtake them: it is forbidden then, on every backend.
+/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does
+/// at once would overtake them: it is forbidden then, on every backend.
 class Recording {
  public:
   Recording() { ++depth_; }
@@ -35,10 +35,18 @@ class Device {
   virtual std::string backend() const = 0;  ///< "cpu" or "cuda"
   virtual std::string name() const = 0;     ///< the processor, for the report
   virtual int threads() const = 0;          ///< worker threads (1 for CUDA)
+  /// What the user should know about it before work begins, as a sentence; empty where there is nothing to say.
+  virtual std::string remark() const { return {}; }
 
   /// A block aligned to 256 bytes, not initialised. Throws Error when there is not that much.
   virtual void* allocate(std::size_t bytes) = 0;
   virtual void deallocate(void* block, std::size_t bytes) noexcept = 0;
+  /// A block whose memory `commit` may have to take first, so that one that is hardly used takes little. Throws Error.
+  virtual void* reserve(std::size_t bytes) { return allocate(bytes); }
+  virtual void release(void* block, std::size_t bytes) noexcept { deallocate(block, bytes); }
+  /// Bytes `from` to `to` of a reserved block will be used. Throws Error where there is no memory left.
+  virtual void commit(void* /*block*/, std::size_t /*from*/, std::size_t /*to*/) {}
+
   virtual void copy_to_device(void* to, const void* host, std::size_t bytes) = 0;
   virtual void copy_to_host(void* host, const void* from, std::size_t bytes) = 0;
   virtual void fill(void* to, unsigned char value, std::size_t bytes) = 0;
@@ -54,16 +62,19 @@ class Device {
 /// copy runs: any other access is a segmentation fault, so that a missing copy fails without a GPU.
 std::unique_ptr<Device> make_cpu_device(int threads = 0, bool remote = false);
 
-/// Number of usable CUDA devices: 0 without a driver, on a GPU that this build has no code for, or in a build without
-/// CUDA.
+/// Number of CUDA devices: 0 where the first cannot be used, without a driver, on a GPU that this build has no code
+/// for, or in a build without CUDA.
 int cuda_device_count();
 
-/// The first CUDA device. Its arenas take four fifths of what is free when they are made, but at most `arena_limit` bytes
-/// (0: no limit), so that several pipelines can stand side by side. Throws Error where there is none or the build has no
-/// CUDA.
-std::unique_ptr<Device> make_cuda_device(std::size_t arena_limit = 0);
+/// Why a machine with NVIDIA's driver does not use its GPU, as a sentence; empty where it can, or where there is no
+/// driver.
+std::string why_no_cuda();
 
-/// `request`: "auto" (CUDA where usable, else CPU), "cpu" or "cuda".
+/// CUDA device `number`. Its arenas reserve four fifths of what is free when they are made, but at most `arena_limit`
+/// bytes (0: no limit), and take what they use. Throws Error where there is no such device or the build has no CUDA.
+std::unique_ptr<Device> make_cuda_device(std::size_t arena_limit = 0, int number = 0);
+
+/// `request`: "auto" (CUDA where usable, else CPU), "cpu", "cuda" or "cuda:NUMBER".
 std::unique_ptr<Device> make_device(const std::string& request, int threads = 0);
 
 }  // namespace nacre

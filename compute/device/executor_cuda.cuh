@@ -1,11 +1,11 @@
 // Nacre: the launches on CUDA and CUB. Included by `*_cuda.cu` only.
 #pragma once
 
-#include <cuda_runtime.h>
 #include <thrust/iterator/counting_iterator.h>
 #include <thrust/iterator/transform_iterator.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_reduce.cuh>
@@ -19,34 +19,24 @@
 #include "compute/device/cuda_check.hpp"
 #include "compute/device/cuda_device.hpp"
 #include "compute/device/cuda_graph.hpp"
+#include "compute/device/cuda_launch.cuh"
 #include "compute/device/cuda_stage_clock.hpp"
 #include "compute/device/executor.hpp"
 
 namespace nacre {
 
-template <class Kernel>
-__global__ void for_each_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
-  const std::int64_t stride = std::int64_t(gridDim.x) * blockDim.x;
-  for (std::int64_t i = std::int64_t(blockIdx.x) * blockDim.x + threadIdx.x; i < n; i += stride) kernel(i);
-}
-
-template <class Kernel>
-__global__ void for_each_team_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
-  extern __shared__ __align__(16) unsigned char scratch[];
-  Team team(scratch);
-  for (std::int64_t i = blockIdx.x; i < n; i += gridDim.x) {
-    kernel(team, i);
-    __syncthreads();
-  }
-}
-
 template <>
 class Executor<Cuda> : public ExecutorBase {
  public:
   explicit Executor(Device& device)
-      : ExecutorBase(device), stream_(dynamic_cast<CudaDevice&>(device).stream()), device_stream_(stream_) {
+      : ExecutorBase(device),
+        cuda_(dynamic_cast<CudaDevice&>(device)),
+        stream_(cuda_.stream()),
+        device_stream_(stream_) {
+    cuda_.use();
     const char* graphs = std::getenv("NACRE_GRAPHS");
     graphs_ = !graphs || std::string_view(graphs) != "0";
+    strict_ = graphs && std::string_view(graphs) == "strict";
     if (graphs_) cuda_check(cudaStreamCreateWithFlags(&capture_stream_, cudaStreamNonBlocking), "making a stream");
   }
   ~Executor() {
@@ -94,24 +84,19 @@ class Executor<Cuda> : public ExecutorBase {
     clock_.collect(ExecutorBase::timers());
   }
 
-  /// The first call launches one by one, since CUDA loads a kernel when it is first launched, which cannot be captured.
-  /// NACRE_GRAPHS=0 makes all calls do so.
+  /// The first call launches one by one, so that most kernels are loaded before they are captured. Where a graph cannot
+  /// be made, the call launches one by one, too; after `most_failures` of them none is tried any more. NACRE_GRAPHS=0
+  /// makes all calls do so, NACRE_GRAPHS=strict makes a failure an error. `body` may therefore be called twice: what it
+  /// does besides launching must bear that.
   template <class Body>
   void repeat(Steps& steps, const Body& body) {
     if (capturing_) return body();
     if (!steps.record) steps.record = std::make_unique<CudaGraph>();
     auto& graph = static_cast<CudaGraph&>(*steps.record);
-    if (!graphs_ || !graph.warm) {
-      const Recording recording;  // what cannot be captured is forbidden here, too
-      body();
-      graph.warm = true;
-      return;
-    }
-    CudaCapture capture(capture_stream_);
-    const Diversion diversion(*this);
+    if (graphs_ && graph.warm && launched_as_graph(graph, body)) return;
+    const Recording recording;  // what cannot be captured is forbidden here, too
     body();
-    graph.launch(capture.end(), device_stream_);
-    diversion.keep_stages();
+    graph.warm = true;
   }
 
   template <class T>
@@ -131,7 +116,8 @@ class Executor<Cuda> : public ExecutorBase {
     static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     constexpr int threads = 256;
     const auto blocks = unsigned(std::min<std::int64_t>((n + threads - 1) / threads, 1 << 20));
-    for_each_kernel<<<blocks, threads, 0, stream_>>>(n, kernel);
+    if (capturing_) load(for_each_kernel<Kernel>);
+    launch_elements(blocks, threads, stream_, n, kernel);
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 
@@ -146,7 +132,8 @@ class Executor<Cuda> : public ExecutorBase {
           cudaFuncSetAttribute(for_each_team_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(scratch)),
           "shared memory of a team");
     const auto blocks = unsigned(std::min<std::int64_t>(n, 1 << 20));
-    for_each_team_kernel<<<blocks, Team::lanes, scratch, stream_>>>(n, kernel);
+    if (capturing_) load(for_each_team_kernel<Kernel>);
+    launch_teams(blocks, scratch, stream_, n, kernel);
     cuda_check(cudaGetLastError(), "kernel launch");
   }
 
@@ -245,8 +232,53 @@ class Executor<Cuda> : public ExecutorBase {
     mutable bool kept_ = false;
   };
 
+  void begin_launch() {
+    ExecutorBase::begin_launch();
+    use_device();
+  }
+
+  /// Not during a capture, which has begun on the device and asks for as little besides launches as can be.
+  void use_device() const {
+    if (!capturing_) cuda_.use();
+  }
+
+  /// CUDA loads a kernel when it is first launched, which waits for the device: not during a capture.
+  template <class Function>
+  static void load(Function* kernel) {
+    static std::atomic<bool> loaded = false;  // one for each kernel: its type names it
+    if (loaded) return;
+    cudaStreamCaptureMode mode = cudaStreamCaptureModeRelaxed;
+    cudaThreadExchangeStreamCaptureMode(&mode);
+    cudaFuncAttributes attributes{};
+    const cudaError_t status = cudaFuncGetAttributes(&attributes, kernel);
+    cudaThreadExchangeStreamCaptureMode(&mode);
+    cuda_check(status, "loading a kernel");
+    loaded = true;
+  }
+
+  /// False where CUDA would not have it; nothing of `body` has run then.
+  template <class Body>
+  bool launched_as_graph(CudaGraph& graph, const Body& body) {
+    cuda_.use();
+    try {
+      CudaCapture capture(capture_stream_);
+      const Diversion diversion(*this);
+      body();
+      graph.launch(capture.end(), device_stream_);
+      diversion.keep_stages();
+      return true;
+    } catch (const Error&) {  // a mistake of ours and the user's wish to stop are others
+      if (strict_) throw;
+      if (++failures_ >= most_failures) graphs_ = false;
+      return false;
+    }
+  }
+
   long launches() { return ExecutorBase::timers().launches(); }
-  cudaEvent_t mark() { return clock_.mark(stream_, capturing_); }
+  cudaEvent_t mark() {
+    use_device();
+    return clock_.mark(stream_, capturing_);
+  }
 
   template <class T>
   void copy(T* to, const T* from, std::int64_t n) {
@@ -263,10 +295,14 @@ class Executor<Cuda> : public ExecutorBase {
     cuda_check(call(scratch.data(), bytes), "device primitive");
   }
 
+  static constexpr int most_failures = 5;
+
+  CudaDevice& cuda_;
   cudaStream_t stream_;         ///< where launches go
   cudaStream_t device_stream_;  ///< where they run
   cudaStream_t capture_stream_ = nullptr;
-  bool graphs_ = true, capturing_ = false;
+  bool graphs_ = true, strict_ = false, capturing_ = false;
+  int failures_ = 0;  ///< graphs that could not be made
   CudaStageClock clock_;
 };
 

@@ -170,8 +170,8 @@ struct SearchCoarseCell {
   }
 
   /// Materials around a point, ascending: of its eight voxels, and where those are of two or more and there are more in
-  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels. `complete` becomes
-  /// false where there are more than `most`.
+  /// the block, of its 64, since smoothing can move a junction out of the cube that joined its voxels. `complete`
+  /// becomes false where there are more than `most`.
   NACRE_HD int materials_around(const Vec3f& p, std::uint32_t* material, bool& complete) const {
     const Int3 low = voxel(p);
     int count = 0;
@@ -202,27 +202,25 @@ struct SearchCoarseCell {
   }
 };
 
-struct CountJunctions {
+/// Launched twice: without `found` it counts a cell's junctions, with it lists them. One kernel, so that both decide
+/// alike where rounding decides.
+struct SearchJunctions {
   SearchCoarseCell search;
-  std::uint32_t* count;
+  std::uint32_t* count;    // when it counts
   std::uint32_t* crowded;  // 1 where something was left out
-  NACRE_HD void operator()(std::int64_t c) const {
-    CellJunctions junctions;
-    search(c, junctions);
-    count[c] = std::uint32_t(junctions.count);
-    crowded[c] = junctions.complete ? 0 : 1;
-  }
-};
+  const std::uint32_t* start = nullptr;
+  FoundJunction* found = nullptr;
+  std::uint64_t* packed = nullptr;
 
-struct ListJunctions {
-  SearchCoarseCell search;
-  const std::uint32_t* start;
-  FoundJunction* found;
-  std::uint64_t* packed;
   NACRE_HD void operator()(std::int64_t c) const {
     CellJunctions junctions;
-    if (start[c] == start[c + 1]) return;
+    if (found && start[c] == start[c + 1]) return;
     search(c, junctions);
+    if (!found) {
+      count[c] = std::uint32_t(junctions.count);
+      crowded[c] = junctions.complete ? 0 : 1;
+      return;
+    }
     for (int k = 0; k < junctions.count; ++k) {
       found[start[c] + k] = {junctions.junction[k], std::uint32_t(c), junctions.window[k]};
       packed[start[c] + k] = junctions.junction[k].packed;
@@ -285,13 +283,14 @@ JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, 
   {
     Arena::Scope scope(arena);
     Array<std::uint32_t> crowded = arena.temporary<std::uint32_t>(cells);
-    exec.for_each(cells, detail::CountJunctions{search, start.data(), crowded.data()});
+    exec.for_each(cells, detail::SearchJunctions{search, start.data(), crowded.data()});
     result.crowded_cells = int(exec.exclusive_scan(crowded.data(), crowded.data(), cells));
   }
   result.count = exec.exclusive_scan(start.data(), start.data(), cells + 1);
   result.found = arena.temporary<FoundJunction>(result.count);
   Array<std::uint64_t> packed = arena.temporary<std::uint64_t>(result.count);
-  exec.for_each(cells, detail::ListJunctions{search, start.data(), result.found.data(), packed.data()});
+  exec.for_each(cells,
+                detail::SearchJunctions{search, nullptr, nullptr, start.data(), result.found.data(), packed.data()});
   exec.sort(packed.data(), result.count);
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(result.count);
   exec.for_each(result.count, detail::FirstOfJunction{packed.data(), number.data()});
@@ -303,8 +302,8 @@ JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, 
   return result;
 }
 
-/// The junction points. Where several lie within a third of h of each other, as where more than four materials meet, the
-/// first stands for all. Returns how many stand for junctions of other materials, too.
+/// The junction points. Where several lie within a third of h of each other, as where more than four materials meet,
+/// the first stands for all. Returns how many stand for junctions of other materials, too.
 template <class Backend>
 int junction_points(Executor<Backend>& exec, const MaterialBricks& b, const SizingField& size,
                     const JunctionSearch& search, const Int3& coarse, float cells_per_voxel,

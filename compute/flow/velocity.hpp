@@ -60,7 +60,7 @@ struct EmbedVelocity {
     }
     const std::uint32_t t = grid.triangle[i];
     const Vec3d p = Vec3d(grid.cell(std::uint32_t(i))) + Vec3d(0.5) + Vec3d(o.x, o.y, o.z);
-    const Vec3f w(barycentric(mesh.corners(t), p));
+    const Vec3f w = interpolation_weights(mesh.corners(t), p);
     const Triangle corner = mesh.triangles[t];
     const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
     const Vec3f n = mesh.normal(t, w);

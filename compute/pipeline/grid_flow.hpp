@@ -73,6 +73,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     for (Array<float>* noise : {&carried_, &value_, &ahead_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
     this->warm_up();
     show();
+    ++launched_;
     for (int k = first_; k < 0; ++k) advance(k);
     exec_.wait();
   }
@@ -113,6 +114,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   void advance(int k) override {
     this->look_ahead(k);
     exec_.repeat(steps_, [&] { launch(k); });
+    ++launched_;  // not inside: a graph that cannot be made is launched again, one by one
   }
 
   /// What follows the look ahead; nothing in it waits for the device.
@@ -154,7 +156,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     };
     equalise(value_.data(), ahead_.data());
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
-                                       seed_, std::uint32_t(++launched_), carried_.data()});
+                                       seed_, std::uint32_t(launched_ + 1), carried_.data()});
     // Nobody needs what is ahead any more: the frame for the eye takes its memory.
     if (parameters_.streaks > 0)
       this->draw_streaks(GridStreaks{texture}, n, 1.0 / refine_, value_.data(), streak_cells_.data(), ahead_.data());

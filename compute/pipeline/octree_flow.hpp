@@ -145,6 +145,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
     this->warm_up();
     show(value_.data(), sums_[0]);
+    ++launched_;
     for (int k = first_; k < 0; ++k) advance(k);
     exec_.wait();
   }
@@ -190,6 +191,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   void advance(int k) override {
     this->look_ahead(k);
     exec_.repeat(steps_, [&] { launch(k); });
+    ++launched_;  // not inside: a graph that cannot be made is launched again, one by one
   }
 
   /// What follows the look ahead; nothing in it waits for the device.
@@ -241,7 +243,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     for_each_surface_cell(
         exec_, view,
         SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter), seed_,
-                          std::uint32_t(++launched_), carried_.data()});
+                          std::uint32_t(launched_ + 1), carried_.data()});
     show_frame();
     exec_.fill(done, 0);
   }

@@ -19,11 +19,13 @@ namespace {
 
 class RegisteredBuffer final : public CudaLink {
  public:
-  RegisteredBuffer(cudaStream_t stream, GLuint buffer) : stream_(stream) {
+  RegisteredBuffer(const CudaDevice& device, GLuint buffer) : device_(device), stream_(device.stream()) {
+    device_.use();
     cuda_check(cudaGraphicsGLRegisterBuffer(&resource_, buffer, cudaGraphicsRegisterFlagsWriteDiscard),
                "registering a buffer of OpenGL");
   }
   ~RegisteredBuffer() override {
+    cudaSetDevice(device_.number());
     if (mapped_) cudaGraphicsUnmapResources(1, &resource_, stream_);
     cudaGraphicsUnregisterResource(resource_);
   }
@@ -31,6 +33,7 @@ class RegisteredBuffer final : public CudaLink {
   RegisteredBuffer& operator=(const RegisteredBuffer&) = delete;
 
   void* map() override {
+    device_.use();
     cuda_check(cudaGraphicsMapResources(1, &resource_, stream_), "mapping a buffer of OpenGL");
     mapped_ = true;
     void* pointer = nullptr;
@@ -41,10 +44,12 @@ class RegisteredBuffer final : public CudaLink {
 
   void unmap() override {
     mapped_ = false;
+    device_.use();
     cuda_check(cudaGraphicsUnmapResources(1, &resource_, stream_), "unmapping a buffer of OpenGL");
   }
 
  private:
+  const CudaDevice& device_;
   cudaStream_t stream_;  ///< of the device: draws and launches are ordered by it
   cudaGraphicsResource_t resource_ = nullptr;
   bool mapped_ = false;
@@ -64,22 +69,23 @@ class PinnedBlock final : public PinnedMemory {
 
 }  // namespace
 
-bool cuda_draws_here() {
+bool cuda_draws_here(const Device& device) {
+  const auto* cuda = dynamic_cast<const CudaDevice*>(&device);
+  if (!cuda) return false;
   std::array<int, 16> devices{};
   unsigned count = 0;
-  int current = -1;
-  if (cudaGetDevice(&current) != cudaSuccess ||
+  if (cudaSetDevice(cuda->number()) != cudaSuccess ||
       cudaGLGetDevices(&count, devices.data(), unsigned(devices.size()), cudaGLDeviceListAll) != cudaSuccess) {
     cudaGetLastError();  // a context of another maker is "no", not an error
     return false;
   }
-  return std::find(devices.begin(), devices.begin() + count, current) != devices.begin() + count;
+  return std::find(devices.begin(), devices.begin() + count, cuda->number()) != devices.begin() + count;
 }
 
 std::unique_ptr<CudaLink> link_cuda(Device& device, unsigned gl_buffer) {
   auto* cuda = dynamic_cast<CudaDevice*>(&device);
   if (!cuda) throw Error("CUDA cannot write into a buffer of OpenGL", "the device is " + device.name());
-  return std::make_unique<RegisteredBuffer>(cuda->stream(), gl_buffer);
+  return std::make_unique<RegisteredBuffer>(*cuda, gl_buffer);
 }
 
 std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes) { return std::make_unique<PinnedBlock>(bytes); }
@@ -90,7 +96,7 @@ std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes) { return std::make_u
 
 namespace nacre {
 
-bool cuda_draws_here() { return false; }
+bool cuda_draws_here(const Device&) { return false; }
 
 std::unique_ptr<CudaLink> link_cuda(Device&, unsigned) {
   throw Error("CUDA cannot write into a buffer of OpenGL", "this build has no CUDA");

@@ -25,8 +25,8 @@ class PinnedMemory {
   virtual void* data() = 0;
 };
 
-/// Is the current context on the GPU that CUDA computes on? False in a build without CUDA.
-bool cuda_draws_here();
+/// Is the current context on the GPU that `device` is? False in a build without CUDA.
+bool cuda_draws_here(const Device& device);
 
 /// Registers the buffer named `gl_buffer` for `device`, which is a CUDA device. Throws Error where CUDA cannot, or the
 /// build has none.

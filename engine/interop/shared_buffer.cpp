@@ -18,7 +18,7 @@ constexpr GLuint64 longest_wait = 5'000'000'000;  // ns: a graphics device that 
 SharedBuffer::Path SharedBuffer::best_path(const Device& device) {
   if (fault_due("other-device")) return Path::copied;
   if (device.backend() != "cuda") return Path::mapped;
-  return cuda_draws_here() ? Path::registered : Path::copied;
+  return cuda_draws_here(device) ? Path::registered : Path::copied;
 }
 
 SharedBuffer::Half::~Half() {

@@ -17,7 +17,7 @@ namespace nacre::gpu_tests {
 struct HostEmbedding {
   std::vector<std::uint64_t> brick_code;
   std::vector<Float4> offset;
-  std::vector<std::uint32_t> triangle, texel, place, neighbour;
+  std::vector<std::uint32_t> triangle, texel, block_cell, place, neighbour;
   std::vector<Float4> seed;
 };
 

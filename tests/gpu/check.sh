@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Nacre: everything that needs a GPU, in one command and under eight minutes.
-#   check.sh --pack [DIR]   build for sm_90 into a folder that runs anywhere with a driver (default build/gpu-pack)
+#   check.sh --pack [DIR]   build for sm_90 into a folder that runs anywhere with a driver (default build/gpu-pack);
+#                           with the viewer's libraries it holds the tests of buffers that CUDA shares with OpenGL, too
 #   check.sh --run [DIR]    run what is in such a folder: needs bash, awk and an NVIDIA driver, nothing else
 #   check.sh                run the folder; where there is none, build it first
 # Results (JSON, logs, pictures, results.txt) go to $OUT, else to build/gpu-results. Status: 0 all well, 1 something
@@ -39,7 +40,8 @@ pack_program() {
 }
 
 pack() {
-  local pack=$1 build=${NACRE_GPU_BUILD:-$root/build/gpu} programs=(nacre test_gpu gpu_info gpu_floors) name size
+  local pack=$1 build=${NACRE_GPU_BUILD:-$root/build/gpu} name size
+  local programs=(nacre test_gpu test_bodies_cuda gpu_info gpu_floors)
   command -v cmake >/dev/null || fail "cmake is not installed: nothing to build with; bring a folder made by --pack"
   local options=(-DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_TESTS=ON "-DNACRE_MARCH=$march" -DCMAKE_BUILD_TYPE=Release
     -DCMAKE_CXX_FLAGS=-Wno-psabi  # our 64-byte vectors never cross a call
@@ -47,6 +49,11 @@ pack() {
   command -v ninja >/dev/null && options+=(-G Ninja)
   command -v ccache >/dev/null && options+=(-DCMAKE_{CXX,CUDA}_COMPILER_LAUNCHER=ccache)
   cmake -S "$root" -B "$build" "${options[@]}"
+  if [[ $(cmake --build "$build" --target help) == *test_interop* ]]; then
+    programs+=(test_interop)
+  else
+    say "without the viewer's libraries: test_interop is left out"
+  fi
   cmake --build "$build" --parallel "${NACRE_JOBS:-$(nproc)}" --target "${programs[@]}"
   rm -rf "$pack"
   mkdir -p "$pack/bin" "$pack/lib"
@@ -87,11 +94,37 @@ device_info() {
   say "$(device_value name), compute capability $(device_value compute_capability)"
 }
 
-unit_tests() {
+# gtest_run PROGRAM NAME: its tests, with NAME.json and NAME.log; says what failed and what was skipped.
+gtest_run() {
   local status=0
-  timeout "$(left)" "$pack/bin/test_gpu" --gtest_output="json:$out/tests.json" >"$out/tests.log" 2>&1 || status=$?
-  grep -E '^CPU|FAILED|SKIPPED|tests ran|Failure' "$out/tests.log" || true
-  ((status == 0)) || failures+=("tests (status $status, see tests.log)")
+  timeout "$(left)" "$pack/bin/$1" --gtest_output="json:$out/$2.json" >"$out/$2.log" 2>&1 || status=$?
+  grep -E '^CPU|FAILED|SKIPPED|tests ran|Failure' "$out/$2.log" || true
+  ((status == 0)) || failures+=("$1 (status $status, see $2.log)")
+}
+
+unit_tests() {
+  gtest_run test_gpu tests
+  gtest_run test_bodies_cuda bodies
+}
+
+# Bodies with teams, scans and sorts under the sanitizer's three tools, half a minute each.
+sanitizer_tests() {
+  local tool status sanitizer filter='Team.*:Executor.*:Tree.*:RefinedGrid.*:Distance.*'
+  local time_up=([0]='' [124]=', then time was up') findings='^========= (Invalid|Error|Barrier|Program hit)'
+  sanitizer=$(command -v compute-sanitizer || command -v /usr/local/cuda/bin/compute-sanitizer) || {
+    say "compute-sanitizer is not installed: not run"
+    return
+  }
+  for tool in memcheck racecheck synccheck; do
+    status=0
+    timeout 30 "$sanitizer" --tool "$tool" --error-exitcode 9 "$pack/bin/test_bodies_cuda" "--gtest_filter=$filter" \
+      >"$out/$tool.log" 2>&1 || status=$?
+    if [[ ! -v time_up[status] ]] || grep -qE "$findings" "$out/$tool.log"; then
+      failures+=("$tool (status $status, see $tool.log)")
+    else
+      say "$tool: nothing found in $(grep -c '^\[       OK' "$out/$tool.log") tests${time_up[status]}"
+    fi
+  done
 }
 
 surface_cells() { report_value "$out/file-$1.json" embedding.surface_cells; }
@@ -145,12 +178,21 @@ mesh_test() {
   rm -f "$out/mesh.vtp"
 }
 
+# Where the driver's OpenGL is there, CUDA must write straight into its buffers.
 interop_test() {
+  local vendor=/usr/local/nvidia/share/glvnd/egl_vendor.d/10_nvidia.json
   if [[ ! -x $pack/bin/test_interop ]]; then
     say "interop: no viewer in this build"
     return
   fi
-  timeout "$(left)" "$pack/bin/test_interop" >"$out/interop.log" 2>&1 || failures+=("interop (see interop.log)")
+  if [[ -z ${__EGL_VENDOR_LIBRARY_FILENAMES:-} && -e $vendor ]]; then
+    export __EGL_VENDOR_LIBRARY_FILENAMES=$vendor
+  fi
+  gtest_run test_interop interop
+  grep '^drawn by' "$out/interop.log" | sort -u || true
+  if [[ -n ${__EGL_VENDOR_LIBRARY_FILENAMES:-} ]] && ! grep -q 'OK .*WritesStraightIntoOpenGl' "$out/interop.log"; then
+    failures+=("CUDA did not write straight into OpenGL (see interop.log)")
+  fi
 }
 
 # bench_line NAME BACKEND RESOLUTION TTL: a line of the table and an element of results.json.
@@ -309,7 +351,9 @@ run() {
   out=${OUT:-$root/build/gpu-results}
   [[ -x $pack/bin/test_gpu ]] || fail "$pack holds no programs: make it with check.sh --pack"
   mkdir -p "$out"
-  export LD_LIBRARY_PATH="$pack/lib"
+  LD_LIBRARY_PATH=$pack/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+  [[ -d /usr/local/nvidia/lib64 ]] && LD_LIBRARY_PATH+=:/usr/local/nvidia/lib64  # where containers find the driver
+  export LD_LIBRARY_PATH
   source "$pack/report.sh"
   exec > >(tee "$out/results.txt")
   device_info
@@ -317,6 +361,7 @@ run() {
   program_test
   mesh_test
   interop_test
+  sanitizer_tests
   floors
   benchmarks
   octree_benchmarks

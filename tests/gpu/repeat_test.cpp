@@ -95,7 +95,7 @@ TEST(RepeatOnCuda, StepsOfTheFlowAreTheSameAsGraphs) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const auto gpu = make_cuda_device(arena_limit);
   for (const char* embedding : {"grid", "brick", "cell"}) {
-    const std::vector<float> graphs = flow_frames(*gpu, embedding, "1");
+    const std::vector<float> graphs = flow_frames(*gpu, embedding, "strict");
     EXPECT_GT(graphs.size(), 10000u);
     EXPECT_EQ(graphs, flow_frames(*gpu, embedding, "0")) << embedding;
   }
@@ -117,7 +117,7 @@ SurfaceMesh relaxed_mesh(Device& device, const char* graphs) {
 TEST(RepeatOnCuda, IterationsOfTheTreeSolverAreTheSameAsGraphs) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const auto gpu = make_cuda_device(arena_limit);
-  const SurfaceMesh graphs = relaxed_mesh(*gpu, "1"), single = relaxed_mesh(*gpu, "0");
+  const SurfaceMesh graphs = relaxed_mesh(*gpu, "strict"), single = relaxed_mesh(*gpu, "0");
   EXPECT_GT(graphs.points.size(), 500u);
   ASSERT_EQ(graphs.points.size(), single.points.size());
   EXPECT_TRUE(std::equal(graphs.points.begin(), graphs.points.end(), single.points.begin()));

@@ -9,7 +9,7 @@
 #include "tests/compute/on_devices.hpp"
 #include "tests/compute/reference.hpp"
 
-namespace nacre::test {
+namespace nacre::test::brick_octree_bodies {
 
 /// What is wrong with the cells of an octree.
 struct OctreeFaults {
@@ -162,4 +162,4 @@ NACRE_DEVICE_TEST(BrickOctree, SliversAndPoints)
 NACRE_DEVICE_TEST(BrickOctree, PartlyOutside)
 NACRE_DEVICE_TEST(BrickOctree, OneBrick)
 
-}  // namespace nacre::test
+}  // namespace nacre::test::brick_octree_bodies

@@ -12,7 +12,7 @@
 
 #include "tests/compute/embedding/brick_octree_body.hpp"
 
-namespace nacre::test {
+namespace nacre::test::brick_octree_bodies {
 
 using Place = std::tuple<int, int, int>;
 inline Place place(const Int3& c) { return {c.x, c.y, c.z}; }
@@ -194,4 +194,4 @@ NACRE_DEVICE_TEST(BrickOctree, ListsHoldTheTrianglesThatTouchABrick)
 NACRE_DEVICE_TEST(BrickOctree, AlmostEmptyDomains)
 NACRE_DEVICE_TEST(BrickOctree, StrayComponents)
 
-}  // namespace nacre::test
+}  // namespace nacre::test::brick_octree_bodies

@@ -4,7 +4,7 @@
 #include "tests/compute/embedding/check_closest_points.hpp"
 #include "tests/compute/on_devices.hpp"
 
-namespace nacre::test {
+namespace nacre::test::closest_point_grid_bodies {
 
 template <class Backend>
 void expect_exact(Executor<Backend>& exec, const Mesh& mesh, int cells, int sub, const std::string& what) {
@@ -91,4 +91,4 @@ NACRE_DEVICE_TEST(ClosestPointGrid, TinyTriangles)
 NACRE_DEVICE_TEST(ClosestPointGrid, Slivers)
 NACRE_DEVICE_TEST(ClosestPointGrid, OneTriangleAndOnePoint)
 
-}  // namespace nacre::test
+}  // namespace nacre::test::closest_point_grid_bodies

@@ -9,7 +9,7 @@
 #include "tests/compute/on_devices.hpp"
 #include "tests/compute/reference.hpp"
 
-namespace nacre::test {
+namespace nacre::test::source_octree_bodies {
 
 /// A source octree on the host; `view` points into the copies.
 struct HostSourceOctree {
@@ -228,4 +228,4 @@ NACRE_DEVICE_TEST(SourceOctree, Slivers)
 NACRE_DEVICE_TEST(SourceOctree, EveryCellIsVisitedOnce)
 NACRE_DEVICE_TEST(SourceOctree, SubgridsDoNotShow)
 
-}  // namespace nacre::test
+}  // namespace nacre::test::source_octree_bodies

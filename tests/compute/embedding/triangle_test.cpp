@@ -116,6 +116,26 @@ TEST(Barycentric, ReproducesPointsOfSlivers) {
     }
 }
 
+TEST(Barycentric, InFloatItIsAsStated) {
+  Random random(6);
+  double worst = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const Vec3d far(3000, 4000, 1000);  // cells; a triangle from a thousandth of one up
+    const double size = std::pow(10.0, random.between(-3, 2));
+    Corners t{far + random.point(-1, 1) * size, far + random.point(-1, 1) * size, far + random.point(-1, 1) * size};
+    if (k % 4 == 0) t.c = t.a + (t.b - t.a) * random.between(-2, 2) + random.point(-1, 1) * (0.2 * size);
+    double v = random(), w = random();
+    if (v + w > 1) v = 1 - v, w = 1 - w;
+    if (k % 3 == 0) w = 0;
+    const Vec3d p = t.a * (1 - v - w) + t.b * v + t.c * w;
+    const Vec3f single = barycentric_in_float(t, p);
+    worst = std::max(worst, length(Vec3d(single) - barycentric(t, p)));
+    EXPECT_GE(std::min({single.x, single.y, single.z}), 0);
+  }
+  EXPECT_LE(worst, 1e-5);
+  EXPECT_GT(worst, 0) << "not the same function";
+}
+
 TEST(TouchesCube, KnownCases) {
   const Vec3d centre(0.5);
   EXPECT_TRUE(touches_cube({{0.2, 0.2, 0.2}, {0.3, 0.2, 0.2}, {0.2, 0.3, 0.2}}, centre, 0.5));  // inside

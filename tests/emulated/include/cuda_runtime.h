@@ -1,0 +1,61 @@
+// Nacre: the words of CUDA C++ that kernels are written with, for an emulated device.
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <type_traits>
+
+#include "cuda_runtime_api.h"
+
+#define __host__
+#define __device__
+#define __global__
+#define __forceinline__ inline __attribute__((always_inline))
+#define __grid_constant__
+#define __shared__ static  // blocks run one after the other
+
+struct alignas(8) short4 {
+  short x, y, z, w;
+};
+
+namespace emulated {
+
+struct Index {
+  unsigned x = 0;
+};
+extern Index thread_index, block_index, block_size, grid_size;
+
+/// Of the block that runs.
+unsigned char* shared_memory();
+
+/// Both end when all lanes (of the block, of the warp) have come to the same place in the code.
+void barrier(const void* place);
+unsigned ballot(const void* place, bool mine);
+
+/// Where its caller goes on: another value for each place in the code that it is called from.
+[[gnu::noinline]] inline const void* here() { return __builtin_return_address(0); }
+
+}  // namespace emulated
+
+#define threadIdx emulated::thread_index
+#define blockIdx emulated::block_index
+#define blockDim emulated::block_size
+#define gridDim emulated::grid_size
+#define __syncthreads() emulated::barrier(emulated::here())
+#define __ballot_sync(mask, mine) emulated::ballot(emulated::here(), mine)
+
+inline int __popc(unsigned v) { return std::popcount(v); }
+inline int __popcll(unsigned long long v) { return std::popcount(v); }
+inline int __ffs(int v) { return __builtin_ffs(v); }
+inline int __float_as_int(float f) { return std::bit_cast<int>(f); }
+
+template <class T>
+T atomicAdd(T* to, std::type_identity_t<T> v) {
+  return __atomic_fetch_add(to, v, __ATOMIC_RELAXED);
+}
+inline int atomicMin(int* to, int v) {
+  int old = __atomic_load_n(to, __ATOMIC_RELAXED);
+  while (v < old && !__atomic_compare_exchange_n(to, &old, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+  return old;
+}

@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# Nacre: shows that the tests on the emulated device notice what they are there for. Each mutation takes a barrier, a
+# wait or an update away in a copy of one file, outside of the tree, and the tests that are named with it must fail.
+# Usage: mutate.sh [BUILD [NAME]]; BUILD (default build/release) has built test_bodies_emulated; NAME: only mutations
+# whose names hold it. Status 0: all were noticed. A few minutes.
+set -euo pipefail
+root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd -P)
+build=$(cd "${1:-$root/build/release}" && pwd -P)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$build"
+
+commands=$(ninja -t commands test_bodies_emulated)
+link=$(grep -e '-o bin/test_bodies_emulated ' <<<"$commands")
+only=${2:-}
+missed=0
+export NACRE_GRAPHS=strict  # a capture that fails is an error
+
+# compile SOURCE: its command in the build, with the copies in $work/tree found first, into $work/SOURCE.o.
+compile() {
+  local command
+  command=$(grep -e "-c [^ ]*/$1\$" <<<"$commands" | grep -m 1 -e nacre_emulated_runtime -e test_bodies_emulated)
+  command=$(sed -E "s@ -o [^ ]+ @ -o $work/${1##*/}.o @; s@ -M[DTF]+( [^ ]+\\.[od])?@@g; s@ -I@ -I$work/tree -I@" \
+    <<<"${command#*ccache }")
+  eval "$command"
+}
+
+# mutant NAME BODY FILTER FILE FROM TO: FILE with FROM replaced by TO, once. BODY: whose tests FILTER must fail then;
+# with FILE empty, they must pass.
+mutant() {
+  local name=$1 body=$2 filter=$3 file=$4 from=$5 to=$6 text objects program="$work/program" seed status=0
+  [[ $name == *"$only"* ]] || return 0
+  rm -rf "$work/tree" "$program"
+  mkdir -p "$work/tree"
+  if [[ -n $file ]]; then
+    text=$(<"$root/$file")
+    [[ $text == *"$from"* ]] || { echo "mutate: $name: $file has changed; say anew what to replace" >&2; exit 2; }
+    mkdir -p "$work/tree/${file%/*}"
+    printf '%s\n' "${text/"$from"/"$to"}" >"$work/tree/$file"
+  fi
+  compile "bodies/${body}_body.cpp"
+  objects=$(tr ' ' '\n' <<<"$link" | grep -e '\.o$' | grep -v /bodies/)
+  if [[ $file == *.cpp ]]; then  # in place of the runtime's own
+    sed -i "s@#include \"$file\"@@" "$work/tree/$file"
+    cp "$work/tree/$file" "$work/${file##*/}"
+    compile_copy "$file"
+    objects=$(grep -v "/${file##*/}.o\$" <<<"$objects")$'\n'"$work/${file##*/}.o"
+  fi
+  # shellcheck disable=SC2046
+  eval "c++ $(tr ' ' '\n' <<<"$link" | grep -E '^-(fsanitize|g)' | tr '\n' ' ') -o $program $work/${body}_body.cpp.o" \
+    $(tr '\n' ' ' <<<"$objects") $(tr ' ' '\n' <<<"$link" | grep -E '\.(a|so[0-9.]*)$|^-l' | tr '\n' ' ')
+  for seed in 1 2 3; do
+    # In a shell of its own, which says that the program was aborted in the log, not to the user.
+    (
+      NACRE_EMULATED_SEED=$seed timeout 300 "$program" "--gtest_filter=$filter"
+      exit $?
+    ) >"$work/log" 2>&1 || status=$?
+    ((status == 0)) || break
+  done
+  if [[ -z $file ]]; then
+    ((status == 0)) && echo "unchanged: passes" || { echo "unchanged: FAILS"; tail -n 5 "$work/log"; missed=1; }
+  elif ((status == 0)); then
+    echo "$name: MISSED"
+    missed=1
+  else
+    echo "$name: noticed, seed $seed: $(grep -m 1 -e '^emulated device' -e '^\[  FAILED' -e 'Failure' "$work/log" |
+      cut -c 1-100 || echo "status $status")"
+  fi
+}
+
+# The command of a source of the device, for its copy.
+compile_copy() {
+  local command
+  command=$(grep -e "-c [^ ]*/$1\$" <<<"$commands" | grep -m 1 -e nacre_emulated_runtime)
+  command=$(sed -E \
+    -e "s@ -o [^ ]+ @ -o $work/${1##*/}.o @; s@ -M[DTF]+( [^ ]+\\.[od])?@@g; s@ -c [^ ]+@ -c $work/tree/$1@" \
+    <<<"${command#*ccache }")
+  eval "$command"
+}
+
+launch=compute/device/cuda_lanes.cuh team=compute/device/team.hpp
+mutant unchanged team '*' '' '' ''
+mutant "no barrier after Team::each" team '*' $team \
+  $'body(k);\n    __syncthreads();' 'body(k);'
+mutant "no barrier before the sums of Team::sum" team '*' $team \
+  $'partial[threadIdx.x] = mine;\n    __syncthreads();' 'partial[threadIdx.x] = mine;'
+mutant "no barrier between the sums of Team::sum" team '*' $team \
+  $'partial[threadIdx.x + half];\n      __syncthreads();' 'partial[threadIdx.x + half];'
+mutant "a barrier for half of the team" team '*' $launch \
+  '__syncthreads();  // the next' 'if (threadIdx.x < 32) __syncthreads();  // the next'
+mutant "no barrier between the votes of two warps" redblack '*' compute/particles/neighbourhoods.hpp \
+  $'both[lane / 32] = votes;\n  __syncthreads();' 'both[lane / 32] = votes;'
+mutant "a download that does not wait" executor '*' compute/device/cuda_device.cpp \
+  'cuda_check(cudaStreamSynchronize(stream_), "copy from the device");' ''
+mutant "a graph with the pointers of the call before" executor '*' compute/device/cuda_graph.hpp \
+  'const cudaError_t status = cudaGraphExecUpdate(executable_, graph, &info);' \
+  'const cudaError_t status = executable_ && graph && !info.result ? cudaSuccess : cudaErrorGraphExecUpdateFailure;'
+mutant "a wait inside of a capture" executor '*' compute/device/executor_cuda.cuh \
+  'launch_elements(blocks, threads, stream_, n, kernel);' \
+  'launch_elements(blocks, threads, stream_, n, kernel); cudaStreamSynchronize(stream_);'
+exit $missed
