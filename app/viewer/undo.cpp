@@ -4,7 +4,7 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t most = 200;
+constexpr std::size_t max_changes = 200;
 
 /// What playing and the window do by themselves is no change of the user's.
 bool worth_keeping(const SessionEvent& change) {
@@ -22,7 +22,7 @@ void Undo::note(const Session& now, bool busy) {
   if (!change) return;
   if (worth_keeping(*change)) {
     past_.push_back(last_);
-    if (past_.size() > most) past_.erase(past_.begin());
+    if (past_.size() > max_changes) past_.erase(past_.begin());
     future_.clear();
   }
   last_ = now;

@@ -14,6 +14,9 @@ void expect_exact(Executor<Backend>& exec, const Mesh& mesh, int cells, int sub,
   exec.arena().rewind(mark);
 }
 
+// Other structures have bodies of the same names: in one namespace the linker would run one of them for all.
+namespace closest_point_grid_bodies {
+
 template <class Backend>
 void RoundAndSquare(Executor<Backend>& exec) {
   expect_exact(exec, sphere({15.3, 15.1, 14.8}, 8, 12), 30, 4, "sphere");
@@ -90,5 +93,7 @@ NACRE_DEVICE_TEST(ClosestPointGrid, FoldedSheets)
 NACRE_DEVICE_TEST(ClosestPointGrid, TinyTriangles)
 NACRE_DEVICE_TEST(ClosestPointGrid, Slivers)
 NACRE_DEVICE_TEST(ClosestPointGrid, OneTriangleAndOnePoint)
+
+}  // namespace closest_point_grid_bodies
 
 }  // namespace nacre::test

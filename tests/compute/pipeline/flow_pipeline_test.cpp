@@ -11,11 +11,11 @@
 namespace nacre::test {
 namespace {
 
-struct Way {
+struct MethodCase {
   const char *name, *method, *octree;
 };
 
-class FlowDoor : public ::testing::TestWithParam<Way> {
+class FlowDoor : public ::testing::TestWithParam<MethodCase> {
  protected:
   void SetUp() override {
     pipeline_->parameters.method = GetParam().method;
@@ -74,8 +74,8 @@ TEST_P(FlowDoor, MemoryOfWhoDrawsIsWrittenAndNeverRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(By, FlowDoor,
-                         ::testing::Values(Way{"grid", "grid", "brick"}, Way{"brick", "octree", "brick"},
-                                           Way{"source", "octree", "source"}),
+                         ::testing::Values(MethodCase{"grid", "grid", "brick"}, MethodCase{"brick", "octree", "brick"},
+                                           MethodCase{"source", "octree", "source"}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

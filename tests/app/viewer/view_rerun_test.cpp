@@ -1,6 +1,4 @@
 // Nacre: what runs again when a knob is changed in the viewer.
-#if NACRE_HAS_VIEWER
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -102,5 +100,3 @@ TEST(FlowRerun, ChangesAddUp) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

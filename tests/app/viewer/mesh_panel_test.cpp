@@ -1,6 +1,4 @@
 // Nacre: the buttons of the tab "result" of a mesh, each clicked where it is found. No OpenGL here.
-#if NACRE_HAS_VIEWER
-
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -206,5 +204,3 @@ TEST_F(MeshPanel, FlatViewsAreTurnedTowardsTheTriangle) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

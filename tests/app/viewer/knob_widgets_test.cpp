@@ -1,6 +1,4 @@
 // Nacre: knobs of the panel, turned with the mouse. No OpenGL here.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/knob_widgets.hpp"
 
 #include <gtest/gtest.h>
@@ -87,5 +85,3 @@ TEST_F(KnobWidgets, AResetStopsThereToo) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

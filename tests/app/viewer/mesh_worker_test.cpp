@@ -1,6 +1,4 @@
 // Nacre: the thread that meshes beside the frames: what it tells, and which stages run again after a knob was changed.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/mesh_worker.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +11,7 @@ namespace nacre {
 namespace {
 
 /// A small mesh, and what its worker has told.
-struct WorkerRun {
+struct MeshWorkerRun {
   std::atomic<bool> stop{false};
   Session session;
   std::vector<Float4> place, direction;
@@ -30,7 +28,7 @@ struct WorkerRun {
   SliceFilled slice;
   std::unique_ptr<MeshWorker> worker;
 
-  explicit WorkerRun(bool lockstep = false, int threads = 2) {
+  explicit MeshWorkerRun(bool lockstep = false, int threads = 2) {
     session.sample = "two-spheres";
     session.detail = 20;
     session.settings.mesh.iterations = 30;
@@ -127,7 +125,7 @@ struct WorkerRun {
 };
 
 TEST(MeshWorker, TellsInOrder) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle();
   EXPECT_EQ(run.failure, "");
   EXPECT_EQ(run.order, "VBITM");
@@ -147,7 +145,7 @@ TEST(MeshWorker, TellsInOrder) {
 }
 
 TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle();
   const std::string particles = "seed triangulate quality";
   EXPECT_EQ(run.rerun("theta", "0.6"), particles);
@@ -164,7 +162,7 @@ TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
 }
 
 TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {
-  WorkerRun run;
+  MeshWorkerRun run;
   for (int k = 0; k < 8; ++k) {
     const int before = run.iterations;
     run.settle([&] { return run.iterations > before + k; });
@@ -174,7 +172,7 @@ TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {
   run.settle();
   EXPECT_EQ(run.failure, "");
   EXPECT_TRUE(run.worker->settled());
-  WorkerRun fresh;
+  MeshWorkerRun fresh;
   for (const char* knob : {"theta", "max_size"}) set_knob(fresh.session.settings, knob, "1.1");
   fresh.worker->set_settings(fresh.session.settings);
   fresh.settle();
@@ -182,7 +180,7 @@ TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {
 }
 
 TEST(MeshWorker, CancelKeepsWhatThereIsAndResumeBeginsAgain) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle([&] { return run.iterations >= 5; });
   run.worker->cancel();
   run.settle();
@@ -201,7 +199,7 @@ TEST(MeshWorker, CancelKeepsWhatThereIsAndResumeBeginsAgain) {
 }
 
 TEST(MeshWorker, AFailureIsToldAndOtherKnobsMendIt) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle();
   EXPECT_EQ(run.rerun("materials", "77"), "classify");
   EXPECT_EQ(run.order, "F");
@@ -215,8 +213,8 @@ TEST(MeshWorker, AFailureIsToldAndOtherKnobsMendIt) {
 }
 
 TEST(MeshWorker, LockstepShowsEachIterationAlikeOnAnyThreads) {
-  WorkerRun one(true, 1), two(true, 2);
-  for (WorkerRun* run : {&one, &two}) {
+  MeshWorkerRun one(true, 1), two(true, 2);
+  for (MeshWorkerRun* run : {&one, &two}) {
     run->settle();
     EXPECT_EQ(run->failure, "");
     EXPECT_GE(int(run->counts.size()), run->iterations);  // and once more with the triangles
@@ -232,7 +230,7 @@ TEST(MeshWorker, LockstepShowsEachIterationAlikeOnAnyThreads) {
 }
 
 TEST(MeshWorker, InLockstepNothingIsToldWithoutATurn) {
-  WorkerRun run(true);
+  MeshWorkerRun run(true);
   run.settle([&] { return run.iterations == 3; });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_FALSE(run.worker->poll().has_value());
@@ -244,7 +242,7 @@ TEST(MeshWorker, InLockstepNothingIsToldWithoutATurn) {
 }
 
 TEST(MeshWorker, SlicesAreFilledWhileItWorksAndAfterChanges) {
-  WorkerRun run(true);
+  MeshWorkerRun run(true);
   run.settle([&] { return run.iterations == 2; });
   run.worker->ask_slice({1, 2, 0.5, MeshField::material});
   while (run.worker->slice_comes()) {  // without a turn
@@ -268,11 +266,9 @@ TEST(MeshWorker, SlicesAreFilledWhileItWorksAndAfterChanges) {
 }
 
 TEST(MeshWorker, EndsAtOnce) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle([&] { return run.iterations >= 1; });  // and is destroyed in the middle
 }
 
 }  // namespace
 }  // namespace nacre
-
-#endif

@@ -1,6 +1,4 @@
 // Nacre: a mesh in the viewer's loop, on an OpenGL context without a display.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/mesh_scene.hpp"
 
 #include <chrono>
@@ -252,5 +250,3 @@ TEST_F(MeshInView, AFailureIsToldAndOtherKnobsMendIt) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

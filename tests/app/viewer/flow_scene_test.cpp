@@ -1,6 +1,4 @@
 // Nacre: a flow in the viewer's loop, on an OpenGL context without a display.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/flow_scene.hpp"
 
 #include <array>
@@ -312,5 +310,3 @@ TEST_F(FlowInView, WritesItsValues) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif
