@@ -168,6 +168,16 @@ TEST_F(VideoTest, OtherContainers) {
   }
 }
 
+TEST_F(VideoTest, CanBePlayedBeforeItIsLoadedToTheEnd) {
+  for (const char* name : {"a.mp4", "a.mov"}) {
+    ASSERT_EQ(failure_of_video(folder / name, 3, 64), "") << name;
+    std::ifstream file(folder / name, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    ASSERT_NE(bytes.find("mdat"), bytes.npos) << name;
+    EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << name << ": the index comes first";
+  }
+}
+
 TEST_F(VideoTest, KeepsColours) {
   for (const Rgba color :
        {Rgba{200, 30, 40, 255}, Rgba{20, 160, 60, 255}, Rgba{30, 60, 220, 255}, Rgba{128, 128, 128, 255}}) {
