@@ -18,7 +18,7 @@ struct InfoOptions {
   bool json = false;
 };
 
-nlohmann::json vector_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
+nlohmann::json vector_as_json(const Vec3d& v) { return {v.x, v.y, v.z}; }
 
 /// Empty where the file does not say.
 std::string name_of(const VolumeInfo& volume, std::int64_t label) {
@@ -31,10 +31,10 @@ nlohmann::json as_json(const VolumeInfo& volume) {
   for (const auto& [label, voxels] : volume.labels)
     labels.push_back({{"label", label}, {"voxels", voxels}, {"name", name_of(volume, label)}});
   nlohmann::json axes = nlohmann::json::array();
-  for (const Vec3d& axis : volume.axes) axes.push_back(vector_json(axis));
+  for (const Vec3d& axis : volume.axes) axes.push_back(vector_as_json(axis));
   return {{"dimensions", {volume.dims.x, volume.dims.y, volume.dims.z}},
-          {"spacing", vector_json(volume.spacing)},
-          {"origin", vector_json(volume.origin)},
+          {"spacing", vector_as_json(volume.spacing)},
+          {"origin", vector_as_json(volume.origin)},
           {"axes", axes},
           {"right_handed", volume.right_handed},
           {"space", volume.space},
@@ -63,8 +63,8 @@ nlohmann::json as_json(const FileInfo& info) {
                          {"points", info.points},
                          {"polygons", info.polygons},
                          {"triangles", info.triangles},
-                         {"lower", vector_json(info.lower)},
-                         {"upper", vector_json(info.upper)},
+                         {"lower", vector_as_json(info.lower)},
+                         {"upper", vector_as_json(info.upper)},
                          {"times", info.times},
                          {"arrays", arrays},
                          {"warnings", info.warnings}};

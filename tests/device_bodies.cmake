@@ -2,16 +2,16 @@
 
 # nacre_device_bodies(RESULT): their paths, relative to the source folder; not those that another one includes.
 function(nacre_device_bodies result)
-  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
-    ${CMAKE_SOURCE_DIR}/tests/compute/*_body.hpp)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
+    ${PROJECT_SOURCE_DIR}/tests/compute/*_body.hpp)
   set(bodies)
   set(included)
   foreach(header IN LISTS headers)
-    file(STRINGS ${CMAKE_SOURCE_DIR}/${header} tests REGEX "^NACRE_DEVICE_TEST" LIMIT_COUNT 1)
+    file(STRINGS ${PROJECT_SOURCE_DIR}/${header} tests REGEX "^NACRE_DEVICE_TEST" LIMIT_COUNT 1)
     if(tests)
       list(APPEND bodies ${header})
     endif()
-    file(STRINGS ${CMAKE_SOURCE_DIR}/${header} others REGEX "^#include \".*_body\\.hpp\"")
+    file(STRINGS ${PROJECT_SOURCE_DIR}/${header} others REGEX "^#include \".*_body\\.hpp\"")
     list(TRANSFORM others REPLACE "#include \"(.*)\"" "\\1")
     list(APPEND included ${others})
   endforeach()

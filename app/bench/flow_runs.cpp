@@ -14,7 +14,7 @@ namespace nacre {
 namespace {
 
 /// Steps of a run: as many as fit into this time, seconds, but one at least and five at most.
-constexpr double long_enough = 3;
+constexpr double min_flow_seconds = 3;
 
 double median(std::vector<double> seconds) {
   std::nth_element(seconds.begin(), seconds.begin() + std::ptrdiff_t(seconds.size() / 2), seconds.end());
@@ -123,7 +123,7 @@ const FlowRun& FlowRuns::run(const FlowJob& job) {
   }
   made->flow().start(vectors(job));
   std::vector<double> steps;
-  for (double from = now(); steps.size() < 5 && (steps.empty() || now() - from < long_enough);) {
+  for (double from = now(); steps.size() < 5 && (steps.empty() || now() - from < min_flow_seconds);) {
     const double before = now();
     made->flow().step();
     steps.push_back(now() - before);

@@ -15,8 +15,8 @@
 namespace nacre {
 namespace {
 
-/// Runs are not repeated after this time, seconds.
-constexpr double long_enough = 1.5;
+/// Repeats end here, seconds.
+constexpr double min_mesh_seconds = 1.5;
 
 MeshVolume make_volume(const MeshJob& job) {
   const Volume volume = make_phantom(job.sample, job.detail, &interrupt_flag());
@@ -89,7 +89,7 @@ const MeshFields& MeshRuns::fields(const MeshJob& job) {
                       timers.seconds("embed")};
   };
   std::array<double, 3> best = spent(), before = best;
-  for (int k = 1; k < repeats && before[0] + before[1] + before[2] < long_enough; ++k) {
+  for (int k = 1; k < repeats && before[0] + before[1] + before[2] < min_mesh_seconds; ++k) {
     pipeline_->load(*volume_);
     pipeline_->build_fields();
     const std::array<double, 3> after = spent();
@@ -141,7 +141,7 @@ const MeshRun& MeshRuns::run(const MeshJob& job, const MeshSolve& solve) {
   open(job, own, device_of(solve));
   MeshRun best = run_once(solve);
   double spent = best.seconds;
-  for (int k = 1; k < repeats && spent < long_enough; ++k) {
+  for (int k = 1; k < repeats && spent < min_mesh_seconds; ++k) {
     const MeshRun again = run_once(solve);
     spent += again.seconds;
     best.seconds = std::min(best.seconds, again.seconds);

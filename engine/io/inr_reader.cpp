@@ -23,9 +23,9 @@ constexpr std::size_t block = 256;
 constexpr std::string_view magic = "#INRIMAGE-4#{", end_mark = "##}";
 
 /// The lines KEY=VALUE of a header.
-class Header {
+class InrHeader {
  public:
-  Header(std::string_view text, const fs::path& path) : path_(path) {
+  InrHeader(std::string_view text, const fs::path& path) : path_(path) {
     while (!text.empty()) {
       const std::string_view line = text.substr(0, text.find('\n'));
       text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -66,7 +66,7 @@ class Header {
   std::map<std::string, std::string_view> fields_;
 };
 
-std::endian byte_order(const Header& header, std::int64_t bits) {
+std::endian byte_order(const InrHeader& header, std::int64_t bits) {
   const std::string_view cpu = header.text("CPU");
   if (cpu == "decm" || cpu == "alpha" || cpu == "pc" || (cpu.empty() && bits == 8)) return std::endian::little;
   if (cpu == "sun" || cpu == "sgi") return std::endian::big;
@@ -74,7 +74,7 @@ std::endian byte_order(const Header& header, std::int64_t bits) {
 }
 
 /// Fixed-point numbers count in units of SCALE, a power of two: "2**-8".
-double scale_of(const Header& header) {
+double scale_of(const InrHeader& header) {
   if (!header.has("SCALE")) return 1;
   const std::string_view text = header.text("SCALE");
   const std::size_t stars = text.find("**");
@@ -99,7 +99,7 @@ void take_values(Volume& volume, std::string_view bytes, std::endian order, doub
   volume.values = std::move(scaled);
 }
 
-void set_position(Volume& volume, const Header& header, const fs::path& path) {
+void set_position(Volume& volume, const InrHeader& header, const fs::path& path) {
   if (header.number("RX", 0) != 0 || header.number("RY", 0) != 0 || header.number("RZ", 0) != 0)
     fail_reading(path, "its header rotates it, which is not supported", "convert it to NRRD");
   std::array<Vec3d, 3> steps;
@@ -122,7 +122,7 @@ Volume read_inr(const fs::path& path) {
   const std::size_t end = bytes.find(end_mark, magic.size());
   if (end == bytes.npos || end > 64 * block) fail_reading(path, "its header does not end");
   const std::size_t header_size = (end + end_mark.size() + block - 1) / block * block;
-  const Header header(std::string_view(bytes).substr(magic.size(), end - magic.size()), path);
+  const InrHeader header(std::string_view(bytes).substr(magic.size(), end - magic.size()), path);
 
   if (header.count("VDIM", 1) != 1)
     fail_reading(path, fmt::format("it has {} values per voxel", header.count("VDIM")), "open one component at a time");

@@ -23,18 +23,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_header = 1 << 16;
+constexpr std::size_t longest_metaimage_header = 1 << 16;
 constexpr std::string_view last_key = "ElementDataFile";
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_view(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
 /// The lines KEY = VALUE, up to that of the data file.
-class Header {
+class MetaImageHeader {
  public:
-  explicit Header(const fs::path& path) : path_(path), text_(longest_header, '\0') {
+  explicit MetaImageHeader(const fs::path& path) : path_(path), text_(longest_metaimage_header, '\0') {
     std::ifstream file(path, std::ios::binary);
     file.read(text_.data(), std::streamsize(text_.size()));
     text_.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
@@ -44,7 +44,7 @@ class Header {
       size_ = text_.size() - rest.size();
       const std::size_t equals = line.find('=');
       if (equals == line.npos) continue;
-      fields_[std::string(trimmed(line.substr(0, equals)))] = trimmed(line.substr(equals + 1));
+      fields_[std::string(trimmed_view(line.substr(0, equals)))] = trimmed_view(line.substr(equals + 1));
     }
     if (!fields_.count("NDims") || !fields_.count(std::string(last_key)))
       fail_reading(path, "it has no MetaImage header", "check that it is MetaImage");
@@ -109,7 +109,7 @@ bool with_element_type(std::string_view name, Use use) {
   return false;
 }
 
-void set_dimensions(Volume& volume, const Header& header, std::size_t bytes_per_voxel, const fs::path& path) {
+void set_dimensions(Volume& volume, const MetaImageHeader& header, std::size_t bytes_per_voxel, const fs::path& path) {
   const std::int64_t rank = header.integer("NDims", 0);
   if (rank != 3 && rank != 4) fail_reading(path, fmt::format("it has {} dimensions", rank), "open a volume");
   std::array<std::int64_t, 4> dims{0, 0, 0, 1};
@@ -125,7 +125,7 @@ void set_dimensions(Volume& volume, const Header& header, std::size_t bytes_per_
 
 /// Row a of the matrix is the direction of axis a.
 template <std::size_t Rank>
-void set_place(Volume& volume, const Header& header, const fs::path& path) {
+void set_place(Volume& volume, const MetaImageHeader& header, const fs::path& path) {
   std::array<double, Rank> spacing, origin{};
   std::array<double, Rank * Rank> matrix{};
   spacing.fill(1);
@@ -149,7 +149,7 @@ struct Stored {
   std::size_t offset = 0;  ///< where the values begin
 };
 
-Stored find_values(const Header& header, const fs::path& path) {
+Stored find_values(const MetaImageHeader& header, const fs::path& path) {
   const std::string name(header.text({last_key.data()}));
   if (name == "LOCAL" || name == "Local" || name == "local") return {path, header.size()};
   if (name.starts_with("LIST") || name.find('%') != name.npos)
@@ -165,7 +165,7 @@ Stored find_values(const Header& header, const fs::path& path) {
 }
 
 /// How many bytes the values take in their file.
-std::size_t stored_size(const Header& header, bool packed, std::size_t unpacked, const Stored& stored,
+std::size_t stored_size(const MetaImageHeader& header, bool packed, std::size_t unpacked, const Stored& stored,
                         const fs::path& path) {
   if (!packed || stored.offset != std::size_t(-1)) return unpacked;
   const std::int64_t size = header.integer("CompressedDataSize", 0);
@@ -235,7 +235,7 @@ std::vector<T> parse_values(const std::string& text, std::size_t count, const fs
 }
 
 template <class T>
-std::vector<T> read_values(const Header& header, std::size_t count, const fs::path& path) {
+std::vector<T> read_values(const MetaImageHeader& header, std::size_t count, const fs::path& path) {
   const bool packed = header.is_true({"CompressedData"}, false);
   const std::size_t needed = count * sizeof(T);
   const Stored stored = find_values(header, path);
@@ -255,7 +255,7 @@ std::vector<T> read_values(const Header& header, std::size_t count, const fs::pa
 }  // namespace
 
 Volume read_metaimage(const fs::path& path) {
-  const Header header(path);
+  const MetaImageHeader header(path);
   Volume volume;
   const std::string_view type = header.text({"ElementType"});
   const bool known = with_element_type(type, [&](auto zero) {

@@ -15,7 +15,7 @@ namespace nacre {
 namespace {
 
 /// One row of an element: a number per plain property, a list per list property.
-struct Row {
+struct PlyRow {
   std::vector<double> numbers;
   std::vector<std::vector<std::int64_t>> lists;
 };
@@ -74,7 +74,7 @@ std::int64_t as_index(double value) {
   return std::abs(value) < 4e9 && value == std::floor(value) ? std::int64_t(value) : -1;
 }
 
-bool read_row(PlyBody& body, const PlyElement& element, Row& row) {
+bool read_row(PlyBody& body, const PlyElement& element, PlyRow& row) {
   for (std::size_t i = 0; i < element.properties.size(); ++i) {
     const PlyProperty& property = element.properties[i];
     if (!property.is_list()) {
@@ -104,8 +104,8 @@ void for_each_row(PlyBody& body, const PlyElement& element, const std::filesyste
   if (element.count > body.room_for(bytes, element.properties.size()))
     fail_reading(path, fmt::format("its header promises {} of element '{}', more than the file can hold", element.count,
                                    element.name));
-  Row row{std::vector<double>(element.properties.size()),
-          std::vector<std::vector<std::int64_t>>(element.properties.size())};
+  PlyRow row{std::vector<double>(element.properties.size()),
+             std::vector<std::vector<std::int64_t>>(element.properties.size())};
   for (std::size_t i = 0; i < element.count; ++i) {
     if (!read_row(body, element, row))
       fail_reading(path,
@@ -161,7 +161,7 @@ std::vector<RawArray> empty_arrays(const std::vector<ArrayPlan>& plans) {
   return arrays;
 }
 
-void add_values(std::vector<RawArray>& arrays, const std::vector<ArrayPlan>& plans, const Row& row) {
+void add_values(std::vector<RawArray>& arrays, const std::vector<ArrayPlan>& plans, const PlyRow& row) {
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const int property : plans[i].properties) arrays[i].values.push_back(float(row.numbers[property]));
 }
@@ -173,7 +173,7 @@ void read_vertices(PlyBody& body, const PlyElement& element, const std::filesyst
       fail_reading(path, "its vertices have no properties x, y and z", "check how it was written");
   const auto plans = plan_arrays(element, {x, y, z});
   mesh.point_arrays = empty_arrays(plans);
-  for_each_row(body, element, path, [&](const Row& row) {
+  for_each_row(body, element, path, [&](const PlyRow& row) {
     mesh.points.push_back({row.numbers[x], row.numbers[y], row.numbers[z]});
     add_values(mesh.point_arrays, plans, row);
   });
@@ -190,7 +190,7 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::filesystem:
   if (corners < 0) fail_reading(path, "its faces have no list of vertex indices", "check how it was written");
   const auto plans = plan_arrays(element, {corners});
   mesh.cell_arrays = empty_arrays(plans);
-  for_each_row(body, element, path, [&](const Row& row) {
+  for_each_row(body, element, path, [&](const PlyRow& row) {
     for (const std::int64_t corner : row.lists[corners]) mesh.add_corner(corner);
     mesh.close_polygon();
     add_values(mesh.cell_arrays, plans, row);
@@ -200,7 +200,7 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::filesystem:
 /// Strips of triangles; -1 ends one and begins the next.
 void read_strips(PlyBody& body, const PlyElement& element, const std::filesystem::path& path, RawMesh& mesh) {
   const int corners = find_corner_list(element);
-  for_each_row(body, element, path, [&](const Row& row) {
+  for_each_row(body, element, path, [&](const PlyRow& row) {
     if (corners < 0) return;
     std::vector<std::int64_t> strip;
     for (const std::int64_t corner : row.lists[corners]) {
@@ -229,7 +229,7 @@ RawMesh read_ply(std::string bytes, const std::filesystem::path& path) {
     else if (element.name == "tristrips")
       read_strips(body, element, path, mesh);
     else
-      for_each_row(body, element, path, [](const Row&) {});
+      for_each_row(body, element, path, [](const PlyRow&) {});
   }
   return mesh;
 }

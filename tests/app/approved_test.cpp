@@ -63,7 +63,7 @@ TEST_P(ApprovedPicture, IsDrawn) {
   const bool panel = std::find(GetParam().words.begin(), GetParam().words.end(), "--panel") != GetParam().words.end();
   const Words size = {"--size", panel ? "640x480" : "240x180"};
   const fs::path drawn = folder / "drawn.png";
-  const fs::path approved = fs::path(NACRE_SOURCE_DIR) / "tests/app/approved" / (GetParam().name + ".png");
+  const fs::path approved = source_file("tests/app/approved/" + GetParam().name + ".png");
   const Outcome outcome =
       nacre(Words{"view", "--offscreen", "--quiet", "--image", drawn.string()} + GetParam().words + size);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(, ApprovedPicture, testing::ValuesIn(all),
 
 TEST(ApprovedPictures, AreSmall) {
   std::uintmax_t bytes = 0;
-  for (const auto& file : fs::directory_iterator(NACRE_SOURCE_DIR "/tests/app/approved")) bytes += file.file_size();
+  for (const auto& file : fs::directory_iterator(source_file("tests/app/approved"))) bytes += file.file_size();
   EXPECT_LT(bytes, 1500000u);
 }
 

@@ -75,7 +75,7 @@ TEST_F(BenchTest, RowsAreThereWhenTheyAreMeasuredAndOutliveCtrlC) {
   const std::string script =
       R"(cd "$0"; "$@" >out & for k in {1..2000}; do grep -q 'on the fly / arena' out && break;
                                 sleep 0.05; done; kill -INT $!; wait $!)";
-  const Outcome run = test::run("/bin/bash", Words{"-c", script, folder_.path().string(), NACRE_PROGRAM} + small_bench +
+  const Outcome run = test::run("/bin/bash", Words{"-c", script, folder_.path().string(), program_path} + small_bench +
                                                  Words{"arena", "grid-octree", "--json", path("bench.json")});
   EXPECT_EQ(run.status, 130) << run.err;
   const std::string out = content("out");
@@ -93,7 +93,7 @@ TEST_F(BenchTest, RowsAreThereWhenTheyAreMeasuredAndOutliveCtrlC) {
 
 TEST_F(BenchTest, NothingMeasuredReplacesNothing) {
   write("bench.json", "an older one");
-  const Outcome run = test::run("/usr/bin/timeout", Words{"--preserve-status", "-s", "INT", "0.5", NACRE_PROGRAM} +
+  const Outcome run = test::run("/usr/bin/timeout", Words{"--preserve-status", "-s", "INT", "0.5", program_path} +
                                                         small_bench + Words{"3.2", "--json", path("bench.json")});
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_EQ(content("bench.json"), "an older one");

@@ -125,8 +125,8 @@ TEST_F(Input, ColourByAnArray) {
 }
 
 TEST_F(Input, AFamilyOfArraysIsASeries) {
-  const fs::path file = fs::path(NACRE_SHARED_DATA) / "flow/wind-sphere/wind_sphere_9steps.vtp";
-  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  NACRE_NEEDS_SHARED_DATA("flow/wind-sphere/wind_sphere_9steps.vtp");
+  const fs::path file = shared_data("flow/wind-sphere/wind_sphere_9steps.vtp");
   const json report = flow(small + Words{file.string(), "--image", path("a.png")});
   EXPECT_LT(report["input"]["time"][0], report["input"]["time"][1]);
   EXPECT_TRUE(contains(last_.err, "vectors: ")) << last_.err;

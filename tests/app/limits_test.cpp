@@ -102,7 +102,7 @@ struct Stopped {
 Stopped interrupt(const Words& words, double seconds) {
   const auto before = Clock::now();
   const Outcome result = run("/usr/bin/timeout", Words{"--foreground", "--preserve-status", "-s", "INT", "-k", "30",
-                                                       std::to_string(seconds), NACRE_PROGRAM} +
+                                                       std::to_string(seconds), program_path} +
                                                      words);
   return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
 }
@@ -133,7 +133,7 @@ TEST_F(CtrlC, ASecondOneLeavesNothingEither) {
   // Both come before the work looks up; two of one kind might be delivered as one.
   const std::string script = R"("$0" "$@" & sleep 2; kill -INT $!; kill -TERM $!; wait $!)";
   for (int k = 0; k < 3; ++k) {
-    const Outcome stopped = run("/bin/bash", Words{"-c", script, NACRE_PROGRAM} + long_run());
+    const Outcome stopped = run("/bin/bash", Words{"-c", script, program_path} + long_run());
     EXPECT_TRUE(stopped.status == 130 || stopped.status == 143) << stopped.status << stopped.err;
     EXPECT_EQ(names(), Words{});
   }

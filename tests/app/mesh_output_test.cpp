@@ -139,10 +139,10 @@ TEST_F(MeshOutput, AFileSizeLimitLeavesNothingBehind) {
 using Clock = std::chrono::steady_clock;
 
 /// What the program does when Ctrl-C comes after `seconds`, and how long it takes from there.
-std::pair<Outcome, double> interrupt(const Words& words, double seconds) {
+std::pair<Outcome, double> interrupt_after(const Words& words, double seconds) {
   const auto before = Clock::now();
   const Outcome result = run("/usr/bin/timeout", Words{"--foreground", "--preserve-status", "-s", "INT", "-k", "60",
-                                                       std::to_string(seconds), NACRE_PROGRAM} +
+                                                       std::to_string(seconds), program_path} +
                                                      words);
   return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
 }
@@ -150,9 +150,9 @@ std::pair<Outcome, double> interrupt(const Words& words, double seconds) {
 class MeshCtrlC : public MeshTest, public ::testing::WithParamInterface<double> {};
 
 TEST_P(MeshCtrlC, StopsWithinTwoSecondsAndLeavesNothing) {
-  const auto [run, seconds] = interrupt({"mesh", "--sample", "head", "--quiet", "--out", path("a.vtu"), "--image",
-                                         path("a.png"), "--report", path("r.json")},
-                                        GetParam());
+  const auto [run, seconds] = interrupt_after({"mesh", "--sample", "head", "--quiet", "--out", path("a.vtu"), "--image",
+                                               path("a.png"), "--report", path("r.json")},
+                                              GetParam());
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_LT(seconds, 2);
   EXPECT_EQ(run.out, "");
@@ -164,9 +164,9 @@ INSTANTIATE_TEST_SUITE_P(After, MeshCtrlC, ::testing::Values(0.3, 3.0, 10.0));
 TEST_F(MeshCtrlC, KeepsWhatThereIsWhenAskedTo) {
   // Particles that would move for hours: no stagnation, no end of iterations.
   const auto [run, seconds] =
-      interrupt({"mesh", "--sample", "ellipsoid", "--quiet", "--iterations", "1000000", "--stagnation", "0",
-                 "--keep-on-interrupt", "--out", path("a.vtp"), "--report", path("r.json")},
-                5.0);
+      interrupt_after({"mesh", "--sample", "ellipsoid", "--quiet", "--iterations", "1000000", "--stagnation", "0",
+                       "--keep-on-interrupt", "--out", path("a.vtp"), "--report", path("r.json")},
+                      5.0);
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_EQ(run.out, path("a.vtp") + "\n");
   EXPECT_EQ(names(), (Words{"a.vtp", "r.json"}));
@@ -179,9 +179,9 @@ TEST_F(MeshCtrlC, KeepsWhatThereIsWhenAskedTo) {
 TEST_F(MeshCtrlC, KeepsWhatThereIsWhileCurvesMove) {
   // The curve of two balls would move for minutes before the first particle of a surface does.
   const auto [run, seconds] =
-      interrupt(small_mesh + Words{"--iterations", "1000000", "--stagnation", "0", "--keep-on-interrupt", "--out",
-                                   path("a.vtp"), "--report", path("r.json")},
-                5.0);
+      interrupt_after(small_mesh + Words{"--iterations", "1000000", "--stagnation", "0", "--keep-on-interrupt", "--out",
+                                         path("a.vtp"), "--report", path("r.json")},
+                      5.0);
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_EQ(names(), (Words{"a.vtp", "r.json"}));
   EXPECT_LT(seconds, 10);

@@ -13,6 +13,7 @@
 #include "engine/scene/surface/surface.hpp"
 #include "engine/system/child_process.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
+#include "tests/paths.hpp"
 
 namespace nacre::test {
 
@@ -30,11 +31,11 @@ inline Outcome run(const fs::path& program, const Words& words) {
   return {status, result.output, result.errors};
 }
 
-inline Outcome nacre(const Words& words) { return run(NACRE_PROGRAM, words); }
+inline Outcome nacre(const Words& words) { return run(program_path, words); }
 
 /// The program under a limit of the shell: `ulimit` takes e.g. "-f 16" (KiB blocks of 1024 in bash).
 inline Outcome nacre_limited(const std::string& ulimit, Words words) {
-  words.insert(words.begin(), {"-c", "ulimit " + ulimit + " && exec \"$0\" \"$@\"", NACRE_PROGRAM});
+  words.insert(words.begin(), {"-c", "ulimit " + ulimit + " && exec \"$0\" \"$@\"", program_path});
   return run("/bin/bash", words);
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 /// What a run of the program draws on a terminal of so many columns, one string for each time that it is drawn.
 Words drawn(int columns, const std::string& words) {
-  const std::string command = "stty cols " + std::to_string(columns) + "; '" NACRE_PROGRAM "' " + words;
+  const std::string command = "stty cols " + std::to_string(columns) + "; '" + program_path + "' " + words;
   const Outcome run = test::run("/usr/bin/script", {"-qec", command, "/dev/null"});
   EXPECT_EQ(run.status, 0) << run.out << run.err;
   const std::string begin = "\r\033[K";
@@ -21,6 +21,8 @@ Words drawn(int columns, const std::string& words) {
 
 TEST(Progress, ABarTellsStageIterationEnergyAndTimeInOneLine) {
   if (find_program("script").empty()) GTEST_SKIP() << "no program `script` to make a terminal";
+  const Outcome terminal = run("/usr/bin/script", {"-qec", "true", "/dev/null"});
+  if (terminal.status != 0) GTEST_SKIP() << "no pseudo-terminals here: " << terminal.out << terminal.err;
   for (const int columns : {40, 80, 160}) {
     int told = 0;
     Words lines = drawn(columns, "mesh --sample torso --detail 40 --threads 1");

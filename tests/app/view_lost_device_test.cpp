@@ -1,47 +1,8 @@
 // Nacre: a computing device that stops working while the viewer runs: the window goes on without it.
 #include "tests/app/view_program.hpp"
-#if NACRE_HAS_VIEWER
-#include "app/viewer/scene/worker.hpp"
-#endif
 
 namespace nacre::test {
 namespace {
-
-#if NACRE_HAS_VIEWER
-
-/// Times that can be asked for until the device fails.
-struct FailingPipeline {
-  bool fails = false;
-  StageTimers timers() const {
-    if (fails) throw Error("CUDA: waiting for a stream failed", "an illegal memory access was encountered");
-    StageTimers timers;
-    timers.add("embed", 1);
-    return timers;
-  }
-  std::size_t peak_bytes() const { return 7; }
-};
-
-class IdleWorker : public Worker<int> {
- public:
-  using Worker<int>::take_timers;
-  using Worker<int>::check_device;
-};
-
-TEST(LostDevice, TimersThatCannotBeTakenSayThatItIsLost) {
-  IdleWorker worker;
-  FailingPipeline pipeline;
-  worker.take_timers(pipeline);
-  EXPECT_EQ(worker.lost_device(), "");
-  EXPECT_NO_THROW(worker.check_device());
-  pipeline.fails = true;
-  worker.take_timers(pipeline);  // neither throws nor keeps the mutex
-  EXPECT_TRUE(contains(worker.lost_device(), "illegal memory access")) << worker.lost_device();
-  EXPECT_THROW(worker.check_device(), Error);
-  EXPECT_EQ(worker.timers().seconds("embed"), 1) << "what was known stays";
-  EXPECT_EQ(worker.peak_bytes(), 7u);
-}
-
-#endif
 
 using View = ViewTest;
 
@@ -49,8 +10,8 @@ using View = ViewTest;
 void expect_window_goes_on(const TemporaryFolder& folder, const Words& input, const std::string& when) {
   const std::string report = (folder / "r.json").string(), picture = (folder / "p.png").string();
   const Outcome window =
-      run("/bin/bash", Words{NACRE_SOURCE_DIR "/tests/app/on_display.sh", "/usr/bin/env",
-                             "NACRE_FAULTS=lost-device@" + when, NACRE_PROGRAM, "view", "--size", "320x240",
+      run("/bin/bash", Words{source_file("tests/app/on_display.sh"), "/usr/bin/env",
+                             "NACRE_FAULTS=lost-device@" + when, program_path, "view", "--size", "320x240",
                              "--frames-count", "12", "--report", report, "--image", picture} +
                            input);
   if (window.status == 77) GTEST_SKIP() << window.err;
@@ -77,7 +38,7 @@ TEST_F(View, WithoutAWindowALostDeviceIsAnError) {
   for (const Words& input : {Words{"--sample", "sphere", "--detail", "24", "--resolution", "48", "--steps", "4"},
                              Words{"--sample", "two-spheres", "--detail", "16", "--iterations", "10"}}) {
     const Outcome outcome =
-        run("/usr/bin/env", Words{"NACRE_FAULTS=lost-device@4", NACRE_PROGRAM, "view", "--offscreen", "--quiet",
+        run("/usr/bin/env", Words{"NACRE_FAULTS=lost-device@4", program_path, "view", "--offscreen", "--quiet",
                                   "--image", (folder / "p.png").string(), "--frames-count", "3"} +
                                 input);
     expect_failure(outcome, 1, {"illegal memory access"});

@@ -215,7 +215,7 @@ TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg";
   const std::string file = script(nullptr, 100000);
   const Outcome stopped = run("/usr/bin/timeout", {"--foreground", "--preserve-status", "-s", "INT", "-k", "30", "3",
-                                                   NACRE_PROGRAM, "view", "--offscreen", "--quiet", "--script", file,
+                                                   program_path, "view", "--offscreen", "--quiet", "--script", file,
                                                    "--record", path("v.mp4"), "--save-recording", path("done.json")});
   EXPECT_EQ(stopped.status, 130) << stopped.err;
   EXPECT_EQ(names(""), (Words{"done.json", "script.json"}));
@@ -239,7 +239,7 @@ TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
                          path("r.json"),
                          "--frames-count",
                          std::to_string(frames)};
-    EXPECT_EQ(run_child(NACRE_PROGRAM, words, std::chrono::seconds(400)).exit_status, 0);
+    EXPECT_EQ(run_child(program_path, words, std::chrono::seconds(400)).exit_status, 0);
     const json report = read_json(folder / "r.json");
     EXPECT_EQ(report["view"]["frames"], frames);
     return report["memory"]["peak_bytes"].get<double>();
@@ -354,7 +354,7 @@ TEST_F(Scripts, ASessionGivesTheSameMeshHeadlessAndOffscreen) {
 
 TEST(DemoSessions, AreSessionsThatPlay) {
   for (const char* name : {"flow_demo.json", "mesh_demo.json"}) {
-    const Session demo = read_session(fs::path(NACRE_SOURCE_DIR "/assets") / name);
+    const Session demo = read_session(source_file(std::string("assets/") + name));
     EXPECT_TRUE(demo.camera) << name;
     EXPECT_GE(demo.events.size(), 5u) << name;
     EXPECT_GE(demo.duration, 8) << name;

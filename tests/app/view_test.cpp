@@ -103,7 +103,7 @@ TEST_F(View, LiveFramesDoNotWaitForCompute) {
 
 Outcome with_faults(const std::string& faults, const Words& words) {
   return run("/bin/bash",
-             Words{"-c", "NACRE_FAULTS=" + faults + " exec \"$0\" \"$@\"", NACRE_PROGRAM} + small_view + words);
+             Words{"-c", "NACRE_FAULTS=" + faults + " exec \"$0\" \"$@\"", program_path} + small_view + words);
 }
 
 TEST_F(View, AResetGraphicsDeviceIsBornAndTheSessionGoesOn) {
@@ -163,7 +163,7 @@ TEST_F(View, FailuresAreOneLine) {
 
 TEST_F(View, OldOpenGlIsNamed) {
   const Outcome outcome =
-      run("/bin/bash", Words{"-c", "MESA_GL_VERSION_OVERRIDE=3.3 exec \"$0\" \"$@\"", NACRE_PROGRAM} + small_view +
+      run("/bin/bash", Words{"-c", "MESA_GL_VERSION_OVERRIDE=3.3 exec \"$0\" \"$@\"", program_path} + small_view +
                            Words{"--image", (folder / "x.png").string()});
   if (outcome.status == 0) GTEST_SKIP() << "this driver is not Mesa's";
   EXPECT_EQ(outcome.status, 1);
@@ -171,7 +171,7 @@ TEST_F(View, OldOpenGlIsNamed) {
 }
 
 TEST_F(View, WithoutADisplayAWindowIsAnError) {
-  const Outcome outcome = run("/bin/bash", {"-c", "unset DISPLAY WAYLAND_DISPLAY; exec \"$0\" view", NACRE_PROGRAM});
+  const Outcome outcome = run("/bin/bash", {"-c", "unset DISPLAY WAYLAND_DISPLAY; exec \"$0\" view", program_path});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_TRUE(contains(outcome.err, "no display")) << outcome.err;
   EXPECT_TRUE(contains(outcome.err, "--offscreen")) << outcome.err;
@@ -200,8 +200,8 @@ TEST_F(View, WindowUnderXvfb) {
 
 TEST_F(View, KeysAndMouseInTheWindow) {
   const fs::path recording = folder / "done.json", report = folder / "keys.json", png = folder / "keys.png";
-  const Outcome outcome = run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_keys.sh", NACRE_PROGRAM,
-                                            recording.string(), report.string(), png.string()});
+  const Outcome outcome = run("/bin/bash", {source_file("tests/app/view_keys.sh"), program_path, recording.string(),
+                                            report.string(), png.string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::map<std::string, std::vector<nlohmann::json>> knobs;
@@ -222,7 +222,7 @@ TEST_F(View, KeysAndMouseInTheWindow) {
 
 TEST_F(View, AWindowAsksBeforeSomethingIsLostAndCtrlCWritesWhatQuittingWrites) {
   const Outcome outcome =
-      run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_quit.sh", NACRE_PROGRAM, folder.path().string()});
+      run("/bin/bash", {source_file("tests/app/view_quit.sh"), program_path, folder.path().string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "130\n")) << outcome.out;
@@ -259,8 +259,8 @@ TEST_F(View, OnADenserScreenPanelsAndLettersGrow) {
 
 TEST_F(View, AnySizeAndScreenOfTheWindow) {
   const fs::path recording = folder / "done.json", report = folder / "screens.json";
-  const Outcome outcome = run(
-      "/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_screens.sh", NACRE_PROGRAM, recording.string(), report.string()});
+  const Outcome outcome =
+      run("/bin/bash", {source_file("tests/app/view_screens.sh"), program_path, recording.string(), report.string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
@@ -269,7 +269,7 @@ TEST_F(View, AnySizeAndScreenOfTheWindow) {
 /// A frame of the video is a step, seen or not; then the window is pulled larger, and what it shows fills it.
 TEST_F(View, AMinimisedWindowIsFilmedAndAPulledOneIsFilled) {
   const fs::path video = folder / "flow.mp4", report = folder / "film.json", png = folder / "screen.png";
-  const Outcome outcome = run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_film.sh", NACRE_PROGRAM, video.string(),
+  const Outcome outcome = run("/bin/bash", {source_file("tests/app/view_film.sh"), program_path, video.string(),
                                             report.string(), png.string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -294,8 +294,8 @@ TEST_F(View, ANewcomerGetsAVideoAndAMesh) {
   const fs::path flow = folder / "flow.vtp", labels = folder / "labels.nrrd";
   ASSERT_EQ(nacre({"sample", "torus", "--detail", "48", "--out", flow.string()}).status, 0);
   ASSERT_EQ(nacre({"sample", "three-sectors", "--detail", "24", "--out", labels.string()}).status, 0);
-  const Outcome outcome = run("/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_newcomer.sh", NACRE_PROGRAM,
-                                            flow.string(), labels.string(), (folder / "").string()});
+  const Outcome outcome = run("/bin/bash", {source_file("tests/app/view_newcomer.sh"), program_path, flow.string(),
+                                            labels.string(), (folder / "").string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(contains(outcome.out, "19 actions")) << outcome.out;  // as docs/viewer.md says

@@ -22,8 +22,8 @@ TEST_F(ViewWords, SizesOfParticlesAreInOrder) {
 TEST_F(ViewWords, ASessionIsRefusedInTheWindowAsOnTheCommandLine) {
   std::ofstream(path("s.json")) << R"({"nacre": "session 1", "sample": "two-spheres",
                                        "knobs": {"min_size": 3, "max_size": 2}})";
-  const Outcome window = run(
-      "/bin/bash", {NACRE_SOURCE_DIR "/tests/app/view_refused.sh", NACRE_PROGRAM, path("s.json"), path("done.json")});
+  const Outcome window =
+      run("/bin/bash", {source_file("tests/app/view_refused.sh"), program_path, path("s.json"), path("done.json")});
   if (window.status == 77) GTEST_SKIP() << window.err;
   ASSERT_EQ(window.status, 0) << window.err;
   EXPECT_TRUE(contains(window.err, "--min-size 3 is larger than --max-size 2")) << window.err;

@@ -4,6 +4,7 @@ set -euo pipefail
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 
 max_lines=450    # a file is one idea
+max_width=120    # characters of a line of C++ or CUDA
 max_cu_lines=15  # a .cu file only instantiates what a header says
 
 bad=0
@@ -36,6 +37,11 @@ for file in "${files[@]}"; do
   esac
   [[ $file =~ ^[A-Za-z0-9_./-]+$ ]] || breach "$file: a name with odd characters"
 done
+
+mapfile -t code < <(printf '%s\n' "${files[@]}" | grep -E '\.(hpp|cpp|cu|cuh)$')
+while IFS=: read -r file number _; do
+  breach "$file:$number: longer than $max_width characters"
+done < <(LC_ALL=C.UTF-8 grep -nE "^.{$((max_width + 1)),}" "${code[@]}" /dev/null || true)
 
 # The words are put together here, so that this file does not hold them.
 while IFS= read -r line; do

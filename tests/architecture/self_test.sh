@@ -76,6 +76,13 @@ good_tree
 plant compute/grid/long.hpp {1..500}
 expect habits.sh 'compute/grid/long.hpp: 502 lines'
 good_tree
+plant compute/grid/wide.hpp "// $(printf 'é%.0s' {1..117})" "// $(printf 'é%.0s' {1..118})"
+expect habits.sh 'compute/grid/wide.hpp:4: longer than 120 characters'
+if bash "$here/habits.sh" "$tree" | grep -q 'wide.hpp:3'; then
+  echo "habits.sh takes bytes for characters"
+  exit 1
+fi
+good_tree
 plant app/later.cpp "// TO""DO: everything"
 expect habits.sh 'app/later.cpp:3'
 good_tree

@@ -10,6 +10,7 @@
 #include "engine/io/reader.hpp"
 #include "engine/scene/surface/prepare.hpp"
 #include "tests/compute/embedding/check_closest_points.hpp"
+#include "tests/paths.hpp"
 
 namespace nacre::test {
 namespace {
@@ -65,8 +66,8 @@ bool check_file(const fs::path& path, int resolution, std::uint32_t samples) {
 }
 
 TEST(DefectMeshes, ClosestPointsEqualBruteForce) {
-  const fs::path folder = fs::path(NACRE_SHARED_DATA) / "meshes";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+  NACRE_NEEDS_SHARED_DATA("meshes");
+  const fs::path folder = shared_data("meshes");
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_regular_file() && entry.file_size() < 3'000'000) files.push_back(entry.path());

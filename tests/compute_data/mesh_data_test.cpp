@@ -10,11 +10,10 @@
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/volume/materials.hpp"
 #include "tests/evidence/mesh_measures.hpp"
+#include "tests/paths.hpp"
 
 namespace nacre::test {
 namespace {
-
-const std::filesystem::path data = std::filesystem::path(NACRE_SHARED_DATA) / "labels";
 
 /// The mesh of a data set and what is asked of each: sound, every label there, close to the interface.
 MeshRun mesh_of(const MeshVolume& volume, const char* name, const MeshParameters& parameters = {}) {
@@ -43,16 +42,13 @@ MeshRun mesh_of(const MeshVolume& volume, const char* name, const MeshParameters
 
 MeshVolume read(const std::vector<std::string>& files, const MaterialOptions& options = {}) {
   std::vector<Volume> volumes;
-  for (const std::string& file : files) volumes.push_back(read_volume(data / file));
+  for (const std::string& file : files) volumes.push_back(read_volume(shared_data("labels/" + file)));
   return make_mesh_volume(volumes, options);
 }
 
-#define NEEDS_DATA(folder) \
-  if (!std::filesystem::exists(data / folder)) GTEST_SKIP() << "no " << (data / folder)
-
 /// Images of 2 x 2 x 2 voxels around which curves of three materials end in points of four, or do not.
 TEST(MeshData, TinyImagesHaveTheirJunctions) {
-  NEEDS_DATA("junctions");
+  NACRE_NEEDS_SHARED_DATA("labels/junctions");
   const struct {
     const char* name;
     int surfaces, curves, points;
@@ -72,7 +68,7 @@ TEST(MeshData, TinyImagesHaveTheirJunctions) {
 /// A cube of four quadrants, whose axis is a line where four materials meet: it survives as curves of three. Triangles along
 /// the axis may be slivers: no curve of four materials is stable.
 TEST(MeshData, FourQuadrants) {
-  NEEDS_DATA("junctions");
+  NACRE_NEEDS_SHARED_DATA("labels/junctions");
   const MeshVolume volume = read({"junctions/quadDomainCube.inr"});
   const MeshRun run = mesh_of(volume, "quadrants");
   const TopologyReport report = check_topology(run.mesh, 5);
@@ -88,7 +84,7 @@ TEST(MeshData, FourQuadrants) {
 
 /// Its smallest label has 27 voxels, 3 to an edge: smoothing takes its corners.
 TEST(MeshData, Mickey) {
-  NEEDS_DATA("cleaver");
+  NACRE_NEEDS_SHARED_DATA("labels/cleaver");
   const MeshVolume volume = read({"cleaver/mickey.nrrd"});
   const MeshRun run = mesh_of(volume, "mickey");
   expect_good_shapes(run, 0.97);
@@ -100,7 +96,7 @@ TEST(MeshData, Mickey) {
 }
 
 TEST(MeshData, FourSpheresAsIndicators) {  // they fill the volume: all interfaces end at its faces
-  NEEDS_DATA("cleaver");
+  NACRE_NEEDS_SHARED_DATA("labels/cleaver");
   const MeshVolume volume =
       read({"cleaver/spheres1.nrrd", "cleaver/spheres2.nrrd", "cleaver/spheres3.nrrd", "cleaver/spheres4.nrrd"});
   const MeshRun run = mesh_of(volume, "four spheres");
@@ -111,7 +107,7 @@ TEST(MeshData, FourSpheresAsIndicators) {  // they fill the volume: all interfac
 }
 
 TEST(MeshData, NestedHead) {  // shells that touch in a few places at most
-  NEEDS_DATA("nested-head");
+  NACRE_NEEDS_SHARED_DATA("labels/nested-head");
   MeshParameters parameters;
   parameters.min_size = 2;
   parameters.max_size = 4;
@@ -123,7 +119,7 @@ TEST(MeshData, NestedHead) {  // shells that touch in a few places at most
 
 /// A CT volume and an iso-value, at the default's sizes.
 TEST(MeshData, Skull) {
-  NEEDS_DATA("../scalar/skull_2.9.inr");
+  NACRE_NEEDS_SHARED_DATA("labels/../scalar/skull_2.9.inr");
   MaterialOptions options;
   options.isovalues = {2.9};
   const MeshRun run = mesh_of(read({"../scalar/skull_2.9.inr"}, options), "skull");

@@ -182,7 +182,16 @@ TEST_P(FlowEvidence, AllZeroVectorsGiveNoise) {
   still.at = [](double, std::span<Vec3f> out) { std::fill(out.begin(), out.end(), Vec3f{}); };
   run.pipeline->flow().start(still);
   run.steps(3);
-  for (float v : run.pipeline->flow().shown()) ASSERT_TRUE(v >= 0 && v <= 1);
+  const std::vector<float> shown = run.pipeline->flow().shown();
+  double sum = 0, squares = 0;
+  for (const float v : shown) {
+    ASSERT_TRUE(v >= 0 && v <= 1);
+    sum += v;
+    squares += v * v;
+  }
+  const double n = double(shown.size()), mean = sum / n, deviation = std::sqrt(squares / n - mean * mean);
+  EXPECT_NEAR(mean, 0.5, 0.1);
+  EXPECT_GT(deviation, 0.08) << "flat grey is no noise";
 }
 
 /// The texture grid is the same whatever the closest-point grid below it.

@@ -44,7 +44,7 @@ struct Sight {
   }
 };
 
-std::string lower(std::string words) {
+std::string lower_case(std::string words) {
   for (char& c : words) c = char(std::tolower(static_cast<unsigned char>(c)));
   return words;
 }
@@ -157,7 +157,8 @@ void table(const MeshResults& results, std::vector<std::size_t> rows, Sight& sig
 std::vector<std::size_t> MaterialList::found(const MeshInput& input) const {
   std::vector<std::size_t> all;
   for (std::size_t m = 1; m < input.labels.size(); ++m)
-    if (wanted_.empty() || lower(material_name(input, m)).find(lower(wanted_)) != std::string::npos) all.push_back(m);
+    if (wanted_.empty() || lower_case(material_name(input, m)).find(lower_case(wanted_)) != std::string::npos)
+      all.push_back(m);
   return all;
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t most = 10;
+constexpr std::size_t max_files = 10;
 
 fs::path state_folder() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state == '/') return fs::path(state) / "nacre";
@@ -32,7 +32,7 @@ void RecentFiles::read() {
   std::ifstream stream(list_);
   std::string line;
   std::error_code ignored;
-  while (files_.size() < most && std::getline(stream, line))
+  while (files_.size() < max_files && std::getline(stream, line))
     if (!line.empty() && fs::exists(line, ignored)) files_.push_back(line);
 }
 
@@ -42,7 +42,7 @@ void RecentFiles::add(const fs::path& file) {
   if (list_.empty() || whole.string().find('\n') != std::string::npos) return;
   files_.erase(std::remove(files_.begin(), files_.end(), whole), files_.end());
   files_.insert(files_.begin(), whole);
-  if (files_.size() > most) files_.resize(most);
+  if (files_.size() > max_files) files_.resize(max_files);
   try {
     fs::create_directories(list_.parent_path(), ignored);
     OutputFile out(list_);

@@ -6,7 +6,7 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t most = 200;
+constexpr std::size_t max_changes = 200;
 
 /// What playing and the window do by themselves is no change of the user's.
 bool worth_keeping(const SessionEvent& change) {

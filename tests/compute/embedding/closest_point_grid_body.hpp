@@ -14,6 +14,8 @@ void expect_exact(Executor<Backend>& exec, const Mesh& mesh, int cells, int sub,
   exec.arena().rewind(mark);
 }
 
+// Other structures have bodies of the same names: in one namespace the linker would run one of them for all.
+
 template <class Backend>
 void RoundAndSquare(Executor<Backend>& exec) {
   expect_exact(exec, sphere({15.3, 15.1, 14.8}, 8, 12), 30, 4, "sphere");

@@ -103,6 +103,26 @@ void expect_source_octree(Executor<Backend>& exec, const Mesh& mesh, int levels,
   exec.arena().rewind(mark);
 }
 
+inline std::vector<std::uint32_t> children(const std::vector<SourceNode>& nodes) {
+  std::vector<std::uint32_t> all;
+  for (const SourceNode& n : nodes) all.insert(all.end(), n.child, n.child + 8);
+  return all;
+}
+
+/// Everything that a tree holds is the same.
+inline void expect_same(const HostSourceOctree& a, const HostSourceOctree& b, const std::string& what) {
+  EXPECT_EQ(a.code, b.code) << what;
+  EXPECT_EQ(a.touched, b.touched) << what;
+  EXPECT_EQ(a.neighbour, b.neighbour) << what;
+  EXPECT_EQ(children(a.node), children(b.node)) << what;
+  const auto same = [](const CellPoint& p, const CellPoint& q) {
+    return p.low == q.low && p.high == q.high && p.triangle == q.triangle;
+  };
+  EXPECT_TRUE(std::equal(a.point.begin(), a.point.end(), b.point.begin(), b.point.end(), same)) << what;
+}
+
+// Other structures have bodies of the same names: in one namespace the linker would run one of them for all.
+
 template <class Backend>
 void RoundAndSquare(Executor<Backend>& exec) {
   expect_source_octree(exec, sphere({15.3, 15.1, 14.8}, 8, 12), 2, "sphere");
@@ -187,24 +207,6 @@ void EveryCellIsVisitedOnce(Executor<Backend>& exec) {
     }
     arena.rewind(0);
   }
-}
-
-inline std::vector<std::uint32_t> children(const std::vector<SourceNode>& nodes) {
-  std::vector<std::uint32_t> all;
-  for (const SourceNode& n : nodes) all.insert(all.end(), n.child, n.child + 8);
-  return all;
-}
-
-/// Everything that a tree holds is the same.
-inline void expect_same(const HostSourceOctree& a, const HostSourceOctree& b, const std::string& what) {
-  EXPECT_EQ(a.code, b.code) << what;
-  EXPECT_EQ(a.touched, b.touched) << what;
-  EXPECT_EQ(a.neighbour, b.neighbour) << what;
-  EXPECT_EQ(children(a.node), children(b.node)) << what;
-  const auto same = [](const CellPoint& p, const CellPoint& q) {
-    return p.low == q.low && p.high == q.high && p.triangle == q.triangle;
-  };
-  EXPECT_TRUE(std::equal(a.point.begin(), a.point.end(), b.point.begin(), b.point.end(), same)) << what;
 }
 
 template <class Backend>

@@ -27,7 +27,7 @@ HostField four_materials() {
 }
 
 /// A ball of material 1 with this radius.
-HostField ball(float radius, const Vec3f& cells_per_unit = {1, 1, 1}, const Int3& blocks = {3, 3, 3}) {
+HostField ball_field(float radius, const Vec3f& cells_per_unit = {1, 1, 1}, const Int3& blocks = {3, 3, 3}) {
   const auto inside = [radius](const Vec3f& p) { return radius - length(p - centre); };
   return {blocks, cells_per_unit, catmull_rom, {[inside](const Vec3f& p) { return -inside(p); }, inside}};
 }
@@ -100,7 +100,7 @@ class Ways : public testing::TestWithParam<Way> {};
 INSTANTIATE_TEST_SUITE_P(Project, Ways, testing::Values(by_difference, by_indicator));
 
 TEST_P(Ways, ReachTheSurfaceOfABall) {
-  const HostField host = ball(6);
+  const HostField host = ball_field(6);
   for (const Vec3f& place : places_near({0, 0, 0}, 1, 300)) {
     const Vec3f p = centre + normalized(place) * (6 + 0.9f * place.x);
     JunctionPoint at;
@@ -113,7 +113,7 @@ TEST_P(Ways, ReachTheSurfaceOfABall) {
 }
 
 TEST_P(Ways, ReachItThroughFlatVoxels) {
-  const HostField host = ball(6, {1, 1, 0.5f}, {3, 3, 2});
+  const HostField host = ball_field(6, {1, 1, 0.5f}, {3, 3, 2});
   for (const Vec3f& place : places_near({0, 0, 0}, 1, 100)) {
     JunctionPoint at;
     ASSERT_TRUE(GetParam()(host.view(), Junction(0, 1), centre + normalized(place) * 6.4f, 1, at));
@@ -122,7 +122,7 @@ TEST_P(Ways, ReachItThroughFlatVoxels) {
 }
 
 TEST_P(Ways, GoNoFurtherThanTheirReach) {
-  const HostField host = ball(6);
+  const HostField host = ball_field(6);
   JunctionPoint at;
   const Vec3f p = centre + Vec3f(4, 0, 0);
   EXPECT_FALSE(GetParam()(host.view(), Junction(0, 1), p, 1.5f, at));

@@ -69,6 +69,18 @@ TEST_P(FlowDoor, MemoryOfWhoDrawsIsWrittenAndNeverRead) {
   EXPECT_EQ(drawn, std::vector<float>(drawn.size(), 7.0f));
 }
 
+TEST_P(FlowDoor, TheBackgroundIsOpaqueUnlessAskedToBeTransparent) {
+  RenderOptions options;
+  options.width = options.height = 16;
+  options.camera = fit_camera("iso", {0, 0, 0}, {1, 1, 0.1}, options.width, options.height);
+  for (const bool transparent : {false, true}) {
+    options.transparent = transparent;
+    const std::vector<std::uint8_t> picture = pipeline_->flow().render(options);
+    EXPECT_EQ(picture[3], transparent ? 0 : 255) << "a corner";
+    EXPECT_EQ(picture[4 * (8 * 16 + 8) + 3], 255) << "the middle, where the surface is";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(By, FlowDoor, ::testing::Values("grid", "brick", "cell"),
                          [](const auto& test) { return std::string(test.param); });
 

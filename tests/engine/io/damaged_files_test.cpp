@@ -85,8 +85,7 @@ TEST_F(DamagedFiles, SmallTextFiles) {
 }
 
 TEST_F(DamagedFiles, RealFiles) {
-  const fs::path data(NACRE_SHARED_DATA);
-  if (!fs::exists(data)) GTEST_SKIP() << "the shared data are not at " << data;
+  NACRE_NEEDS_SHARED_DATA("");
   for (const char* name :
        {"malformed/e-misc/platonic_shelf.ply", "malformed/e-misc/platonic_shelf_big_endian.ply",
         "malformed/e-misc/multi.ply", "malformed/e-misc/mirror.ply", "malformed/e-misc/negative_indices.obj",
@@ -96,7 +95,7 @@ TEST_F(DamagedFiles, RealFiles) {
         "flow/artery/artery_wallshear_5steps.vtp", "flow/plot3d/bluntfin_fin_j1.vtp",
         "flow/disk-out/disk_out_ref_surface.vtp"}) {
     SCOPED_TRACE(name);
-    const fs::path path = data / name;
+    const fs::path path = shared_data(name);
     damage(path.filename().string(), read_all(path));
   }
 }

@@ -13,6 +13,7 @@
 #include "compute/device/error.hpp"
 #include "engine/io/reader.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
+#include "tests/paths.hpp"
 
 namespace nacre::test {
 

@@ -8,16 +8,14 @@
 #include "compute/device/error.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/scene/surface/prepare.hpp"
+#include "tests/paths.hpp"
 
 namespace nacre {
 namespace {
 
 namespace fs = std::filesystem;
 
-#define NEEDS_DATA(folder) \
-  if (!fs::exists(fs::path(NACRE_SHARED_DATA) / (folder))) GTEST_SKIP() << "no " << NACRE_SHARED_DATA << "/" << (folder)
-
-Surface load(const std::string& file) { return open_surface({fs::path(NACRE_SHARED_DATA) / file}).load(0); }
+Surface load(const std::string& file) { return open_surface({test::shared_data(file)}).load(0); }
 
 /// Edges of exactly two triangles that run the same way along them.
 std::size_t inconsistent_edges(const std::vector<Triangle>& triangles) {
@@ -45,7 +43,7 @@ std::vector<Vec3f> vectors_of(const Surface& surface, const std::string& name) {
 }
 
 TEST(PrepareData, ShuffledWindSphereFacesOutwardsAgain) {
-  NEEDS_DATA("flow/wind-sphere");
+  NACRE_NEEDS_SHARED_DATA("flow/wind-sphere");
   Surface surface = load("flow/wind-sphere/wind_sphere_9steps.vtp");
   for (std::size_t t = 0; t < surface.triangles.size(); t += 1 + t % 3)
     std::swap(surface.triangles[t].b, surface.triangles[t].c);
@@ -61,7 +59,7 @@ TEST(PrepareData, ShuffledWindSphereFacesOutwardsAgain) {
 }
 
 TEST(PrepareData, AtriumIsWoundConsistently) {
-  NEEDS_DATA("flow/atrium-moving");
+  NACRE_NEEDS_SHARED_DATA("flow/atrium-moving");
   const Surface surface = load("flow/atrium-moving/model_moved_00.vtp");
   EXPECT_GT(inconsistent_edges(surface.triangles), 0u);
   std::vector<std::string> warnings;
@@ -71,7 +69,7 @@ TEST(PrepareData, AtriumIsWoundConsistently) {
 }
 
 TEST(PrepareData, PipeInflowIsNormalToItsSurface) {
-  NEEDS_DATA("flow/pipe");
+  NACRE_NEEDS_SHARED_DATA("flow/pipe");
   const Surface surface = load("flow/pipe/bct.vtp");
   const VectorChoice choice = choose_vectors(surface, "");
   const VectorStatistics stats = vector_statistics(prepare(surface), vectors_of(surface, choice.name));
@@ -79,7 +77,7 @@ TEST(PrepareData, PipeInflowIsNormalToItsSurface) {
 }
 
 TEST(PrepareData, TheRightVectorsAreChosen) {
-  NEEDS_DATA("flow/drivaer");
+  NACRE_NEEDS_SHARED_DATA("flow/drivaer");
   const std::map<std::string, std::string> expected = {
       {"flow/drivaer/drivaer_0030.vtp", "wallShearStress"},
       {"flow/disk-out/disk_out_ref_surface.vtp", "V"},
@@ -94,7 +92,7 @@ TEST(PrepareData, TheRightVectorsAreChosen) {
 }
 
 TEST(PrepareData, WallShearLiesInTheSurface) {
-  NEEDS_DATA("flow/drivaer");
+  NACRE_NEEDS_SHARED_DATA("flow/drivaer");
   const Surface surface = load("flow/drivaer/drivaer_0030.vtp");
   const PreparedSurface s = prepare(surface);
   EXPECT_EQ(inconsistent_edges(s.triangles), 0u);
@@ -105,9 +103,9 @@ TEST(PrepareData, WallShearLiesInTheSurface) {
 }
 
 TEST(PrepareData, EveryDefectMeshIsPreparedOrRefused) {
-  NEEDS_DATA("meshes");
+  NACRE_NEEDS_SHARED_DATA("meshes");
   std::size_t prepared = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(NACRE_SHARED_DATA) / "meshes")) {
+  for (const auto& entry : fs::recursive_directory_iterator(test::shared_data("meshes"))) {
     if (!entry.is_regular_file() || entry.file_size() > 3000000) continue;  // the large ones are sound
     try {
       const PreparedSurface s = prepare(open_surface({entry.path()}).load(0));

@@ -10,9 +10,7 @@ namespace {
 
 class SharedData : public ::testing::Test {
  protected:
-  void SetUp() override {
-    if (!fs::exists(data_)) GTEST_SKIP() << "the shared data are not at " << data_;
-  }
+  void SetUp() override { NACRE_NEEDS_SHARED_DATA(""); }
 
   Surface first_step(const std::string& name) const { return open_surface({data_ / name}).load(0); }
 
@@ -25,7 +23,7 @@ class SharedData : public ::testing::Test {
     return {};
   }
 
-  const fs::path data_ = NACRE_SHARED_DATA;
+  const fs::path data_ = shared_data("");
 };
 
 TEST_F(SharedData, CubesHaveTwelveTriangles) {

@@ -9,11 +9,6 @@
 namespace nacre::test {
 namespace {
 
-const fs::path data = NACRE_SHARED_DATA;
-
-#define NEEDS_DATA(folder) \
-  if (!fs::exists(data / folder)) GTEST_SKIP() << "no " << (data / folder)
-
 std::string failure_of(const fs::path& path) {
   try {
     read_volume(path);
@@ -40,10 +35,10 @@ std::size_t voxels_of_label(const Volume& volume, std::int64_t label) {
 }
 
 TEST(VolumeData, EveryRealVolumeLoads) {
-  NEEDS_DATA("labels");
+  NACRE_NEEDS_SHARED_DATA("labels");
   std::size_t read = 0;
   for (const char* folder : {"labels", "scalar"})
-    for (const fs::path& path : volumes_in(data / folder)) {
+    for (const fs::path& path : volumes_in(shared_data(folder))) {
       const std::string why = failure_of(path);
       // Its header says 32 bits, it holds 16 bits per voxel.
       const bool cut = path.filename() == "small-scalar.inr";
@@ -54,8 +49,8 @@ TEST(VolumeData, EveryRealVolumeLoads) {
 }
 
 TEST(VolumeData, LiverHasItsLabels) {
-  NEEDS_DATA("labels/junctions");
-  const Volume liver = read_volume(data / "labels/junctions/liver.inr.gz");
+  NACRE_NEEDS_SHARED_DATA("labels/junctions");
+  const Volume liver = read_volume(shared_data("labels/junctions/liver.inr.gz"));
   EXPECT_EQ(liver.dims, Int3(438, 353, 165));
   expect_near(liver.spacing, {0.617188, 0.617188, 1.33333});
   EXPECT_EQ(voxels_of_label(liver, 84), 2u);
@@ -68,21 +63,22 @@ TEST(VolumeData, LiverHasItsLabels) {
 }
 
 TEST(VolumeData, FrogAndAorta) {
-  NEEDS_DATA("labels/frog");
-  const Volume frog = read_volume(data / "labels/frog/frogtissue.mhd");
+  NACRE_NEEDS_SHARED_DATA("labels/frog");
+  const Volume frog = read_volume(shared_data("labels/frog/frogtissue.mhd"));
   EXPECT_EQ(frog.dims, Int3(500, 470, 136));
   EXPECT_EQ(voxels_of_label(frog, 1), 35279u);
-  const Volume aorta = read_volume(data / "scalar/aorta/aorta.mha");
+  const Volume aorta = read_volume(shared_data("scalar/aorta/aorta.mha"));
   expect_near(aorta.axes[0], {-1, 0, 0});
   expect_near(aorta.origin, {-156.445, -24.6094, 0}, 1e-3);
   EXPECT_NEAR(volume_statistics(aorta).max, 2570.2, 0.1);
 }
 
 TEST(VolumeData, HeadProbabilitiesFillTheHead) {
-  NEEDS_DATA("labels/head-probabilities");
+  NACRE_NEEDS_SHARED_DATA("labels/head-probabilities");
   std::vector<Volume> volumes;
   for (int i = 1; i <= 6; ++i)
-    volumes.push_back(read_volume(data / "labels/head-probabilities" / ("c" + std::to_string(i) + "_40-44.nrrd")));
+    volumes.push_back(
+        read_volume(shared_data("labels/head-probabilities") / ("c" + std::to_string(i) + "_40-44.nrrd")));
   const MeshVolume mesh = make_mesh_volume(volumes, {});
   EXPECT_EQ(mesh.labels, (std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(mesh.names[3], "c3_40-44");
@@ -101,10 +97,10 @@ TEST(VolumeData, HeadProbabilitiesFillTheHead) {
 }
 
 TEST(VolumeData, SphereFunctionsDivideTheCube) {
-  NEEDS_DATA("labels/cleaver");
+  NACRE_NEEDS_SHARED_DATA("labels/cleaver");
   std::vector<Volume> volumes;
   for (int i = 1; i <= 4; ++i)
-    volumes.push_back(read_volume(data / "labels/cleaver" / ("spheres" + std::to_string(i) + ".nrrd")));
+    volumes.push_back(read_volume(shared_data("labels/cleaver") / ("spheres" + std::to_string(i) + ".nrrd")));
   const MeshVolume mesh = make_mesh_volume(volumes, {});
   std::vector<std::size_t> voxels(5);
   for (const std::uint16_t material : mesh.material) ++voxels[material];
@@ -113,8 +109,8 @@ TEST(VolumeData, SphereFunctionsDivideTheCube) {
 }
 
 TEST(VolumeData, ScalarVolumesNeedAnIsovalue) {
-  NEEDS_DATA("scalar");
-  const Volume skull = read_volume(data / "scalar/skull_2.9.inr");
+  NACRE_NEEDS_SHARED_DATA("scalar");
+  const Volume skull = read_volume(shared_data("scalar/skull_2.9.inr"));
   EXPECT_THROW(make_mesh_volume({&skull, 1}, {}), Error);
   MaterialOptions options;
   options.isovalues = {2.9};
@@ -123,7 +119,7 @@ TEST(VolumeData, ScalarVolumesNeedAnIsovalue) {
 }
 
 TEST(VolumeData, MalformedFilesEndWell) {
-  NEEDS_DATA("malformed");
+  NACRE_NEEDS_SHARED_DATA("malformed");
   // Not three dimensions of space, more than one value per voxel, complex numbers, no values, or no such file.
   const std::set<std::string> bad = {"test_simple4d_raw.nrrd",
                                      "test2d_ascii.nrrd",
@@ -143,7 +139,7 @@ TEST(VolumeData, MalformedFilesEndWell) {
                                      "functional.nii"};
   std::size_t seen = 0;
   for (const char* folder : {"e-nrrd", "e-nifti", "e-vtk", "e-misc"})
-    for (const fs::path& path : volumes_in(data / "malformed" / folder)) {
+    for (const fs::path& path : volumes_in(shared_data("malformed") / folder)) {
       const std::string why = failure_of(path);
       EXPECT_EQ(why.find('\n'), why.npos);
       EXPECT_EQ(!why.empty(), bad.count(path.filename().string()) > 0) << path << ": " << why;
@@ -153,8 +149,8 @@ TEST(VolumeData, MalformedFilesEndWell) {
 }
 
 TEST(VolumeData, TwinsAreEqual) {
-  NEEDS_DATA("malformed/e-nifti");
-  const fs::path nifti = data / "malformed/e-nifti", nrrd = data / "malformed/e-nrrd";
+  NACRE_NEEDS_SHARED_DATA("malformed/e-nifti");
+  const fs::path nifti = shared_data("malformed/e-nifti"), nrrd = shared_data("malformed/e-nrrd");
   EXPECT_EQ(values_of(read_volume(nifti / "big.nii.gz")), values_of(read_volume(nifti / "little.nii.gz")));
   EXPECT_EQ(values_of(read_volume(nifti / "avg152T1_LR_nifti.nii")),
             values_of(read_volume(nifti / "avg152T1_LR_nifti2.nii.gz")));

@@ -6,7 +6,7 @@ namespace {
 
 using MetaImage = VolumeTest;
 
-const std::string bytes = counting<std::uint8_t>(12);
+const std::string voxel_bytes = counting<std::uint8_t>(12);
 
 std::string meta(const std::string& fields, const std::string& data, const std::string& type = "UCHAR",
                  const std::string& file = "LOCAL") {
@@ -16,7 +16,7 @@ std::string meta(const std::string& fields, const std::string& data, const std::
 
 std::string plain(const std::string& more = "") { return "DimSize = 3 2 2\nElementSpacing = 1 2 3\n" + more; }
 
-/// What zlib makes of bytes, without gzip's frame.
+/// What zlib makes of voxel_bytes, without gzip's frame.
 std::string deflated(const std::string& content) {
   std::string out(compressBound(uLong(content.size())), '\0');
   uLongf size = uLongf(out.size());
@@ -26,7 +26,8 @@ std::string deflated(const std::string& content) {
 }
 
 TEST_F(MetaImage, OrientationIsKept) {
-  const Volume volume = read("a.mha", meta(plain("TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\n"), bytes));
+  const Volume volume =
+      read("a.mha", meta(plain("TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\n"), voxel_bytes));
   EXPECT_EQ(values_of(volume), count_up(12));
   EXPECT_EQ(volume.name, "a.mha");
   expect_near(volume.spacing, {1, 2, 3});
@@ -34,7 +35,7 @@ TEST_F(MetaImage, OrientationIsKept) {
   expect_near(volume.axes[0], {0, 1, 0});
   expect_near(volume.axes[1], {-1, 0, 0});
   EXPECT_TRUE(volume.warnings.empty());
-  EXPECT_EQ(read("b.mha", meta("DimSize = 3 2 2\n", bytes)).warnings.size(), 1u);
+  EXPECT_EQ(read("b.mha", meta("DimSize = 3 2 2\n", voxel_bytes)).warnings.size(), 1u);
 }
 
 TEST_F(MetaImage, TypesAndOrders) {
@@ -56,15 +57,15 @@ TEST_F(MetaImage, TypesAndOrders) {
 }
 
 TEST_F(MetaImage, PackedAndInItsOwnFile) {
-  EXPECT_EQ(values_of(read("a.mha", meta(plain("CompressedData = True\n"), deflated(bytes)))), count_up(12));
-  write("a.raw", bytes);
-  write("b.raw", "head" + bytes);
-  write("a.zraw", deflated(bytes));
+  EXPECT_EQ(values_of(read("a.mha", meta(plain("CompressedData = True\n"), deflated(voxel_bytes)))), count_up(12));
+  write("a.raw", voxel_bytes);
+  write("b.raw", "head" + voxel_bytes);
+  write("a.zraw", deflated(voxel_bytes));
   EXPECT_EQ(values_of(read("a.mhd", meta(plain(), "", "UCHAR", "a.raw"))), count_up(12));
   EXPECT_EQ(values_of(read("b.mhd", meta(plain("HeaderSize = 4\n"), "", "UCHAR", "b.raw"))), count_up(12));
   EXPECT_EQ(values_of(read("c.mhd", meta(plain("HeaderSize = -1\n"), "", "UCHAR", "b.raw"))), count_up(12));
   EXPECT_EQ(values_of(read("d.mhd", meta(plain("CompressedData = True\n"), "", "UCHAR", "a.zraw"))), count_up(12));
-  const std::string packed = deflated(bytes), last = "CompressedData = True\nHeaderSize = -1\n";
+  const std::string packed = deflated(voxel_bytes), last = "CompressedData = True\nHeaderSize = -1\n";
   write("b.zraw", "head" + packed);
   const std::string size = "CompressedDataSize = " + std::to_string(packed.size()) + "\n";
   EXPECT_EQ(values_of(read("e.mhd", meta(plain(last + size), "", "UCHAR", "b.zraw"))), count_up(12));
@@ -75,7 +76,7 @@ TEST_F(MetaImage, FourthDimensionOfOneStep) {
   std::string content = meta(
       "DimSize = 3 2 2 1\nElementSpacing = 1 2 3 9\nOffset = 1 2 3 4\n"
       "TransformMatrix = 0 1 0 0 -1 0 0 0 0 0 1 0 0 0 0 1\n",
-      bytes);
+      voxel_bytes);
   const std::string four = content.replace(content.find("NDims = 3"), 9, "NDims = 4");
   const Volume volume = read("a.mha", four);
   expect_near(volume.spacing, {1, 2, 3});
@@ -84,15 +85,16 @@ TEST_F(MetaImage, FourthDimensionOfOneStep) {
 }
 
 TEST_F(MetaImage, WhatIsDamagedIsAnError) {
-  const auto with = [&](const std::string& fields, const std::string& data = bytes) {
+  const auto with = [&](const std::string& fields, const std::string& data = voxel_bytes) {
     return failure("a.mha", meta(fields, data));
   };
-  EXPECT_TRUE(contains(with(plain(), bytes.substr(1)), "cannot hold them"));
-  EXPECT_TRUE(contains(with(plain("CompressedData = True\n"), deflated(bytes).substr(0, 15)), "too early or late"));
-  std::string damaged = deflated(bytes);
+  EXPECT_TRUE(contains(with(plain(), voxel_bytes.substr(1)), "cannot hold them"));
+  EXPECT_TRUE(
+      contains(with(plain("CompressedData = True\n"), deflated(voxel_bytes).substr(0, 15)), "too early or late"));
+  std::string damaged = deflated(voxel_bytes);
   damaged[damaged.size() - 1] ^= 1;
   EXPECT_TRUE(contains(with(plain("CompressedData = True\n"), damaged), "damaged"));
-  EXPECT_TRUE(contains(with(plain("CompressedData = True\n"), deflated(bytes + "x")), "too early or late"));
+  EXPECT_TRUE(contains(with(plain("CompressedData = True\n"), deflated(voxel_bytes + "x")), "too early or late"));
   EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 0 1\n"), "axis 1 is zero"));
   EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 nan 1\n"), "not a number"));
   EXPECT_TRUE(contains(with("DimSize = 3 2 2\nElementSpacing = 1 1\n"), "ElementSpacing = 1 1"));
@@ -101,7 +103,7 @@ TEST_F(MetaImage, WhatIsDamagedIsAnError) {
   EXPECT_TRUE(contains(with("DimSize = 3 4 1\n"), "flat image"));
   EXPECT_TRUE(contains(with(plain("ElementNumberOfChannels = 3\n")), "3 values per voxel"));
   EXPECT_TRUE(contains(with(plain("TransformMatrix = 1 1 0 0 1 0 0 0 1\n")), "sheared"));
-  EXPECT_TRUE(contains(failure("a.mha", meta(plain(), bytes, "UCHAR_ARRAY")), "of type 'MET_UCHAR_ARRAY'"));
+  EXPECT_TRUE(contains(failure("a.mha", meta(plain(), voxel_bytes, "UCHAR_ARRAY")), "of type 'MET_UCHAR_ARRAY'"));
   EXPECT_TRUE(contains(failure("a.mha", meta(plain("BinaryData = False\n"), "1 2 3")), "fewer numbers than voxels"));
   EXPECT_TRUE(contains(failure("a.mha", "nothing of the kind"), "no MetaImage header"));
   for (const char* file : {"no.raw", "/dev/zero"})
@@ -110,7 +112,7 @@ TEST_F(MetaImage, WhatIsDamagedIsAnError) {
 }
 
 TEST_F(MetaImage, EveryTruncationAndFlippedByteEndsWell) {
-  const std::string whole = meta(plain("TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\n"), bytes);
+  const std::string whole = meta(plain("TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 10 20 30\n"), voxel_bytes);
   for (std::size_t length = 0; length < whole.size(); ++length)
     EXPECT_NE(failure("a.mha", whole.substr(0, length)), "");
   std::size_t good = 0;

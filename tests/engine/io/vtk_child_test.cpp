@@ -8,6 +8,7 @@
 
 #include "compute/device/error.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
+#include "tests/paths.hpp"
 
 namespace nacre {
 namespace {
@@ -282,8 +283,8 @@ TEST(VtkChild, OpenFoamPatches) {
 
 TEST(VtkChild, RotatingDisk) {
   NEEDS_VTK();
-  const fs::path disk = fs::path(NACRE_SHARED_DATA) / "flow/disk-out";
-  if (!fs::exists(disk)) GTEST_SKIP() << "no " << disk;
+  NACRE_NEEDS_SHARED_DATA("flow/disk-out");
+  const fs::path disk = test::shared_data("flow/disk-out");
   EXPECT_EQ(triangles_in(convert_with_vtk(disk / "disk_out_ref.ex2").files.at(0)), 3976);
   const VtkConversion surface = convert_with_vtk(disk / "SurfaceVectors.vtk");
   EXPECT_EQ(triangles_in(surface.files.at(0)), 756);
@@ -292,8 +293,8 @@ TEST(VtkChild, RotatingDisk) {
 
 TEST(VtkChild, MalformedFilesEndWell) {
   NEEDS_VTK();
-  const fs::path folder = fs::path(NACRE_SHARED_DATA) / "malformed/e-vtk";
-  if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+  NACRE_NEEDS_SHARED_DATA("malformed/e-vtk");
+  const fs::path folder = test::shared_data("malformed/e-vtk");
   std::size_t read = 0, refused = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".vtk") continue;

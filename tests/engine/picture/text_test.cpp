@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-constexpr Rgba white{255, 255, 255, 255}, black{0, 0, 0, 255};
+constexpr Rgba white_paper{255, 255, 255, 255}, black{0, 0, 0, 255};
 
 TEST(Utf8, ValidAndBroken) {
   std::string_view text = "a\u00b5\u2212\U0001F600\n";
@@ -30,7 +30,7 @@ TEST(Utf8, WhatIsCutIsOfWholeCharacters) {
 }
 
 TEST(Text, CapitalsFillTheirHeight) {
-  const Image blank = plain_image(100, 60, white);
+  const Image blank = plain_image(100, 60, white_paper);
   Image image = blank;
   draw_text(image, 20, 15, "H", 30, black);
   const int cap = text_cap_height(30), width = text_width("H", 30);
@@ -47,20 +47,20 @@ TEST(Text, WidthGrowsWithTextAndSize) {
 
 TEST(Text, SignsOfScienceAreInTheFont) {
   if (text_width("WiWi", 200) == plain_text_width("WiWi", 200)) GTEST_SKIP() << "built without DejaVu Sans";
-  Image missing = plain_image(40, 40, white);
+  Image missing = plain_image(40, 40, white_paper);
   draw_text(missing, 5, 8, "\U0010FFFD", 20, black);
   for (const char* sign : {"\u00b0", "\u00b7", "\u00b2", "\u00b3", "\u207b", "\u2079", "\u00b5", "\u03bc", "\u2212",
                            "\u00d7", "\u2026", "\u03c9"}) {
-    Image image = plain_image(40, 40, white);
+    Image image = plain_image(40, 40, white_paper);
     draw_text(image, 5, 8, sign, 20, black);
-    EXPECT_GT(changed_pixels(image, plain_image(40, 40, white)), 2) << sign;
+    EXPECT_GT(changed_pixels(image, plain_image(40, 40, white_paper)), 2) << sign;
     EXPECT_GT(changed_pixels(image, missing), 2) << sign << " is drawn as a missing one";
   }
 }
 
 TEST(Text, ReachesOverTheBordersWithoutHarm) {
   for (const auto& [x, y] : {std::pair{-50, -8}, {90, 10}, {5, 95}, {-5000, 0}, {5000, 5000}, {0, -5000}}) {
-    Image image = plain_image(100, 100, white);
+    Image image = plain_image(100, 100, white_paper);
     draw_text(image, x, y, "velocity", 24, black);
     draw_plain_text(image, x, y, "velocity", 24, black);
   }
@@ -71,7 +71,7 @@ TEST(Text, ReachesOverTheBordersWithoutHarm) {
 TEST(Text, AnyBytesAreDrawn) {
   std::string bytes;
   for (int i = 0; i < 256; ++i) bytes += char(i);
-  Image image = plain_image(400, 40, white);
+  Image image = plain_image(400, 40, white_paper);
   draw_text(image, 0, 10, bytes, 12, black);
   draw_plain_text(image, 0, 10, bytes, 12, black);
   EXPECT_GT(text_width(bytes, 12), 100);
@@ -88,7 +88,7 @@ TEST(Text, IsCutToFit) {
 }
 
 TEST(PlainText, CapitalsFillTheirHeight) {
-  const Image blank = plain_image(60, 60, white);
+  const Image blank = plain_image(60, 60, white_paper);
   Image image = blank;
   draw_plain_text(image, 10, 15, "H", 30, black);
   EXPECT_GT(changed_pixels(blank, image, 10, 15, 40, 38), 30);

@@ -23,7 +23,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 std::string content(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -168,6 +168,16 @@ TEST_F(VideoTest, OtherContainers) {
   }
 }
 
+TEST_F(VideoTest, CanBePlayedBeforeItIsLoadedToTheEnd) {
+  for (const char* name : {"a.mp4", "a.mov"}) {
+    ASSERT_EQ(failure_of_video(folder / name, 3, 64), "") << name;
+    std::ifstream file(folder / name, std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(file), {});
+    ASSERT_NE(bytes.find("mdat"), bytes.npos) << name;
+    EXPECT_LT(bytes.find("moov"), bytes.find("mdat")) << name << ": the index comes first";
+  }
+}
+
 TEST_F(VideoTest, KeepsColours) {
   for (const Rgba color :
        {Rgba{200, 30, 40, 255}, Rgba{20, 160, 60, 255}, Rgba{30, 60, 220, 255}, Rgba{128, 128, 128, 255}}) {
@@ -199,16 +209,16 @@ TEST_F(VideoTest, FullDisk) {
   if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a small disk";
   for (const char* name : {"a.mp4", "a.mkv", "a.gif"}) {
     const std::string error = failure_of_video(folder / name, 60, 128);
-    EXPECT_TRUE(has(error, name)) << error;
-    EXPECT_TRUE(has(error, "No space left on device")) << error;
+    EXPECT_TRUE(holds(error, name)) << error;
+    EXPECT_TRUE(holds(error, "No space left on device")) << error;
     EXPECT_EQ(folder.entries(), 0) << name;
   }
 }
 
 TEST_F(VideoTest, BadTargets) {
-  EXPECT_TRUE(has(failure_of_video(folder / "a.txt", 1, 8), ".mp4"));
-  EXPECT_TRUE(has(failure_of_video(folder / "none/a.mp4", 1, 8), "No such file or directory"));
-  EXPECT_TRUE(has(failure_of_video(folder / "a.mp4", 0, 8), "no frames"));
+  EXPECT_TRUE(holds(failure_of_video(folder / "a.txt", 1, 8), ".mp4"));
+  EXPECT_TRUE(holds(failure_of_video(folder / "none/a.mp4", 1, 8), "No such file or directory"));
+  EXPECT_TRUE(holds(failure_of_video(folder / "a.mp4", 0, 8), "no frames"));
   EXPECT_EQ(folder.entries(), 0);
 }
 
@@ -216,8 +226,8 @@ TEST(Video, MissingFfmpegNamesThePackageAndTheWayAround) {
   TemporaryFolder folder;
   const OnlyPath path(folder.path());
   const std::string error = failure_of_video(folder / "a.mp4", 1, 8);
-  EXPECT_TRUE(has(error, "install the package ffmpeg")) << error;
-  EXPECT_TRUE(has(error, "folder of pictures")) << error;
+  EXPECT_TRUE(holds(error, "install the package ffmpeg")) << error;
+  EXPECT_TRUE(holds(error, "folder of pictures")) << error;
   EXPECT_EQ(folder.entries(), 0);
 }
 
@@ -227,7 +237,7 @@ TEST(Video, FfmpegsFirstComplaintIsReported) {
   const OnlyPath path(programs.path());
   // More frames than a socket holds: sending to a program that is gone must not end ours.
   const std::string error = failure_of_video(folder / "a.mp4", 50, 128);
-  EXPECT_TRUE(has(error, "ffmpeg: Unknown encoder libx264)")) << error;
+  EXPECT_TRUE(holds(error, "ffmpeg: Unknown encoder libx264)")) << error;
   EXPECT_EQ(folder.entries(), 0);
 }
 
@@ -235,7 +245,7 @@ TEST(Video, ANoisyOrIdleProgramDoesNotBlockUs) {
   TemporaryFolder programs, folder;
   const OnlyPath path(programs.path().string() + ":/usr/bin:/bin");
   write_program(programs / "ffmpeg", "head -c 300000 /dev/zero | tr '\\0' 'x' >&2; cat > /dev/null; exit 3\n");
-  EXPECT_TRUE(has(failure_of_video(folder / "a.mp4", 20, 128), "ffmpeg: xxx"));
+  EXPECT_TRUE(holds(failure_of_video(folder / "a.mp4", 20, 128), "ffmpeg: xxx"));
   write_program(programs / "ffmpeg", "exec sleep 100\n");
   { make_video(folder / "a.mp4", 25)->add(noise_image(8, 8)); }
   EXPECT_EQ(folder.entries(), 0);

@@ -6,7 +6,7 @@
 namespace nacre {
 namespace {
 
-Camera front() {
+Camera front_camera() {
   Camera camera;
   camera.eye = {0, -10, 0};
   camera.target = {0, 0, 0};
@@ -27,32 +27,32 @@ std::array<double, 2> place_of(const Camera& c, const Vec3d& p, double aspect) {
 }
 
 TEST(CameraMotion, PointUnderTheCursorIsInThePlaneOfTheTarget) {
-  expect_near(point_under(front(), 0, 0, 1.5), {0, 0, 0});
-  expect_near(point_under(front(), 1, 0, 1.5), {3, 0, 0});
-  expect_near(point_under(front(), 0, -1, 1.5), {0, 0, -2});
+  expect_near(point_under(front_camera(), 0, 0, 1.5), {0, 0, 0});
+  expect_near(point_under(front_camera(), 1, 0, 1.5), {3, 0, 0});
+  expect_near(point_under(front_camera(), 0, -1, 1.5), {0, 0, -2});
 }
 
 TEST(CameraMotion, TurningKeepsTheDistanceAndTheTarget) {
-  for (const Camera& c : {turn_table(front(), 0.3, 0.4), turn_ball(front(), 0.3, 0.4)}) {
+  for (const Camera& c : {turn_table(front_camera(), 0.3, 0.4), turn_ball(front_camera(), 0.3, 0.4)}) {
     EXPECT_NEAR(length(c.eye - c.target), 10, 1e-12);
     expect_near(c.target, {0, 0, 0});
   }
 }
 
 TEST(CameraMotion, AcrossTheWholePictureIsHalfACircle) {
-  expect_near(turn_table(front(), 2, 0).eye, {0, 10, 0});
-  expect_near(turn_table(front(), 1, 0).eye, {-10, 0, 0});  // the scene follows the hand to the right
-  expect_near(turn_ball(front(), 0, 1).eye, {0, 0, -10}, 1e-12);
+  expect_near(turn_table(front_camera(), 2, 0).eye, {0, 10, 0});
+  expect_near(turn_table(front_camera(), 1, 0).eye, {-10, 0, 0});  // the scene follows the hand to the right
+  expect_near(turn_ball(front_camera(), 0, 1).eye, {0, 0, -10}, 1e-12);
 }
 
 TEST(CameraMotion, DownLiftsTheEyeForBoth) {
-  EXPECT_GT(turn_table(front(), 0, -0.2).eye.z, 0);
-  EXPECT_GT(turn_ball(front(), 0, -0.2).eye.z, 0);
-  expect_near(turn_table(front(), 0, -0.2).eye, turn_ball(front(), 0, -0.2).eye, 1e-12);
+  EXPECT_GT(turn_table(front_camera(), 0, -0.2).eye.z, 0);
+  EXPECT_GT(turn_ball(front_camera(), 0, -0.2).eye.z, 0);
+  expect_near(turn_table(front_camera(), 0, -0.2).eye, turn_ball(front_camera(), 0, -0.2).eye, 1e-12);
 }
 
 TEST(CameraMotion, TurntableStopsShortOfThePole) {
-  Camera c = front();
+  Camera c = front_camera();
   for (int k = 0; k < 50; ++k) c = turn_table(c, 0, -0.1);
   EXPECT_NEAR(c.eye.z, 10 * std::cos(3.14159265358979 / 180), 1e-9);
   expect_near(c.up, {0, 0, 1});
@@ -62,24 +62,24 @@ TEST(CameraMotion, TurntableStopsShortOfThePole) {
 }
 
 TEST(CameraMotion, TrackballGoesOverThePole) {
-  Camera c = front();
+  Camera c = front_camera();
   for (int k = 0; k < 10; ++k) c = turn_ball(c, 0, -0.2);
   expect_near(c.eye, {0, 10, 0}, 1e-9);
   expect_near(c.up, {0, 0, -1}, 1e-9);
 }
 
 TEST(CameraMotion, PanMovesTheSceneWithTheHand) {
-  const Vec3d p = point_under(front(), 0.25, -0.5, 1.5);
-  const Camera c = pan(front(), 0.1, 0.2, 1.5);
+  const Vec3d p = point_under(front_camera(), 0.25, -0.5, 1.5);
+  const Camera c = pan(front_camera(), 0.1, 0.2, 1.5);
   const auto at = place_of(c, p, 1.5);
   EXPECT_NEAR(at[0], 0.35, 1e-12);
   EXPECT_NEAR(at[1], -0.3, 1e-12);
 }
 
 TEST(CameraMotion, DollyKeepsWhatIsUnderTheCursor) {
-  const Vec3d p = point_under(front(), 0.6, 0.3, 1.5);
+  const Vec3d p = point_under(front_camera(), 0.6, 0.3, 1.5);
   for (const double factor : {0.5, 2.0}) {
-    const Camera c = dolly(front(), factor, 0.6, 0.3, 1.5);
+    const Camera c = dolly(front_camera(), factor, 0.6, 0.3, 1.5);
     const auto at = place_of(c, p, 1.5);
     EXPECT_NEAR(at[0], 0.6, 1e-12);
     EXPECT_NEAR(at[1], 0.3, 1e-12);

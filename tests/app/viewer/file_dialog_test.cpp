@@ -1,5 +1,4 @@
 // Nacre: the dialog that picks a file, by mouse and keys. No OpenGL here.
-#if NACRE_HAS_VIEWER
 
 #include "app/viewer/panel/file_dialog.hpp"
 
@@ -88,4 +87,3 @@ TEST_F(FileDialogTest, WhereItSavesAClickOnAFolderLeavesTheName) {
 }  // namespace
 }  // namespace nacre::test
 
-#endif

@@ -1,6 +1,4 @@
 // Nacre: a mesh in the viewer's loop, on an OpenGL context without a display.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/mesh/mesh_scene.hpp"
 
 #include <chrono>
@@ -257,5 +255,3 @@ TEST_F(MeshInView, AFailureIsToldAndOtherKnobsMendIt) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

@@ -1,5 +1,4 @@
 // Nacre: menus and panel of the viewer, by mouse and keys. No OpenGL here.
-#if NACRE_HAS_VIEWER
 
 #include "app/viewer/panel/ui.hpp"
 
@@ -9,7 +8,7 @@
 
 #include "app/viewer/panel/frame_clock.hpp"
 #include "tests/app/imgui_frames.hpp"
-#include "tests/app/still_scene.hpp"
+#include "tests/app/viewer/still_scene.hpp"
 
 namespace nacre::test {
 namespace {
@@ -144,4 +143,3 @@ TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
 }  // namespace
 }  // namespace nacre::test
 
-#endif

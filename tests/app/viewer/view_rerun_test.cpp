@@ -1,6 +1,4 @@
 // Nacre: what runs again when a knob is changed in the viewer.
-#if NACRE_HAS_VIEWER
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -104,5 +102,3 @@ TEST(FlowRerun, ChangesAddUp) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

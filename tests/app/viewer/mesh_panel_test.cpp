@@ -1,6 +1,4 @@
 // Nacre: the buttons of the tab "result" of a mesh, each clicked where it is found. No OpenGL here.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/panel/mesh_panel.hpp"
 
 #include <fmt/format.h>
@@ -207,5 +205,3 @@ TEST_F(MeshPanelTest, FlatViewsAreTurnedTowardsTheTriangle) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

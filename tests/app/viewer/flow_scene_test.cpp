@@ -1,6 +1,4 @@
 // Nacre: a flow in the viewer's loop, on an OpenGL context without a display.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/flow/flow_scene.hpp"
 
 #include <imgui.h>
@@ -367,5 +365,3 @@ TEST_F(FlowInView, WritesItsValues) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

@@ -1,6 +1,4 @@
 // Nacre: parts of the viewer that need no picture: what is taken back, what was opened last, where the picture lies.
-#if NACRE_HAS_VIEWER
-
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -170,5 +168,3 @@ TEST(FreeArea, PlacesRunFromTheLeftLowerCorner) {
 
 }  // namespace
 }  // namespace nacre::test
-
-#endif

@@ -1,6 +1,4 @@
 // Nacre: the thread that meshes beside the frames: what it tells, and which stages run again after a knob was changed.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/mesh/mesh_worker.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +13,7 @@ namespace nacre {
 namespace {
 
 /// A small mesh, and what its worker has told.
-struct WorkerRun {
+struct MeshWorkerRun {
   std::atomic<bool> stop{false};
   Session session;
   std::vector<Float4> place, direction;
@@ -32,7 +30,7 @@ struct WorkerRun {
   SliceFilled slice;
   std::unique_ptr<MeshWorker> worker;
 
-  explicit WorkerRun(
+  explicit MeshWorkerRun(
       bool lockstep = false, int threads = 2, const std::function<void(Session&)>& preset = [](Session&) {}) {
     session.sample = "two-spheres";
     session.detail = 20;
@@ -132,7 +130,7 @@ struct WorkerRun {
 };
 
 TEST(MeshWorker, TellsInOrder) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle();
   EXPECT_EQ(run.failure, "");
   EXPECT_EQ(run.order, "VBITM");
@@ -152,7 +150,7 @@ TEST(MeshWorker, TellsInOrder) {
 }
 
 TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle();
   const std::string particles = "seed triangulate quality";
   EXPECT_EQ(run.rerun("theta", "0.6"), particles);
@@ -169,7 +167,7 @@ TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
 }
 
 TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {
-  WorkerRun run;
+  MeshWorkerRun run;
   for (int k = 0; k < 8; ++k) {
     const int before = run.iterations;
     run.settle([&] { return run.iterations > before + k; });
@@ -179,7 +177,7 @@ TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {
   run.settle();
   EXPECT_EQ(run.failure, "");
   EXPECT_TRUE(run.worker->settled());
-  WorkerRun fresh;
+  MeshWorkerRun fresh;
   for (const char* knob : {"theta", "max_size"}) set_knob(fresh.session.settings, knob, "1.1");
   fresh.worker->set_settings(fresh.session.settings);
   fresh.settle();
@@ -187,7 +185,7 @@ TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {
 }
 
 TEST(MeshWorker, CancelKeepsWhatThereIsAndResumeBeginsAgain) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle([&] { return run.iterations >= 5; });
   run.worker->cancel();
   run.settle();
@@ -206,7 +204,7 @@ TEST(MeshWorker, CancelKeepsWhatThereIsAndResumeBeginsAgain) {
 }
 
 TEST(MeshWorker, AFailureIsToldAndOtherKnobsMendIt) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle();
   EXPECT_EQ(run.rerun("materials", "77"), "classify");
   EXPECT_EQ(run.order, "F");
@@ -220,8 +218,8 @@ TEST(MeshWorker, AFailureIsToldAndOtherKnobsMendIt) {
 }
 
 TEST(MeshWorker, LockstepShowsEachIterationAlikeOnAnyThreads) {
-  WorkerRun one(true, 1), two(true, 2);
-  for (WorkerRun* run : {&one, &two}) {
+  MeshWorkerRun one(true, 1), two(true, 2);
+  for (MeshWorkerRun* run : {&one, &two}) {
     run->settle();
     EXPECT_EQ(run->failure, "");
     EXPECT_GE(int(run->counts.size()), run->iterations);  // and once more with the triangles
@@ -237,7 +235,7 @@ TEST(MeshWorker, LockstepShowsEachIterationAlikeOnAnyThreads) {
 }
 
 TEST(MeshWorker, InLockstepNothingIsToldWithoutATurn) {
-  WorkerRun run(true);
+  MeshWorkerRun run(true);
   run.settle([&] { return run.iterations == 3; });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   EXPECT_FALSE(run.worker->poll().has_value());
@@ -249,7 +247,7 @@ TEST(MeshWorker, InLockstepNothingIsToldWithoutATurn) {
 }
 
 TEST(MeshWorker, SlicesAreFilledWhileItWorksAndAfterChanges) {
-  WorkerRun run(true);
+  MeshWorkerRun run(true);
   run.settle([&] { return run.iterations == 2; });
   run.worker->ask_slice({1, 2, 0.5, MeshField::material});
   while (run.worker->slice_comes()) {  // without a turn
@@ -290,7 +288,7 @@ Volume brick_wall() {
 TEST(MeshWorker, ParticlesOfJunctionsAreShownHoweverFewAreAskedForOnSurfaces) {
   const test::TemporaryFolder folder;
   write_nrrd(folder / "wall.nrrd", brick_wall());
-  WorkerRun run(false, 2, [&](Session& session) {
+  MeshWorkerRun run(false, 2, [&](Session& session) {
     session.sample.clear();
     session.inputs = {folder / "wall.nrrd"};
     session.settings.mesh.particles = 1;
@@ -305,11 +303,9 @@ TEST(MeshWorker, ParticlesOfJunctionsAreShownHoweverFewAreAskedForOnSurfaces) {
 }
 
 TEST(MeshWorker, EndsAtOnce) {
-  WorkerRun run;
+  MeshWorkerRun run;
   run.settle([&] { return run.iterations >= 1; });  // and is destroyed in the middle
 }
 
 }  // namespace
 }  // namespace nacre
-
-#endif

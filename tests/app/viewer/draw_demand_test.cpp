@@ -1,5 +1,4 @@
 // Nacre: a window is drawn where it has changed, and not else.
-#if NACRE_HAS_VIEWER
 
 #include "app/viewer/window/draw_demand.hpp"
 
@@ -69,4 +68,3 @@ TEST(DrawDemand, WhatMovesWithTimeIsDrawnTenTimesASecond) {
 }  // namespace
 }  // namespace nacre
 
-#endif

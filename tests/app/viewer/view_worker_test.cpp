@@ -1,6 +1,4 @@
 // Nacre: the thread that computes beside the frames: which stages run again after a knob was changed.
-#if NACRE_HAS_VIEWER
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -314,5 +312,3 @@ TEST(FlowWorker, EndsAtOnce) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

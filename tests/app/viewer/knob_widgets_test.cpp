@@ -1,6 +1,4 @@
 // Nacre: knobs of the panel, turned with the mouse. No OpenGL here.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/panel/knob_widgets.hpp"
 
 #include <gtest/gtest.h>
@@ -99,5 +97,3 @@ TEST_F(KnobWidgets, ResetGivesWhatTheViewerBeganWith) {
 
 }  // namespace
 }  // namespace nacre
-
-#endif

@@ -1,6 +1,4 @@
 // Nacre: a fitted camera stays fitted until somebody moves it.
-#if NACRE_HAS_VIEWER
-
 #include "app/viewer/scene/framing.hpp"
 
 #include <gtest/gtest.h>
@@ -95,5 +93,3 @@ TEST_F(KeptInTheFreePart, NotWhereTheSessionSaysFromWhere) {
 
 }  // namespace
 }  // namespace nacre::test
-
-#endif
