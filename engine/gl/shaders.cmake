@@ -1,4 +1,4 @@
-# Puts the files of shaders/ into nacre_gl as strings, so that a program carries its shaders with it.
+# Embeds the files of shaders/ in nacre_gl as strings, so that a program contains its shaders.
 file(GLOB shader_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/shaders/*.vert ${CMAKE_SOURCE_DIR}/shaders/*.frag
   ${CMAKE_SOURCE_DIR}/shaders/*.glsl)
 set(shader_sources ${CMAKE_CURRENT_BINARY_DIR}/shader_sources.cpp)

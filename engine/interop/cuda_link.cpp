@@ -70,7 +70,7 @@ bool cuda_draws_here() {
   int current = -1;
   if (cudaGetDevice(&current) != cudaSuccess ||
       cudaGLGetDevices(&count, devices.data(), unsigned(devices.size()), cudaGLDeviceListAll) != cudaSuccess) {
-    cudaGetLastError();  // a context of another maker is "no", not an error
+    cudaGetLastError();  // a context made by another vendor means "no", not an error
     return false;
   }
   return std::find(devices.begin(), devices.begin() + count, current) != devices.begin() + count;
