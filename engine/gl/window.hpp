@@ -1,4 +1,4 @@
-// Nacre: a window with an OpenGL context.
+// Nacre: a window with a context in it.
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@ struct GLFWwindow;
 
 namespace nacre {
 
-/// One window, by GLFW. Its context is current on the thread that made it, which must be the main thread.
+/// One window by GLFW. Its context is current on the thread that made it, which must be the main thread.
 class Window : public Context {
  public:
-  /// Opens a window of width x height screen units. Throws Error if there is no display or no OpenGL 4.5.
+  /// Opens a window of width x height screen units. Throws Error where there is no display or no OpenGL 4.5.
   Window(const std::string& title, int width, int height);
   ~Window() override;
 
@@ -26,17 +26,17 @@ class Window : public Context {
   GLFWwindow* handle() const { return window_; }
 
   bool should_close() const;
-  /// Collects the user's input. Waits for it, at most a tenth of a second, while there is nothing to draw on; if the
-  /// window is only minimised, it waits only if `idles`.
+  /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on; where
+  /// the window is merely minimised, only if `idles`.
   void poll(bool idles);
   void swap();
   void set_title(const std::string& title);
 
-  // Both may change from frame to frame: a window can be moved to another screen.
+  // Both may be others in the next frame: a window can be moved to another screen.
   std::array<int, 2> pixels() const;  ///< of its framebuffer; (0, 0) while minimised
-  float scale() const;                ///< pixels of this screen per pixel of an ordinary screen (DPI); 0.25 to 16
+  float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI); 0.25 to 16
 
-  /// The user's input of this frame; to be called once per frame. The mouse position is in pixels.
+  /// What the user did, as a frame shall see it; to be asked for once in each. The mouse's place is in pixels.
   InputFrame next_input();
 
   /// Called in `poll` with the files that were dropped on the window.

@@ -1,4 +1,4 @@
-// Nacre: composing images, and reducing their size.
+// Nacre: putting images over each other and making them smaller.
 #include "engine/picture/compose.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ const std::array<std::uint8_t, linear_levels>& encoded_table() {
 
 std::uint8_t to_byte(float c) { return std::uint8_t(std::lround(std::clamp(c, 0.f, 255.f))); }
 
-/// The mean of the block of `image` whose upper left corner is (x0, y0).
+/// The mean of the block of `image` whose left upper corner is (x0, y0).
 void average_block(const Image& image, int x0, int y0, int width, int height, std::uint8_t* out) {
   const auto& linear = linear_table();
   std::array<float, 3> sum{};

@@ -36,7 +36,7 @@ namespace {
 
 using Handle = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// The pixels without their alpha, three bytes each.
+/// Pixels without their alpha, three bytes each.
 std::vector<std::uint8_t> opaque_pixels(const Image& image) {
   std::vector<std::uint8_t> rgb(image.pixels.size() / 4 * 3);
   for (std::size_t i = 0; i < image.pixels.size() / 4; ++i) std::memcpy(&rgb[i * 3], &image.pixels[i * 4], 3);
@@ -63,7 +63,7 @@ std::vector<std::uint8_t> read_all(const fs::path& file) {
   return bytes;
 }
 
-/// Whether a PNG of so many bytes can contain so many pixels: deflate makes at most 1032 bytes of one.
+/// Whether so many bytes of a PNG can hold so many pixels: deflate makes at most 1032 bytes of one.
 bool can_hold(std::size_t bytes, int width, int height) {
   constexpr std::size_t best_ratio = 1032, fewest_bits = 1;
   return std::size_t(width) * std::size_t(height) * fewest_bits / 8 <= bytes * best_ratio;

@@ -1,4 +1,4 @@
-// Nacre: draws the triangles between materials: solid, translucent (as ghosts), or not at all.
+// Nacre: draws the triangles between materials: solid, as ghosts, or not at all.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace nacre {
 
-/// The appearance of a material.
+/// How a material looks.
 struct MaterialLook {
   std::array<float, 3> colour{0.6f, 0.6f, 0.6f};  ///< encoded
-  float opacity = 1;                              ///< 1 solid, 0 hidden, in between a ghost
+  float opacity = 1;                              ///< 1 solid, between: a ghost, 0 hidden
 };
 
-/// Draws into what is bound. The surface was made without normals, so triangles are flat.
+/// Draws into what is bound. The surface was made without normals: triangles are flat.
 class MaterialPass {
  public:
   MaterialPass() : program_("materials.vert", "materials.frag") {}
@@ -27,7 +27,7 @@ class MaterialPass {
   /// One per material; number 0 is the outside. A triangle is as visible as the more visible of its two materials.
   void set_looks(std::span<const MaterialLook> looks);
 
-  /// `placement`: of the mesh's coordinates in the world. Ghosts are drawn last and do not hide what is behind them.
+  /// `placement`: of the mesh's coordinates in the world. Ghosts are drawn last, and do not hide what is behind them.
   void draw(const View& view, const SurfaceBuffers& surface, const Placement& placement) const;
 
  private:
