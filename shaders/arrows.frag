@@ -7,7 +7,7 @@ out vec4 pixel;
 
 uniform sampler1D colours;
 uniform vec3 ink;     // encoded
-uniform bool mapped;  // by the colour map instead
+uniform bool mapped;  // coloured by the colour map instead
 
 void main() {
   if (is_cut(seen)) discard;

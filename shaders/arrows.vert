@@ -1,4 +1,4 @@
-// Solid arrows, one an instance: a shaft of six sides and a pointed head.
+// Solid arrows, one per instance: a shaft of six sides and a pointed head.
 #include "view.glsl"
 
 layout(location = 0) in vec3 tail;
@@ -23,7 +23,7 @@ void main() {
   vec3 across = cross(ahead, normal);
   across = dot(across, across) > 1e-12 ? normalize(across) : vec3(0.0);
   vec3 up = cross(across, ahead);
-  // A side: the shaft's quad as two triangles, then the head's.
+  // One side: the quad of the shaft as two triangles, then the triangle of the head.
   int side = gl_VertexID / 9, corner = gl_VertexID % 9;
   bool head = corner >= 6;
   int step = head ? int(corner == 7) : int(corner == 1 || corner == 3 || corner == 4);

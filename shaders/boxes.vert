@@ -1,11 +1,11 @@
-// Boxes as lines, 24 vertices an instance, straight from what a build has written: corners, or Morton codes of cubes.
+// Boxes as lines, 24 vertices per instance, directly from what a build has written: corners, or Morton codes of cubes.
 #include "view.glsl"
 
 #ifdef MORTON
 layout(location = 0) in uvec2 code;  // low and high half; bits x, y, z from the lowest
 uniform float width;                 // of a cube, in the model's units
 
-// Bits 0, 3, .. 27 side by side.
+// Gathers bits 0, 3, .. 27.
 uint ten_bits(uint bits) {
   bits &= 0x09249249u;
   bits = (bits | bits >> 2) & 0x030c30c3u;

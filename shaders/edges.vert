@@ -2,7 +2,7 @@
 
 layout(location = 0) in vec3 position;
 
-uniform float lift;  // towards the eye, so that a line is not lost in the triangles beside it
+uniform float lift;  // towards the eye, so that a line is not hidden by the triangles beside it
 
 out vec3 seen;
 

@@ -1,4 +1,4 @@
-// Lines of one colour, cut where the surface is.
+// Lines of one colour, clipped like the surface.
 #include "view.glsl"
 
 in vec3 seen;

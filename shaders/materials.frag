@@ -1,5 +1,5 @@
-// Triangles between materials, flat: the look of compute/raycast/mesh_picture.hpp. A material can be solid, a ghost or
-// hidden; a triangle is what the more visible of its two materials is.
+// Triangles between materials, flat, with the appearance of compute/raycast/mesh_picture.hpp. A material can be solid,
+// a ghost or hidden; a triangle takes the more visible of its two materials.
 #include "view.glsl"
 
 in vec3 seen;

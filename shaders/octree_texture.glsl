@@ -1,10 +1,11 @@
-// The shown value at a place of the surface, from an octree. LEVELS, the tables and their fetches are in the prelude.
+// The shown value at a position of the surface, from an octree. LEVELS, the tables and their fetches are in the
+// prelude.
 uniform samplerBuffer shown;
 
 const uint nothing = 0xffffffffu;
 
 #ifdef SOURCE_OCTREE
-// A walk from the root to a cell (SourceOctreeView, compute/embedding/source_octree.hpp).
+// Descends from the root to a cell, in the octree of the thesis.
 uint number_at(ivec3 cell) {
   if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, ivec3(8 << LEVELS)))) return nothing;
   uint at = ROOT;
@@ -15,7 +16,7 @@ uint number_at(ivec3 cell) {
   return at;
 }
 #else
-// Node, brick, layer, value (BrickOctreeView, compute/embedding/brick_octree.hpp): a walk down from the root.
+// Node, brick, layer, value (BrickOctreeView, compute/embedding/brick_octree.hpp): descends from the root.
 uint brick_at(ivec3 b) {
   if (any(lessThan(b, ivec3(0))) || any(greaterThanEqual(b, ivec3(1 << LEVELS)))) return nothing;
   uint at = 0u;
@@ -54,7 +55,7 @@ uint number_at(ivec3 cell) {
 }
 #endif
 
-// Linear among the cells around `place` (in texture cells) that have a value; 1/2 where there is none.
+// Linear among the cells around `place` (in texture cells) that have a value; 1/2 if there is none.
 float shown_at(vec3 place) {
   vec3 corner = floor(place - 0.5);
   vec3 f = place - 0.5 - corner;

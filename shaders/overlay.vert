@@ -1,5 +1,5 @@
-// Tiles of an image that is laid into the right lower corner of the picture.
-layout(location = 0) in vec2 tile;  // left upper corner, in pixels of the image
+// Tiles of an image at the lower right corner of the picture.
+layout(location = 0) in vec2 tile;  // upper left corner, in pixels of the image
 
 uniform vec2 image_size;
 uniform vec2 picture_size;

@@ -1,11 +1,11 @@
-// Discs, 4 vertices an instance, straight from the solver's arrays (ParticleSet).
+// Discs, 4 vertices per instance, directly from the arrays of the solver (ParticleSet).
 #include "view.glsl"
 
 layout(location = 0) in vec4 particle;  // x, y, z, h
 layout(location = 1) in vec4 heading;   // unit normal or tangent, energy
 
 uniform float size;        // radius of a disc in h
-uniform bool face_camera;  // heading is no normal
+uniform bool face_camera;  // heading is not a normal
 uniform bool by_energy;    // else by h
 uniform vec2 range;        // of the colour map
 
@@ -20,7 +20,7 @@ void main() {
   vec3 towards = face_camera ? -normalize(ray_to(centre)) : normalize(normal_from_model * heading.xyz);
   vec3 across = normalize(abs(towards.z) < 0.9 ? vec3(-towards.y, towards.x, 0.0) : vec3(0.0, -towards.z, towards.y));
   vec3 up = cross(towards, across);
-  // One length of the model in the world, so that a disc is round also where voxels are not cubes.
+  // One scale for all axes, so that a disc is round even if voxels are not cubes.
   float unit = length(seen_from_model[0].xyz) * particle.w * size;
   seen = centre + (across * corner.x + up * corner.y) * unit;
   gl_Position = clip_from_seen * vec4(seen, 1.0);

@@ -1,17 +1,17 @@
-// Line segments of a width in pixels, 4 vertices an instance.
+// Line segments with a width in pixels, 4 vertices per instance.
 #include "view.glsl"
 
 layout(location = 0) in vec3 from;
 layout(location = 1) in vec3 to;
 
 uniform float width;  // pixels
-uniform float lift;   // towards the eye, so that a line is not lost in the triangles beside it
+uniform float lift;   // towards the eye, so that a line is not hidden by the triangles beside it
 
 out vec3 seen;
 
 void main() {
   vec4 a = clip_from_model * vec4(from, 1.0), b = clip_from_model * vec4(to, 1.0);
-  // What lies behind the eye is cut off: its place on the screen would be on the wrong side.
+  // What is behind the eye is cut off: its position on the screen would be on the wrong side.
   float near = 1e-3 * max(abs(a.w), abs(b.w));
   float cut_a = a.w < near && b.w > near ? (near - a.w) / (b.w - a.w) : 0.0;
   float cut_b = b.w < near && a.w > near ? (near - b.w) / (a.w - b.w) : 0.0;

@@ -1,4 +1,4 @@
-// An image in the world, as it is: without light, and never cut, so that it can lie in the plane of a cut.
+// An image in the world, without light, and never clipped, so that it can lie in the clip plane.
 in vec2 place;
 out vec4 pixel;
 

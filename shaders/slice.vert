@@ -1,4 +1,4 @@
-// A parallelogram: the unit square of its own coordinates.
+// A parallelogram: the unit square in its own coordinates.
 #include "view.glsl"
 
 out vec2 place;

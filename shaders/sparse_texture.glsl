@@ -1,4 +1,4 @@
-// The shown value at a place of the surface, from the sparse grid: brick, block, texel, value (RefinedGridView,
+// The shown value at a position of the surface, from the sparse grid: brick, block, texel, value (RefinedGridView,
 // compute/embedding/refined_grid.hpp). SUB, REFINE, fetch_brick, fetch_block and fetch_texel are in the prelude. Here a
 // block also has the first texels of its neighbours (with_rims, engine/render/sparse_texture.hpp).
 uniform samplerBuffer shown;
@@ -15,7 +15,7 @@ uint block_of(ivec3 cell) {
   return fetch_block(b * uint(SUB * SUB * SUB) + uint((rest.z * SUB + rest.y) * SUB + rest.x));
 }
 
-// Linear among the texture cells around `place` (in texture cells) that know a value; 1/2 where none does.
+// Linear among the texture cells around `place` (in texture cells) that have a value; 1/2 if there is none.
 float shown_at(vec3 place) {
   const int side = REFINE + 1;
   vec3 corner = floor(place - 0.5);

@@ -1,4 +1,4 @@
-// A surface with the texture of flow and a colour map: the look of compute/raycast/render.hpp.
+// A surface with the texture of the flow and a colour map, with the appearance of compute/raycast/render.hpp.
 #include "view.glsl"
 
 in vec3 seen;
@@ -22,7 +22,7 @@ void main() {
   vec3 base = vec3(0.62);
   if (coloured) {
     float x = (shade - range.x) / (range.y - range.x);
-    x = x > 0.0 ? min(x, 1.0) : 0.0;  // what is no number is at the lower end
+    x = x > 0.0 ? min(x, 1.0) : 0.0;  // NaN is at the lower end
     base = texture(colours, (x * 255.0 + 0.5) / 256.0).rgb;
   }
   float light_here = brightness(direction, seen);

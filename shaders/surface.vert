@@ -2,7 +2,7 @@
 
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
-layout(location = 2) in uint point;  // of the mesh: several vertices share one where there is a crease
+layout(location = 2) in uint point;  // of the mesh: several vertices share one at a crease
 
 uniform samplerBuffer scalar;  // per point
 uniform bool coloured;

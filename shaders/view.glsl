@@ -1,8 +1,8 @@
-// What all passes know of the camera and the light; set by set_view (engine/render/view.hpp).
+// Camera and light for all passes; set by set_view (engine/render/view.hpp).
 uniform mat4 clip_from_model;
-uniform mat4 seen_from_model;    // the world's axes and lengths, from the eye
+uniform mat4 seen_from_model;    // axes and lengths of the world, relative to the eye
 uniform mat4 clip_from_seen;
-uniform mat3 normal_from_model;  // directions only: to be normalised
+uniform mat3 normal_from_model;  // gives directions only: to be normalised
 uniform vec4 ray_direction;      // w = 1: the same for all pixels (orthographic)
 uniform vec3 light;
 uniform float ambient;
@@ -14,7 +14,7 @@ vec3 to_encoded(vec3 c) { return sqrt(clamp(c, 0.0, 1.0)); }
 
 vec3 ray_to(vec3 seen) { return ray_direction.w > 0.5 ? ray_direction.xyz : seen; }
 
-// How much light a point with this normal sends to the eye; surfaces have two sides.
+// How much light a point with this normal reflects to the eye; surfaces have two sides.
 float brightness(vec3 normal, vec3 seen) {
   vec3 n = normalize(normal);
   float facing = dot(n, ray_to(seen)) > 0.0 ? -1.0 : 1.0;

@@ -1,5 +1,6 @@
-# Nacre: finds CGAL by its headers, with the exact numbers (GMP, MPFR) that its predicates fall back on. Not by CGAL's own
-# CMake files: those speak up about build types and look for much that the Delaunay triangulation does not need.
+# Nacre: finds CGAL by its headers, with the exact numbers (GMP, MPFR) that its predicates fall back on. CGAL's own
+# CMake files are not used: they print messages on build types and look for much that the Delaunay triangulation does
+# not need.
 include(FindPackageHandleStandardArgs)
 find_path(CGAL_INCLUDE CGAL/Delaunay_triangulation_3.h)
 find_path(CGAL_BOOST_INCLUDE boost/version.hpp)

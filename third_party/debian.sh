@@ -18,7 +18,7 @@ is_installed() {
   [[ $(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null) == installed ]]
 }
 
-# Those of the given packages that are not installed, one per line.
+# Prints those of the given packages that are not installed, one per line.
 missing_packages() {
   local status name
   declare -A installed=()
@@ -40,12 +40,12 @@ apt_as_root() {
   "${prefix[@]}" env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get "$@"
 }
 
-# What apt would do, as text; fails where it knows no way (an unknown package, or lists never fetched).
+# Prints what apt would do; fails if it cannot (an unknown package, or lists never fetched).
 simulate_install() {
   LC_ALL=C apt-get install -s -y --no-install-recommends "$@" 2>&1
 }
 
-# install_packages NAME...: 0 all are installed, 1 apt could not, 2 something would have been removed.
+# install_packages NAME...: 0 all are installed, 1 apt failed, 2 something would have been removed.
 install_packages() {
   local plan
   say "installing: $*"
@@ -58,11 +58,11 @@ install_packages() {
     return 2
   fi
   apt_as_root install "${apt_options[@]}" "$@" && return
-  # The lists may be older than the mirror.
+  # The package lists may be out of date.
   apt_as_root update -q && apt_as_root install "${apt_options[@]}" "$@" || return 1
 }
 
-# require_packages NAME...: installs what is missing of them, or ends with the one command that does.
+# require_packages NAME...: installs the missing ones, or ends with the command that does.
 require_packages() {
   local missing
   mapfile -t missing < <(missing_packages "$@")
@@ -74,7 +74,7 @@ require_packages() {
     fail "packages could not be installed; see above, then run: apt-get install --no-install-recommends ${missing[*]}"
 }
 
-# prefer_packages WHAT NAME...: installs what is missing of them where nothing stands against it; never fails.
+# prefer_packages WHAT NAME...: installs the missing ones if nothing prevents it; never fails.
 prefer_packages() {
   local what=$1 missing
   shift
@@ -87,7 +87,7 @@ prefer_packages() {
   fi
 }
 
-# VTK reads further formats, and cannot stand beside ParaView's Python package.
+# VTK reads further formats, but cannot be installed together with ParaView's Python package.
 prefer_vtk() {
   [[ ${NACRE_VTK:-AUTO} != OFF ]] || return 0
   if is_installed python3-paraview && ! is_installed libvtk9-dev; then
@@ -97,7 +97,7 @@ prefer_vtk() {
   prefer_packages "VTK's formats" "${vtk_packages[@]}"
 }
 
-# The window needs packages that a headless machine does without.
+# The window needs packages that a headless machine can do without.
 prefer_viewer() {
   [[ ${NACRE_VIEWER:-AUTO} != OFF ]] || return 0
   prefer_packages "the viewer" "${viewer_packages[@]}"

@@ -4,9 +4,9 @@
 #                  FIND <arguments of find_package> |
 #                  HEADER <file> [IN <folder suffixes>] [MACROS <macros that make its version>] |
 #                  FOUND <true or false> [VERSION <version>])
-# FIND makes the package's targets, HEADER only looks, FOUND reports what the caller has looked for. A REQUIRED
-# dependency that is missing stops the configure in nacre_dependency_table, with all such packages in one line.
-# Sets <name>_FOUND in the caller's scope.
+# FIND makes the package's targets, HEADER only looks for the header, FOUND reports what the caller has looked for. If a
+# REQUIRED dependency is missing, nacre_dependency_table stops the configuration and lists all such packages in one
+# line. Sets <name>_FOUND in the caller's scope.
 function(nacre_dependency name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "REQUIRED" "PACKAGE;SWITCHES;HEADER;FOUND;VERSION" "FIND;IN;MACROS")
   if(arg_FIND)
@@ -40,7 +40,7 @@ function(nacre_dependency name)
   set(${name}_FOUND ${arg_FOUND} PARENT_SCOPE)
 endfunction()
 
-# Joins the numbers that a header defines for the given macros with dots; empty where there are none.
+# Joins the numbers that a header defines for the given macros with dots; empty if there are none.
 function(nacre_header_version result header)
   set(numbers)
   foreach(macro IN LISTS ARGN)
@@ -85,7 +85,7 @@ function(nacre_pad variable width)
   set(${variable} "${${variable}}${blanks}" PARENT_SCOPE)
 endfunction()
 
-# Prints the table; fatal where something needed is missing.
+# Prints the table; fatal if something needed is missing.
 function(nacre_dependency_table)
   get_property(table GLOBAL PROPERTY NACRE_TABLE)
   message(STATUS "Dependencies of Nacre\n${table}")

@@ -1,4 +1,5 @@
-// Nacre: a narrow band of cells around a surface, whatever structure holds them: what both octrees share (ch. 6).
+// Nacre: a narrow band of cells around a surface, whatever structure stores them: the common interface of both octrees
+// (thesis, ch. 6).
 #pragma once
 
 #include <cmath>
@@ -9,7 +10,7 @@
 
 namespace nacre {
 
-// A view of a band gives (BrickOctreeView and SourceOctreeView do):
+// A view of a band has these members (BrickOctreeView and the view of the thesis's octree have them):
 //
 //   cells, surface_cells             how many cells are stored, and how many of them the surface passes through
 //   point[c]                         CellPoint of cell c; `quantum` unpacks it
@@ -21,14 +22,14 @@ namespace nacre {
 //     find_surface(Int3)               number of the surface cell, or `no_cell`
 //     eight(Int3 first, at)            the 2^3 cells from `first`, x fastest; a bit for each that is stored
 //     eight_surface(Int3 first, at)    the same among surface cells
-//     each_surface_of_27(Int3 first, visit)  visit(k, number) for the surface cells among the 3^3 from `first`, x fastest
+//     each_surface_of_27(Int3 first, visit)  visit(k, number) for the surface cells of the 3^3 from `first`, x fastest
 //
 // Cell (i, j, k) has its centre at (i, j, k) + 1/2; all lengths are in cells. Numbers of cells are 64 bits wide.
 
 using CellIndex = std::uint64_t;
 inline constexpr CellIndex no_cell = ~CellIndex(0);
 
-/// A point near a cell: far from the origin a single float would not hold the place within the cell.
+/// A point near a cell: far from the origin a single float could not represent the position within the cell.
 struct BandPoint {
   Int3 base{};    ///< a cell
   Vec3f local{};  ///< from the lower corner of `base`
@@ -45,16 +46,16 @@ NACRE_HD_INLINE BandPoint band_point(const Vec3d& p) {
 }
 
 /// What a cell stores: 12 bytes. The closest point relative to the cell's centre in 3 x 21 bits, which at a radius of 5
-/// is exact to 2.4e-6 cells per axis, and the triangle that it lies on.
+/// is exact to 2.4e-6 cells per axis, and the triangle on which it lies.
 struct CellPoint {
   static constexpr int bits = 21;
 
   std::uint32_t low, high, triangle;
 
-  /// Edge of the lattice that offsets up to `radius` are rounded to.
+  /// Edge of the lattice to which offsets up to `radius` are rounded.
   NACRE_HD static float quantum(double radius) { return float(radius * 1.0001 / ((1 << (bits - 1)) - 1)); }
 
-  /// One axis of an offset as steps of the lattice.
+  /// One axis of an offset in steps of the lattice.
   NACRE_HD_INLINE static std::int32_t rounded(double offset, float quantum) {
     return std::int32_t(std::floor(offset / quantum + 0.5));
   }
@@ -80,7 +81,7 @@ struct CellPoint {
   }
 };
 
-/// Closest point of cell `place`, which stores `point`.
+/// Closest point of cell `place`, whose record is `point`.
 NACRE_HD_INLINE BandPoint closest_point_of(const Int3& place, const CellPoint& point, float quantum) {
   return {place, Vec3f(0.5f) + point.offset(quantum)};
 }
@@ -88,7 +89,7 @@ NACRE_HD_INLINE BandPoint closest_point_of(const Int3& place, const CellPoint& p
 /// Linear interpolation among the 2^3 cells around a point.
 struct LinearWeights {
   Int3 first;  ///< the lowest cell
-  Vec3f f;     ///< from its centre, 0..1
+  Vec3f f;     ///< position from its centre, 0..1
 
   NACRE_HD_INLINE explicit LinearWeights(const BandPoint& p) {
     const Vec3f q = p.local - Vec3f(0.5f);
@@ -102,7 +103,7 @@ struct LinearWeights {
   }
 };
 
-/// Quadratic B-spline among the 3^3 cells around a point: it smooths alike wherever the point lies between them.
+/// Quadratic B-spline among the 3^3 cells around a point: it smooths equally wherever the point lies between them.
 struct SplineWeights {
   Int3 first;  ///< the lowest cell
   float w[3][3];
@@ -119,7 +120,7 @@ struct SplineWeights {
   }
 };
 
-/// Lets `kernel(cell, place, cursor)` run on every cell of the band, or `kernel(surface_cell, cell, place, cursor)` on
+/// Runs `kernel(cell, place, cursor)` on every cell of the band, or `kernel(surface_cell, cell, place, cursor)` on
 /// those that the surface passes through.
 template <class View, class Kernel>
 struct OnCells {

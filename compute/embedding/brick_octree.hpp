@@ -9,12 +9,13 @@
 
 namespace nacre {
 
-/// Which cells of a brick are there, and the number of the first one. Bit 8 y + x of word z is cell (x, y, z); the cells
-/// of a brick are numbered in that order, and so are those that the surface passes through, by themselves.
+/// Which cells of a brick exist, and the number of the first one. Bit 8 y + x of word z is cell (x, y, z). The cells of
+/// a brick are numbered in that order; those that the surface passes through have numbers of their own in the same
+/// order.
 struct CellMask {
   std::uint64_t word[8];
   CellIndex first;          ///< number of the brick's first cell
-  std::uint16_t before[8];  ///< how many of its cells lie in lower words
+  std::uint16_t before[8];  ///< how many of its cells are in lower words
 
   NACRE_HD_INLINE CellIndex find(int x, int y, int z) const {
     const std::uint64_t bit = std::uint64_t(1) << (8 * y + x);
@@ -22,7 +23,7 @@ struct CellMask {
     return first + before[z] + count_bits(word[z] & (bit - 1));
   }
 
-  /// Cells (x, y, z) to (x + n - 1, y, z), all of this brick: a bit for each that is there, and the number of the first
+  /// Cells (x, y, z) to (x + n - 1, y, z), all of this brick: a bit for each that exists, and the number of the first
   /// of these.
   NACRE_HD_INLINE unsigned row(int x, int y, int z, int n, CellIndex& number) const {
     const int shift = 8 * y + x;
@@ -30,7 +31,7 @@ struct CellMask {
     return unsigned(word[z] >> shift) & ((1u << n) - 1);
   }
 
-  /// Cells (x, y, z) and (x + 1, y, z), x < 7; returns two bits for those that are there.
+  /// Cells (x, y, z) and (x + 1, y, z), x < 7; returns two bits for those that exist.
   NACRE_HD_INLINE unsigned pair(int x, int y, int z, CellIndex at[2]) const {
     const unsigned there = row(x, y, z, 2, at[0]);
     at[1] = at[0] + (there & 1);
@@ -55,15 +56,15 @@ struct OctreeBrick {
   CellMask surface;  ///< those that a triangle touches
 };
 
-/// An inner node of the linear octree; the children that exist lie side by side in the next level, in Morton order.
+/// An inner node of the linear octree; the children that exist are contiguous in the next level, in Morton order.
 struct OctreeNode {
   std::uint32_t first;     ///< node of the next level, or brick
   std::uint32_t children;  ///< 8 bits
 };
 
 /// Bricks near the surface in Morton order, under an octree of `levels` levels of nodes (root: level 0). The domain has
-/// 8 << levels cells per axis, up to 2^20. A band cell lies within `radius` of the surface and knows its exact closest
-/// point. Nothing here is as large as the domain, or as a face of it.
+/// 8 << levels cells per axis, up to 2^20. A cell of the band lies within `radius` of the surface and stores its exact
+/// closest point. Nothing here is as large as the domain, or as a face of it.
 struct BrickOctreeView {
   static constexpr int width = 8;  ///< cells per brick and axis
 
@@ -83,7 +84,7 @@ struct BrickOctreeView {
   NACRE_HD int size() const { return width << levels; }  ///< cells per axis
   NACRE_HD std::int64_t items() const { return brick_count; }
 
-  /// Number of the brick at these brick coordinates, or `none`: a walk down from the root.
+  /// Number of the brick at these brick coordinates, or `none`: descends from the root.
   NACRE_HD std::uint32_t locate(const Int3& b) const {
     const int bricks = 1 << levels;
     if (unsigned(b.x) >= unsigned(bricks) || unsigned(b.y) >= unsigned(bricks) || unsigned(b.z) >= unsigned(bricks))
@@ -107,7 +108,7 @@ struct BrickOctreeView {
   NACRE_HD void each_surface_cell(Team& team, std::int64_t item, const Body& body) const;
 };
 
-/// Remembers the brick of the last cell that was asked for.
+/// Remembers the brick of the last cell that was looked up.
 class BrickOctreeView::Cursor {
  public:
   NACRE_HD_INLINE explicit Cursor(const BrickOctreeView& tree) : tree_(tree) {}
@@ -128,7 +129,7 @@ class BrickOctreeView::Cursor {
     const Int3 in{first.x & 7, first.y & 7, first.z & 7};
     for (int row = 0; row < 9; ++row) {
       const int y = in.y + row % 3, z = in.z + row / 3;
-      if (around && in.x < 6) {  // the row lies in one brick
+      if (around && in.x < 6) {  // the row is in one brick
         const std::uint32_t b = around[3 * (y >> 3) + 9 * (z >> 3)];
         if (b == none) continue;
         CellIndex number;
@@ -144,7 +145,7 @@ class BrickOctreeView::Cursor {
     }
   }
 
-  /// Number of the brick that holds `cell`, or `none`.
+  /// Number of the brick that contains `cell`, or `none`.
   NACRE_HD_INLINE std::uint32_t brick_of(const Int3& cell) {
     const Int3 place{cell.x >> 3, cell.y >> 3, cell.z >> 3};
     if (place == place_) return brick_;
@@ -183,13 +184,14 @@ class BrickOctreeView::Cursor {
     return there;
   }
 
-  /// The table of the 27 bricks around the one that holds `cell`, its middle entry; null if that is not there.
+  /// The table of the 27 bricks around the one that contains `cell`, which is the middle entry; null if it does not
+  /// exist.
   NACRE_HD_INLINE const std::uint32_t* bricks_around(const Int3& cell) {
     const std::uint32_t b = brick_of(cell);
     return b == none ? nullptr : tree_.neighbour + 27 * std::size_t(b) + 13;
   }
 
-  /// Cell `in`, 0..15 per axis from the lower corner of the brick of `first`, by its table.
+  /// Cell `in`, 0..15 per axis from the lower corner of the brick of `first`, through its table.
   NACRE_HD_INLINE CellIndex find_near(const std::uint32_t* around, const Int3& first, const Int3& in,
                                       CellMask OctreeBrick::*which) {
     if (!around) return find(Int3(first.x & ~7, first.y & ~7, first.z & ~7) + in, which);
@@ -203,7 +205,7 @@ class BrickOctreeView::Cursor {
 };
 
 namespace detail {
-/// Calls visit(number, x, y, z) for the cells of a mask; on CUDA the lanes of a team share them out.
+/// Calls visit(number, x, y, z) for the cells of a mask; on CUDA the lanes of a team divide them.
 template <class Visit>
 NACRE_HD void each_masked(Team& team, const CellMask& mask, const Visit& visit) {
 #if defined(__CUDA_ARCH__)

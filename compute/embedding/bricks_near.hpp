@@ -1,4 +1,4 @@
-// Nacre: which bricks of cells lie near the triangles of a cluster, found without looking at the empty ones.
+// Nacre: which bricks of cells are near the triangles of a cluster, found without visiting the empty ones.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace nacre::detail {
 
-/// Calls visit(Morton code) for the bricks that come within `radius` cells of a cluster, and a few more.
+/// Calls visit(Morton code) for the bricks that come within `radius` cells of a cluster, and for a few more.
 struct BricksNearCluster {
   const Corners* corners;
   const std::uint32_t* start;
@@ -22,7 +22,7 @@ struct BricksNearCluster {
     const double scale = 1.0 / cells_per_brick, margin = radius * scale;
     auto emit = [&](const Int3& brick) { visit(morton(brick)); };
     const double spread = bound[k].radius * scale;
-    // Few bricks are near the ball around a triangle that is smaller than they are, and not near the triangle.
+    // For a triangle smaller than a brick, few bricks are near the ball around it and not near the triangle.
     if (spread > 1 && start[k + 1] - start[k] == 1) {
       for_cells_near(corners[start[k]] * scale, margin, bricks, emit);
       return;

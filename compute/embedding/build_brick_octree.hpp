@@ -1,4 +1,4 @@
-// Nacre: the brick octree from triangles: bricks found from the triangles, cells brick by brick, the tree bottom-up.
+// Nacre: builds the brick octree: bricks found from the triangles, cells brick by brick, the tree bottom-up.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace nacre {
 
-/// A brick octree and who owns its arrays.
+/// A brick octree, and the owner of its arrays.
 struct BrickOctree {
   int levels = 0;
   float radius = 0, quantum = 0;
@@ -80,7 +80,7 @@ struct NumberCells {
   }
 };
 
-/// Puts the points of bricks that have room for all cells side by side.
+/// Compacts the points of bricks, which have room for all cells.
 struct GatherPoints {
   const OctreeBrick* brick;
   const CellPoint* from;
@@ -123,7 +123,7 @@ struct BricksTouched {
   }
 };
 
-/// Where the list of a brick begins among those of all places; entry `bricks` ends the last.
+/// Where the list of a brick begins among those of all bricks; entry `bricks` is the end of the last.
 struct FindList {
   const std::uint64_t* brick_code;
   std::uint32_t bricks, places;
@@ -181,7 +181,7 @@ class BrickOctreeBuilder {
       exec_.for_each(triangles_, FrameTriangle{clusters.corners.data(), frame.data()});
       const ClusterView view{clusters.order.data(),   clusters.start.data(), clusters.bound.data(),
                              clusters.corners.data(), frame.data(),          float(size) * 1.1e-7f};
-      // A brick's cells lie half a cell inside of it.
+      // The centres of a brick's cells are half a cell inside of it.
       const BricksNearCluster near{clusters.corners.data(), clusters.start.data(),          clusters.bound.data(),
                                    Int3(1 << tree_.levels), double(BrickOctreeView::width), radius_ - 0.499};
       require_room(view, clusters.count);
@@ -199,7 +199,7 @@ class BrickOctreeBuilder {
  private:
   static constexpr std::uint32_t bricks_at_once = 2048;  // 13 MB of points at most
 
-  /// Triangles of millions of cells squared would be walked for hours before it shows that they do not fit.
+  /// For triangles of millions of cells squared, it would take hours to find that they do not fit.
   void require_room(const ClusterView& clusters, std::uint32_t count) {
     const std::uint64_t bricks = exec_.reduce(count, std::uint64_t(0), BricksUnder{clusters, tree_.levels}, Add{});
     const std::uint64_t needed = 12 * bricks;  // a pair of brick and cluster
@@ -238,7 +238,7 @@ class BrickOctreeBuilder {
     keep_filled(found, lists.places.place);
   }
 
-  /// Some bricks were found that have no cell within the radius.
+  /// Some of the bricks found have no cell within the radius.
   void keep_filled(const Array<OctreeBrick>& found, const Array<std::uint64_t>& code) {
     Arena& arena = exec_.arena();
     const auto count = std::int64_t(found.size());
@@ -274,9 +274,9 @@ class BrickOctreeBuilder {
 
 /// Builds the octree around `triangles` triangles whose points are in cells, in a domain of 8 << levels cells per axis,
 /// at most 2^20. Every cell whose centre is within `radius` (1 to 1000 cells) of a triangle is stored, with the closest
-/// point of the whole mesh, the lower triangle of equally near ones; what lies outside of the domain is cut off. Empty
-/// space costs nothing. Arrays are permanent in the executor's arena; while building, a brick takes some 500 bytes more.
-/// Throws Error where levels or radius are out of range, no cell is in the band, or memory does not suffice.
+/// point of the whole mesh (of equally distant triangles the lower one); whatever is outside of the domain is cut off.
+/// Empty space costs nothing. Arrays are permanent in the executor's arena; while building, a brick needs some 500
+/// bytes more. Throws Error if levels or radius are out of range, no cell is in the band, or memory is insufficient.
 template <class Backend>
 BrickOctree build_brick_octree(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
                                double radius) {

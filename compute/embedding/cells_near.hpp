@@ -1,4 +1,4 @@
-// Nacre: which cells of a grid lie near a triangle, found without looking at the empty ones.
+// Nacre: which cells of a grid are near a triangle, found without visiting the empty ones.
 #pragma once
 
 #include <cmath>
@@ -9,11 +9,11 @@
 
 namespace nacre {
 
-/// The cell of 0..cells-1 that holds `x` or is nearest to it; 0 of what is no number.
+/// The cell of 0..cells-1 that contains `x` or is nearest to it; 0 for NaN.
 NACRE_HD inline int clamp_cell(double x, int cells) { return x >= cells ? cells - 1 : x >= 0 ? int(x) : 0; }
 
 namespace detail {
-/// Unit normal of the triangle's plane; of a needle, of some plane through its longest edge.
+/// Unit normal of the triangle's plane; for a needle, of some plane through its longest edge.
 NACRE_HD inline Vec3d plane_normal(const Corners& t) {
   const Vec3d ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
   Vec3d e = dot(ab, ab) >= dot(bc, bc) ? ab : bc;
@@ -29,7 +29,7 @@ NACRE_HD inline Vec3d plane_normal(const Corners& t) {
   return normalized(cross(e, axis));
 }
 
-/// What the triangle covers of axis `u` where axis `v` is in low .. high; `from` > `to` if that is nothing.
+/// The part of axis `u` that the triangle covers where axis `v` is in low .. high; `from` > `to` if it is empty.
 NACRE_HD inline void extent_in_slab(const Corners& t, int u, int v, double low, double high, double& from, double& to) {
   const Vec3d corner[3] = {t.a, t.b, t.c};
   from = 1e300;
@@ -39,7 +39,7 @@ NACRE_HD inline void extent_in_slab(const Corners& t, int u, int v, double low, 
     const double d = q[v] - p[v];
     if ((d >= 0 ? p[v] : q[v]) > high || (d >= 0 ? q[v] : p[v]) < low) continue;
     for (int end = 0; end < 2; ++end) {
-      double s = end;  // of an edge along the slab: its ends
+      double s = end;  // the ends of an edge that is parallel to the slab
       if (d != 0) s = ((end ? high : low) - p[v]) / d;
       s = s > 0 ? (s < 1 ? s : 1) : 0;
       const double x = p[u] + s * (q[u] - p[u]);
@@ -49,9 +49,9 @@ NACRE_HD inline void extent_in_slab(const Corners& t, int u, int v, double low, 
   }
 }
 
-constexpr double touching = 1e-7;  ///< what is nearer to a cell than this touches it
+constexpr double touching = 1e-7;  ///< whatever is nearer to a cell than this touches it
 
-/// The cells that a triangle's bounding box, grown by `slack`, overlaps; empty if its coordinates are no numbers.
+/// The cells that a triangle's bounding box, grown by `slack`, overlaps; empty if its coordinates are NaN.
 struct CellBox {
   Int3 first, last;
   bool empty = true;
@@ -67,18 +67,18 @@ struct CellBox {
     empty = false;
   }
 
-  /// One cell wide along two axes: then the triangle passes through all of its cells.
+  /// One cell wide along two axes: in this case the triangle passes through all of its cells.
   NACRE_HD_INLINE bool thin() const {
     return int(first.x == last.x) + int(first.y == last.y) + int(first.z == last.z) >= 2;
   }
   NACRE_HD_INLINE int length() const { return last.x - first.x + last.y - first.y + last.z - first.z + 1; }
 };
 
-/// The columns of cells that come near a triangle, along the largest axis `w` of its normal, in rows along `u`.
+/// The columns of cells near a triangle, along the largest axis `w` of its normal, in rows along `u`.
 struct ColumnWalk {
   Corners t;
   Vec3d n;
-  double slack, reach;  // of the plane over the middle of a column: how far cells along w may be near
+  double slack, reach;  // of the plane over the middle of a column: how far away cells along w may be
   int u, v, w;
   Int3 dims, first, last;
 
@@ -93,12 +93,12 @@ struct ColumnWalk {
     reach = (0.5 * (std::fabs(n[u]) + std::fabs(n[v])) + thickness) / std::fabs(n[w]);
   }
 
-  /// Where the triangle's plane passes over the middle of a column.
+  /// Where the plane of the triangle crosses the middle of a column.
   NACRE_HD_INLINE double plane(double middle_u, int iv) const {
     return t.a[w] - (n[u] * (middle_u - t.a[u]) + n[v] * (iv + 0.5 - t.a[v])) / n[w];
   }
 
-  /// The columns of a row, those left out whose cells near the plane lie outside. False if there are none.
+  /// The columns of a row, without those whose cells near the plane are outside. False if there are none.
   NACRE_HD bool row(int iv, int& from, int& to) const {
     double low, high;
     extent_in_slab(t, u, v, iv - slack, iv + 1 + slack, low, high);
@@ -118,14 +118,14 @@ struct ColumnWalk {
 };
 }  // namespace detail
 
-/// About how many columns of cells lie under a triangle: `for_cells_near` visits no fewer cells.
+/// About how many columns of cells are under a triangle: `for_cells_near` visits at least as many cells.
 NACRE_HD inline std::uint64_t columns_under(const Corners& t, Int3 dims) {
   const detail::CellBox box(t, detail::touching, dims);
   if (box.empty) return 0;
   if (box.thin()) return std::uint64_t(box.length());
   const detail::ColumnWalk walk(t, detail::touching, box, dims);
   std::uint64_t columns = 0;
-  const int stride = 1 + (walk.last[walk.v] - walk.first[walk.v]) / 1024;  // some rows stand for all of many
+  const int stride = 1 + (walk.last[walk.v] - walk.first[walk.v]) / 1024;  // a sample of the rows, if many
   int from = 0, to = 0;
   for (int iv = walk.first[walk.v]; iv <= walk.last[walk.v]; iv += stride)
     if (walk.row(iv, from, to)) columns += std::uint64_t(stride) * std::uint64_t(to - from + 1);
@@ -133,10 +133,10 @@ NACRE_HD inline std::uint64_t columns_under(const Corners& t, Int3 dims) {
 }
 
 /// Calls visit(Int3) for every cell (unit cubes, 0..dims-1 per axis) that comes within `margin` of the triangle. With
-/// margin 0 exactly those that the triangle touches (closed cells, with a slack of 1e-7); else those whose bounding
-/// sphere comes that near, which are all that do and some more. Walks the columns along the normal's largest axis that lie
-/// under the triangle, so that one thousands of cells wide costs its area, not its bounding box. A triangle whose
-/// coordinates are no numbers is near nothing.
+/// margin 0, exactly those that the triangle touches (closed cells, with a tolerance of 1e-7); otherwise those whose
+/// bounding sphere comes that near, which are all that do and some more. It visits the columns along the normal's
+/// largest axis that are under the triangle, so that a triangle thousands of cells wide costs its area, not its
+/// bounding box. A triangle whose coordinates are NaN is near nothing.
 template <class Visit>
 NACRE_HD void for_cells_near(const Corners& t, double margin, Int3 dims, Visit&& visit) {
   const detail::CellBox box(t, margin + detail::touching, dims);

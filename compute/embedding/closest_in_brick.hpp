@@ -1,4 +1,4 @@
-// Nacre: the exact closest points of the cells of a brick, among the clusters of triangles that come near it.
+// Nacre: the exact closest points of the cells of a brick, among the clusters of triangles near it.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace nacre::detail {
 
-/// Lowers eight floats >= 0 in memory that the lanes of a team share.
+/// Takes the minimum with eight floats >= 0 in memory that the lanes of a team share.
 NACRE_HD_INLINE void lower_to(float* shared, const Eight& to) {
 #if defined(__CUDA_ARCH__)
   for (int k = 0; k < 8; ++k) atomicMin(reinterpret_cast<int*>(shared) + k, __float_as_int(to[k]));
@@ -19,16 +19,16 @@ NACRE_HD_INLINE void lower_to(float* shared, const Eight& to) {
 #endif
 }
 
-/// What may hold the closest points of a cube of cells, and the triangles that touch them.
+/// Candidates for the closest points of a cube of cells, and for the triangles that touch them.
 template <class Item, int Room>
 struct ShortList {
   static constexpr int room = Room;
-  int count;            // over `Room`: some are not listed
-  Item item[Room + 1];  // the last place takes what is not listed
+  int count;            // if over `Room`, some are not listed
+  Item item[Room + 1];  // the last entry takes what is not listed
 
   NACRE_HD_INLINE bool listed() const { return count <= Room; }
 
-  /// Lists `what` if `yes`; on the host without a choice that a processor would guess wrong.
+  /// Lists `what` if `yes`; on the host without a branch that a processor would mispredict.
   NACRE_HD_INLINE void add_if(bool yes, Item what) {
 #if defined(__CUDA_ARCH__)
     if (!yes) return;
@@ -41,12 +41,12 @@ struct ShortList {
   }
 };
 
-/// Masks and closest points of a brick's cells: a team per brick. What may be near is sifted twice, for the brick's eight
-/// blocks (4^3 cells) and for their octets, then every octet is searched.
+/// Masks and closest points of a brick's cells, with a team per brick. Candidates are sifted twice, for the brick's
+/// eight blocks (4^3 cells) and for their octets; then every octet is searched.
 ///
-/// A part (a block, an octet) leaves a cluster out that is farther from its centre than the surface, a way there and back
-/// between the centre and the part's outermost cells included: some other triangle is nearer to all of its cells. It
-/// leaves out as well what is beyond the band's radius, and with it the parts that have no cell in the band.
+/// A part (a block, an octet) drops a cluster that is farther from its centre than the surface, plus the distance
+/// between the centre and the part's outermost cells and back: some other triangle is nearer to all of its cells. It
+/// also drops what is beyond the band's radius, and with it the parts that have no cell in the band.
 struct ClosestInBrick {
   static constexpr int cells = 512;  // room for points per brick
 
@@ -56,18 +56,18 @@ struct ClosestInBrick {
   const std::uint64_t* code;        // per brick
   const std::uint64_t* list_start;  // its clusters
   const std::uint32_t* list;
-  OctreeBrick* brick;  // takes the words of the masks
+  OctreeBrick* brick;  // receives the words of the masks
   CellPoint* point;    // cell (x, y, z) of brick i: 512 i + 64 z + 8 y + x
 
 #if defined(__CUDACC__)
-  static constexpr int room = 96, octet_room = 44;  // clusters; more take memory that few blocks of threads could share
+  static constexpr int room = 96, octet_room = 44;  // clusters; more take memory that few thread blocks could share
 #else
   static constexpr int room = 256, octet_room = 96;
 #endif
   struct Scratch {
-    float near[8];  // how far the surface is from the centres of a cube's parts, at most
+    float near[8];  // upper bounds of the distance of the surface from the centres of a cube's parts
     float octet_near[64];
-    float slack[room];  // of the clusters sifted at the time, and their distances from the parts
+    float slack[room];  // of the clusters being sifted, and their distances from the parts
     float squared[8 * room];
     ShortList<std::uint32_t, room> block[8];
     ShortList<std::uint8_t, octet_room> octet[64];  // of the items of the block's list
@@ -103,7 +103,7 @@ struct ClosestInBrick {
     });
   }
 
-  /// Takes over what was found for an octet.
+  /// Stores the result of an octet.
   NACRE_HD void store(std::int64_t i, int o, const Int3& low, const OctetSearch& found, Scratch& s) const {
     const unsigned band = found.in_band(radius);
     if (!band) return;
@@ -113,7 +113,7 @@ struct ClosestInBrick {
     s.surface[o] = std::uint8_t(found.touched() & band);
   }
 
-  /// How far from the centres of parts a cluster is of interest; `spread` is from there to the outermost cells.
+  /// How far from the centres of parts a cluster matters; `spread` is the distance from there to the outermost cells.
   NACRE_HD_INLINE Eight reach(const float* near, float spread) const {
     return max(min(load_eight(near) + spread, eight(float(radius))), eight(cell_diagonal)) + (spread + 1e-4f);
   }
@@ -126,7 +126,7 @@ struct ClosestInBrick {
         [&](int b, int k, bool yes) { s.block[b].add_if(yes, all[k]); });
   }
 
-  /// Fills the lists of a block's octets; those of a block without a list overflow.
+  /// Fills the lists of a block's octets; if the block has no list, they overflow.
   NACRE_HD void sift_block(Team& team, const Vec3d& centre, int b, Scratch& s) const {
     const auto& block = s.block[b];
     team.each(8, [&](int o) {
@@ -140,9 +140,9 @@ struct ClosestInBrick {
     team.each(8, [&](int o) { s.octet_near[8 * b + o] = s.near[o]; });
   }
 
-  /// Calls add(part, k, yes) for the clusters at(0) .. at(count - 1); `yes`: it may be of interest to that part of the
-  /// cube around `centre`, whose parts are cubes with half edge `half`; `near` takes how far the surface is from their
-  /// centres.
+  /// Calls add(part, k, yes) for the clusters at(0) .. at(count - 1); `yes`: it may matter for that part of the cube
+  /// around `centre`, whose parts are cubes with half edge `half`; `near` receives upper bounds of the distance of the
+  /// surface from their centres.
   template <class At, class Add>
   NACRE_HD void sift(Team& team, Scratch& s, const Vec3d& centre, float half, int count, const At& at,
                      const Add& add) const {

@@ -10,13 +10,14 @@ namespace nacre {
 
 #if !defined(__CUDACC__)
 
-/// For each corner of a cube (x fastest, lower ones first) the way to the closest point, and its squared length.
+/// For each corner of a cube (x fastest, lower ones first): the displacement to the closest point, and its squared
+/// length.
 struct ClosestOfEight {
   EightDoubles x, y, z, squared;
 };
 
-/// `closest_point` for the corners of the cube around `centre` with half edge `half`, all seven regions computed and one
-/// chosen. False, and nothing is found, if the triangle is too thin for that.
+/// `closest_point` for the corners of the cube around `centre` with half edge `half`; all seven regions are computed
+/// and one is selected. False, without a result, if the triangle is too thin for that.
 NACRE_HD_INLINE bool closest_of_eight(const Corners& t, const Vec3d& centre, double half, ClosestOfEight& found) {
   const Vec3d ab = t.b - t.a, ac = t.c - t.a, p = centre - t.a, n = cross(ab, ac);
   const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), area = dot(n, n);
@@ -40,7 +41,7 @@ NACRE_HD_INLINE bool closest_of_eight(const Corners& t, const Vec3d& centre, dou
   v = at_c ? zero : v, w = at_c ? zero + 1 : w;
   v = at_b ? zero + 1 : v, w = at_b ? zero : w;
   v = at_a ? zero : v, w = at_a ? zero : w;
-  // By way of the point itself, whose rounding hides that of the weights: most triangles that share it tie.
+  // Computed from the point itself, whose rounding hides that of the weights: most triangles that share the point tie.
   found.x = (ab.x * v + ac.x * w + t.a.x) - at_corners(centre.x, half, 0.0, 0.0);
   found.y = (ab.y * v + ac.y * w + t.a.y) - at_corners(centre.y, 0.0, half, 0.0);
   found.z = (ab.z * v + ac.z * w + t.a.z) - at_corners(centre.z, 0.0, 0.0, half);

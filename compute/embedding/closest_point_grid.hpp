@@ -1,4 +1,4 @@
-// Nacre: the two-level closest-point grid as kernels see it (sec. 5.1): look-up, interpolation, projection.
+// Nacre: the two-level closest-point grid as kernels see it (thesis, sec. 5.1): look-up, interpolation, projection.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ struct MeshView {
   }
 };
 
-/// Division of a cell coordinate by a small number, by shifting where that will do.
+/// Division of a cell coordinate by a small number, by shifting if possible.
 struct Divider {
   int divisor = 1;
   int shift = 0;  ///< -1: not a power of two
@@ -51,7 +51,7 @@ struct Divider {
 // cells_per_brick(), brick() and, for weno4_stencil, offset.
 
 /// A coarse grid of bricks near the surface, `sub`^3 cells each. Cell (i, j, k) has its centre at (i, j, k) + 0.5; all
-/// lengths are in cells. Every cell of a brick holds a closest point; within `radius` of the surface it is the exact one.
+/// lengths are in cells. Every cell of a brick stores a closest point; within `radius` of the surface it is exact.
 struct ClosestPointGridView {
   Int3 bricks{};      ///< extent of the coarse grid
   int sub = 4;        ///< cells per brick and axis, 3..8
@@ -95,15 +95,15 @@ NACRE_HD_INLINE Int3 floor_cell(const Vec3f& p) {
 
 NACRE_HD_INLINE Vec3f cell_centre(const Int3& c) { return {c.x + 0.5f, c.y + 0.5f, c.z + 0.5f}; }
 
-/// Where the N^3 cells of a stencil lie in memory: the stencil meets at most two bricks per axis (N <= sub + 1).
+/// Addresses of the N^3 cells of a stencil: the stencil meets at most two bricks per axis (N <= sub + 1).
 template <int N>
 struct Stencil {
   Int3 first;                   ///< lowest cell
-  int split[3];                 ///< how many of the N lie in the lower brick
+  int split[3];                 ///< how many of the N are in the lower brick
   int local[3];                 ///< position of the first one in its brick
   std::uint32_t base[2][2][2];  ///< [z][y][x]: address of a brick's cell 0
 
-  /// False where a brick is missing.
+  /// False if a brick is missing.
   template <class Grid>
   NACRE_HD_INLINE bool find(const Grid& grid, const Int3& lowest) {
     first = lowest;
@@ -129,7 +129,7 @@ struct Stencil {
     return true;
   }
 
-  /// Address of node (a, b, c) = that of row (b, c) plus what `x` says.
+  /// Address of node (a, b, c) = that of row (b, c) plus the entry of `x`.
   template <class Grid>
   NACRE_HD_INLINE std::uint32_t address(const Grid& grid, int a, int b, int c) const {
     const int sub = grid.sub;
@@ -142,9 +142,9 @@ struct Stencil {
 /// The eight cells around a point, for linear interpolation of anything that is stored per cell.
 struct LinearCells {
   std::uint32_t at[8];  ///< addresses, x fastest
-  Vec3f f;              ///< the point's distances from the first cell's centre, 0..1
+  Vec3f f;              ///< displacement of the point from the centre of the first cell, 0..1
 
-  /// False where the surface is too far for the eight to exist.
+  /// False if the surface is too far away for the eight to exist.
   template <class Grid>
   NACRE_HD_INLINE bool find(const Grid& grid, const Vec3f& p) {
     const Int3 first = floor_cell(p - Vec3f(0.5f));
@@ -181,7 +181,7 @@ struct LinearCells {
   }
 };
 
-/// `values` interpolated linearly at `p`. False where the surface is too far for the eight cells to exist.
+/// `values` interpolated linearly at `p`. False if the surface is too far away for the eight cells to exist.
 NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Vec3f& p,
                                         Lanes& result) {
   LinearCells cells;
@@ -191,7 +191,7 @@ NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const 
 }
 
 #if defined(__CUDACC__)
-/// The closest point of `p` relative to the centre of cell `first + 1`, and nothing of use in the fourth lane.
+/// The closest point of `p` relative to the centre of cell `first + 1`; the fourth lane is unused.
 template <class Grid>
 NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil, const Vec3f& f) {
   Lanes row[4];
@@ -210,7 +210,7 @@ NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil,
 #else
 template <class Grid>
 NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil, const Vec3f& f) {
-  std::uint32_t column[4];  // where node a of row (0, 0) would be, less its brick
+  std::uint32_t column[4];  // where node a of row (0, 0) would be, without the address of its brick
   const int sub = grid.sub;
   for (int a = 0; a < 4; ++a) column[a] = stencil.local[0] + a - (a >= stencil.split[0] ? sub : 0);
   Row slab[4];
@@ -236,8 +236,8 @@ NACRE_HD_INLINE Lanes weno4_stencil(const Grid& grid, const Stencil<4>& stencil,
 }
 #endif
 
-/// Point of the surface that belongs to `p` (sec. 5.1.2): WENO4 of the closest points around it; at the rim of the band
-/// the nearest cell's closest point. False where `p` is out of the band.
+/// Point of the surface that belongs to `p` (thesis, sec. 5.1.2): WENO4 of the closest points around it; at the edge of
+/// the band the closest point of the nearest cell. False if `p` is outside of the band.
 NACRE_HD inline bool project(const ClosestPointGridView& grid, const Vec3f& p, Vec3f& on_surface) {
   const Int3 lower = floor_cell(p - Vec3f(0.5f));
   Stencil<4> stencil;

@@ -11,7 +11,8 @@
 
 namespace nacre {
 
-/// A flat cylinder that holds a cluster: around a point of the surface, `radius` across, `thickness` to either side.
+/// A flat cylinder that contains a cluster: around a point of the surface, with `radius`, and `thickness` to either
+/// side.
 struct alignas(16) ClusterBound {
   Vec3f centre;
   float radius;
@@ -19,20 +20,20 @@ struct alignas(16) ClusterBound {
   float thickness;
 };
 
-/// Clusters of triangles whose centroids lie in one cell; a triangle that reaches farther than a cell from its centroid
-/// stands alone.
-/// `order` sorts the triangles along a Morton curve; cluster k holds order[start[k]] .. order[start[k + 1] - 1].
+/// Clusters of triangles whose centroids lie in one cell; a triangle that extends more than a cell from its centroid is
+/// a cluster by itself. `order` sorts the triangles along a Morton curve; cluster k has order[start[k]] ..
+/// order[start[k + 1] - 1].
 struct Clusters {
   std::uint32_t count = 0;
   Array<std::uint32_t> order;
-  Array<Corners> corners;      ///< of the triangles, in `order`: what is near in space is near in memory
+  Array<Corners> corners;      ///< of the triangles, in `order`: near in space, near in memory
   Array<std::uint32_t> start;  ///< count + 1 entries
   Array<ClusterBound> bound;
 };
 
 namespace detail {
 
-/// Sorts by the cell of the centroid, and sets triangles that stand alone behind the others.
+/// Sorts by the cell of the centroid, and puts triangles that are clusters by themselves after the others.
 struct CentroidCell {
   MeshView mesh;
   Int3 dims;

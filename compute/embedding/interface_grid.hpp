@@ -1,4 +1,4 @@
-// Nacre: closest points of every interface and junction curve, in one two-level grid (sec. 4.1.1, 4.2).
+// Nacre: closest points of every interface and junction curve, in one two-level grid (thesis, sec. 4.1.1, 4.2).
 #pragma once
 
 #include "compute/embedding/closest_point_grid.hpp"
@@ -6,8 +6,8 @@
 
 namespace nacre {
 
-/// A closest point as a cell holds it, in 16 bytes, so that all of the 64 cells that a projection reads fit into few cache
-/// lines. The rounding of a place, 2^-13 of a cell, is far below what WENO makes of such cells.
+/// A closest point as a cell stores it, in 16 bytes, so that all of the 64 cells that a projection reads fit into few
+/// cache lines. The rounding of a position, 2^-13 of a cell, is far below the error of WENO on such cells.
 struct alignas(16) EmbeddedCell {
   std::int16_t offset[3];     ///< closest point minus the cell's centre, `offset_unit` cells
   std::int16_t margin;        ///< `margin_unit` voxels
@@ -17,7 +17,7 @@ struct alignas(16) EmbeddedCell {
   static constexpr float offset_unit = 0x1p-12f, margin_unit = offset_unit, direction_unit = 0x1p-14f;
 
   NACRE_HD EmbeddedCell() = default;
-  /// `offset`: w is the margin; `direction`: w is h. Beyond what can be held they are cut off: 8 cells, 8 voxels.
+  /// `offset`: w is the margin; `direction`: w is h. Values beyond the range are clamped: 8 cells, 8 voxels.
   NACRE_HD EmbeddedCell(const Float4& o, const Float4& d, float size_unit)
       : offset{rounded(o.x / offset_unit), rounded(o.y / offset_unit), rounded(o.z / offset_unit)},
         margin(rounded(o.w / margin_unit)),
@@ -64,7 +64,7 @@ NACRE_HD_INLINE Row row(const EmbeddedCell& a, const EmbeddedCell& b, const Embe
 }
 #endif
 
-/// A coarse grid over the volume whose cells list bricks of 4^3 cells, one per interface that is near. Lengths are in cells,
+/// A coarse grid over the volume whose cells list bricks of 4^3 cells, one per interface nearby. Lengths are in cells,
 /// `cells_per_voxel` to a voxel; cell (i, j, k) has its centre at (i, j, k) + 0.5.
 struct InterfaceGridView {
   static constexpr int sub = 4;
@@ -72,8 +72,8 @@ struct InterfaceGridView {
   float cells_per_voxel = 2;
   const std::uint32_t* brick_start = nullptr;      ///< per coarse cell, x fastest, and one more
   const std::uint32_t* brick_interface = nullptr;  ///< ascending within a coarse cell
-  /// Closest points; the margin is by how much the interface's materials are ahead of all others there: negative beyond
-  /// the interface's rim.
+  /// Closest points. The margin is by how much the interface's materials lead over all others there; negative beyond
+  /// the rim of the interface.
   const EmbeddedCell* cell = nullptr;
   float size_unit = 1;  ///< of the cells' h, voxels
 
@@ -89,7 +89,7 @@ struct InterfaceGridView {
   }
 };
 
-/// The bricks of one interface, as Stencil and LinearCells want to see them.
+/// The bricks of one interface, in the form that Stencil and LinearCells require.
 struct InterfaceBricks {
   const InterfaceGridView& grid;
   std::uint32_t interface;
@@ -108,7 +108,7 @@ struct InterfaceBricks {
   }
 };
 
-/// A particle's place on its interface.
+/// A particle's position on its interface.
 struct EmbeddedPoint {
   Vec3f p;          ///< voxels
   Vec3f direction;  ///< unit normal or tangent
@@ -116,8 +116,8 @@ struct EmbeddedPoint {
   float margin;     ///< voxels; negative beyond the rim
 };
 
-/// Puts `p` (voxels) onto the interface by WENO4 of the closest points around it (sec. 4.2.1); direction and size are
-/// interpolated linearly at the result. False where the interface is too far away.
+/// Projects `p` (voxels) onto the interface by WENO4 of the closest points around it (thesis, sec. 4.2.1); direction
+/// and size are interpolated linearly at the result. False if the interface is too far away.
 NACRE_HD inline bool project(const InterfaceGridView& grid, std::uint32_t interface, const Vec3f& p,
                              EmbeddedPoint& on) {
   const InterfaceBricks bricks{grid, interface};

@@ -1,4 +1,4 @@
-// Nacre: the linear octree above sorted bricks, and who is beside whom.
+// Nacre: the linear octree above sorted bricks, and the neighbours of each brick.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace nacre {
 
 namespace detail {
 
-/// A node from the run of its children's codes.
+/// Makes a node from the run of its children's codes.
 struct WriteNode {
   const std::uint64_t* child;  // codes
   const std::uint64_t* start;
@@ -24,8 +24,8 @@ struct WriteNode {
   }
 };
 
-/// Finds the 13 neighbours that come first among a brick's 26 and tells them, too. A neighbour is mostly near in Morton
-/// order, so the search doubles its steps from the brick on.
+/// Finds the 13 neighbours that come first among a brick's 26, and enters the brick in theirs, too. A neighbour is
+/// mostly near in Morton order, so the search starts at the brick and doubles its steps.
 struct FindBrickNeighbours {
   int levels;
   std::uint32_t count;
@@ -75,7 +75,8 @@ struct OctreeNodes {
   Array<std::uint32_t> level_start;  ///< levels + 1 entries
 };
 
-/// Builds the levels from the lowest to the root: a node for each run of codes that agree but for their last three bits.
+/// Builds the levels from the lowest to the root: one node for each run of codes that differ only in their last three
+/// bits.
 template <class Backend>
 OctreeNodes build_octree_nodes(Executor<Backend>& exec, const Array<std::uint64_t>& brick_code, int levels) {
   Arena& arena = exec.arena();

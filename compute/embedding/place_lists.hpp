@@ -1,4 +1,4 @@
-// Nacre: which items lie at which place, where places are 64-bit codes: a list of items for each place that has one.
+// Nacre: lists of the items at each place, where places are 64-bit codes; only places with items have a list.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace nacre {
 
-/// Equal places side by side among sorted codes: `place` ascends; run k is codes start[k] .. start[k + 1] - 1.
+/// Runs of equal places among sorted codes: `place` ascends; run k is codes start[k] .. start[k + 1] - 1.
 struct CodeRuns {
   std::uint32_t count = 0;
   Array<std::uint64_t> place;
   Array<std::uint64_t> start;  ///< count + 1 entries
 };
 
-/// Places that hold items; items of place k: item[places.start[k]] .. item[places.start[k + 1] - 1], ascending.
+/// Places that have items; the items of place k are item[places.start[k]] .. item[places.start[k + 1] - 1], ascending.
 struct PlaceLists {
   CodeRuns places;
   Array<std::uint32_t> item;
@@ -24,9 +24,9 @@ struct PlaceLists {
 
 namespace detail {
 
-/// Counts the places of an item where `place` is null, else writes them: one kernel for both, because a compiler may
-/// round two instantiations of the same geometry differently. An item's first places are kept when they are counted, so
-/// that only one that has more is looked at twice.
+/// Counts the places of an item if `place` is null, otherwise writes them. It is one kernel for both, because a
+/// compiler may round two instantiations of the same geometry differently. The first places of an item are stored when
+/// they are counted, so that only an item with more is processed twice.
 template <class Enumerate>
 struct EnumeratePlaces {
   static constexpr int kept = 4;
@@ -57,7 +57,7 @@ struct EnumeratePlaces {
   }
 };
 
-/// Whether another place begins at code i; places are codes without their lowest `shift` bits.
+/// Whether a new place begins at code i; places are codes without their lowest `shift` bits.
 struct RunHead {
   const std::uint64_t* code;
   int shift;
@@ -113,7 +113,7 @@ CodeRuns runs_of(Executor<Backend>& exec, const std::uint64_t* code, std::uint64
 }
 
 /// `enumerate(i, visit)` calls visit(code) for every place of item i, at most once each. The lists are temporary in the
-/// caller's scope: 12 bytes per pair, 16 per place and 40 per item. Throws Error when they do not fit.
+/// caller's scope: 12 bytes per pair, 16 per place and 40 per item. Throws Error if they do not fit.
 template <class Backend, class Enumerate>
 PlaceLists place_lists(Executor<Backend>& exec, std::int64_t items, const Enumerate& enumerate) {
   Arena& arena = exec.arena();

@@ -1,4 +1,4 @@
-// Nacre: the sparsely stored refined grid as kernels see it (sec. 5.2.1): texture cells on and beside the surface.
+// Nacre: the sparse refined grid as kernels see it (thesis, sec. 5.2.1): texture cells on and beside the surface.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace nacre {
 
-/// Texture cells are R^3 to a cell of the closest-point grid. A cell that the surface passes through is a surface cell
-/// and has a number 0..surface_cells-1, in the order of the bricks; values live in arrays of that length. A cell within
-/// two cells of the surface knows the surface cell that holds its closest point, so that a value can be looked up there
-/// too (its closest-point extension). All coordinates here are in texture cells.
+/// A cell of the closest-point grid has R^3 texture cells. A cell that the surface passes through is a surface cell and
+/// has a number 0..surface_cells-1, in the order of the bricks; values are stored in arrays of that length. A cell
+/// within two cells of the surface stores the surface cell that contains its closest point, so that a value can be
+/// looked up there too (its closest-point extension). All coordinates here are in texture cells.
 struct RefinedGridView {
-  static constexpr std::uint32_t extended = 0x80000000u;  ///< set in `texel` where the cell is beside the surface
+  static constexpr std::uint32_t extended = 0x80000000u;  ///< set in `texel` if the cell is beside the surface
 
   ClosestPointGridView grid;
   int refine = 4;  ///< R, 1..8
@@ -20,11 +20,11 @@ struct RefinedGridView {
   Divider divide{4};                             ///< by refine
   const std::uint32_t* block = nullptr;          ///< per closest-point cell: its block of R^3 texture cells, or `none`
   const std::uint32_t* texel = nullptr;          ///< per texture cell of a block: surface cell number, or `none`
-  const std::uint32_t* place = nullptr;          ///< per surface cell: where its texture cell is in `texel`
+  const std::uint32_t* place = nullptr;          ///< per surface cell: index of its texture cell in `texel`
   const std::uint32_t* block_cell = nullptr;     ///< per block: address of its closest-point cell
   const Float4* seed = nullptr;                  ///< per surface cell: closest point minus centre; w unused
   const std::uint32_t* seed_triangle = nullptr;  ///< per surface cell: the triangle of its closest point
-  const std::uint32_t* neighbour = nullptr;      ///< 6 per surface cell, -x +x -y +y -z +z; itself where there is none
+  const std::uint32_t* neighbour = nullptr;      ///< 6 per surface cell, -x +x -y +y -z +z; itself if there is none
 
   NACRE_HD int cells_per_block() const { return refine * refine * refine; }
 
@@ -49,13 +49,13 @@ struct RefinedGridView {
     return b == none ? none : entry_in(b, cell, outer_cell);
   }
 
-  /// Surface cell at `cell`, or the one that holds its closest point, or `none`.
+  /// Surface cell at `cell`, or the one that contains its closest point, or `none`.
   NACRE_HD std::uint32_t surface_cell(const Int3& cell) const {
     const std::uint32_t at = entry(cell);
     return at == none ? none : surface_cell_at(at);
   }
 
-  /// The same by the cell's entry of `texel`.
+  /// The same, from the cell's entry of `texel`.
   NACRE_HD std::uint32_t surface_cell_at(std::uint32_t at) const {
     const std::uint32_t value = texel[at];
     return value == none ? none : value & ~extended;

@@ -1,4 +1,5 @@
-// Nacre: lists of which item lies where, as sorted keys: (place << 32 | item).
+// Nacre: lists of the items at each place, as sorted keys: (place << 32
+// item).
 #pragma once
 
 #include <cstdint>
@@ -10,8 +11,8 @@ namespace nacre {
 
 namespace detail {
 
-/// Counts the places of an item where `keys` is null, else writes them: one kernel for both, because a compiler may round
-/// two instantiations of the same geometry differently. An item that has one place only is not looked at twice.
+/// Counts the places of an item if `keys` is null, otherwise writes them. It is one kernel for both, because a compiler
+/// may round two instantiations of the same geometry differently. An item with one place only is not processed twice.
 template <class Enumerate>
 struct EnumerateKeys {
   Enumerate enumerate;
@@ -44,7 +45,7 @@ struct HeadFlag {
   NACRE_HD void operator()(std::int64_t i) const { head[i] = i == 0 || keys[i] >> 32 != keys[i - 1] >> 32 ? 1 : 0; }
 };
 
-/// First position whose key's place is at least i: the lists of all places as offsets.
+/// First position whose key has a place of at least i: the lists of all places as offsets.
 template <class Offset>
 struct ListStart {
   std::uint64_t pairs;
@@ -87,8 +88,8 @@ Array<std::uint64_t> sorted_pairs(Executor<Backend>& exec, std::int64_t items, c
   return keys;
 }
 
-/// For sorted keys: `number[i]` = how many different places begin before key i (the number of key i's place is that,
-/// plus its own head flag, minus one). Returns how many places there are.
+/// For sorted keys: `number[i]` = how many different places begin before key i (the number of the place of key i is
+/// that, plus its own head flag, minus one). Returns how many places there are.
 template <class Backend>
 std::uint32_t number_places(Executor<Backend>& exec, const Array<std::uint64_t>& keys, Array<std::uint32_t>& number) {
   const std::int64_t n = keys.size();

@@ -33,12 +33,12 @@ NACRE_HD inline Vec3d closest_edge_weights(const Corners& t, const Vec3d& p) {
   return weights;
 }
 
-/// The closest point where the triangle is too thin for the seven regions: the foot on its plane if that falls inside,
-/// else the closest point of its edges.
+/// The closest point if the triangle is too thin for the seven regions: the foot on its plane if that is inside,
+/// otherwise the closest point of its edges.
 NACRE_HD inline Vec3d closest_point_of_sliver(const Corners& t, const Vec3d& p) {
   const Vec3d ab = t.b - t.a, ac = t.c - t.a, n = cross(ab, ac);
   const double nn = dot(n, n), bb = dot(ab, ab), cc = dot(ac, ac), longest = bb > cc ? bb : cc;
-  if (nn > 1e-18 * longest * longest) {  // thinner yet, the normal is rounding too, and the edges are as good
+  if (nn > 1e-18 * longest * longest) {  // if even thinner, the normal is rounding, too, and the edges are as good
     const Vec3d foot = p - t.a - n * (dot(n, p - t.a) / nn);
     if (dot(cross(ab, foot), n) >= 0 && dot(cross(foot, ac), n) >= 0 && dot(cross(t.c - t.b, foot - ab), n) >= 0)
       return t.a + foot;
@@ -52,8 +52,8 @@ NACRE_HD inline double magnitude(double a, double b, double c) {
 }
 }  // namespace detail
 
-/// Point of the triangle closest to `p`: the projection falls in one of seven regions, the face, three edges or three
-/// corners (sec. 5.1.1, Fig. 5.2). Holds for slivers too; a triangle without area is treated by its edges.
+/// Point of the triangle closest to `p`: the projection lies in one of seven regions, the face, three edges or three
+/// corners (thesis, sec. 5.1.1, Fig. 5.2). Correct for slivers, too; a triangle without area is treated by its edges.
 NACRE_HD inline Vec3d closest_point(const Corners& t, const Vec3d& p) {
   const Vec3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a;
   const double d1 = dot(ab, ap), d2 = dot(ac, ap);
@@ -77,14 +77,14 @@ NACRE_HD inline Vec3d closest_point(const Corners& t, const Vec3d& p) {
   const double along = (d4 - d3) + (d5 - d6);
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0 && along > 0) return t.b + (t.c - t.b) * ((d4 - d3) / along);
 
-  // va, vb, vc are differences of such products: of a sliver nothing but rounding is left of them.
+  // va, vb, vc are differences of such products: for a sliver they are nothing but rounding.
   const double sum = va + vb + vc;
   if (!(sum > 1e-8 * detail::magnitude(d1, d3, d5) * detail::magnitude(d2, d4, d6)))
     return detail::closest_point_of_sliver(t, p);
   return t.a + ab * (vb / sum) + ac * (vc / sum);
 }
 
-/// Weights of the corners at a point of the triangle, all in [0, 1], their sum one. Of a point beside it, those of a
+/// Weights of the corners at a point of the triangle, all in [0, 1], with sum one. For a point beside it, those of a
 /// point of its edges.
 NACRE_HD inline Vec3d barycentric(const Corners& t, const Vec3d& p) {
   const Vec3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, n = cross(ab, ac);
@@ -92,7 +92,7 @@ NACRE_HD inline Vec3d barycentric(const Corners& t, const Vec3d& p) {
   if (!(area > 1e-14 * dot(ab, ab) * dot(ac, ac))) return detail::closest_edge_weights(t, p);
   double v = dot(cross(ap, ac), n) / area, w = dot(cross(ab, ap), n) / area;
   double u = 1 - v - w;
-  const double outside = -1e-6;  // farther than rounding would carry a point of the triangle
+  const double outside = -1e-6;  // farther than rounding could move a point of the triangle
   if (u < outside || v < outside || w < outside) return detail::closest_edge_weights(t, p);
   u = u > 0 ? u : 0;
   v = v > 0 ? v : 0;
@@ -153,7 +153,7 @@ NACRE_HD inline bool touches_cube(const Corners& triangle, const Vec3d& centre, 
   const Vec3d ab = t.b - t.a, bc = t.c - t.b, ca = t.a - t.c;
   const Vec3d n = cross(ab, bc);
   const double nx = n.x < 0 ? -n.x : n.x, ny = n.y < 0 ? -n.y : n.y, nz = n.z < 0 ? -n.z : n.z;
-  // The normal of a needle is mostly rounding, which its length must not turn into a distance.
+  // The normal of a needle is mostly rounding; its length must not turn that into a distance.
   const double rounding = 1e-15 * detail::magnitude(t.a.x, t.a.y, t.a.z) *
                           (detail::magnitude(ab.x, ab.y, ab.z) + half) * (detail::magnitude(bc.x, bc.y, bc.z) + half);
   const double d = dot(n, t.a), reach = half * (nx + ny + nz) + rounding;

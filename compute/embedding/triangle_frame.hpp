@@ -1,4 +1,4 @@
-// Nacre: distances to a triangle from eight places at once, in single precision and with a bound of the error.
+// Nacre: distances to a triangle from eight positions at once, in single precision and with a bound of the error.
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@ struct TriangleFrame {
   float ac_u, ac_v, ac_length;  ///< direction and length of AC
   float bc_u, bc_v, bc_length;
 
-  /// Squares of the distances from the corners of the cube around `centre` with half edge `half`. Returns how far the
-  /// distances (not their squares) may be off.
+  /// Squares of the distances from the corners of the cube around `centre` with half edge `half`. Returns a bound of
+  /// the error of the distances (not of their squares).
   NACRE_HD_INLINE float distances(const Vec3d& centre, float half, Eight& squared) const {
     const Vec3f w(centre - origin);
     const EightWays ways = ways_to_corners(w, half);
@@ -44,7 +44,7 @@ struct TriangleFrame {
 
 NACRE_HD inline TriangleFrame triangle_frame(const Corners& t) {
   const double ab = length(t.b - t.a), bc = length(t.c - t.b), ca = length(t.a - t.c);
-  Corners s = t;  // its longest edge first, turned and not mirrored
+  Corners s = t;  // its longest edge first, rotated and not mirrored
   if (bc >= ab && bc >= ca) s = {t.b, t.c, t.a};
   if (ca > ab && ca > bc) s = {t.c, t.a, t.b};
   const Vec3d e = s.b - s.a, other = s.c - s.a;

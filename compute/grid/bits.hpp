@@ -1,4 +1,4 @@
-// Nacre: bits of a word, counted and found.
+// Nacre: counting and finding the set bits of a word.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ NACRE_HD_INLINE int count_bits(std::uint64_t v) {
 #endif
 }
 
-/// Number of the lowest bit that is set; there must be one.
+/// Number of the lowest set bit; at least one bit must be set.
 NACRE_HD_INLINE int lowest_bit(unsigned bits) {
 #if defined(__CUDA_ARCH__)
   return __ffs(bits) - 1;

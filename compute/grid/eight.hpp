@@ -1,4 +1,4 @@
-// Nacre: eight floats that belong to the eight corners of a cube and are computed with together.
+// Nacre: eight floats, one per corner of a cube, that are computed with together.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace nacre {
 
 #if defined(__CUDACC__)
 
-/// On the device one thread computes all of them, in registers.
+/// On the device one thread computes all eight, in registers.
 struct Eight {
   float v[8];
   NACRE_HD_INLINE float operator[](int k) const { return v[k]; }
@@ -54,22 +54,22 @@ NACRE_HD_INLINE Eight max(const Eight& a, const Eight& b) {
 NACRE_HD_INLINE Eight sqrt(const Eight& a) {
   return detail::each_of_eight([&](int k) { return std::sqrt(a.v[k]); });
 }
-/// `a` where `sign` > 0, else `b`.
+/// `a` where `sign` > 0, otherwise `b`.
 NACRE_HD_INLINE Eight where_positive(const Eight& sign, const Eight& a, const Eight& b) {
   return detail::each_of_eight([&](int k) { return sign.v[k] > 0 ? a.v[k] : b.v[k]; });
 }
-/// A bit for each `a` <= `b`.
+/// One bit per corner: set where `a` <= `b`.
 NACRE_HD_INLINE unsigned at_most(const Eight& a, const Eight& b) {
   unsigned bits = 0;
   for (int k = 0; k < 8; ++k) bits |= unsigned(a.v[k] <= b.v[k]) << k;
   return bits;
 }
-/// `a`, to which go `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
+/// `a` with `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
 NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
   return detail::each_of_eight([&](int k) { return a + (k & 1 ? x : -x) + ((k & 2 ? y : -y) + (k & 4 ? z : -z)); });
 }
 
-/// The ways from a point to the corners of a cube.
+/// The displacements from a point to the corners of a cube.
 struct EightWays {
   Vec3f middle;
   float half;
@@ -85,7 +85,7 @@ NACRE_HD_INLINE Eight squared(const EightWays& w) {
 
 #else
 
-/// On the host they are one SIMD register.
+/// On the host the eight floats are one SIMD register.
 typedef float Eight __attribute__((vector_size(32)));
 typedef double EightDoubles __attribute__((vector_size(64)));
 
@@ -100,9 +100,9 @@ NACRE_HD_INLINE Eight sqrt(Eight a) {
   return a;
 #endif
 }
-/// `a` where `sign` > 0, else `b`.
+/// `a` where `sign` > 0, otherwise `b`.
 NACRE_HD_INLINE Eight where_positive(Eight sign, Eight a, Eight b) { return sign > 0 ? a : b; }
-/// A bit for each `a` <= `b`.
+/// One bit per corner: set where `a` <= `b`.
 NACRE_HD_INLINE unsigned at_most(Eight a, Eight b) {
 #if defined(__AVX__)
   return unsigned(_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LE_OQ)));
@@ -112,13 +112,13 @@ NACRE_HD_INLINE unsigned at_most(Eight a, Eight b) {
   return bits;
 #endif
 }
-/// `a`, to which go `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
+/// `a` with `x`, `y`, `z` added or subtracted: the corners of a cube, x fastest, lower ones first.
 NACRE_HD_INLINE EightDoubles at_corners(double a, double x, double y, double z) {
   return EightDoubles{-1, 1, -1, 1, -1, 1, -1, 1} * x + a +
          (EightDoubles{-1, -1, 1, 1, -1, -1, 1, 1} * y + EightDoubles{-1, -1, -1, -1, 1, 1, 1, 1} * z);
 }
 
-/// The ways from a point to the corners of a cube.
+/// The displacements from a point to the corners of a cube.
 struct EightWays {
   Eight x, y, z;
 };
@@ -131,7 +131,7 @@ NACRE_HD_INLINE Eight squared(const EightWays& w) { return w.x * w.x + w.y * w.y
 
 #endif
 
-/// Eight floats as they lie in memory that has no need to be aligned.
+/// Eight floats as they are stored in memory, which need not be aligned.
 NACRE_HD_INLINE Eight load_eight(const float* from) {
   Eight a;
   std::memcpy(&a, from, sizeof a);

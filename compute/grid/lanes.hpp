@@ -6,14 +6,14 @@
 
 namespace nacre {
 
-/// How four floats lie in memory: one 16-byte load on either backend.
+/// How four floats are stored in memory: one 16-byte load on either backend.
 struct alignas(16) Float4 {
   float x, y, z, w;
 };
 
 #if defined(__CUDACC__)
 
-/// What they are computed with on the device: plain scalars, one thread has many of them in flight anyway.
+/// The type to compute with on the device: plain scalars, since one thread has many of them in flight anyway.
 struct Lanes {
   float x, y, z, w;
 };
@@ -29,8 +29,8 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a.x, a.y, a.z, a.w}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return {x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a.x, a.y, a.z}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a.x + a.y + (a.z + a.w); }
-/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 3) on. With a branch, since few rows go across
-/// two bricks, and a choice for each float would take more registers than there are.
+/// Four of the eight floats low[0..3], high[0..3], starting at number `first` (0 to 3). It branches, since few rows
+/// cross two bricks, and selecting each float would need more registers than there are.
 NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
   if (first == 0) return {low[0], low[1], low[2], low[3]};
   const float *lower = low + first, *upper = high + first - 4;
@@ -39,7 +39,7 @@ NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
 
 #else
 
-/// What they are computed with on the host: one SIMD register.
+/// The type to compute with on the host: one SIMD register.
 typedef float Lanes __attribute__((vector_size(16)));
 typedef Lanes MemoryLanes __attribute__((may_alias));
 NACRE_HD_INLINE Lanes load(const Float4& a) { return *reinterpret_cast<const MemoryLanes*>(&a); }
@@ -47,7 +47,7 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a[0], a[1], a[2], a[3]}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return Lanes{x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a[0], a[1], a[2]}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a[0] + a[1] + (a[2] + a[3]); }
-/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 3) on.
+/// Four of the eight floats low[0..3], high[0..3], starting at number `first` (0 to 3).
 NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
 #if __has_builtin(__builtin_shuffle)
   typedef float Unaligned __attribute__((vector_size(16), aligned(4), may_alias));
@@ -60,7 +60,7 @@ NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
 #endif
 }
 
-/// Four nodes of a row side by side: the first two axes of a 4^3 stencil are reduced for all of them at once.
+/// Four nodes of a row side by side: the first two axes of a 4^3 stencil are reduced for all four at once.
 typedef float Row __attribute__((vector_size(64)));
 typedef float HalfRow __attribute__((vector_size(32)));
 

@@ -1,4 +1,4 @@
-// Nacre: Morton codes: cells near each other in space are near each other in memory.
+// Nacre: Morton codes: cells that are near each other in space get near numbers.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace nacre {
 
 namespace detail {
-/// Puts two zero bits behind each of the lowest 21 bits.
+/// Inserts two zero bits after each of the lowest 21 bits.
 NACRE_HD constexpr std::uint64_t spread3(std::uint64_t v) {
   v &= 0x1fffff;
   v = (v | v << 32) & 0x001f00000000ffff;
@@ -31,8 +31,8 @@ NACRE_HD constexpr std::int32_t gather3(std::uint64_t v) {
 }
 }  // namespace detail
 
-/// Code of a cell with coordinates in 0..2^21-1: bits of x, y, z interleaved, x lowest. Of (23, 6, 14) it is 6649
-/// (sec. 6.1.2 prints 6641, which is (21, 6, 14)).
+/// Code of a cell with coordinates in 0..2^21-1: the bits of x, y, z interleaved, x lowest. The code of (23, 6, 14) is
+/// 6649 (thesis, sec. 6.1.2, prints 6641, which is the code of (21, 6, 14)).
 NACRE_HD constexpr std::uint64_t morton(Int3 cell) {
   return detail::spread3(std::uint64_t(cell.x)) | detail::spread3(std::uint64_t(cell.y)) << 1 |
          detail::spread3(std::uint64_t(cell.z)) << 2;

@@ -62,14 +62,14 @@ NACRE_HD_INLINE T length(const Vec3<T>& a) {
   return std::sqrt(dot(a, a));
 }
 
-/// Unit vector, or zero where `a` has no length.
+/// Unit vector, or zero if `a` is zero.
 template <class T>
 NACRE_HD Vec3<T> normalized(const Vec3<T>& a) {
   const T n = length(a);
   return n > T(0) ? a / n : Vec3<T>{};
 }
 
-/// The lesser and the greater of two numbers, in one instruction; std::fmin minds NaN and is a call of the C library.
+/// The smaller and the larger of two numbers, in one instruction; std::fmin also handles NaN and is a library call.
 NACRE_HD_INLINE constexpr float min(float a, float b) { return b < a ? b : a; }
 NACRE_HD_INLINE constexpr float max(float a, float b) { return a < b ? b : a; }
 
@@ -88,16 +88,16 @@ NACRE_HD bool is_finite(const Vec3<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// Whether a cell is one of 0 .. dims - 1 along each axis.
+/// Whether a cell is within 0 .. dims - 1 along each axis.
 NACRE_HD_INLINE constexpr bool is_within(const Vec3<int>& cell, const Vec3<int>& dims) {
   return unsigned(cell.x) < unsigned(dims.x) && unsigned(cell.y) < unsigned(dims.y) &&
          unsigned(cell.z) < unsigned(dims.z);
 }
 
-/// What stands for no index.
+/// Marks a missing index.
 inline constexpr std::uint32_t none = 0xffffffffu;
 
-/// Three indices into a point array.
+/// Three indices into an array of points.
 struct Triangle {
   std::uint32_t a{}, b{}, c{};
   NACRE_HD constexpr std::uint32_t operator[](int k) const { return k == 0 ? a : k == 1 ? b : c; }

@@ -1,15 +1,15 @@
-// Nacre: WENO4 interpolation (Alg. 5.2, 5.3; Macdonald & Ruuth 2008).
+// Nacre: WENO4 interpolation (thesis, Alg. 5.2, 5.3; Macdonald & Ruuth 2008).
 #pragma once
 
 #include "compute/device/backend.hpp"
 
 namespace nacre {
 
-/// Value at `x` in [0, 1] between f2 (x = 0) and f3 (x = 1) from four equidistant samples: the two parabolas through
-/// f1 f2 f3 and f2 f3 f4, weighted by smoothness IS = Fx (Fx + Fxx) + 4/3 Fxx^2 (Alg. 5.3; Alg. 4.2 line 3 is
-/// misprinted). Third order in general, fourth where smooth; no overshoot to speak of across a jump. `V` is a float or
-/// lanes of them. The smoothness epsilon is absolute: values must be in units of a cell.
-/// The two quotients w_i v_i / (w_1 + w_2) are brought on one denominator, so there is one division.
+/// Value at `x` in [0, 1] between f2 (x = 0) and f3 (x = 1) from four equidistant samples: the two parabolas through f1
+/// f2 f3 and f2 f3 f4, weighted by the smoothness IS = Fx (Fx + Fxx) + 4/3 Fxx^2 (Alg. 5.3; Alg. 4.2, line 3, is
+/// misprinted). It is third order in general and fourth order where smooth, with no significant overshoot across a
+/// jump. `V` is a float or lanes of floats. The epsilon of the smoothness is absolute, so values must be in units of a
+/// cell. The two quotients w_i v_i / (w_1 + w_2) are put over one denominator, so there is one division.
 template <class V>
 NACRE_HD_INLINE V weno4(V f1, V f2, V f3, V f4, float x) {
   const float epsilon = 1e-6f;

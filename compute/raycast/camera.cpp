@@ -20,7 +20,7 @@ Vec3d view_direction(const std::string& view) {
   throw Error("no camera '" + view + "'", "", "use iso, +x, -x, +y, -y, +z, -z or a JSON file");
 }
 
-/// Of some points, as a camera sees them, at the distance of its target.
+/// What a camera sees of some points, at the distance of its target.
 struct Extent {
   double left = 0, right = 0, bottom = 0, top = 0;
 };
@@ -41,7 +41,7 @@ Extent extent_of(std::span<const Vec3d> points, const Camera& camera) {
   return seen;
 }
 
-/// Brings what covers `seen` into the middle of the left `share` of the picture, and fills that.
+/// Moves the centre of `seen` into the middle of the left `share` of the picture, and scales it to fill that part.
 Camera centred(Camera camera, const Extent& seen, double aspect, double share, double least) {
   camera.height = 1.12 * std::max({seen.top - seen.bottom, (seen.right - seen.left) / (aspect * share), least});
   const Vec3d right = camera.right(), up = cross(right, camera.forward());
@@ -52,7 +52,7 @@ Camera centred(Camera camera, const Extent& seen, double aspect, double share, d
   return camera;
 }
 
-/// Does what covers `seen`, in the middle of the camera's picture, reach into what is kept free?
+/// Whether `seen`, centred in the camera's picture, reaches into the area that is kept free.
 bool reaches(const Extent& seen, const Camera& camera, double aspect, const KeptFree& kept) {
   const double right = 0.5 + 0.5 * (seen.right - seen.left) / (camera.height * aspect);
   const double half = 0.5 * (seen.top - seen.bottom) / camera.height;

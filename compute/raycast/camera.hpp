@@ -9,8 +9,8 @@
 
 namespace nacre {
 
-/// Where the picture is taken from, in world coordinates. `height` is the visible height at the target: the field of
-/// view of a perspective camera follows from its distance, an orthographic one has just that.
+/// The view of a picture, in world coordinates. `height` is the visible height at the target: a perspective camera gets
+/// its field of view from it and its distance, an orthographic camera has exactly this height.
 struct Camera {
   Vec3d eye{0, 0, 1};
   Vec3d target{0, 0, 0};
@@ -24,24 +24,24 @@ struct Camera {
   Vec3d right() const {
     const Vec3d r = cross(forward(), up);
     if (length(r) > 1e-9 * length(up)) return normalized(r);
-    const Vec3d f = forward();  // looking along `up`: any direction across will do
+    const Vec3d f = forward();  // looking along `up`: any perpendicular direction is good
     return normalized(cross(f, std::fabs(f.x) < 0.9 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0)));
   }
 };
 
-/// What of a picture's right border nothing may lie under, such as a legend: from `left` to the border, from `top` to
-/// `bottom`, in shares of its width and height from the left upper corner. As it stands: nothing.
+/// An area at the right border of a picture that must stay free, for example for a legend: from `left` to the border
+/// and from `top` to `bottom`, as fractions of width and height from the upper left corner. By default it is empty.
 struct KeptFree {
   double left = 1, top = 0, bottom = 1;
 };
 
-/// A camera that sees all `points` from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z is
-/// up, y for the two z views). They fill the picture, or, where they would reach into what is kept free, what is to the
-/// left of it. Throws Error for any other word.
+/// A camera that sees all `points` from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z
+/// is up, y for the two z views). The points fill the picture or, if they would reach into the area that is kept free,
+/// the part to the left of it. Throws Error for any other name.
 Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height,
                   const KeptFree& kept = {});
 
-/// The same from where `from` looks, in its projection.
+/// The same, with the direction and projection of the camera `from`.
 Camera fit_camera(const Camera& from, std::span<const Vec3d> points, int width, int height, const KeptFree& kept = {});
 
 /// The same for the corners of a box.

@@ -7,8 +7,9 @@
 
 namespace nacre {
 
-/// First hit of the ray with the surface. Empty bricks are crossed in one step; inside a brick the stored distance says
-/// how far the ray may go without meeting anything; in a cell that the surface passes through its triangles are tested.
+/// First hit of the ray with the surface. Empty bricks are crossed in one step; inside a brick the stored distance
+/// tells how far the ray may advance without hitting anything; in a cell that the surface passes through, its triangles
+/// are tested.
 NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh, const Ray& ray, Hit& hit) {
   const Int3 dims = grid.dims();
   double entry = 0, exit = 1e30;
@@ -23,22 +24,22 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     exit = min(exit, max(low, high));
   }
   if (!(entry < exit)) return false;
-  // From where it enters, however far away it began, single precision finds the cells: the grid is small.
+  // Single precision finds the cells from the entry point on, however far away the ray began, since the grid is small.
   const Vec3f origin(ray.at(entry)), direction(ray.direction);
   const Vec3f inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
   const float speed = length(direction), nudge = 1e-3f / speed;
   const auto past = [&](float wall) { return wall + (nudge > 2.5e-7f * wall ? nudge : 2.5e-7f * wall); };
   const auto end = float(exit - entry);
   float t = past(0);
-  // Where the ray, now at `t`, leaves the box of the grid with this lower corner.
+  // Parameter at which the ray, now at `t`, leaves the box of the grid with this lower corner.
   auto leave_box = [&](const Vec3f& low, float size) {
     float out = 1e30f;
     for (int axis = 0; axis < 3; ++axis) {
       if (direction[axis] == 0) continue;
       const float wall = low[axis] + (direction[axis] > 0 ? size : 0.0f);
       const float at = (wall - origin[axis]) * inverse[axis];
-      // Rounded onto the wall already: it is behind after 1e-4 cells along this axis, which is far for a ray that runs
-      // along the wall; such a ray would stand still otherwise.
+      // If rounding put the position onto the wall already, the wall is passed 1e-4 cells later along this axis. That
+      // is far for a ray that runs along the wall, which would otherwise not advance at all.
       const float later = at > t ? at : t + 1e-4f * std::fabs(inverse[axis]);
       out = later < out ? later : out;
     }
@@ -56,7 +57,7 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     }
     const float out = leave_box(Vec3f(cell), 1.0f);
     const std::uint32_t first = grid.touch_start[at], last = grid.touch_start[at + 1];
-    if (first == last) {  // no surface here: the nearest is at least this far from anywhere in the cell
+    if (first == last) {  // no surface here: the nearest one is at least this far from any point of the cell
       const float skip = (grid.offset[at].w - 0.8661f) / speed;
       t = past(out > t + skip ? out : t + skip);
       continue;

@@ -18,7 +18,7 @@ struct Corner {
   bool visible;
 };
 
-/// What a sample of the picture sees.
+/// What one sample of the picture sees.
 struct Sample {
   double near = -1e300;
   std::uint32_t triangle = nothing;
@@ -45,7 +45,7 @@ class Screen {
             camera_.orthographic ? -away : 1 / away, visible};
   }
 
-  /// 0..1: how much light a facet with normal `n` sends to the eye.
+  /// How much light a facet with normal `n` reflects to the eye, 0..1.
   float brightness(const Vec3d& n, const Vec3d& centre) const {
     const Vec3d view = camera_.orthographic ? forward_ : normalized(centre - camera_.eye);
     const Vec3d light = normalized(up_ * 0.55 - right_ * 0.45 - forward_);
@@ -82,7 +82,7 @@ class Picture {
   }
 
  private:
-  /// First and last band that the triangle touches; an empty range where it is not on the picture.
+  /// First and last band that the triangle touches; an empty range if it is outside the picture.
   std::array<int, 2> bands_of(const Triangle& t) const {
     const Corner &a = corners_[t.a], &b = corners_[t.b], &c = corners_[t.c];
     if (!a.visible || !b.visible || !c.visible) return {0, -1};

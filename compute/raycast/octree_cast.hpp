@@ -1,4 +1,4 @@
-// Nacre: where a ray meets the surface in an octree: the tree skips empty space, its leaves know triangles.
+// Nacre: where a ray meets the surface in an octree: the tree skips empty space, and its leaves list triangles.
 #pragma once
 
 #include "compute/embedding/cells_near.hpp"
@@ -7,10 +7,10 @@
 namespace nacre {
 
 namespace detail {
-/// Lists of triangles longer than this are only tested where the ray comes to a cell that the surface passes through.
+/// Longer lists of triangles are only tested if the ray meets a cell that the surface passes through.
 inline constexpr std::uint64_t long_list = 24;
 
-/// Whether the ray, in the brick at `low` (in its own coordinates) from `enter` on, comes to a cell of the mask.
+/// Whether the ray, in the brick at `low` (in its own coordinates) from `enter` on, meets a cell of the mask.
 NACRE_HD inline bool meets_cells(const CellMask& mask, const AscendingRay& ray, const Int3& low, double enter) {
   Int3 cell = low;
   for (int half = 4; half > 0; half /= 2) ray.enter(cell, half, enter);
@@ -24,7 +24,7 @@ NACRE_HD inline bool meets_cells(const CellMask& mask, const AscendingRay& ray, 
 }
 }  // namespace detail
 
-/// First hit of the ray with the surface: exact, against the triangles that touch the bricks on its way.
+/// First hit of the ray with the surface. It is exact, against the triangles that touch the bricks on its way.
 NACRE_HD inline bool cast(const BrickOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
   if (tree.brick_count == 0) return false;
   const AscendingRay ascending(ray, tree.size());
@@ -34,13 +34,13 @@ NACRE_HD inline bool cast(const BrickOctreeView& tree, const MeshView& mesh, con
     if (last - first > detail::long_list && !detail::meets_cells(tree.brick[brick].surface, ascending, low, enter))
       return false;
     for (std::uint64_t k = first; k < last; ++k) intersect(mesh, tree.list[k], ray, hit);
-    return hit.t <= leave;  // what lies beyond this brick may hide behind something that only the next one knows
+    return hit.t <= leave;  // a hit beyond this brick may lie behind one that only the next brick lists
   });
   return hit.triangle != none;
 }
 
 namespace detail {
-/// Where the ray meets the plane of the closest triangle of a cell; far away where it runs along it.
+/// Parameter at which the ray meets the plane of a cell's closest triangle; very large if it is parallel to the plane.
 NACRE_HD inline Hit meet_plane(const SourceOctreeView& tree, CellIndex cell, const MeshView& mesh, const Ray& ray) {
   const std::uint32_t triangle = tree.point[cell].triangle;
   const Corners c = mesh.corners(triangle);
@@ -51,8 +51,8 @@ NACRE_HD inline Hit meet_plane(const SourceOctreeView& tree, CellIndex cell, con
   return {t, triangle, Vec3f(barycentric(c, ray.at(t)))};
 }
 
-/// The nearest hit between two parameters among the planes of the cells around `place`, where their triangles are not
-/// farther than half a cell.
+/// The nearest hit between two parameters, among the planes of the cells around `place` whose triangles are at most
+/// half a cell away.
 NACRE_HD inline Hit meet_planes_beside(const SourceOctreeView& tree, const Int3& place, const MeshView& mesh,
                                        const Ray& ray, double from, double to) {
   SourceOctreeView::Cursor cursor(tree);
@@ -70,11 +70,11 @@ NACRE_HD inline Hit meet_planes_beside(const SourceOctreeView& tree, const Int3&
 }  // namespace detail
 
 /// First cell on the ray's way that the surface passes through and in which the ray meets the plane of the cell's
-/// closest triangle. Where it meets none for a cell's length, the planes of neighbours count, too: of an edge the cell
-/// may know the side that the ray does not meet. The planes stand for all of the surface in the cell, which is what the
-/// source's octree knows: they shift the surface by up to a cell where it bends, ends or comes back within one, and are
-/// exact away from the edges of triangles larger than cells. Cells overlap by an eighth along the ray, so that planes of
-/// neighbours which do not quite meet leave no crack.
+/// closest triangle. If the ray meets none for the length of a cell, the planes of neighbours count, too: near an edge,
+/// the cell may know the face that the ray does not meet. The planes stand for all of the surface in the cell, because
+/// the octree of the thesis knows no more. They shift the surface by up to a cell where it bends, ends or returns
+/// within one cell, and are exact away from the edges of triangles larger than cells. Cells overlap by an eighth along
+/// the ray, so that planes of neighbours which do not quite meet leave no crack.
 NACRE_HD inline bool cast(const SourceOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
   if (tree.cells == 0) return false;
   const double cell_length = 1 / length(ray.direction), slack = 0.125 * cell_length;

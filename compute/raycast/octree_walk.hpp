@@ -1,4 +1,4 @@
-// Nacre: the parametric walk of a ray through a sparse octree (Revelles, Urena, Lastra 2000).
+// Nacre: the parametric traversal of a sparse octree by a ray (Revelles, Urena, Lastra 2000).
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace nacre {
 
-/// A ray as the walk sees it: mirrored in the middle of the domain along the axes on which it descends, so that it
-/// ascends on all; what it meets is told by parameters of planes alone. A plane has the same parameter seen from the
-/// nodes on either side, so that neighbours leave no gap and the walk cannot turn back.
+/// A ray as the traversal sees it: mirrored in the middle of the domain along the axes on which it descends, so that it
+/// ascends on all. Positions are given by parameters of planes alone. A plane has the same parameter for the nodes on
+/// either side, so that neighbours leave no gap and the traversal cannot turn back.
 struct AscendingRay {
   Vec3d origin, inverse;  ///< inverse: of the direction, finite, > 0
   int size = 0;           ///< cells per axis
@@ -25,7 +25,7 @@ struct AscendingRay {
         origin[axis] = size - origin[axis];
         flip |= 1 << axis;
       }
-      // Along an axis on which the ray does not move, planes lie far ahead or far behind, never at NaN.
+      // Along an axis on which the ray does not move, planes are far ahead or far behind, never at NaN.
       inverse[axis] = d > 1e-280 ? 1 / d : 1e280;
     }
   }
@@ -40,7 +40,7 @@ struct AscendingRay {
     return axis == 0 ? x : axis == 1 ? y : z;
   }
 
-  /// Moves `low` to the octant, of cubes `half` wide, that the ray is in at `t`; gives the octant's bits.
+  /// Moves `low` to the octant, of cubes `half` wide, that contains the ray at `t`; returns the bits of the octant.
   NACRE_HD_INLINE int enter(Int3& low, int half, double t) const {
     int octant = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -58,8 +58,8 @@ struct AscendingRay {
   }
 };
 
-// What the walk asks of an octree: its root, and child `octant` (bits x, y, z) of node `at` of a level; false where
-// there is none. Children of the lowest level's nodes are leaves.
+// What the traversal requires of an octree: its root, and child `octant` (bits x, y, z) of node `at` of a level; false
+// if there is none. Children of the nodes of the lowest level are leaves.
 
 NACRE_HD_INLINE std::uint32_t octree_root(const BrickOctreeView&) { return 0; }
 NACRE_HD_INLINE bool octree_child(const BrickOctreeView& tree, int level, std::uint32_t at, int octant,
@@ -77,10 +77,10 @@ NACRE_HD_INLINE bool octree_child(const SourceOctreeView& tree, int, std::uint32
   return child != none;
 }
 
-/// Calls leaf(number, low, enter, leave) for the leaves that the ray passes, in the order in which it does, until one
-/// returns true; tells whether one did. `number` is that in the lowest level, `low` the leaf's lower corner in the
-/// coordinates of `ray`, the ray is in it between the two parameters. The domain is `ray.size` cells wide, the leaves
-/// are `ray.size` >> levels; the ray begins at parameter 0, inside of the domain or outside. The tree must have a root.
+/// Calls leaf(number, low, enter, leave) for the leaves that the ray passes, in order, until one returns true; returns
+/// whether one did. `number` is the number within the lowest level, `low` the leaf's lower corner in the coordinates of
+/// `ray`; the ray is inside between the two parameters. The domain is `ray.size` cells wide, the leaves `ray.size` >>
+/// levels. The ray begins at parameter 0, inside or outside of the domain. The tree must have a root.
 template <class Tree, class Leaf>
 NACRE_HD bool walk_octree(const Tree& tree, int levels, const AscendingRay& ray, Leaf&& leaf) {
   constexpr int most_levels = 21;
@@ -92,7 +92,7 @@ NACRE_HD bool walk_octree(const Tree& tree, int levels, const AscendingRay& ray,
   }
   if (!(enter < end) || levels > most_levels) return false;
 
-  std::uint32_t above[most_levels];  // the nodes that the current cube lies in
+  std::uint32_t above[most_levels];  // the nodes that contain the current cube
   std::uint32_t here = octree_root(tree);
   Int3 low{};
   int level = 0, width = ray.size;

@@ -20,7 +20,7 @@ struct Hit {
   std::uint32_t triangle = none;
   Vec3f weights{};  ///< barycentric coordinates
 
-  /// The place on the surface, exact to 1e-6 cells wherever it is.
+  /// The position on the surface, exact to 1e-6 cells wherever it is.
   NACRE_HD_INLINE BandPoint point(const Ray& ray) const { return band_point(ray.at(t)); }
 };
 
@@ -30,17 +30,17 @@ NACRE_HD_INLINE T sum_of_magnitudes(const Vec3<T>& v) {
   return (v.x < 0 ? -v.x : v.x) + (v.y < 0 ? -v.y : v.y) + (v.z < 0 ? -v.z : v.z);
 }
 
-/// How far outside of a triangle a ray may pass and still meet it, in barycentric coordinates: neighbours overlap, so
+/// How far outside of a triangle a ray may pass and still hit it, in barycentric coordinates. Neighbours overlap, so
 /// that no ray slips through between them.
 inline constexpr double edge_slack = 1e-5;
 
-/// Whether single precision proves that the ray passes the triangle by; `a`, `ab`, `ac` are its first corner from the
-/// ray's origin, and its sides.
+/// Whether single precision proves that the ray misses the triangle; `a`, `ab`, `ac` are its first corner relative to
+/// the ray's origin, and its sides.
 NACRE_HD inline bool surely_misses(const Vec3f& a, const Vec3f& ab, const Vec3f& ac, const Vec3f& direction) {
   const Vec3f p = cross(direction, ac), q = cross(ab, a);
   const float determinant = dot(ab, p), sign = determinant < 0 ? -1.0f : 1.0f;
   const float v = -dot(a, p) * sign, w = dot(direction, q) * sign, whole = determinant * sign;
-  // Some ten roundings of products of three factors, and those that the sides and the origin come with.
+  // Some ten roundings of products of three factors, and those of the sides and the origin.
   const float size = sum_of_magnitudes(direction) * (sum_of_magnitudes(a) + sum_of_magnitudes(ab)) *
                      (sum_of_magnitudes(ab) + sum_of_magnitudes(ac));
   const float slack = -(2 * float(edge_slack) * whole + 2e-6f * size);
@@ -48,9 +48,9 @@ NACRE_HD inline bool surely_misses(const Vec3f& a, const Vec3f& ab, const Vec3f&
 }
 }  // namespace detail
 
-/// Ray against triangle, both sides (Moeller-Trumbore). Keeps the nearer hit in `hit`; of two at one place the lower
-/// triangle. Most triangles are refused in single precision; what is left is done in double, so that `t` is good for
-/// grazing rays and for large triangles.
+/// Ray against triangle, both sides (Moeller-Trumbore). Keeps the nearer hit in `hit`; of two at one position, that
+/// with the lower triangle. Most triangles are rejected in single precision. The rest is done in double precision, so
+/// that `t` is accurate for grazing rays and for large triangles.
 NACRE_HD inline void intersect(const MeshView& mesh, std::uint32_t t, const Ray& ray, Hit& hit) {
   const Corners c = mesh.corners(t);
   const Vec3d a = c.a - ray.origin, ab = c.b - c.a, ac = c.c - c.a;

@@ -1,4 +1,4 @@
-// Nacre: one pixel of a picture of the flow: value times colour map, with light (design card, "picture").
+// Nacre: one pixel of a picture of the flow: texture value times colour map, with light.
 #pragma once
 
 #include "compute/embedding/refined_grid.hpp"
@@ -14,8 +14,8 @@ struct GridCamera {
   double distance = 1;            ///< from the eye to the target
   bool orthographic = false;
 
-  /// The ray through (x, y), begun at most `reach` cells in front of the target, so that single precision will do where
-  /// the grid is small.
+  /// The ray through (x, y). It begins at most `reach` cells in front of the target, so that single precision is
+  /// sufficient if the grid is small.
   NACRE_HD Ray ray(double x, double y, double reach) const {
     const Vec3d across = right * x + up * y;
     const Vec3d direction = orthographic ? forward : normalized(forward * distance + across);
@@ -25,7 +25,7 @@ struct GridCamera {
   }
 };
 
-/// What is drawn and how, whatever the rays go through.
+/// What is drawn and how, whatever the rays traverse.
 struct Look {
   MeshView mesh{};
   const float* shown = nullptr;     ///< per surface cell, 0..1; null: plain surface
@@ -38,10 +38,10 @@ struct Look {
   float background_alpha = 1;
 };
 
-// What rays go through. A target gives find(mesh, ray, hit), which tells whether the ray meets the surface, and
+// What rays traverse. A target has find(mesh, ray, hit), which tells whether the ray meets the surface, and
 // texture(shown, ray, hit), the shown value there.
 
-/// The two-level grid, and its refined grid.
+/// The two-level grid with its refined grid.
 struct GridTarget {
   ClosestPointGridView grid;
   RefinedGridView texels;
@@ -70,7 +70,7 @@ struct Scene : Look {
 
 NACRE_HD inline Vec3f to_linear(const Vec3f& c) { return {c.x * c.x, c.y * c.y, c.z * c.z}; }  // gamma 2, near sRGB
 
-/// Colour of a point of the surface, linear light. `value` is the texture's, where there is one.
+/// Colour of a point of the surface in linear light. `value` is that of the texture, if there is one.
 NACRE_HD inline Vec3f shade(const Look& look, const Ray& ray, const Hit& hit, float value) {
   Vec3f base(0.62f, 0.62f, 0.62f);
   if (look.scalar) {
@@ -98,7 +98,7 @@ struct RenderPixel {
   Scene<Target> scene;
   GridCamera camera;
   int width, height, samples;
-  double reach;  ///< radius of a ball around the target that holds the surface
+  double reach;  ///< radius of a ball around the target that contains the surface
   std::uint32_t* pixels;
 
   NACRE_HD void operator()(std::int64_t i) const {

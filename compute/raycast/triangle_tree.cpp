@@ -1,4 +1,4 @@
-// Nacre: triangles for single rays on the host.
+// Nacre: a tree of triangles for single rays on the host.
 #include "compute/raycast/triangle_tree.hpp"
 
 #include <tbb/parallel_sort.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t leaf_size = 4;  // triangles
 
-/// Where the ray is inside the box; low > high: nowhere.
+/// The parameters between which the ray is inside the box; none if low > high.
 std::pair<double, double> inside(const Vec3d& low, const Vec3d& high, const Vec3d& from, const Vec3d& along) {
   std::pair<double, double> part{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (int axis = 0; axis < 3; ++axis) {
@@ -111,7 +111,7 @@ std::optional<TriangleHit> TriangleTree::first(const Vec3d& from, const Vec3d& a
       const bool met = !empty && enters <= leaves && leaves >= near;
       children[k] = {2 * entry.node + k, met ? std::max(enters, near) : std::numeric_limits<double>::infinity()};
     }
-    if (children[0].at < children[1].at) std::swap(children[0], children[1]);  // the nearer one is looked at first
+    if (children[0].at < children[1].at) std::swap(children[0], children[1]);  // the nearer one is examined first
     for (const Entry& child : children)
       if (child.at < far) open.push_back(child);
   }

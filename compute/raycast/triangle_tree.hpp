@@ -1,4 +1,4 @@
-// Nacre: triangles for single rays on the host: what is under a cursor.
+// Nacre: a tree of triangles for single rays on the host: finds what is under the cursor.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct TriangleHit {
   Vec3d weights;        ///< of the three corners
 };
 
-/// Boxes over runs of triangles in Morton order, one over two, as an implicit binary tree. It keeps copies of what it is
-/// made of. A ray through a million triangles takes some microseconds.
+/// Boxes over runs of triangles in Morton order, combined in pairs to an implicit binary tree. It keeps copies of its
+/// input. A ray through a million triangles takes some microseconds.
 class TriangleTree {
  public:
   TriangleTree() = default;
@@ -47,7 +47,7 @@ class TriangleTree {
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> order_;  ///< triangles along the Morton curve
   std::size_t leaves_ = 0;            ///< a power of two
-  std::vector<Box> boxes_;            ///< node k over 2 k and 2 k + 1, from 1; the leaves last
+  std::vector<Box> boxes_;            ///< node k over 2 k and 2 k + 1, from 1; the leaves come last
 };
 
 }  // namespace nacre

@@ -9,17 +9,17 @@
 
 namespace nacre {
 
-/// An OpenGL buffer whose size never changes. Throws Error where the memory is not there.
+/// An OpenGL buffer of fixed size. Throws Error if memory is insufficient.
 class Buffer {
  public:
   Buffer() = default;
-  /// `bytes` not initialised (a buffer of nothing has no name). `flags`: of glNamedBufferStorage.
+  /// `bytes` that are not initialised (a buffer of size 0 has no name). `flags`: of glNamedBufferStorage.
   explicit Buffer(std::size_t bytes, GLbitfield flags = GL_DYNAMIC_STORAGE_BIT);
   ~Buffer();
   Buffer(Buffer&& other) noexcept { *this = static_cast<Buffer&&>(other); }
   Buffer& operator=(Buffer&& other) noexcept;
 
-  /// A buffer that holds a copy of `host`.
+  /// A buffer that contains a copy of `host`.
   template <class T>
   static Buffer of(std::span<const T> host) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -37,7 +37,8 @@ class Buffer {
     write(host.data(), host.size_bytes());
   }
 
-  /// All of it as host memory, until it dies; it was made with these flags, and GL_MAP_PERSISTENT_BIT among them.
+  /// All of the buffer as host memory, until it is destroyed. It must have been made with these flags and
+  /// GL_MAP_PERSISTENT_BIT.
   void* map(GLbitfield flags);
 
  private:

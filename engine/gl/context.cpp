@@ -1,4 +1,4 @@
-// Nacre: what contexts of either kind share: functions, version, the driver's complaints.
+// Nacre: what both kinds of contexts share: functions, version, messages of the driver.
 #include "engine/gl/context.hpp"
 
 #include <GL/glew.h>
@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t most_messages = 1000;  // a driver that complains every frame shall not eat the memory
+constexpr std::size_t most_messages = 1000;  // a driver that complains in every frame must not fill the memory
 
 bool is_complaint(GLenum type, GLenum severity) {
   return severity != GL_DEBUG_SEVERITY_NOTIFICATION && type != GL_DEBUG_TYPE_PERFORMANCE && type != GL_DEBUG_TYPE_OTHER;
@@ -43,12 +43,12 @@ void Context::note(std::string message) {
 }
 
 void Context::begin() {
-  glewExperimental = GL_TRUE;  // a core context does not list its extensions the way that GLEW first asks
+  glewExperimental = GL_TRUE;  // a core context does not list its extensions in the way that GLEW asks for first
   const GLenum status = glewInit();
-  constexpr GLenum no_glx_display = 4;  // all functions are loaded, there is just no X server to ask for more
+  constexpr GLenum no_glx_display = 4;  // all functions are loaded; there is only no X server
   if (status != GLEW_OK && status != no_glx_display)
     throw opengl_missing(reinterpret_cast<const char*>(glewGetErrorString(status)));
-  while (glGetError() != GL_NO_ERROR) {  // GLEW leaves one behind in core contexts
+  while (glGetError() != GL_NO_ERROR) {  // GLEW leaves an error behind in core contexts
   }
   renderer_ = text_of(GL_RENDERER);
   version_ = text_of(GL_VERSION);

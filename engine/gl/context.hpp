@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// A context that is current on the thread that made it, until it dies. All of engine/gl, interop and render runs on
-/// that thread.
+/// A context that is current on the thread that made it, until it is destroyed. All of engine/gl, interop and render
+/// runs on that thread.
 class Context {
  public:
   virtual ~Context() = default;
@@ -21,18 +21,18 @@ class Context {
   const std::string& renderer() const { return renderer_; }  ///< e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
   const std::string& version() const { return version_; }
 
-  /// Has the graphics device been reset (a crash of its driver, another GPU)? All of the context's objects are gone
-  /// then.
+  /// Whether the graphics device has been reset (a crash of its driver, another GPU). All objects of the context are
+  /// then gone.
   bool lost() const;
 
-  /// What the driver has complained about so far: errors, undefined or deprecated use. Its notes on speed and memory
-  /// are left out.
+  /// The driver's messages so far: errors, undefined or deprecated use. Its notes on speed and memory are left out.
   std::vector<std::string> messages() const;
 
  protected:
   Context() = default;
 
-  /// Loads the functions, checks the version and listens to the driver. The context is current. Throws Error.
+  /// Loads the functions, checks the version and registers for the driver's messages. The context is current. Throws
+  /// Error.
   void begin();
   /// Called by the driver, on any thread.
   void note(std::string message);
@@ -43,8 +43,9 @@ class Context {
   std::vector<std::string> messages_;
 };
 
-/// A context without window or display (EGL): Mesa's surfaceless platform, or a device's own. Draw into a Framebuffer.
-/// `prefer_cuda`: the GPU that CUDA computes on is asked first. Throws Error where EGL or OpenGL 4.5 is missing.
+/// A context without window or display (EGL): Mesa's surfaceless platform, or that of a device. Draw into a
+/// Framebuffer. `prefer_cuda`: the GPU that CUDA computes on is tried first. Throws Error if EGL or OpenGL 4.5 is
+/// missing.
 std::unique_ptr<Context> make_offscreen_context(bool prefer_cuda = false);
 
 }  // namespace nacre

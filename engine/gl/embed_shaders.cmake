@@ -1,4 +1,4 @@
-# Writes OUT, a C++ file with every one of FILES as a raw string. A run of CMake by itself: cmake -DOUT= -DFILES= -P.
+# Writes OUT, a C++ file that contains each of FILES as a raw string. Run it by itself: cmake -DOUT= -DFILES= -P.
 set(text "// Nacre: the shaders, put here by embed_shaders.cmake.\n#include \"engine/gl/shader.hpp\"\n\n")
 string(APPEND text "namespace nacre {\n\nstd::span<const ShaderSource> shader_sources() {\n")
 string(APPEND text "  static constexpr ShaderSource sources[] = {\n")

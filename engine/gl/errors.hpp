@@ -1,4 +1,4 @@
-// Nacre: errors that several files of this folder tell in the same words.
+// Nacre: errors that several files of this folder report in the same words.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace nacre {
 
-/// That there is no context to draw with, why, and what can be done.
+/// There is no context to draw with; says why, and what can be done.
 Error opengl_missing(const std::string& why);
 
-/// Throws Error where the driver has run out of memory since the last call; `bytes` is what was asked for.
+/// Throws Error if the driver has run out of memory since the last call; `bytes` is the size that was requested.
 void require_gl_memory(std::size_t bytes);
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: what is drawn into.
+// Nacre: the target of all drawing.
 #include "engine/gl/framebuffer.hpp"
 
 #include <algorithm>
@@ -90,7 +90,7 @@ GLuint Framebuffer::resolved() const {
 void Framebuffer::show_in_window() const {
   const GLuint picture = resolved();
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, width_, height_);  // at which Mesa asks how large the window is by now
+  glViewport(0, 0, width_, height_);  // here Mesa queries the current size of the window
   glBlitNamedFramebuffer(picture, 0, 0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 

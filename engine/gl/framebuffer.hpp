@@ -1,4 +1,4 @@
-// Nacre: what is drawn into, apart from the window.
+// Nacre: the target of all drawing, separate from the window.
 #pragma once
 
 #include <GL/glew.h>
@@ -11,8 +11,8 @@
 
 namespace nacre {
 
-/// Colour (RGBA, 8 bits, encoded by the shaders) and floating-point depth; with `samples` > 1 edges are smooth. Throws
-/// Error where width or height is not in 1..most_size() or the memory is not there.
+/// Colour (RGBA, 8 bits, encoded by the shaders) and floating-point depth; with `samples` > 1 edges are antialiased.
+/// Throws Error if width or height is not in 1..most_size() or memory is insufficient.
 class Framebuffer {
  public:
   Framebuffer(int width, int height, int samples = 1);
@@ -21,15 +21,15 @@ class Framebuffer {
 
   int width() const { return width_; }
   int height() const { return height_; }
-  int samples() const { return samples_; }  ///< what the driver can do, at most what was asked
+  int samples() const { return samples_; }  ///< at most what was requested, less if the driver cannot do it
 
-  /// Draws go here from now on, to all of it.
+  /// From now on everything is drawn into all of it.
   void bind() const;
-  /// Draws go to a part of it from now on; (0, 0) is the left lower corner.
+  /// From now on everything is drawn into a part of it; (0, 0) is the lower left corner.
   void bind_part(int x, int y, int width, int height) const;
-  /// All of it to one colour, encoded; depth to far away.
+  /// Sets all of it to one colour, encoded, and the depth to far away.
   void clear(const std::array<float, 4>& colour) const;
-  /// Puts the picture into the left lower corner of the window. Draws go to the window from now on.
+  /// Copies the picture into the lower left corner of the window. From now on everything is drawn into the window.
   void show_in_window() const;
   /// The picture; row 0 at the top. Waits until it is drawn.
   Image read() const;
@@ -44,7 +44,7 @@ class Framebuffer {
     GLuint frame = 0, colour = 0, depth = 0;
     ~Names();
   } names_;
-  std::unique_ptr<Framebuffer> single_;  ///< samples put together
+  std::unique_ptr<Framebuffer> single_;  ///< the samples resolved
 };
 
 }  // namespace nacre

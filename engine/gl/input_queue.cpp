@@ -7,7 +7,7 @@
 namespace nacre {
 namespace {
 
-/// The order of a frame: nothing follows what is further down.
+/// The order of events within a frame: nothing may follow an event that is further down in this list.
 enum class Rank { modifier, mouse, button, letter, other_key };
 
 Rank rank_of(const InputEvent& event) {
@@ -25,7 +25,8 @@ bool moved_already(const InputEvent& event, const InputFrame& frame) {
   return false;
 }
 
-/// Letters do not follow a click in its frame: it may be for the field that they are for. Of other keys there is one.
+/// Text does not follow a click within one frame, since the click may select the field that the text is for. Of other
+/// keys there is one per frame.
 bool may_follow(Rank next, Rank last) {
   if (last == Rank::button) return next == Rank::button;
   return next > last || (next == last && next != Rank::other_key);

@@ -1,5 +1,5 @@
-// Nacre: what a user does at the keyboard and mouse, in order, handed out frame by frame. However long a frame takes,
-// no tap, click or chord is lost: what would undo or outrun something else of its frame waits for the next.
+// Nacre: keyboard and mouse events in order, handed out frame by frame. However long a frame takes, no tap, click or
+// key combination is lost: what would undo or overtake another event of its frame waits for the next frame.
 #pragma once
 
 #include <deque>
@@ -10,11 +10,11 @@
 
 namespace nacre {
 
-/// Where the mouse is when it is not in the window.
+/// The mouse position while it is outside of the window.
 constexpr double mouse_outside = -1e6;
 
 struct KeyMoved {
-  int key = 0;  ///< by GLFW's numbers
+  int key = 0;  ///< in GLFW's numbering
   bool down = false;
 };
 struct ButtonMoved {
@@ -22,7 +22,7 @@ struct ButtonMoved {
   bool down = false;
 };
 struct MouseMoved {
-  double x = 0, y = 0;  ///< screen units from the window's upper left corner, or mouse_outside
+  double x = 0, y = 0;  ///< screen units from the upper left corner of the window, or mouse_outside
 };
 struct WheelTurned {
   double x = 0, y = 0;
@@ -32,18 +32,18 @@ struct TextTyped {
 };
 using InputEvent = std::variant<KeyMoved, ButtonMoved, MouseMoved, WheelTurned, TextTyped>;
 
-/// A key that went down with others held, by the letter that is on it on an American keyboard; 27 is Escape.
+/// A key pressed while others were held, by its letter on an American keyboard; 27 is Escape.
 struct KeyPress {
   int key = 0;
   bool ctrl = false, shift = false;
 };
 
-/// What a program that looks once a frame shall see in this one.
+/// The events that a program which polls once per frame sees in this frame.
 struct InputFrame {
-  std::map<int, bool> keys;         ///< that moved
-  std::map<int, bool> buttons;      ///< that moved
+  std::map<int, bool> keys;         ///< that changed
+  std::map<int, bool> buttons;      ///< that changed
   double x = 0, y = 0;              ///< the mouse, as in MouseMoved
-  double wheel_x = 0, wheel_y = 0;  ///< turns
+  double wheel_x = 0, wheel_y = 0;  ///< steps of the wheel
   std::u32string text;              ///< typed
   std::vector<KeyPress> chords;     ///< keys with ctrl, and Escape
 };
@@ -52,8 +52,9 @@ class InputQueue {
  public:
   void add(const InputEvent& event) { waiting_.push_back(event); }
 
-  /// The next frame's. Within it modifiers come first, then the mouse, its buttons, letters, other keys; each key and
-  /// button moves once. What follows a chord waits for what that may have opened: three frames.
+  /// The input of the next frame. Within a frame modifiers come first, then the mouse, its buttons, letters, other
+  /// keys; each key and button changes once. What follows a key combination waits three frames for what that may have
+  /// opened.
   InputFrame next_frame();
   /// Is there something for the next frame, or a pause that ends with one?
   bool waits() const { return !waiting_.empty() || pause_ > 0; }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr EGLint cuda_device_nv = 0x323A;  // EGL_CUDA_DEVICE_NV, of EGL_NV_device_cuda
 
-/// Devices that EGL can draw with; those that CUDA knows come first where that is preferred.
+/// Devices that EGL can draw with; those that CUDA knows come first if that is preferred.
 std::vector<EGLDisplay> device_displays(bool cuda_only) {
   const auto query = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(eglGetProcAddress("eglQueryDevicesEXT"));
   const auto attribute = reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(eglGetProcAddress("eglQueryDeviceAttribEXT"));
@@ -42,7 +42,7 @@ class OffscreenContext final : public Context {
     }
   }
 
-  // The display stays initialised: other contexts may live on it.
+  // The display stays initialised, since other contexts may use it.
   ~OffscreenContext() override { release(); }
 
   void make_current() override {
@@ -64,7 +64,7 @@ class OffscreenContext final : public Context {
 EGLContext create(EGLDisplay display) {
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
     return EGL_NO_CONTEXT;
-  // Told of resets where the driver can do that.
+  // Asks to be informed of resets, if the driver can do that.
   constexpr EGLint strategy = EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
   for (const EGLint told : {EGL_LOSE_CONTEXT_ON_RESET, EGL_NO_RESET_NOTIFICATION}) {
     const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,

@@ -15,7 +15,7 @@ std::string_view source_named(std::string_view name) {
   throw Error("no shader named " + std::string(name));
 }
 
-/// The text of a file with its includes in place.
+/// The text of a file with its includes inserted.
 std::string with_includes(std::string_view name) {
   constexpr std::string_view word = "#include \"";
   std::string_view rest = source_named(name);
@@ -29,7 +29,7 @@ std::string with_includes(std::string_view name) {
   return text.append(rest);
 }
 
-/// The compiler's or linker's words.
+/// The messages of the compiler or linker.
 template <class Length, class Text>
 std::string words_of(GLuint id, const Length& length_of, const Text& text_of) {
   GLint length = 0;

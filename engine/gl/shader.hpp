@@ -1,4 +1,4 @@
-// Nacre: shader programs, from sources that are in the binary.
+// Nacre: shader programs, from sources that are embedded in the program.
 #pragma once
 
 #include <GL/glew.h>
@@ -15,14 +15,15 @@ struct ShaderSource {
   std::string_view name, text;
 };
 
-/// All of them; the build makes this function.
+/// All files; the build generates this function.
 std::span<const ShaderSource> shader_sources();
 
-/// A vertex and a fragment shader, linked. Lines `#include "NAME"` are replaced by that file.
+/// A vertex and a fragment shader, linked. A line `#include "NAME"` is replaced by that file.
 class Program {
  public:
   Program() = default;
-  /// `prelude` comes behind #version in both: definitions, or whole functions. Throws Error with the compiler's words.
+  /// `prelude` follows #version in both: definitions, or whole functions. Throws Error with the message of the
+  /// compiler.
   Program(std::string_view vertex, std::string_view fragment, std::string_view prelude = {});
   ~Program();
   Program(Program&& other) noexcept { *this = static_cast<Program&&>(other); }
@@ -31,7 +32,7 @@ class Program {
   void use() const { glUseProgram(id_); }
   GLuint id() const { return id_; }
 
-  // Uniforms by name; one that the compiler has found to be of no use is passed over. Matrices: column by column.
+  // Sets uniforms by name. Names that the compiler has optimised away are ignored. Matrices: column by column.
   void set(const char* name, int value) const;
   void set(const char* name, float value) const;
   void set(const char* name, const std::array<int, 3>& value) const;

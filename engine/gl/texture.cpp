@@ -20,7 +20,7 @@ BufferTexture::BufferTexture(const Buffer& buffer, GLenum format) : name_(GL_TEX
 std::size_t BufferTexture::most_elements() {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  return most > 65536 ? std::size_t(most) : 65536;  // what the standard promises
+  return most > 65536 ? std::size_t(most) : 65536;  // the minimum that the standard guarantees
 }
 
 ColourTexture::ColourTexture(std::span<const std::array<float, 3>> colours) : name_(GL_TEXTURE_1D) {

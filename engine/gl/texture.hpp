@@ -1,4 +1,4 @@
-// Nacre: textures, and buffers that a shader reads like one.
+// Nacre: textures, and buffers that a shader reads as textures.
 #pragma once
 
 #include <GL/glew.h>
@@ -12,7 +12,7 @@
 
 namespace nacre {
 
-/// A name of a texture that dies with its owner.
+/// The name of a texture, deleted with its owner.
 class TextureName {
  public:
   TextureName() = default;
@@ -37,18 +37,18 @@ class BufferTexture {
 
   void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
 
-  /// Most elements that one can have here; a larger array is cut into pages.
+  /// The largest number of elements that a texture can have here; a larger array is divided into pages.
   static std::size_t most_elements();
 
  private:
   TextureName name_;
 };
 
-/// Colours along a line, linear between them: colour k of n at (k + 0.5) / n.
+/// Colours along a line, linear in between: colour k of n at (k + 0.5) / n.
 class ColourTexture {
  public:
   ColourTexture() = default;
-  /// RGB as the shader shall see it.
+  /// RGB as the shader is to see it.
   explicit ColourTexture(std::span<const std::array<float, 3>> colours);
 
   void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
@@ -57,7 +57,7 @@ class ColourTexture {
   TextureName name_;
 };
 
-/// An image as a texture for texelFetch; row 0 is the image's first.
+/// An image as a texture for texelFetch; row 0 is the first row of the image.
 class ImageTexture {
  public:
   ImageTexture() = default;
@@ -66,7 +66,7 @@ class ImageTexture {
   void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
   int width() const { return width_; }
   int height() const { return height_; }
-  /// Other pixels, of an image of the same size.
+  /// Replaces the pixels by those of an image of the same size.
   void update(const Image& image);
 
  private:

@@ -1,4 +1,4 @@
-// Nacre: a window by GLFW.
+// Nacre: a window, by GLFW.
 #include "engine/gl/window.hpp"
 
 #define GLFW_INCLUDE_NONE
@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-/// What GLFW has last complained about.
+/// The last error message of GLFW.
 std::string glfw_complaint() {
   const char* text = nullptr;
   glfwGetError(&text);
@@ -27,9 +27,9 @@ Window::Window(const std::string& title, int width, int height) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_DEBUG_CONTEXT, GLFW_TRUE);
-  glfwWindowHint(GLFW_DEPTH_BITS, 0);  // all is drawn into a Framebuffer, the window only gets the picture
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);  // everything is drawn into a Framebuffer; the window only gets the picture
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  for (const int told : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // of resets, where the driver can do that
+  for (const int told : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {  // asks for reports of resets
     glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, told);
     if (!window_) window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   }
@@ -106,7 +106,7 @@ void Window::poll(bool idles, double patience) {
 }
 
 void Window::set_title(const std::string& title) {
-  if (title == title_) return;  // the window manager is another process
+  if (title == title_) return;  // saves a call to the window manager, which is another process
   title_ = title;
   glfwSetWindowTitle(window_, title.c_str());
 }
@@ -122,7 +122,7 @@ std::array<int, 2> Window::pixels() const {
   return size;
 }
 
-/// No number, or a senseless one, comes from screens that do not know how large they are.
+/// Screens that do not know their size report no number, or a senseless one.
 float Window::scale() const {
   float x = 1, y = 1;
   glfwGetWindowContentScale(window_, &x, &y);
@@ -130,7 +130,7 @@ float Window::scale() const {
   return x >= 0.25f && x <= 16 ? x : 1;
 }
 
-/// Windows and the mouse are measured in a desktop's units: pixels on X11 and Windows, larger ones elsewhere.
+/// Windows and the mouse are measured in units of the desktop: pixels on X11 and Windows, larger units elsewhere.
 std::array<double, 2> Window::pixels_per_unit() const {
   int width = 0, height = 0;
   glfwGetWindowSize(window_, &width, &height);

@@ -76,7 +76,7 @@ bool cuda_draws_here(const Device& device) {
   unsigned count = 0;
   if (cudaSetDevice(cuda->number()) != cudaSuccess ||
       cudaGLGetDevices(&count, devices.data(), unsigned(devices.size()), cudaGLDeviceListAll) != cudaSuccess) {
-    cudaGetLastError();  // a context of another maker is "no", not an error
+    cudaGetLastError();  // a context made by another vendor means "no", not an error
     return false;
   }
   return std::find(devices.begin(), devices.begin() + count, cuda->number()) != devices.begin() + count;

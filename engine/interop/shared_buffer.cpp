@@ -11,7 +11,7 @@ namespace nacre {
 namespace {
 
 constexpr GLbitfield persistent = GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
-constexpr GLuint64 longest_wait = 5'000'000'000;  // ns: a graphics device that is silent for longer is lost
+constexpr GLuint64 longest_wait = 5'000'000'000;  // ns: a graphics device that does not answer for longer is lost
 
 }  // namespace
 
@@ -22,7 +22,7 @@ SharedBuffer::Path SharedBuffer::best_path(const Device& device) {
 }
 
 SharedBuffer::Half::~Half() {
-  link.reset();  // CUDA lets go before the buffer dies
+  link.reset();  // CUDA must release the buffer before it is deleted
   if (fence) glDeleteSync(fence);
 }
 
@@ -42,7 +42,7 @@ SharedBuffer::SharedBuffer(Device& device, std::size_t bytes, GLenum format, Pat
     else
       half.mapped = half.buffer.map(persistent);
   }
-  glFinish();  // the zeros are in place before anyone writes
+  glFinish();  // the zeros must be in place before anyone writes
   if (path == Path::copied) make_staging();
 }
 

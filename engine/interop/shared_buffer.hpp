@@ -1,4 +1,4 @@
-// Nacre: an array that compute writes straight into and OpenGL draws from. The one place that knows both.
+// Nacre: an array that compute writes directly and OpenGL draws from. Only this folder knows both.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 namespace nacre {
 
 /// Two OpenGL buffers of the same size: frames are drawn from one while compute fills the other. All calls are made on
-/// the thread of the context; only the memory that `begin_write` gives goes to the thread that computes.
+/// the thread of the context; only the memory from `begin_write` is passed to the thread that computes.
 ///
 ///   void* memory = buffer.begin_write();  // device memory; null while frames still read it: try at the next frame
 ///   ... compute writes all of it, on any thread; frames go on ...
@@ -23,16 +23,16 @@ namespace nacre {
 class SharedBuffer {
  public:
   enum class Path {
-    mapped,      ///< CPU: the buffers lie in host memory for good
-    registered,  ///< CUDA draws on the same GPU: a buffer is CUDA's between begin_write and end_write
-    copied       ///< neither: through pinned host memory at every end_write
+    mapped,      ///< CPU: the buffers stay mapped in host memory
+    registered,  ///< CUDA on the GPU that draws: a buffer belongs to CUDA between begin_write and end_write
+    copied       ///< neither: copied through pinned host memory at every end_write
   };
 
-  /// What suits the device and the context that is current.
+  /// The path that suits the device and the current context.
   static Path best_path(const Device& device);
 
-  /// `format`: how shaders see it as a texture, e.g. GL_R32F. The first frames read zeros. Throws Error where the
-  /// memory is not there, or the device cannot go the path.
+  /// `format`: how shaders see it as a texture, e.g. GL_R32F. The first frames read zeros. Throws Error if memory is
+  /// insufficient, or if the device does not support the path.
   SharedBuffer(Device& device, std::size_t bytes, GLenum format, Path path);
   SharedBuffer(Device& device, std::size_t bytes, GLenum format)
       : SharedBuffer(device, bytes, format, best_path(device)) {}
@@ -40,24 +40,24 @@ class SharedBuffer {
   SharedBuffer(const SharedBuffer&) = delete;
   SharedBuffer& operator=(const SharedBuffer&) = delete;
 
-  /// Memory of the device that no frame reads; what was in it before is lost. Null while the graphics device may still
-  /// read it, unless told to `wait`.
+  /// Memory of the device that no frame reads; its previous contents are lost. Null while the graphics device may still
+  /// read it, unless `wait` is set.
   void* begin_write(bool wait = false);
-  /// Compute is done with it. Does nothing where nothing was begun.
+  /// Compute has finished writing. Does nothing if no write was begun.
   void end_write();
-  /// Compute has been interrupted: what it wrote is dropped.
+  /// Compute has been interrupted: what it wrote is discarded.
   void cancel_write();
   bool writing() const { return writing_; }
 
   const Buffer& shown() const { return halves_[shown_].buffer; }
   const BufferTexture& texture() const { return halves_[shown_].texture; }
-  /// The draws so far read what is shown: it is not written before they are done.
+  /// The draws so far read what is shown; it is not overwritten before they are done.
   void drawn();
 
   std::size_t bytes() const { return bytes_; }
   Path path() const { return path_; }
-  std::uint64_t copied_bytes() const { return copied_; }  ///< across since the start; 0 where nothing has to be copied
-  /// Why it copies, as a sentence for the user; empty where it does not.
+  std::uint64_t copied_bytes() const { return copied_; }  ///< between devices so far; 0 if nothing is copied
+  /// Why it copies, as a sentence for the user; empty if it does not.
   std::string remark() const;
 
  private:
@@ -83,8 +83,8 @@ class SharedBuffer {
   std::array<Half, 2> halves_;
   int shown_ = 0;
   bool writing_ = false;
-  void* staging_ = nullptr;               ///< on the device, where it copies
-  std::unique_ptr<PinnedMemory> pinned_;  ///< on the host, where it copies from CUDA
+  void* staging_ = nullptr;               ///< on the device, if it copies
+  std::unique_ptr<PinnedMemory> pinned_;  ///< on the host, the destination of copies from CUDA
   std::uint64_t copied_ = 0;
 };
 

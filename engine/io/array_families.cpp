@@ -1,4 +1,4 @@
-// Nacre: names with trailing numbers made into time steps.
+// Nacre: arrays with numbered names as time steps.
 #include "engine/io/array_families.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ struct Candidate {
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)); }
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)); }
 
-/// All groups of names that could be families, in the order of their first arrays.
+/// All groups of names that may be families, in the order of their first arrays.
 std::vector<Candidate> collect(const std::vector<PointArray>& arrays) {
   using Key = std::tuple<std::string, std::string, int>;
   std::vector<Key> order;

@@ -1,4 +1,4 @@
-// Nacre: time steps that a file keeps as arrays: Velocity_000h, Velocity_006h, ...
+// Nacre: time steps that a file stores as arrays: Velocity_000h, Velocity_006h, ...
 #pragma once
 
 #include <string>
@@ -18,25 +18,26 @@ struct ArrayFamily {
 struct ArrayFamilies {
   std::vector<double> times;  ///< empty if the file has no families
   std::vector<ArrayFamily> families;
-  std::vector<std::string> warnings;  ///< about families that were left alone
+  std::vector<std::string> warnings;  ///< about families that were not used
 };
 
-/// A name such as "Velocity_006h", taken apart.
+/// A name such as "Velocity_006h", split into its parts.
 struct NumberedName {
   std::string base;  ///< "Velocity"
   std::string unit;  ///< "h"
   double number = 0;
 };
 
-/// Takes a name apart: a base, perhaps a separator, a number, perhaps one or two letters. False if it is not so built.
+/// Splits a name into a base, perhaps a separator, a number, and perhaps one or two letters. False if it has another
+/// form.
 bool split_numbered_name(const std::string& name, NumberedName& parts);
 
-/// Finds families: names with the same base, unit and number of components; at least two vectors or three others.
-/// Where families have different numbers the longest wins. Families of scalars alone make no series where the file has
-/// vectors that do not change: species and modes are numbered, too.
+/// Finds families: names with the same base, unit and number of components; at least two vectors or three others. If
+/// families have different numbers, the longest list wins. Families of scalars alone make no series if the file has
+/// vectors that do not change, since species and modes are numbered, too.
 ArrayFamilies find_array_families(const std::vector<PointArray>& arrays);
 
-/// Puts member `step` of each family under its base name and drops the other members.
+/// Stores member `step` of each family under its base name and removes the other members.
 void select_step(Surface& surface, const ArrayFamilies& families, std::size_t step);
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: triangulate, drop what cannot be used, bring every array to the points.
+// Nacre: triangulates, drops unusable triangles, moves every array to the points.
 #include "engine/io/build_surface.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ constexpr double flatness = 1e-12;
 
 /// Why triangles were dropped, each with a count.
 struct Losses {
-  std::size_t triangles = 0;  ///< all that the file has
+  std::size_t triangles = 0;  ///< all triangles of the file
   std::size_t no_point = 0;
   std::size_t not_finite = 0;
   std::size_t no_area = 0;
@@ -44,7 +44,7 @@ bool has_area(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return length(cross(ab, ac)) > flatness * longest;
 }
 
-/// Triangles that can be used, and for each the polygon that it came from.
+/// Usable triangles, and the polygon that each came from.
 struct Triangulation {
   std::vector<Triangle> triangles;
   std::vector<std::size_t> polygon;
@@ -92,7 +92,7 @@ Triangulation triangulate_all(const RawMesh& mesh) {
   return result;
 }
 
-/// Sets values that are no numbers to 0 and says how many items had one.
+/// Sets values that are not numbers to 0 and reports how many items had one.
 void clean(RawArray& array, const std::string& name, std::vector<std::string>& warnings) {
   std::size_t bad_items = 0;
   for (std::size_t i = 0; i < array.items(); ++i) {
@@ -158,7 +158,7 @@ void keep_arrays_of_right_size(std::vector<RawArray>& arrays, std::size_t items,
   });
 }
 
-/// Point arrays of the file, then its cell arrays moved to the points; a name that both have means the point array.
+/// Point arrays of the file, then its cell arrays moved to the points; if both have a name, it means the point array.
 void gather_arrays(RawMesh& mesh, const Triangulation& kept, const std::string& name,
                    std::vector<std::string>& warnings) {
   keep_arrays_of_right_size(mesh.point_arrays, mesh.points.size(), name, warnings);
@@ -173,7 +173,7 @@ void gather_arrays(RawMesh& mesh, const Triangulation& kept, const std::string& 
   }
 }
 
-/// New number of each point that a triangle uses, counted up in the old order; `no_point` for the others.
+/// New number of each point that a triangle uses, in the old order; `no_point` for the others.
 std::vector<std::uint32_t> number_used_points(const std::vector<Triangle>& triangles, std::size_t points,
                                               std::size_t& used) {
   std::vector<std::uint32_t> number(points, RawMesh::no_point);

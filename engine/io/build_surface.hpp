@@ -1,4 +1,4 @@
-// Nacre: from what a file says to a surface that the numerics can trust.
+// Nacre: from the contents of a file to a surface that the numerics can rely on.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 namespace nacre {
 
-/// Triangulates the polygons of `mesh`, drops what cannot be used (corners that are no points, points that are NaN or
+/// Triangulates the polygons of `mesh`, drops what cannot be used (corners without a point, points that are NaN or
 /// infinite, triangles without area), moves arrays on cells to the points (mean of the adjacent triangles, weighted by
 /// area), sets NaN and infinite values to 0, and drops points that no triangle uses. Each loss adds one sentence with
-/// counts to `warnings`. Throws Error, in which `name` (the file) is named, if no triangle is left.
+/// counts to `warnings`. Throws Error with `name` (the file) if no triangle is left.
 Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings);
 
 /// 1234567 as "1,234,567".

@@ -1,4 +1,4 @@
-// Nacre: numbers out of bytes of either order.
+// Nacre: reads numbers from bytes of either byte order.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace nacre {
 
-/// The number that begins at `bytes` (no alignment needed), written in `order`.
+/// The number that starts at `bytes` (no alignment needed), stored in `order`.
 template <class T>
 T load_number(const char* bytes, std::endian order) {
   std::array<char, sizeof(T)> copy{};

@@ -1,4 +1,4 @@
-// Nacre: small pieces of a file, written in large ones.
+// Nacre: collects small pieces of a file and writes them in large ones.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace nacre {
 
-/// Collects small pieces of a file, binary or text, and hands them on in large ones.
+/// Collects small pieces of a file, binary or text, and passes them on in large ones.
 class Chunks {
  public:
   explicit Chunks(OutputFile& file) : file_(file) { text_.reserve(chunk_bytes + 4096); }
@@ -28,7 +28,7 @@ class Chunks {
     text_.append(reinterpret_cast<const char*>(&value), sizeof value);
     if (text_.size() >= chunk_bytes) flush();
   }
-  /// The shortest text that reads back as the same number; as a float where that is all the number ever was.
+  /// The shortest text that reads back as the same number; as a float if the number was never more precise.
   void number(double value) {
     if (double(float(value)) == value)
       print("{}", float(value));

@@ -1,4 +1,4 @@
-// Nacre: what is in a file, for `nacre info`.
+// Nacre: describes the contents of a file, for `nacre info`.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -133,7 +133,7 @@ void add_volume(FileInfo& info, const Volume& volume, const std::string& format)
   if (auto labels = count_labels(volume, most_labels)) info.volume->labels = std::move(*labels);
 }
 
-/// A file that lists or holds several steps: the first one, and the times of all.
+/// A file that lists or contains several steps: describes the first one, and the times of all.
 void add_steps(FileInfo& info, const FileSteps& files) {
   add_mesh(info, read_step(files.steps[0]));
   if (files.steps.size() > 1) info.kind = "series";
@@ -146,7 +146,7 @@ bool is_vtk_image(const std::string& bytes) {
   return head.find("<VTKFile") != head.npos && head.find("type=\"ImageData\"") != head.npos;
 }
 
-/// A volume, if that is what the file holds. Of a .vti all arrays are listed, also where none has one value per voxel.
+/// Describes a volume, if the file contains one. Of a .vti all arrays are listed, even if none has one value per voxel.
 bool add_volume_file(FileInfo& info, const fs::path& path) {
   const VolumeFormat* format = find_volume_format(path);
   if (!format) return false;

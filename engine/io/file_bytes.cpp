@@ -1,4 +1,4 @@
-// Nacre: files read whole, gzip unpacked on the way.
+// Nacre: reads whole files; unpacks gzip.
 #include "engine/io/file_bytes.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Text shrinks to a tenth, a smooth volume to a hundredth; far beyond this a packed file is a mistake or a trap.
+// Text shrinks to a tenth, a smooth volume to a hundredth. A ratio far beyond this is a mistake or an attack.
 constexpr std::size_t unpacked_base = std::size_t(16) << 20;
 
 std::string gunzip(const std::string& packed, std::size_t unpacked_ratio, const fs::path& path) {
@@ -46,7 +46,7 @@ std::string gunzip(const std::string& packed, std::size_t unpacked_ratio, const 
                    "decompress it by hand");
     if (state == Z_BUF_ERROR && used == packed.size()) fail_reading(path, "its gzip data ends too early");
     if (state != Z_OK && state != Z_STREAM_END && state != Z_BUF_ERROR) fail_reading(path, "its gzip data is damaged");
-    // A gzip file may be several members one after the other.
+    // A gzip file may consist of several members, one after the other.
     if (state == Z_STREAM_END && used + 18 < packed.size() && packed.compare(used, 2, "\x1f\x8b") == 0) {
       inflateReset(&stream);
       state = Z_OK;

@@ -1,4 +1,4 @@
-// Nacre: a file in memory, and the words for a file that cannot be read.
+// Nacre: a file in memory, and the error for a file that cannot be read.
 #pragma once
 
 #include <cstddef>
@@ -7,15 +7,14 @@
 
 namespace nacre {
 
-/// The whole content of a file; what gzip packed is unpacked (to `unpacked_ratio` times its size at most, against
-/// bombs), a UTF-8 byte order mark is cut off. Throws Error if it is missing, no regular file, unreadable, empty, or
-/// UTF-16 text.
+/// The whole content of a file. Gzip is unpacked (to at most `unpacked_ratio` times its size, against bombs), a UTF-8
+/// byte order mark is removed. Throws Error if the file is missing, not regular, unreadable, empty, or UTF-16 text.
 std::string read_file(const std::filesystem::path& path, std::size_t unpacked_ratio = 200);
 
 /// Throws Error if there is no regular file of that name.
 void require_file(const std::filesystem::path& path);
 
-/// Lower-case extension without the dot, that of the packed file for `.gz`: "obj" for `motorBike.OBJ.gz`.
+/// Lower-case extension without the dot; that of the packed file for `.gz`: "obj" for `motorBike.OBJ.gz`.
 std::string format_extension(const std::filesystem::path& path);
 
 /// Throws Error "FILE cannot be read (why); advice".

@@ -1,4 +1,4 @@
-// Nacre: steps in files, or in the arrays of one file.
+// Nacre: time steps in several files, or in the arrays of one file.
 #include "engine/io/file_series.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace nacre {
 namespace {
 
-// Part of the surface's size below which a difference between two steps is rounding, not motion.
+// Fraction of the surface's size below which a difference between two steps is rounding, not motion.
 constexpr double rounding = 1e-6;
 
 std::string name_of(const FileStep& step) { return step.parts.front().string(); }
@@ -74,7 +74,7 @@ Surface FileSeries::load_file(std::size_t k, bool& moved) const {
   };
   if (mesh.points.size() != file_points_.size()) fail("points", mesh.points.size(), file_points_.size());
   moved = differ(file_points_, mesh.points);
-  // With the first step's points the polygons are also cut as in the first step.
+  // With the points of the first step, the polygons are also triangulated as in the first step.
   mesh.points = file_points_;
   std::vector<std::string> warnings;
   Surface surface = build_surface(std::move(mesh), name_of(step), warnings);

@@ -1,4 +1,4 @@
-// Nacre: a surface over time whose steps lie in files.
+// Nacre: a surface over time, with its steps in files.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace nacre {
 
-/// Reads steps on demand and holds them to the points and triangles of the first, which it keeps.
+/// Reads steps on demand, and checks that they have the points and triangles of the first step, which it keeps.
 class FileSeries {
  public:
-  /// Reads the first step; of one single step the array families become the time steps. Throws Error.
+  /// Reads the first step. If there is only one, its array families become the time steps. Throws Error.
   explicit FileSeries(FileSteps files);
 
   std::vector<double> times() const;
@@ -28,7 +28,7 @@ class FileSeries {
 
   FileSteps files_;
   ArrayFamilies families_;
-  std::vector<Vec3d> file_points_;  // of the first step as in the file, with points that no triangle uses
+  std::vector<Vec3d> file_points_;  // of the first step as in the file, including points that no triangle uses
   Surface first_;
   std::vector<std::string> warnings_;
 };

@@ -1,4 +1,4 @@
-// Nacre: which files hold the time steps of what the user names.
+// Nacre: which files contain the time steps of the user's input.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace nacre {
 
-/// One time step; several parts make one surface.
+/// One time step; several parts form one surface.
 struct FileStep {
   double time = 0;
   std::vector<std::filesystem::path> parts;
@@ -20,21 +20,21 @@ struct FileStep {
 struct FileSteps {
   std::vector<FileStep> steps;
   std::vector<std::string> warnings;
-  std::shared_ptr<const void> keep_alive;  ///< temporary files live as long as this does; may be null
+  std::shared_ptr<const void> keep_alive;  ///< keeps temporary files; may be null
 };
 
-/// Steps of one file: those that a .pvd lists, those that VTK finds in a file of its own formats, else the file itself
-/// at time 0. Throws Error if a listed file is missing or VTK is needed and not built in.
+/// Steps of one file: those that a .pvd lists, those that VTK finds in a file of its own formats, otherwise the file
+/// itself at time 0. Throws Error if a listed file is missing, or if VTK is needed and not built in.
 FileSteps find_steps(const std::filesystem::path& path);
 
-/// Several files of one series: at their own times if all have one and no two the same, else at 0, 1, 2, ...
-/// Throws Error if one of them is a series itself.
+/// Several files of one series: at their own times if all have one and all differ, otherwise at 0, 1, 2, ... Throws
+/// Error if one of them is itself a series.
 FileSteps find_steps(const std::vector<std::filesystem::path>& paths);
 
 /// True for files that only VTK reads.
 bool goes_through_vtk(const std::filesystem::path& path);
 
-/// The mesh of a step, its parts put together. Throws Error if one cannot be read.
+/// The mesh of a step, with its parts combined. Throws Error if one cannot be read.
 RawMesh read_step(const FileStep& step);
 
 }  // namespace nacre

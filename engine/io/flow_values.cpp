@@ -1,4 +1,4 @@
-// Nacre: the values of a flow as a file.
+// Nacre: writes the values of a flow to a file.
 #include "engine/io/flow_values.hpp"
 
 #include <span>

@@ -1,4 +1,4 @@
-// Nacre: meshes written for Gmsh (.msh, version 2.2, binary).
+// Nacre: writes meshes for Gmsh (.msh, version 2.2, binary).
 #include "engine/io/gmsh_writer.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 namespace nacre {
 namespace {
 
-static_assert(std::endian::native == std::endian::little);  // a reader takes the order from the number 1 in the header
+static_assert(std::endian::native == std::endian::little);  // readers detect it from the 1 in the header
 
 std::string quoted(const std::string& name) {
   std::string out = "\"";
@@ -22,7 +22,7 @@ std::string quoted(const std::string& name) {
   return out + '"';
 }
 
-/// A name as Gmsh takes it, that no other group has: readers such as meshio know groups by their names.
+/// A name as Gmsh accepts it, unique among all groups: readers such as meshio identify groups by their names.
 std::string group_name(const GmshMesh::Group& group, std::set<std::string>& taken) {
   constexpr std::size_t most = 127;
   std::string name = quoted(in_utf8(group.name, most));

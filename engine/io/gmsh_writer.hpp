@@ -1,4 +1,4 @@
-// Nacre: meshes written for Gmsh (.msh, version 2.2, binary).
+// Nacre: writes meshes for Gmsh (.msh, version 2.2, binary).
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@
 
 namespace nacre {
 
-/// What a .msh is made of: blocks of cells of one kind each, every cell in one physical group. Cells are numbered
+/// The contents of a .msh: blocks of cells of one kind each, with every cell in one physical group. Cells are numbered
 /// through all blocks.
 struct GmshMesh {
   struct Group {
-    std::int32_t tag;  ///< > 0; those of triangles and of tetrahedra do not meet
-    std::string name;  ///< is cut to 127 bytes and, where another group has it, made its own by the tag
+    std::int32_t tag;  ///< > 0; triangles and tetrahedra have different tags
+    std::string name;  ///< is cut to 127 bytes; if another group has it, the tag is added
   };
   struct Block {
     int corners = 3;  ///< per cell: 3 triangles, 4 tetrahedra
     std::size_t cells = 0;
     std::function<std::uint32_t(std::size_t cell, int k)> corner;
-    std::function<std::int32_t(std::size_t cell)> group;  ///< its tag
+    std::function<std::int32_t(std::size_t cell)> group;  ///< the tag of its group
     std::vector<Group> groups;
   };
   struct Numbers {
@@ -34,14 +34,13 @@ struct GmshMesh {
 
   std::span<const Vec3d> points;
   std::vector<Block> blocks;
-  std::vector<Numbers>
-      numbers;  ///< written as $ElementData of all cells; meshio 5.3 reads them where there is one block
+  std::vector<Numbers> numbers;  ///< written as $ElementData of all cells; meshio 5.3 reads them if there is one block
 
   std::size_t cells() const;
 };
 
-/// Readable by Gmsh, meshio and others that know version 2.2. Throws Error where there are more than 2^31 - 1 points or
-/// cells, or the file cannot be written.
+/// Readable by Gmsh, meshio and other programs that know version 2.2. Throws Error if there are more than 2^31 - 1
+/// points or cells, or if the file cannot be written.
 void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh);
 
 }  // namespace nacre

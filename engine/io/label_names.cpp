@@ -1,4 +1,4 @@
-// Nacre: what the labels of a volume are called, where its file says so.
+// Nacre: names of labels, if the file of a volume has them.
 #include "engine/io/label_names.hpp"
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_names = 65536, longest_name = 120;
 
-/// One line that a table can show.
+/// The name as one line that a table can show.
 std::string in_one_line(std::string_view words) {
   std::string line = in_utf8(words, longest_name);
   while (!line.empty() && line.back() == ' ') line.pop_back();
@@ -21,7 +21,7 @@ std::string in_one_line(std::string_view words) {
   return line;
 }
 
-/// Keeps a name; of two for one label, the first.
+/// Stores a name; of two names for one label, the first is kept.
 void keep(LabelNames& names, std::string_view number, std::string_view words) {
   std::int64_t label = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), label);
@@ -34,7 +34,7 @@ void keep(LabelNames& names, std::string_view number, std::string_view words) {
 
 LabelNames names_of_label_table(std::string_view xml) {
   LabelNames names;
-  const std::string_view text = xml.substr(0, xml.find('\0'));  // padded to whole lines of 16 bytes
+  const std::string_view text = xml.substr(0, xml.find('\0'));  // padded to full lines of 16 bytes
   pugi::xml_document document;
   if (!document.load_buffer(text.data(), text.size())) return names;
   const pugi::xml_node table =

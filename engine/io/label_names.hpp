@@ -1,4 +1,4 @@
-// Nacre: what the labels of a volume are called, where its file says so.
+// Nacre: names of labels, if the file of a volume has them.
 #pragma once
 
 #include <functional>
@@ -10,12 +10,12 @@
 
 namespace nacre {
 
-/// Of the label table in the XML that Caret, Connectome Workbench and TotalSegmentator write into a NIfTI file's
-/// extension. Empty where it is damaged or has no table: names are a help, and nothing fails for want of them.
+/// Reads the label table in the XML that Caret, Connectome Workbench and TotalSegmentator write into the extension of a
+/// NIfTI file. Empty if it is damaged or missing: names are optional, so this is not an error.
 LabelNames names_of_label_table(std::string_view xml);
 
-/// Of the segments in a NRRD that 3D Slicer has written. `field(key)` is the header's value for a key, none where it has
-/// none; the keys are "Segment0_Name" and "Segment0_LabelValue", and so on.
+/// Reads the segments of a NRRD written by 3D Slicer. `field(key)` is the value of a key in the header, or nothing; the
+/// keys are "Segment0_Name" and "Segment0_LabelValue", and so on.
 LabelNames names_of_segments(const std::function<std::optional<std::string>(const std::string& key)>& field);
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: the volumes of a session as the mesh pipeline takes them.
+// Nacre: reads the volumes of a session for the mesh pipeline.
 #include "engine/io/mesh_input.hpp"
 
 #include <fmt/format.h>
@@ -16,14 +16,14 @@ namespace {
 
 constexpr const char* smaller_sizes = "smaller --min-size and --max-size";
 
-/// The first dozen of a list.
+/// The first twelve entries of a list.
 std::string some_of(const std::vector<std::int64_t>& labels) {
   const std::size_t shown = std::min<std::size_t>(labels.size(), 12);
   return fmt::format("{}{}", fmt::join(labels.begin(), labels.begin() + std::ptrdiff_t(shown), ", "),
                      shown < labels.size() ? ", ..." : "");
 }
 
-/// What TopologyReport::sound() asks for and does not find, counted.
+/// The conditions of TopologyReport::sound() that are not met, with counts.
 std::string defects_of(const TopologyReport& t) {
   std::vector<std::string> found;
   const auto count = [&](std::int64_t n, const char* one, const char* many) {

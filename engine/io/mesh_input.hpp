@@ -1,4 +1,4 @@
-// Nacre: the volumes of a session as the mesh pipeline takes them; `nacre mesh` and the viewer read them alike.
+// Nacre: reads the volumes of a session for the mesh pipeline, in the same way for `nacre mesh` and the viewer.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@
 
 namespace nacre {
 
-/// What a report says about the volume once the volume itself is gone.
+/// What a report needs to know about the volume after the volume itself has been released.
 struct MeshInput {
   std::string name;
   MeshVolume::Kind kind = MeshVolume::Kind::labels;
@@ -30,27 +30,28 @@ struct MeshInput {
   std::vector<std::string> warnings;
 };
 
-/// Is told each warning as soon as it is known; may be empty.
+/// Receives each warning as soon as it is known; may be empty.
 using WarningSink = std::function<void(const std::string&)>;
 
-/// The files or the phantom of `input`. Throws Error as `read_volume` and `make_phantom` do, Interrupted soon after
+/// The files or the phantom of `input`. Throws Error as `read_volume` and `make_phantom` do, and Interrupted soon after
 /// `*stop` (may be null) is set.
 std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atomic<bool>* stop,
                                       const WarningSink& warn = {});
 
-/// What of the volumes is which material. `sample`: they are a phantom, which is cut where it is meant to be unless the
-/// options say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for values that cannot be parsed.
+/// Decides which part of the volumes is which material. `sample`: they are a phantom, which is cut at its intended
+/// value unless the input options say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for
+/// options without meaning.
 MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialWords& words,
                           MeshInput& described, const WarningSink& warn = {});
 
-/// The knob `max_cell` (voxels) as fill_with_tetrahedra takes it.
+/// The knob `max_cell` (voxels) in the unit of fill_with_tetrahedra.
 EdgeLength longest_edge(double max_cell, const Vec3d& spacing);
 
 /// The labels of materials that no facet touches.
 std::vector<std::int64_t> lost_labels(std::span<const std::int64_t> labels, const TopologyReport& topology);
 
-/// What is wrong with a mesh: labels that are lost, surfaces that are not closed, topology that is not sound. A sentence
-/// each, with what may help.
+/// What is wrong with a mesh: lost labels, surfaces that are not closed, topology that is not sound. One sentence each,
+/// with advice.
 std::vector<std::string> mesh_flaws(std::span<const std::int64_t> labels, const TopologyReport& topology);
 
 }  // namespace nacre

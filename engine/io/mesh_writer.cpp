@@ -1,4 +1,4 @@
-// Nacre: meshes of materials written in the format that the file's extension names.
+// Nacre: writes meshes of materials in the format of the file's extension.
 #include "engine/io/mesh_writer.hpp"
 
 #include <fmt/format.h>
@@ -66,8 +66,8 @@ CellNumbers cell_numbers(const std::string& name, Labels labels, std::function<s
   return {name, *lower, *upper, [=](std::uint64_t i) { return labels[of(i)]; }};
 }
 
-/// Of every material: what it is called, and with its label where another one is called so, too; "material_LABEL" where
-/// it has no name. None where no material has one.
+/// The name of every material, followed by its label if another material has the same name; "material_LABEL" if it has
+/// no name. Empty if no material has one.
 Names full_names(Labels labels, std::span<const std::string> given) {
   const auto empty = [](const std::string& name) { return name.empty(); };
   if (std::all_of(given.begin(), given.end(), empty)) return {};
@@ -86,7 +86,8 @@ std::string name_of(std::uint16_t material, Labels labels, const Names& names) {
   return names.empty() ? fmt::format("material_{}", labels[material]) : names[material];
 }
 
-/// As field data: for each material an array of its name that holds its label. Arrays of strings would stop meshio.
+/// Names as field data: for each material an array of its name that contains its label. Arrays of strings would make
+/// meshio fail.
 std::string announce_names(Labels labels, const Names& names) {
   if (names.empty()) return {};
   std::string xml = "<FieldData>\n";
@@ -96,7 +97,7 @@ std::string announce_names(Labels labels, const Names& names) {
   return xml + "</FieldData>\n";
 }
 
-/// The labels on both sides of each triangle.
+/// The labels on the two sides of each triangle.
 std::array<CellNumbers, 2> side_numbers(const SurfaceMesh& mesh, Labels labels) {
   const auto side = [&](std::size_t k) {
     return cell_numbers(fmt::format("material_{}", k), labels,
@@ -105,7 +106,7 @@ std::array<CellNumbers, 2> side_numbers(const SurfaceMesh& mesh, Labels labels) 
   return {side(0), side(1)};
 }
 
-/// The pairs that occur, numbered from 1, ascending.
+/// The pairs that occur, numbered from 1 in ascending order.
 std::map<Pair, std::int32_t> numbered_pairs(const SurfaceMesh& mesh) {
   std::map<Pair, std::int32_t> pairs;
   for (const Pair& pair : mesh.materials) pairs.emplace(pair, 0);
@@ -139,7 +140,7 @@ void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
   target.commit();
 }
 
-/// Triangles by pair of materials, each pair a group.
+/// Triangles by pair of materials, one group per pair.
 void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
   std::vector<std::uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -180,7 +181,7 @@ void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels, con
   write_gmsh(file, out);
 }
 
-/// The facets of one material, turned so that their normals point out of it, with the points that they use.
+/// The facets of one material, oriented so that their normals point out of it, with the points that they use.
 Surface surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
   constexpr std::uint32_t none = 0xffffffff;
   std::vector<std::uint32_t> number(mesh.points.size(), none);
@@ -237,7 +238,7 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels,
   file.commit();
 }
 
-/// Physical groups are the labels themselves where those are positive, else the materials' numbers.
+/// Physical groups are the labels themselves if all are positive, otherwise the materials' numbers.
 GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, const Names& names) {
   const std::set<std::uint16_t> present(mesh.material.begin(), mesh.material.end());
   const bool usable = std::all_of(present.begin(), present.end(), [&](std::uint16_t m) {
@@ -253,8 +254,8 @@ GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, cons
   return block;
 }
 
-/// The triangles between the materials, then the tetrahedra. Groups say what each belongs to, and nothing else does: of a
-/// file with cells of two kinds, meshio 5.3 reads no numbers that stand beside them, nor the rest.
+/// The triangles between the materials, then the tetrahedra. Only groups tell what each belongs to: from a file with
+/// two kinds of cells, meshio 5.3 reads no numbers beside them, nor anything after them.
 void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels,
                const Names& names) {
   GmshMesh out;

@@ -1,5 +1,5 @@
-// Nacre: reads NIfTI-1, NIfTI-2 and ANALYZE: the header through the nifti library, the values ourselves, since the
-// library turns NaN into 0.
+// Nacre: reads NIfTI-1, NIfTI-2 and ANALYZE. The nifti library reads the header; we read the values, since the library
+// turns NaN into 0.
 #include <fmt/format.h>
 #include <nifti/nifti2_io.h>
 #include <zlib.h>
@@ -28,7 +28,7 @@ struct Free {
 };
 using Image = std::unique_ptr<nifti_image, Free>;
 
-/// A file that may be packed with gzip, read from its beginning.
+/// A file, possibly packed with gzip, read from its beginning.
 class PackedFile {
  public:
   explicit PackedFile(const fs::path& path) : path_(path), file_(gzopen(path.c_str(), "rb")) {
@@ -39,7 +39,7 @@ class PackedFile {
   PackedFile(const PackedFile&) = delete;
   PackedFile& operator=(const PackedFile&) = delete;
 
-  /// Up to `size` bytes; how many there were.
+  /// Reads up to `size` bytes; returns how many there were.
   std::size_t read(void* bytes, std::size_t size) {
     std::size_t done = 0;
     while (done < size) {
@@ -66,7 +66,7 @@ class PackedFile {
   gzFile file_;
 };
 
-/// The file with the header: the .hdr beside an .img.
+/// The file that contains the header: the .hdr beside an .img.
 fs::path header_path(const fs::path& path) {
   if (format_extension(path) != "img") return path;
   const bool packed = path.extension() == ".gz";
@@ -81,7 +81,7 @@ fs::path header_path(const fs::path& path) {
   fail_reading(path, "there is no .hdr file beside it", "put its header there");
 }
 
-/// What is checked before the library sees a header: it crashes on some, and makes up for others.
+/// What is checked before the library sees a header: it crashes on some headers, and invents values for others.
 struct RawHeader {
   int version = 1;
   std::int64_t rank = 0;
@@ -109,7 +109,7 @@ RawHeader parse(const char* bytes, int version, std::endian order) {
   return header;
 }
 
-/// The header's bytes. Throws Error if the file does not begin like one.
+/// The bytes of the header. Throws Error if the file does not begin as one.
 RawHeader raw_header(const fs::path& path) {
   std::array<char, 540> head{};
   const std::size_t got = PackedFile(path).read(head.data(), head.size());
@@ -168,7 +168,7 @@ std::array<Vec3d, 3> steps_of(const nifti_dmat44& to_world) {
   return steps;
 }
 
-/// sform before qform; a sheared sform gives way to a qform, which cannot be sheared.
+/// sform before qform; a sheared sform is replaced by the qform, which cannot be sheared.
 void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& header, const fs::path& path) {
   bool by_s = image.sform_code > 0;
   const bool by_q = image.qform_code > 0;
@@ -179,7 +179,7 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
   const std::array<double, 3>& sizes = header.spacing;
   const std::array<Vec3d, 3> straight{Vec3d(std::abs(sizes[0]), 0, 0), Vec3d(0, std::abs(sizes[1]), 0),
                                       Vec3d(0, 0, std::abs(sizes[2]))};
-  if (!by_s) set_steps(volume, straight, path);  // for its errors: the library makes 1 of what is 0 or no number
+  if (!by_s) set_steps(volume, straight, path);  // for its errors: the library replaces 0 and non-numbers by 1
   if (by_s || by_q) {
     const nifti_dmat44& to_world = by_s ? image.sto_xyz : image.qto_xyz;
     volume.origin = {to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]};
@@ -194,13 +194,13 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
     volume.warnings.push_back("It has neither sform nor qform; its axes are assumed to be those of the world.");
 }
 
-/// Of the first extension that names labels.
+/// From the first extension that names labels.
 LabelNames label_names_of(const nifti_image& image) {
-  constexpr int head = 8;  // its size and its code come before its words
+  constexpr int head = 8;  // its size and its code precede its text
   for (int i = 0; i < image.num_ext; ++i) {
     const nifti1_extension& extension = image.ext_list[i];
     const bool known =
-        extension.ecode == NIFTI_ECODE_CARET || extension.ecode == NIFTI_ECODE_IGNORE;  // TotalSegmentator's
+        extension.ecode == NIFTI_ECODE_CARET || extension.ecode == NIFTI_ECODE_IGNORE;  // TotalSegmentator
     if (!known || !extension.edata || extension.esize <= head) continue;
     LabelNames names = names_of_label_table({extension.edata, std::size_t(extension.esize - head)});
     if (!names.empty()) return names;
@@ -208,7 +208,7 @@ LabelNames label_names_of(const nifti_image& image) {
   return {};
 }
 
-/// value * slope + intercept, where the file has a slope.
+/// value * slope + intercept, if the file has a slope.
 template <class T>
 void set_values(Volume& volume, std::vector<T> values, double slope, double intercept) {
   const bool scaled = std::isfinite(slope) && std::isfinite(intercept) && slope != 0 && !(slope == 1 && intercept == 0);

@@ -1,4 +1,4 @@
-// Nacre: which files a NRRD header names.
+// Nacre: the files that a NRRD header names.
 #include "engine/io/nrrd_header.hpp"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ std::string trimmed(std::string_view text) {
   return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
-/// One line without its end. False at the end of the file. Throws Error where the text cannot be a header.
+/// One line without its end. False at the end of the file. Throws Error if the text cannot be a header.
 bool next_line(std::ifstream& file, std::string& line, std::size_t& read, const fs::path& path) {
   line.clear();
   for (int c = file.get(); c != EOF; c = file.get()) {
@@ -41,7 +41,7 @@ bool next_line(std::ifstream& file, std::string& line, std::size_t& read, const 
   return !line.empty();
 }
 
-/// What follows "data file:" in this line, if it is that field.
+/// The text after "data file:", if this line is that field.
 bool data_file_field(const std::string& line, std::string& value) {
   for (const std::string_view name : {"data file:", "datafile:"}) {
     if (line.size() < name.size()) continue;
@@ -53,7 +53,7 @@ bool data_file_field(const std::string& line, std::string& value) {
   return false;
 }
 
-/// "slice%03d.raw 1 20 1 [dimension]": the names that this makes; empty where it is no such pattern.
+/// "slice%03d.raw 1 20 1 [dimension]": the names that this makes; empty if it is not such a pattern.
 std::vector<std::string> names_of_pattern(const std::string& field, const fs::path& path) {
   const std::size_t percent = field.find('%');
   if (percent == field.npos) return {};
@@ -63,7 +63,7 @@ std::vector<std::string> names_of_pattern(const std::string& field, const fs::pa
   std::array<std::int64_t, 3> range{};
   TextCursor text(std::string_view(field).substr(name_end));
   for (std::int64_t& value : range)
-    if (!text.integer(value)) return {};  // a plain file whose name has a percent sign
+    if (!text.integer(value)) return {};  // an ordinary file whose name has a percent sign
   int width = 0;
   std::from_chars(field.data() + percent + 1, field.data() + end, width);
   const bool sane = end < field.size() && field[end] == 'd' && field.find('%', end) == field.npos && width <= 20;

@@ -1,4 +1,4 @@
-// Nacre: a first look into a NRRD header, before teem opens what it names.
+// Nacre: checks a NRRD header before teem opens what it names.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace nacre {
 
-/// Where a NRRD keeps its values.
+/// Where a NRRD stores its values.
 struct NrrdStorage {
-  std::vector<std::filesystem::path> files;  ///< detached data files, all regular ones; empty where there are none
+  std::vector<std::filesystem::path> files;  ///< detached data files, all regular; empty if there are none
   std::uintmax_t bytes = 0;                  ///< of these files, or of what follows the header
 };
 
-/// Reads the header's text. Throws Error if the file is no NRRD, or if a data file is missing, is no regular file (a
-/// pipe or device would never end), or is named by a pattern that is not one number.
+/// Reads the text of the header. Throws Error if the file is not a NRRD, or if a data file is missing, is not regular
+/// (a pipe or device would never end), or is named by a pattern that does not contain exactly one number.
 NrrdStorage look_into_nrrd(const std::filesystem::path& path);
 
 }  // namespace nacre

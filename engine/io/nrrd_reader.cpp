@@ -25,7 +25,7 @@ struct Delete {
   void operator()(char* text) const { std::free(text); }
 };
 
-/// The innermost of teem's complaints: "[nrrd] function: what is wrong".
+/// The innermost message of teem: "[nrrd] function: what is wrong".
 std::string complaint() {
   const std::unique_ptr<char, Delete> text(biffGetDone(NRRD));
   if (!text) return "teem gives no reason";
@@ -38,7 +38,7 @@ std::string complaint() {
   return last.substr(0, 200);
 }
 
-/// Reads the header, and the values as well unless `header_only`.
+/// Reads the header and, unless `header_only`, the values.
 std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, const NrrdEncoding** encoding = nullptr) {
   const std::unique_ptr<NrrdIoState, Delete> state(nrrdIoStateNew());
   std::unique_ptr<Nrrd, Delete> nrrd(nrrdNew());
@@ -52,7 +52,7 @@ std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, const
   return nrrd;
 }
 
-/// How many bytes a stored byte may become; what is not packed takes at least half a character per byte.
+/// How many bytes a stored byte may become; uncompressed data take at least half a character per byte.
 double ratio_of(const NrrdEncoding* encoding, std::size_t bytes_per_voxel) {
   if (encoding == nrrdEncodingRaw) return 1;
   if (encoding == nrrdEncodingHex) return 0.5;
@@ -66,7 +66,7 @@ Vec3d direction_of(const Nrrd& nrrd, unsigned axis) {
   return {d[0], d[1], d[2]};
 }
 
-/// Does this axis run through space? By its direction where the file has directions, else by its kind.
+/// Whether this axis is spatial: decided by its direction if the file has directions, otherwise by its kind.
 bool is_spatial(const Nrrd& nrrd, unsigned axis) {
   const NrrdAxisInfo& info = nrrd.axis[axis];
   if (nrrd.spaceDim > 0) {
@@ -83,8 +83,8 @@ std::string describe_axis(const Nrrd& nrrd, unsigned axis) {
   return fmt::format("axis {} ({}{} entries)", axis, kind, info.size);
 }
 
-/// The three axes of the volume. Others may have one entry; of four that say nothing of themselves, one with a single
-/// entry counts as time, or as the only component.
+/// The three axes of the volume. Others may have one entry. If four axes have no description, one with a single entry
+/// counts as time, or as the only component.
 std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
   std::vector<unsigned> axes;
   unsigned spatial = 0;
@@ -108,7 +108,7 @@ std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
   return {axes[0], axes[1], axes[2]};
 }
 
-/// The signed spacing of an axis of a file without directions; 1 with a warning where it says nothing.
+/// The signed spacing of an axis of a file without directions; 1 with a warning if it is not given.
 double spacing_of(const NrrdAxisInfo& info, unsigned axis, Volume& volume) {
   if (!std::isnan(info.spacing)) return info.spacing;
   if (!std::isnan(info.min) && !std::isnan(info.max)) {
@@ -153,7 +153,7 @@ void copy_values(Volume& volume, const Nrrd& nrrd) {
 }  // namespace
 
 Volume read_nrrd(const fs::path& path) {
-  static std::mutex one_at_a_time;  // teem keeps its complaints in one place
+  static std::mutex one_at_a_time;  // teem has only one list of messages
   const std::lock_guard lock(one_at_a_time);
   const NrrdStorage storage = look_into_nrrd(path);
   const NrrdEncoding* encoding = nullptr;

@@ -1,4 +1,4 @@
-// Nacre: volumes written as NRRD.
+// Nacre: writes volumes as NRRD.
 #include "engine/io/nrrd_writer.hpp"
 
 #include <fmt/format.h>

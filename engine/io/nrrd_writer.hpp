@@ -1,4 +1,4 @@
-// Nacre: volumes written as NRRD.
+// Nacre: writes volumes as NRRD.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 namespace nacre {
 
 /// Writes one .nrrd file with header and data: little-endian, in the type of the values, with space, axes, spacing and
-/// origin. Whole numbers are compressed (gzip), the others are left as they are. Throws Error for another extension and
-/// where writing fails.
+/// origin. Integers are compressed (gzip), other types are not. Throws Error for another extension and if writing
+/// fails.
 void write_nrrd(const std::filesystem::path& file, const Volume& volume);
 
 }  // namespace nacre

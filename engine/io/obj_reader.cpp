@@ -1,5 +1,5 @@
-// Nacre: Wavefront OBJ: points and faces, parsed by tinyobjloader.
-// Compiled here for double precision: its packaged library keeps coordinates as float.
+// Nacre: Wavefront OBJ: points and faces, parsed by tinyobjloader, which is compiled here for double precision: its
+// packaged library stores coordinates as float.
 #define TINYOBJLOADER_USE_DOUBLE
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <fmt/format.h>
@@ -14,10 +14,10 @@
 namespace nacre {
 namespace {
 
-/// What tinyobjloader is given, and what it would not tell.
+/// The input of tinyobjloader, and what it would not report.
 struct Prepared {
   std::string text;                     ///< the lines of points and faces, without comments
-  std::vector<std::size_t> bad_points;  ///< points whose coordinates are no plain numbers, which it would read as 0
+  std::vector<std::size_t> bad_points;  ///< points whose coordinates are not plain numbers, which it would read as 0
   std::size_t points = 0;
   std::size_t lines = 0;
 };
@@ -43,7 +43,7 @@ bool has_three_numbers(std::string_view line) {
   return true;
 }
 
-/// The line without its comment; "1.#INF" holds no comment.
+/// The line without its comment; "1.#INF" does not start a comment.
 std::string_view without_comment(std::string_view line) {
   for (std::size_t hash = line.find('#'); hash != line.npos; hash = line.find('#', hash + 1))
     if (hash == 0 || is_blank(line[hash - 1])) return line.substr(0, hash);
@@ -92,7 +92,7 @@ void on_face(void* user, tinyobj::index_t* corners, int count) {
   RawMesh& mesh = *static_cast<RawMesh*>(user);
   const auto points = std::int64_t(mesh.points.size());
   for (int i = 0; i < count; ++i) {
-    // Indices count from 1, or from the last point so far backwards; 0 is no index.
+    // Indices count from 1, or backwards from the last point so far; 0 is not an index.
     const std::int64_t index = corners[i].vertex_index;
     mesh.add_corner(index > 0 ? index - 1 : index < 0 ? points + index : -1);
   }

@@ -1,4 +1,4 @@
-// Nacre: OFF and its relatives COFF, NOFF, STOFF: points and polygons as text.
+// Nacre: OFF and its variants COFF, NOFF, STOFF: points and polygons as text.
 #include <fmt/format.h>
 
 #include <cctype>
@@ -14,7 +14,7 @@ struct Counts {
   std::int64_t points = 0, faces = 0;
 };
 
-/// Reads the magic word, which may be missing, lead, or stick to the first count ("OFF8 6 12"), and the counts.
+/// Reads the format name, which may be missing, separate, or joined to the first count ("OFF8 6 12"), and the counts.
 Counts read_header(TextCursor& text, const std::filesystem::path& path) {
   TextCursor probe = text;
   const std::string_view magic = probe.word();

@@ -9,7 +9,7 @@ namespace {
 
 using Faces = std::vector<std::vector<int>>;
 
-/// Equal for faces with the same corners in whatever order.
+/// A key that is equal for faces with the same corners in any order.
 using Key = std::array<std::int64_t, 5>;
 
 Key key_of(std::span<const std::int64_t> corners) {

@@ -1,4 +1,4 @@
-// Nacre: the outer surface of cells in space.
+// Nacre: the outer surface of volume cells.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@ class FaceCollector {
  public:
   /// A face of volume cell `cell`, corners in the order that makes it face outwards.
   void add(std::span<const std::int64_t> corners, std::size_t cell) { add(corners, cell, false); }
-  /// A face that is a cell itself: always kept, and in place of an equal outer face.
+  /// A face that is a cell by itself: always kept, and used in place of an equal outer face.
   void add_free(std::span<const std::int64_t> corners, std::size_t cell) { add(corners, cell, true); }
 
-  /// Calls `use(corners, cell)` for each outer face, in the order in which they came.
+  /// Calls `use(corners, cell)` for each outer face, in the order in which they were added.
   template <class Use>
   void for_each_outer(Use use) const {
     const std::vector<bool> outer = find_outer();
@@ -34,11 +34,11 @@ class FaceCollector {
   std::vector<bool> free_;
 };
 
-/// Faces of a linear volume cell of that VTK type, each a list of its corners' places in the cell; empty if `type` is
-/// no volume cell. Higher-order cells begin with the corners of the linear one and have its faces.
+/// Faces of a linear volume cell of that VTK type, each a list of corner numbers within the cell; empty if `type` is
+/// not a volume cell. Higher-order cells begin with the corners of the linear one and have its faces.
 std::span<const std::vector<int>> volume_cell_faces(int type);
 
-/// How many corners outline a 2-D cell of that VTK type with `count` points; 0 if it is no 2-D cell.
+/// How many corners outline a 2-D cell of that VTK type with `count` points; 0 if it is not a 2-D cell.
 std::size_t flat_cell_corners(int type, std::size_t count);
 
 }  // namespace nacre

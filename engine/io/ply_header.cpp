@@ -1,4 +1,4 @@
-// Nacre: the words of a PLY header.
+// Nacre: parses the header of a PLY file.
 #include "engine/io/ply_header.hpp"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-/// Cuts header lines, which end in \n, \r\n or \r; the data begin right behind the last one.
+/// Splits header lines, which end in \n, \r\n or \r; the data begin right after the last one.
 class HeaderLines {
  public:
   explicit HeaderLines(std::string_view bytes) : bytes_(bytes) {}
@@ -126,7 +126,7 @@ PlyHeader read_ply_header(std::string_view bytes, const std::filesystem::path& p
       add_element(header, words, path);
     } else if (words[0] == "property") {
       add_property(header, words, path);
-    }  // comment, obj_info and whatever else some programs put there
+    }  // comment, obj_info and other lines that some programs write there
   }
   fail_reading(path, "its PLY header does not end");
 }

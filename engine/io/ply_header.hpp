@@ -1,4 +1,4 @@
-// Nacre: the header of a PLY file: which elements with which properties follow.
+// Nacre: the header of a PLY file: its elements and their properties.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ inline bool ply_is_real(PlyType type) { return type == PlyType::float32 || type 
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::none;
-  PlyType count_type = PlyType::none;  ///< type of the length in front of a list; `none` for a plain number
+  PlyType count_type = PlyType::none;  ///< type of the length before a list; `none` for a single number
 
   bool is_list() const { return count_type != PlyType::none; }
 };

@@ -1,4 +1,4 @@
-// Nacre: several parts of a mesh made into one.
+// Nacre: combines several parts of a mesh.
 #include "engine/io/raw_mesh.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ void append(RawMesh& mesh, RawMesh&& part) {
   if (!mesh.time) mesh.time = part.time;
   if (part.points.empty()) return;
   if (mesh.points.empty()) {
-    // An empty part has no say in which arrays there are.
+    // An empty part does not decide which arrays exist.
     part.lines = mesh.lines;
     part.volume_cells = mesh.volume_cells;
     part.warnings = std::move(mesh.warnings);

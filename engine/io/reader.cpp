@@ -1,4 +1,4 @@
-// Nacre: opens what the user names as a series of steps.
+// Nacre: opens the user's input as a series of time steps.
 #include "engine/io/reader.hpp"
 
 #include <memory>

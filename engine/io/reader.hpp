@@ -1,4 +1,4 @@
-// Nacre: surfaces from files: open one, or look at what is in it.
+// Nacre: surfaces from files: opens one, or describes its contents.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct ArrayInfo {
   std::string name;
   int components = 1;
   std::string on;           ///< "points", "cells" or "field"
-  double min = 0, max = 0;  ///< of the magnitude where there are several components; NaN is ignored; 0 if all are NaN
+  double min = 0, max = 0;  ///< of the magnitude if there are several components; NaN is ignored; 0 if all are NaN
   std::size_t count = 0;    ///< items: values / components
 };
 
@@ -29,37 +29,37 @@ struct VolumeInfo {
   Vec3d spacing, origin;
   std::array<Vec3d, 3> axes{};
   bool right_handed = true;
-  std::string space;  ///< what the world's axes point to; empty where the file does not say
+  std::string space;  ///< directions of the world's axes; empty if the file does not give them
   std::string type;   ///< "uint8", ..., "float", "double"
   VolumeStatistics statistics;
   std::vector<LabelCount> labels;  ///< its different values, if they are integral and at most `most_labels`
-  LabelNames label_names;          ///< where the file has any
+  LabelNames label_names;          ///< if the file has any
 };
 inline constexpr std::size_t most_labels = 65535;
 
-/// What is in a file.
+/// The contents of a file.
 struct FileInfo {
   std::string path;
   std::string format;         ///< "OBJ", "PLY", "STL", "OFF", "VTK XML", "VTK", or as in `volume_formats`
   std::string kind;           ///< "surface", "volume", "points", "lines", "series" or "unknown-empty"
   std::uint64_t bytes = 0;    ///< of the file itself
-  std::size_t points = 0;     ///< in the file (of a series: in its first step)
-  std::size_t triangles = 0;  ///< that can be used, after triangulation
-  std::size_t polygons = 0;   ///< in the file; of volume cells the outer faces
-  Vec3d lower, upper;         ///< box around the finite points, in the file's unit
+  std::size_t points = 0;     ///< in the file (in the first step of a series)
+  std::size_t triangles = 0;  ///< usable ones, after triangulation
+  std::size_t polygons = 0;   ///< in the file; the outer faces of volume cells
+  Vec3d lower, upper;         ///< box around the finite points, in the unit of the file
   std::vector<double> times;  ///< one per step; empty if there is no time
   std::vector<ArrayInfo> arrays;
-  std::optional<VolumeInfo> volume;   ///< where it is one that `read_volume` reads
+  std::optional<VolumeInfo> volume;   ///< if `read_volume` reads it as one
   std::vector<std::string> warnings;  ///< full sentences
 };
 
-/// Opens one file, a .pvd, or several files of one series in the order given (in the order of their own TimeValue where
-/// all have one). The first step is read at once, and two more to see whether the surface moves; the others are read
-/// when asked for. A surface that moves keeps the points of its first step, with a warning.
-/// Throws Error if a file is missing, unreadable, no surface, or has other points or triangles than the first step.
+/// Opens one file, a .pvd, or several files of one series in the given order (in the order of their own TimeValue if
+/// all have one). The first step is read at once, and two more to see whether the surface moves; the others are read on
+/// demand. A surface that moves keeps the points of its first step, with a warning. Throws Error if a file is missing,
+/// unreadable, not a surface, or has other points or triangles than the first step.
 SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths);
 
-/// Says what is in a file, also where it is no surface. Throws Error if it cannot be read.
+/// Describes the contents of a file, even if it is not a surface. Throws Error if it cannot be read.
 FileInfo describe(const std::filesystem::path& path);
 
 /// Extensions that can be opened, lower case, with dot.

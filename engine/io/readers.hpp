@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// Each takes the file's content and its path (for messages and, in .pvtp/.pvtu, for finding the pieces). Throws Error
-/// if the content is no such file, is cut short, or promises more than it holds.
+/// Each takes the content of the file and its path (for messages and, in .pvtp/.pvtu, to find the pieces). Throws Error
+/// if the content is not such a file, is truncated, or announces more than it contains.
 RawMesh read_obj(std::string bytes, const std::filesystem::path& path);
 RawMesh read_ply(std::string bytes, const std::filesystem::path& path);
 RawMesh read_stl(std::string bytes, const std::filesystem::path& path);

@@ -1,4 +1,4 @@
-// Nacre: formats by extension, and by their first bytes where the extension does not help.
+// Nacre: finds formats by extension, or by the first bytes if the extension does not help.
 #include "engine/io/registry.hpp"
 
 #include <fmt/format.h>
@@ -90,7 +90,7 @@ RawFile read_raw(std::string bytes, const std::filesystem::path& path) {
     RawFile file{format, format->read(std::move(bytes), path)};
     if (file.mesh.polygons() > 0 || file.mesh.lines > 0 || !file.mesh.points.empty()) return file;
   } catch (const Error&) {
-    // What went wrong matters less than why.
+    // The mismatch of content and extension is the cause, and says more than the reader's message.
   }
   fail_reading(path, fmt::format("it is not {}", format->name), mismatch);
 }

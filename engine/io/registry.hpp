@@ -1,4 +1,4 @@
-// Nacre: which reader takes which file.
+// Nacre: which reader reads which file.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ struct SurfaceFormat {
   std::function<RawMesh(std::string bytes, const std::filesystem::path& path)> read;
 };
 
-/// All of them.
+/// All of these formats.
 const std::vector<SurfaceFormat>& surface_formats();
 
 /// The format that has this extension, or nullptr.
@@ -26,20 +26,20 @@ const SurfaceFormat* find_format(const std::string& extension);
 /// The format that the content looks like, or nullptr. A guess from the first bytes.
 const SurfaceFormat* sniff_format(const std::string& bytes);
 
-/// A file read by the reader of its extension or, if that has none, by what its content looks like.
+/// A file read by the reader of its extension or, if that has none, by the format of its content.
 struct RawFile {
   const SurfaceFormat* format = nullptr;
   RawMesh mesh;
 };
 
-/// Reads one file. Throws Error if no reader takes it or the reader fails; where content and extension disagree the
+/// Reads one file. Throws Error if no reader accepts it or the reader fails; if content and extension disagree, the
 /// Error says so.
 RawFile read_raw(const std::filesystem::path& path);
 
-/// The same for content that is already in memory; `path` is for its extension and for messages.
+/// The same for content that is already in memory; `path` is used for its extension and for messages.
 RawFile read_raw(std::string bytes, const std::filesystem::path& path);
 
-/// Advice for a file whose extension promises another format than its content looks like; empty if they agree.
+/// Advice for a file whose extension and content suggest different formats; empty if they agree.
 std::string mismatch_advice(const std::string& bytes, const SurfaceFormat& format);
 
 /// Every extension that `read_raw` knows, sorted.

@@ -1,4 +1,4 @@
-// Nacre: STL, text and binary; corners at exactly the same place become one point.
+// Nacre: STL, text and binary; corners at exactly the same position become one point.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t header_bytes = 84;
 constexpr std::size_t facet_bytes = 50;
 
-/// Numbers places: the same place always gets the same number.
+/// Numbers positions: equal positions get the same number.
 class PointMerger {
  public:
   explicit PointMerger(RawMesh& mesh) : mesh_(mesh) {}
@@ -25,7 +25,7 @@ class PointMerger {
   void reserve(std::size_t corners) { numbers_.reserve(corners / 5); }
 
   std::int64_t operator()(Vec3d p) {
-    for (int axis = 0; axis < 3; ++axis) p[axis] += 0.0;  // -0 and 0 are one place
+    for (int axis = 0; axis < 3; ++axis) p[axis] += 0.0;  // -0 and 0 are one position
     const auto [entry, added] = numbers_.try_emplace(p, std::int64_t(mesh_.points.size()));
     if (added) mesh_.points.push_back(p);
     return entry->second;
@@ -57,7 +57,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Many binary files begin with "solid" too: what counts is whether the size fits, then whether words of text follow.
+/// Many binary files also begin with "solid". What counts is whether the size fits, then whether text follows.
 bool is_text(const std::string& bytes) {
   if (bytes.size() >= header_bytes) {
     const auto facets = load_number<std::uint32_t>(bytes.data() + 80, std::endian::little);
@@ -92,7 +92,7 @@ RawMesh read_text(const std::string& bytes, const std::filesystem::path& path) {
     } else if (word == "endfacet") {
       in_facet = false;
     } else if (word == "solid" || word == "endsolid") {
-      text.rest_of_line();  // a name, which may be any words
+      text.rest_of_line();  // a name, which may be any text
     }
   }
   if (in_facet || corners > 0) fail_reading(path, "it ends inside a facet");

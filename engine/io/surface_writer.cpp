@@ -1,4 +1,4 @@
-// Nacre: surfaces written in the format that the file's extension names.
+// Nacre: writes surfaces in the format of the file's extension.
 #include "engine/io/surface_writer.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ void write_stl(Chunks& out, const Surface& surface) {
   }
 }
 
-/// Property names of one array: name, or name_x name_y name_z, or name_0 name_1 ...; no blanks, none taken twice.
+/// Property names of one array: name, or name_x name_y name_z, or name_0 name_1 ...; without blanks, all different.
 std::vector<std::string> ply_names(const PointArray& array, std::set<std::string>& taken) {
   std::string stem = array.name.empty() ? "array" : array.name;
   for (char& c : stem)
@@ -89,7 +89,7 @@ void write_ply(Chunks& out, const Surface& surface) {
   }
 }
 
-/// What a writer would otherwise read beyond the end of.
+/// Checks the indices and lengths on which the writers rely.
 void check(const fs::path& file, const Surface& surface) {
   const auto fail = [&](const std::string& why) { throw Error(fmt::format("cannot write {}", file.string()), why); };
   for (const Triangle& t : surface.triangles)

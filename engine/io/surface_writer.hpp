@@ -1,4 +1,4 @@
-// Nacre: surfaces written in the format that the file's extension names.
+// Nacre: writes surfaces in the format of the file's extension.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace nacre {
 
-/// Writes `surface` as .vtp, .ply (binary), .stl (binary), .obj or .off. Arrays are kept by .vtp and .ply only; .stl
-/// keeps 32-bit coordinates. `time` is kept by .vtp. Throws Error for other extensions and where writing fails.
+/// Writes `surface` as .vtp, .ply (binary), .stl (binary), .obj or .off. Only .vtp and .ply keep arrays; .stl has
+/// 32-bit coordinates. Only .vtp keeps `time`. Throws Error for other extensions and if writing fails.
 void write_surface(const std::filesystem::path& file, const Surface& surface,
                    std::optional<double> time = std::nullopt);
 
@@ -19,7 +19,7 @@ void write_surface(const std::filesystem::path& file, const Surface& surface,
 /// with their times. If a step fails, those already written are removed. Returns all files, `file` last. Throws Error.
 std::vector<std::filesystem::path> write_series(const std::filesystem::path& file, const SurfaceSeries& series);
 
-/// The extensions that `write_surface` takes, lower case, with dot.
+/// The extensions that `write_surface` accepts, lower case, with dot.
 std::vector<std::string> surface_writer_extensions();
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: words and numbers out of text, fast and without a locale.
+// Nacre: reads words and numbers from text, fast and independent of the locale.
 #pragma once
 
 #include <charconv>
@@ -9,7 +9,8 @@
 
 namespace nacre {
 
-/// Walks over text once. Words are separated by white space; `comment` (if any) hides the rest of its line.
+/// Reads text once, from front to back. Words are separated by white space; `comment` (if any) hides the rest of its
+/// line.
 class TextCursor {
  public:
   explicit TextCursor(std::string_view text, char comment = '\0')
@@ -23,7 +24,7 @@ class TextCursor {
 
   std::size_t remaining() const { return std::size_t(end_ - at_); }
 
-  /// Number of the current line, from 1. Walks back over the text: for messages only.
+  /// Number of the current line, from 1. Scans the text from its start: for messages only.
   std::size_t line() const {
     std::size_t lines = 1;
     for (const char* p = begin_; p < at_; ++p) lines += *p == '\n';
@@ -38,7 +39,7 @@ class TextCursor {
     return {first, std::size_t(at_ - first)};
   }
 
-  /// The next word as a number; NaN and infinities are numbers. False, without moving, if it is none.
+  /// The next word as a number; NaN and infinities are numbers. False, without moving, if it is not a number.
   bool number(double& value) {
     skip_blank();
     const char* first = at_ < end_ && *at_ == '+' ? at_ + 1 : at_;
@@ -53,7 +54,7 @@ class TextCursor {
     return foreign_nan(value);
   }
 
-  /// The next word as a whole number. False, without moving, if it is none or too large.
+  /// The next word as an integer. False, without moving, if it is not one or too large.
   bool integer(std::int64_t& value) {
     skip_blank();
     const char* first = at_ < end_ && *at_ == '+' ? at_ + 1 : at_;
@@ -63,7 +64,7 @@ class TextCursor {
     return true;
   }
 
-  /// The rest of the current line; moves behind its end.
+  /// The rest of the current line; moves past its end.
   std::string_view rest_of_line() {
     const char* first = at_;
     while (at_ < end_ && *at_ != '\n') ++at_;
@@ -92,7 +93,7 @@ class TextCursor {
     return word.find("e-") != word.npos || word.find("E-") != word.npos;
   }
 
-  /// "1.#QNAN" and "-1.#INF", as some old C libraries print what is no number.
+  /// "1.#QNAN" and "-1.#INF", as some old C libraries print NaN and infinity.
   bool foreign_nan(double& value) {
     const char* start = at_;
     while (at_ < end_ && !is_blank(*at_)) ++at_;

@@ -1,4 +1,4 @@
-// Nacre: quads by their better diagonal, convex polygons as fans, the rest by ear clipping.
+// Nacre: triangulates quads by the better diagonal, convex polygons as fans, others by ear clipping.
 #include "engine/io/triangulate.hpp"
 
 #include <algorithm>
@@ -8,10 +8,10 @@ namespace {
 
 using Corners = std::vector<std::uint32_t>;
 
-// Ear clipping takes quadratic time, and no honest polygon is this large.
+// Ear clipping takes quadratic time, and no legitimate polygon is larger than this.
 constexpr std::size_t max_clipped_corners = 2000;
 
-/// Twice the area of triangle abc, seen along `normal`; negative where it is turned the other way.
+/// Twice the area of triangle abc, seen along `normal`; negative if it has the opposite orientation.
 double turn(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& normal) {
   return dot(cross(b - a, c - a), normal);
 }
@@ -59,7 +59,7 @@ void clip_ears(Corners corners, const std::vector<Vec3d>& points, const Vec3d& n
     const std::size_t n = corners.size();
     std::size_t tried = 0;
     while (tried < n && !is_ear(corners, (at + tried) % n, points, normal)) ++tried;
-    // A polygon that crosses itself may have no ear left: take the next corner, so that this always ends.
+    // A self-intersecting polygon may have no ear left: take the next corner, so that this always ends.
     const std::size_t ear = (at + (tried < n ? tried : 0)) % n;
     out.push_back({corners[(ear + n - 1) % n], corners[ear], corners[(ear + 1) % n]});
     corners.erase(corners.begin() + ear);

@@ -1,4 +1,4 @@
-// Nacre: sizes and orientations of volumes, checked.
+// Nacre: checks sizes and orientations of volumes.
 #include "engine/io/volume_geometry.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ constexpr double pi = 3.14159265358979323846;
 double memory_of_machine() { return double(::sysconf(_SC_PHYS_PAGES)) * double(::sysconf(_SC_PAGE_SIZE)); }
 
 /// The orthogonal axes nearest to nearly orthogonal ones: Newton's iteration A <- (A + A^-T) / 2 of the polar
-/// decomposition. Keeps handedness.
+/// decomposition. It preserves handedness.
 std::array<Vec3d, 3> orthogonalised(std::array<Vec3d, 3> a) {
   for (int round = 0; round < 4; ++round) {
     const double determinant = dot(cross(a[0], a[1]), a[2]);

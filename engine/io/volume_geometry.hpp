@@ -1,4 +1,4 @@
-// Nacre: sizes and orientations that a file of a volume states, checked before anything is made of them.
+// Nacre: checks the size and orientation that the file of a volume states, before anything is allocated.
 #pragma once
 
 #include <array>
@@ -9,26 +9,26 @@
 
 namespace nacre {
 
-/// Sets the number of voxels along each axis. Throws Error if one is below 2 (no volume) or beyond 32 bits, or if
-/// `bytes_per_voxel` times all is more than this machine's memory.
+/// Sets the number of voxels along each axis. Throws Error if one is below 2 (not a volume) or beyond 32 bits, or if
+/// `bytes_per_voxel` times all is more than the memory of this machine.
 void set_dims(Volume& volume, const std::array<std::int64_t, 3>& dims, std::size_t bytes_per_voxel,
               const std::filesystem::path& path);
 
-/// Sets spacing and axes from the steps in the world from one voxel to the next along each axis. Steps that are nearly
-/// at right angles (cosine below 1e-3) are made orthogonal. Throws Error if a step is zero or no number, or if two are
-/// further from a right angle.
+/// Sets spacing and axes from the displacements in the world from one voxel to the next along each axis. Displacements
+/// nearly at right angles (cosine below 1e-3) are made orthogonal. Throws Error if one is zero or not a number, or if
+/// two are further from a right angle.
 void set_steps(Volume& volume, const std::array<Vec3d, 3>& steps, const std::filesystem::path& path);
 
-/// The largest cosine between two of the steps: 0 where all stand at right angles.
+/// The largest cosine between two of the displacements: 0 if all are at right angles.
 double shear_of(const std::array<Vec3d, 3>& steps);
 
-/// Throws Error if a file of `stored` bytes cannot hold `needed` bytes that are packed at most `ratio` to one.
+/// Throws Error if a file of `stored` bytes cannot contain `needed` bytes, packed at most `ratio` to one.
 void check_stored(std::uintmax_t stored, std::uintmax_t needed, double ratio, const std::filesystem::path& path);
 
-/// What gzip can make of zeros: 1032 bytes out of one.
+/// The best ratio of gzip, for zeros: 1032 bytes from one.
 inline constexpr std::size_t largest_gzip_ratio = 1100;
 
-/// Calls `use(zero)` with a zero of the type of `bytes` bytes and returns true; false where there is no such type.
+/// Calls `use(zero)` with a zero of the type of `bytes` bytes and returns true; false if there is no such type.
 template <class Use>
 bool with_number_type(bool real, bool is_signed, int bytes, Use use) {
   if (real) {
@@ -45,7 +45,7 @@ bool with_number_type(bool real, bool is_signed, int bytes, Use use) {
   }
 }
 
-/// Turns the bytes of every number around.
+/// Reverses the byte order of every number.
 template <class T>
 void swap_bytes(std::vector<T>& values) {
   if constexpr (sizeof(T) > 1)

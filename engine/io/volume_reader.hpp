@@ -12,24 +12,24 @@ namespace nacre {
 /// A format of volumes.
 struct VolumeFormat {
   std::string name;                     ///< "NRRD"
-  std::vector<std::string> extensions;  ///< lower case, without the dot; each also with .gz behind it where `gzip`
+  std::vector<std::string> extensions;  ///< lower case, without the dot; if `gzip`, each also followed by .gz
   bool gzip = false;
-  bool through_vtk = false;  ///< by way of the child process
+  bool through_vtk = false;  ///< read by the child process
   Volume (*read)(const std::filesystem::path& path) = nullptr;
 };
 
-/// All of them.
+/// All of these formats.
 const std::vector<VolumeFormat>& volume_formats();
 
-/// The format of volumes that takes this file, or nullptr. By extension; a legacy .vtk file only where its header says
+/// The format of volumes for this file, or nullptr. By extension; a legacy .vtk file only if its header says
 /// STRUCTURED_POINTS.
 const VolumeFormat* find_volume_format(const std::filesystem::path& path);
 
-/// Is this a file for `read_volume`? Nothing but a .vtk file is looked into.
+/// Whether `read_volume` reads this file. Only .vtk files are opened to find out.
 bool is_volume_file(const std::filesystem::path& path);
 
-/// Reads one volume. Throws Error if the file is missing, of no known format, damaged, cut short, no volume (2-D, or
-/// 4-D with more than one entry), without one value per voxel, sheared, with a spacing that is zero or no number, or
+/// Reads one volume. Throws Error if the file is missing, of unknown format, damaged, truncated, not a volume (2-D, or
+/// 4-D with more than one entry), without one value per voxel, sheared, with a spacing that is zero or not a number, or
 /// larger than memory; Interrupted if the child process was stopped by Ctrl-C.
 Volume read_volume(const std::filesystem::path& path);
 

@@ -7,7 +7,7 @@
 
 namespace nacre {
 
-/// Each reads one file. Throws Error as `read_volume` says.
+/// Each reads one file. Throws Error as `read_volume` does.
 Volume read_nrrd(const std::filesystem::path& path);  ///< .nrrd .nhdr, through teem
 Volume read_nifti(
     const std::filesystem::path& path);              ///< .nii, .hdr and .img; NIfTI-1, -2 and ANALYZE, header by nifti

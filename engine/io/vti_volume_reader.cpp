@@ -23,7 +23,7 @@ struct Choice {
   bool on_cells = false;
 };
 
-/// Arrays with one component, those that the file marks as its scalars first.
+/// Arrays with one component; those that the file marks as its scalars come first.
 std::vector<pugi::xml_node> scalar_arrays(pugi::xml_node parent) {
   std::vector<pugi::xml_node> arrays;
   const std::string_view marked = parent.attribute("Scalars").value();
@@ -64,7 +64,7 @@ void take_values(Volume& volume, const VtkXmlFile& file, pugi::xml_node array) {
 
 void take_values(Volume& volume, const VtkXmlFile& file, pugi::xml_node array) {
   const std::string_view type = array.attribute("type").value();
-  // Through float or double, whichever holds the type exactly.
+  // Through float or double, whichever represents the type exactly.
   if (type == "UInt8") return take_values<std::uint8_t, float>(volume, file, array);
   if (type == "Int8") return take_values<std::int8_t, float>(volume, file, array);
   if (type == "UInt16") return take_values<std::uint16_t, float>(volume, file, array);

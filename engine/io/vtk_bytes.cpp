@@ -1,4 +1,4 @@
-// Nacre: base64 and zlib blocks of VTK XML files.
+// Nacre: decodes base64 and zlib blocks of VTK XML files.
 #include "engine/io/vtk_bytes.hpp"
 
 #include <fmt/format.h>
@@ -27,12 +27,12 @@ constexpr std::array<std::int8_t, 256> base64_digits = [] {
   return digits;
 }();
 
-/// Reads the stored bytes one after the other. Base64 may come in several pieces, each with its own padding.
+/// Reads the stored bytes in order. Base64 may consist of several pieces, each with its own padding.
 class ByteStream {
  public:
   ByteStream(std::string_view stored, bool base64) : stored_(stored), base64_(base64) {}
 
-  /// No more bytes than this can follow.
+  /// An upper bound of the bytes that can follow.
   std::size_t at_most() const { return base64_ ? held_ + (stored_.size() - at_) / 4 * 3 : stored_.size() - at_; }
 
   bool read(char* out, std::size_t count) {
@@ -89,7 +89,7 @@ class ByteStream {
   std::size_t held_ = 0;
 };
 
-/// One array being unpacked, with what its messages need.
+/// One array being unpacked, with what its error messages need.
 class Unpacker {
  public:
   Unpacker(std::string_view stored, bool base64, const VtkEncoding& encoding, const std::filesystem::path& path,
@@ -114,7 +114,7 @@ class Unpacker {
     std::size_t packed_total = 0;
     for (std::size_t& size : packed_sizes) {
       size = read_count();
-      const std::size_t left = stream_.at_most();  // less and less: the sizes themselves are of the stream
+      const std::size_t left = stream_.at_most();  // decreases, since the sizes themselves are part of the stream
       if (packed_total > left || size > left - packed_total) fail("is cut short");
       packed_total += size;
     }

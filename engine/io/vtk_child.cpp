@@ -1,4 +1,4 @@
-// Nacre: formats that only VTK reads, by way of a child process.
+// Nacre: reads formats that only VTK knows, in a child process.
 #include "engine/io/vtk_child.hpp"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds time_limit{120};
 constexpr std::string_view complaint_prefix =
-    "nacre-vtk-import: ";  // how the child begins its one line about a failure
+    "nacre-vtk-import: ";  // begins the one line in which the child reports a failure
 
 std::atomic<const std::atomic<bool>*> watched{nullptr};
 
@@ -55,14 +55,14 @@ std::shared_ptr<const fs::path> make_folder(const fs::path& file) {
           }};
 }
 
-/// VTK quotes from damaged files: nothing of that may move a terminal's cursor.
+/// VTK quotes from damaged files; nothing of that may move a terminal's cursor.
 std::string printable(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
   return text;
 }
 
-/// The child's own complaint, without the file's name; else the first thing that anybody printed.
+/// The child's own message, without the name of the file; otherwise the first line that anything printed.
 std::string complaint_in(const std::string& errors) {
   std::istringstream lines(errors);
   std::string first;
@@ -74,7 +74,7 @@ std::string complaint_in(const std::string& errors) {
   return first.empty() ? "VTK could not read it" : printable(first.substr(0, 300));
 }
 
-/// What to look for in a file, and what to convert it to where that fails.
+/// What is looked for in a file, and to which format the user can convert it if that fails.
 struct Wanted {
   const char* word;
   const char* formats;
@@ -93,7 +93,7 @@ void check(const ChildResult& result, const Wanted& wanted, const fs::path& file
   if (result.exit_status != 0) throw Error(what, complaint_in(result.errors), "check the file with ParaView");
 }
 
-/// Adds the step of one line "time path". False where the line is something else.
+/// Adds the step of one line "time path". False if the line is something else.
 bool add_step(const std::string& line, VtkConversion& conversion) {
   double time = 0;
   const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), time);

@@ -1,4 +1,4 @@
-// Nacre: formats that only VTK reads, by way of a child process.
+// Nacre: reads formats that only VTK knows, in a child process.
 #pragma once
 
 #include <atomic>
@@ -9,28 +9,28 @@
 
 namespace nacre {
 
-/// Is `nacre-vtk-import` there: beside this program, or where the environment variable NACRE_VTK_IMPORT says?
+/// Whether `nacre-vtk-import` exists: beside this program, or where the environment variable NACRE_VTK_IMPORT says.
 bool vtk_child_available();
 
-/// Is this a format for `convert_with_vtk`? `extension` in lower case, with dot (".vtk").
+/// Whether `convert_with_vtk` reads this format. `extension` in lower case, with dot (".vtk").
 bool vtk_child_reads(const std::string& extension);
 
-/// A file as VTK understood it: its surface, triangulated, one .vtp per time step; or its image as one .vti.
+/// A file as VTK read it: its surface, triangulated, one .vtp per time step; or its image as one .vti.
 struct VtkConversion {
-  std::shared_ptr<const std::filesystem::path> folder;  ///< removed when the last copy dies
+  std::shared_ptr<const std::filesystem::path> folder;  ///< removed with the last copy
   std::vector<std::filesystem::path> files;             ///< in `folder`, at least one
-  std::vector<double> times;                            ///< one per file, as the file has them; 0 where it has none
+  std::vector<double> times;                            ///< one per file, as in the file; 0 if it has none
 };
 
 /// Converts `file` in a child process, since VTK ends the whole process on some broken files. Throws Error if VTK
-/// complains (its first line), crashes, or takes more than 120 s; Interrupted if it was stopped by Ctrl-C.
+/// reports an error (its first line), crashes, or takes more than 120 s; Interrupted if it was stopped by Ctrl-C.
 VtkConversion convert_with_vtk(const std::filesystem::path& file);
 
 /// The same for the image in an SLC or legacy .vtk file: one .vti, its values in the type of the file.
 VtkConversion convert_volume_with_vtk(const std::filesystem::path& file);
 
-/// From now on both give up (Interrupted) once `*stop` is true. Without it, only a Ctrl-C that reaches
-/// the child itself, as from a terminal, does that.
+/// From now on both stop (Interrupted) once `*stop` is true. Without this, they stop only if Ctrl-C reaches the child
+/// itself, as from a terminal.
 void watch_vtk_child(const std::atomic<bool>* stop);
 
 }  // namespace nacre

@@ -13,7 +13,7 @@
 namespace nacre {
 namespace {
 
-/// Up to N numbers of an attribute; `values` keeps what the attribute does not give.
+/// Up to N numbers of an attribute; `values` keeps those that the attribute does not give.
 template <std::size_t N>
 bool read_numbers(pugi::xml_node node, const char* name, std::array<double, N>& values) {
   TextCursor text{std::string_view(node.attribute(name).value())};

@@ -15,7 +15,7 @@ namespace nacre {
 /// Values on a regular grid; x runs fastest. Point (i, j, k) lies at origin + direction * (spacing * (i, j, k)).
 struct VtkImage {
   Int3 dimensions;  ///< points along each axis
-  Vec3d origin;     ///< of point (0, 0, 0), whatever index the file gave it
+  Vec3d origin;     ///< of point (0, 0, 0), whatever index it has in the file
   Vec3d spacing{1, 1, 1};
   std::array<double, 9> direction{1, 0, 0, 0, 1, 0, 0, 0, 1};  ///< row by row
   std::vector<RawArray> point_arrays;                          ///< one item per point

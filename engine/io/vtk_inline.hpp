@@ -1,6 +1,5 @@
-// Nacre: the numbers of VTK XML files that we write, in base64 between the tags. Appended data are found by fewer readers:
-// raw ones are no XML, and VTK before 9.3 (ParaView 5.11) finds none at all, not even its own, where expat has the fixes
-// of 2024.
+// Nacre: writes the numbers of VTK XML files in base64 between the tags. Fewer readers find appended data: raw ones are
+// not XML, and VTK before 9.3 (ParaView 5.11) finds none at all, not even its own, if expat has the fixes of 2024.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,7 +21,7 @@ namespace nacre {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they are in memory");
 
-/// Characters that XML may hold, and no markup.
+/// Text with only the characters that XML allows, and no markup.
 inline std::string xml_escaped(const std::string& text) {
   std::string out;
   for (const char c : in_utf8(text)) {
@@ -40,7 +39,7 @@ inline std::string xml_escaped(const std::string& text) {
   return out;
 }
 
-/// Bytes on their way into a file as base64 text.
+/// Writes bytes to a file as base64 text.
 class Base64Text {
  public:
   explicit Base64Text(OutputFile& file) : file_(file) {}
@@ -53,7 +52,7 @@ class Base64Text {
     }
   }
 
-  /// The rest, padded. To be called once, at the end.
+  /// Writes the rest, padded. To be called once, at the end.
   void finish() {
     if (count_ > 0) {
       const int digits = count_ + 1;
@@ -83,10 +82,11 @@ class Base64Text {
   int count_ = 0;  ///< bytes in held_
 };
 
-/// The blocks of numbers: each is announced first, which leaves a gap in the XML, and fills it when that is written.
+/// The blocks of numbers. Each is announced first, which leaves a gap in the XML; the gap is filled when the XML is
+/// written.
 class Inline {
  public:
-  /// The XML element of a block of `bytes` that `write` will put into the file.
+  /// The XML element of a block of `bytes` that `write` will write into the file.
   std::string announce(const std::string& type, const std::string& name, int components, std::uint64_t bytes,
                        std::function<void(Base64Text&)> write) {
     blocks_.push_back({bytes, std::move(write)});
@@ -95,7 +95,7 @@ class Inline {
         xml_escaped(name), components, gap, blocks_.size() - 1, gap);
   }
 
-  /// `xml` has the elements that were announced, in whatever order.
+  /// `xml` contains the elements that were announced, in any order.
   void write(OutputFile& file, const std::string& xml) const {
     std::size_t begin = 0;
     for (std::size_t left; (left = xml.find(gap, begin)) != xml.npos;) {
@@ -116,11 +116,11 @@ class Inline {
     std::uint64_t bytes;
     std::function<void(Base64Text&)> write;
   };
-  static constexpr char gap = '\1';  ///< on both sides of a block's number; no text has it (xml_escaped)
+  static constexpr char gap = '\1';  ///< marks both sides of a block's number; it does not occur in text (xml_escaped)
   std::vector<Block> blocks_;
 };
 
-/// Writes value(0), value(1), ... value(count - 1) by way of a small buffer.
+/// Writes value(0), value(1), ... value(count - 1) through a small buffer.
 template <class Index, class Value>
 void write_generated(Base64Text& file, std::uint64_t count, const Value& value) {
   std::vector<Index> buffer(std::min<std::uint64_t>(count, 1 << 16));
@@ -131,7 +131,7 @@ void write_generated(Base64Text& file, std::uint64_t count, const Value& value) 
   }
 }
 
-/// One DataArray of `count` whole numbers from `lower` to `upper`, 32-bit where that is wide enough.
+/// One DataArray of `count` integers from `lower` to `upper`, 32-bit if that is wide enough.
 template <class Value>
 std::string announce_numbers(Inline& numbers, const std::string& name, std::uint64_t count, std::int64_t lower,
                              std::int64_t upper, Value value) {
@@ -150,14 +150,14 @@ std::string announce_indices(Inline& numbers, const char* name, std::uint64_t co
   return announce_numbers(numbers, name, count, 0, std::int64_t(largest), value);
 }
 
-/// A whole number per cell, made as it is written.
+/// An integer per cell, computed when it is written.
 struct CellNumbers {
   std::string name;
-  std::int64_t lower = 0, upper = 0;  ///< what `of` may give
+  std::int64_t lower = 0, upper = 0;  ///< range of what `of` returns
   std::function<std::int64_t(std::uint64_t cell)> of;
 };
 
-/// The CellData of `cells` cells; nothing where there are no arrays.
+/// The CellData of `cells` cells; empty if there are no arrays.
 inline std::string announce_cell_data(Inline& numbers, std::uint64_t cells, std::span<const CellNumbers> arrays) {
   if (arrays.empty()) return {};
   std::string xml = "<CellData>\n";

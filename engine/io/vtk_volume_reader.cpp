@@ -1,4 +1,4 @@
-// Nacre: volumes that VTK reads, as the child process hands them over.
+// Nacre: reads the volumes that the child process converts with VTK.
 #include "compute/device/error.hpp"
 #include "engine/io/volume_readers.hpp"
 #include "engine/io/vtk_child.hpp"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int max_components = 4096;
 
-/// Calls `use(number)` with a zero of the C++ type that VTK calls `type`. False if it is no numeric type.
+/// Calls `use(number)` with a zero of the C++ type that VTK calls `type`. False if the type is not numeric.
 template <class Use>
 bool with_type(std::string_view type, Use use) {
   if (type == "Float32") return use(float{}), true;
@@ -41,7 +41,7 @@ int components_of(pugi::xml_node array) {
   return std::clamp(array.attribute("NumberOfComponents").as_int(1), 1, max_components);
 }
 
-/// A stored number as T; a real number that is no index becomes -1 where T is whole.
+/// A stored number as T; if T is an integer type, a real number that is not an index becomes -1.
 template <class T, class Stored>
 T convert(Stored value) {
   if constexpr (std::is_integral_v<T> && std::is_floating_point_v<Stored>)
@@ -68,7 +68,7 @@ std::vector<T> parse_text(const char* text) {
   return values;
 }
 
-/// Where "<AppendedData" begins, and the data behind its underscore; npos if the file has none.
+/// Position of "<AppendedData", and of the data after its underscore; npos if the file has none.
 std::size_t find_appended(const std::string& bytes, std::size_t& data, bool& base64) {
   const std::size_t tag = bytes.find("<AppendedData");
   if (tag == bytes.npos) return tag;
@@ -177,7 +177,7 @@ std::vector<RawArray> VtkXmlFile::field_arrays() const {
 std::optional<double> VtkXmlFile::time() const {
   const pugi::xml_node node = dataset().child("FieldData").find_child_by_attribute("DataArray", "Name", "TimeValue");
   if (!node || !is_numeric(node)) return {};
-  // A float 0.03 is 0.0299999993 as a double; its shortest decimal is the number that was meant.
+  // A float 0.03 is 0.0299999993 as a double; its shortest decimal is the intended number.
   if (std::strcmp(node.attribute("type").value(), "Float32") == 0) {
     const auto values = numbers<float>(node);
     if (values.empty() || !std::isfinite(values[0])) return {};

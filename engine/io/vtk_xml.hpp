@@ -13,10 +13,10 @@
 
 namespace nacre {
 
-/// One VTK XML file (.vtp .vtu .vti .pvd .pvtp .pvtu). Arrays are decoded when asked for, not before.
+/// One VTK XML file (.vtp .vtu .vti .pvd .pvtp .pvtu). Arrays are decoded only on demand.
 class VtkXmlFile {
  public:
-  /// Parses the elements. Appended data are no XML and are set aside first. Throws Error if the XML is damaged.
+  /// Parses the elements. Appended data are not XML and are removed first. Throws Error if the XML is damaged.
   VtkXmlFile(std::string bytes, std::filesystem::path path);
   VtkXmlFile(const VtkXmlFile&) = delete;
   VtkXmlFile& operator=(const VtkXmlFile&) = delete;
@@ -29,7 +29,7 @@ class VtkXmlFile {
   template <class T>
   std::vector<T> numbers(pugi::xml_node array) const;
 
-  /// The <DataArray> below `parent` that is called `name`, as numbers; empty if there is none.
+  /// The <DataArray> below `parent` with the name `name`, as numbers; empty if there is none.
   template <class T>
   std::vector<T> numbers(pugi::xml_node parent, const char* name) const;
 
@@ -50,13 +50,13 @@ class VtkXmlFile {
 
   std::filesystem::path path_;
   std::string xml_;       // the document points into it
-  std::string appended_;  // from behind the underscore on
+  std::string appended_;  // from after the underscore
   bool appended_base64_ = false;
   VtkEncoding encoding_;
   pugi::xml_document document_;
 };
 
-/// A count from an attribute such as NumberOfPoints; 0 if it is missing. Throws Error if it is no count.
+/// A count from an attribute such as NumberOfPoints; 0 if it is missing. Throws Error if it is not a count.
 std::size_t count_attribute(const VtkXmlFile& file, pugi::xml_node node, const char* name);
 
 /// One time step of a .pvd: the files that belong to it.
@@ -65,7 +65,7 @@ struct CollectionStep {
   std::vector<std::filesystem::path> parts;
 };
 
-/// The steps of a .pvd in the order of time; paths are complete. Throws Error if there is none.
+/// The steps of a .pvd in the order of time, with complete paths. Throws Error if there is none.
 std::vector<CollectionStep> read_collection(const VtkXmlFile& file);
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: .vtp and .vtu, and the .pvtp and .pvtu that name their pieces.
+// Nacre: reads .vtp and .vtu, and .pvtp and .pvtu, which name their pieces.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ void add_polygon(RawMesh& mesh, std::span<const std::int64_t> corners, std::size
   sources.push_back(cell);
 }
 
-/// Cells that another piece owns or that a filter has blanked, as vtkGhostType marks them.
+/// Cells that another piece owns or that a filter has blanked, as marked by vtkGhostType.
 std::vector<bool> find_hidden(const std::vector<RawArray>& cell_arrays, std::size_t cells) {
   constexpr int duplicate_or_hidden = 1 | 32;
   std::vector<bool> hidden(cells, false);
@@ -99,7 +99,7 @@ RawMesh read_poly_piece(const VtkXmlFile& file, pugi::xml_node piece) {
   mesh.lines = count_attribute(file, piece, "NumberOfLines");
   const Cells polygons(file, piece.child("Polys"), count_attribute(file, piece, "NumberOfPolys"));
   const Cells strips(file, piece.child("Strips"), count_attribute(file, piece, "NumberOfStrips"));
-  // Data on cells come in this order: vertices, lines, polygons, strips.
+  // Data on cells are in this order: vertices, lines, polygons, strips.
   const std::size_t first_polygon = verts + mesh.lines;
   const std::size_t first_strip = first_polygon + polygons.size();
   const std::size_t cells = first_strip + strips.size();
@@ -131,7 +131,7 @@ void add_polyhedron(const VtkXmlFile& file, std::span<const std::int64_t> faces,
   }
 }
 
-/// The part of the face stream that belongs to each polyhedron, whose end is faceoffsets[cell] (-1: no polyhedron).
+/// The part of the face stream that belongs to each polyhedron, which ends at faceoffsets[cell] (-1: not a polyhedron).
 class PolyhedronFaces {
  public:
   PolyhedronFaces(const VtkXmlFile& file, pugi::xml_node node)
@@ -150,7 +150,7 @@ class PolyhedronFaces {
   std::int64_t begin_ = 0;
 };
 
-/// Sorts the cells of a .vtu: flat ones are faces, volume cells give their faces, the rest is counted.
+/// Sorts the cells of a .vtu: flat ones are faces, volume cells contribute their faces, the rest is counted.
 class GridCells {
  public:
   GridCells(const VtkXmlFile& file, pugi::xml_node node, std::size_t count)

@@ -1,4 +1,4 @@
-// Nacre: surfaces and point clouds written as VTK PolyData (.vtp).
+// Nacre: writes surfaces and point clouds as VTK PolyData (.vtp).
 #include "engine/io/vtp_writer.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Nacre: what stands over a picture of flow.
+// Nacre: legend and time stamp of a picture of flow.
 #include "engine/picture/caption.hpp"
 
 #include "engine/picture/legend.hpp"

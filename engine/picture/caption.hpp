@@ -1,4 +1,4 @@
-// Nacre: what stands over a picture of flow: the same for pictures without OpenGL and for the viewer.
+// Nacre: legend and time stamp of a picture of flow: the same for pictures without OpenGL and for the viewer.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct FlowCaption {
   const Colormap* map = nullptr;  ///< of the legend; null: none
   double low = 0, high = 1;       ///< at its ends
   std::string title;              ///< above it
-  std::optional<double> time;     ///< the stamp; none: no stamp
+  std::optional<double> time;     ///< of the stamp; without it there is no stamp
   double frame_time = 0;          ///< of the data, from frame to frame
 };
 

@@ -1,4 +1,4 @@
-// Nacre: colour maps as curves through OKLab, walked at constant perceptual speed.
+// Nacre: colour maps as curves through OKLab, traversed at constant perceptual speed.
 #include "engine/picture/colormap.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Color mix(const Color& p, const Color& q, float t) {
   return {p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1]), p[2] + t * (q[2] - p[2])};
 }
 
-/// A Catmull-Rom spline through the anchors; beyond the ends of an open one, the end spans are continued straight.
+/// A Catmull-Rom spline through the anchors; beyond the ends of an open one, the end spans are extended straight.
 class Spline {
  public:
   Spline(const std::vector<Anchor>& anchors, bool closed) : closed_(closed) {
@@ -92,7 +92,7 @@ std::vector<Color> walk(const Spline& spline, bool closed) {
   return table;
 }
 
-/// The two arms meet in a sharp neutral centre, so each is a curve of its own; together they have 256 steps.
+/// The two arms meet in a sharp neutral centre, so each is a curve by itself; together they have 256 steps.
 std::vector<Color> walk_both_arms(const std::vector<Anchor>& low, const std::vector<Anchor>& high) {
   const std::vector<Color> left = walk(Spline(low, false), false), right = walk(Spline(high, false), false);
   const auto sample = [](const std::vector<Color>& arm, float t) {

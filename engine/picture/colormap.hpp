@@ -7,7 +7,7 @@
 
 namespace nacre {
 
-/// 256 colours in encoded sRGB, 0..1, from the lowest value to the highest. A cyclic map's last colour is one step
+/// 256 colours in encoded sRGB, 0..1, from the lowest value to the highest. The last colour of a cyclic map is one step
 /// before its first.
 struct Colormap {
   std::string name;
@@ -15,10 +15,10 @@ struct Colormap {
   std::vector<std::array<float, 3>> table;
 };
 
-/// The colour map of that name. Throws Error (with the list of names) where there is none.
+/// The colour map of that name. Throws Error (with the list of names) if there is none.
 const Colormap& colormap(const std::string& name);
 
-/// Every name, the default one first.
+/// All names, the default one first.
 std::vector<std::string> colormap_names();
 
 }  // namespace nacre

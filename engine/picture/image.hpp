@@ -13,7 +13,7 @@ struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> pixels;
-  std::array<std::uint8_t, 3> paper{255, 255, 255};  ///< what shines through transparent pixels, to choose inks by
+  std::array<std::uint8_t, 3> paper{255, 255, 255};  ///< seen through transparent pixels, to choose text colours
 
   Image() = default;
   Image(int w, int h) : width(w), height(h), pixels(std::size_t(w) * h * 4, 255) {}

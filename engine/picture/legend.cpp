@@ -29,7 +29,7 @@ Rows bar_rows(int height, float font) {
 int bar_width(float font) { return rounded(1.2f * font); }
 int bar_gap(float font) { return rounded(0.65f * font); }  // to the numbers
 
-/// Where the parts of a legend lie, in pixels.
+/// Positions of the parts of a legend, in pixels.
 struct Layout {
   float font = 0;
   int bar_x = 0, bar_y = 0, bar_width = 0, bar_height = 0;
@@ -43,7 +43,7 @@ int widest(const std::vector<std::string>& labels, float font) {
   return width;
 }
 
-/// False where the legend would be wider than a quarter of the image, or the image too small to letter.
+/// False if the legend would be wider than a quarter of the image, or the image is too small for text.
 bool lay_out(const Image& image, const Ticks& ticks, Layout& out) {
   out.font = lettering_size(image);
   if (out.font <= 0) return false;
@@ -86,7 +86,7 @@ void draw_ticks(Image& image, const Layout& at, const Ticks& ticks, double min, 
   }
 }
 
-/// The title stands above the bar, or ends at the right border where it is longer than the legend is wide.
+/// The title is above the bar, or ends at the right border if it is longer than the legend is wide.
 void draw_title(Image& image, const Layout& at, const std::string& title, int exponent, const Ink& ink) {
   const int line_height = rounded(1.45f * at.font);
   int y = at.bar_y - rounded(1.9f * at.font);

@@ -1,4 +1,4 @@
-// Nacre: lettering and strokes that can be read on any background.
+// Nacre: text and strokes that are readable on any background.
 #include "engine/picture/lettering.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr float smallest_font = 10;
 constexpr Ink dark_ink{{24, 26, 30, 255}, {255, 255, 255, 110}};
 constexpr Ink light_ink{{242, 243, 245, 255}, {0, 0, 0, 110}};
 
-/// OKLab's lightness of a pixel of the image, with the paper behind it.
+/// OKLab lightness of a pixel of the image, with the paper behind it.
 float lightness(const Image& image, const std::uint8_t* pixel) {
   const float alpha = float(pixel[3]) / 255;
   Color color;

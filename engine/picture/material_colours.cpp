@@ -7,7 +7,7 @@
 namespace nacre {
 
 Color material_colour(int material) {
-  constexpr int hues = 7;  // that the eye tells apart; then they come again, darker or lighter
+  constexpr int hues = 7;  // as many as the eye can distinguish; then they are repeated, darker or lighter
   constexpr std::array<float, 4> lightness{0.74f, 0.57f, 0.84f, 0.46f}, chroma{0.11f, 0.12f, 0.08f, 0.1f};
   const int round = std::max(0, material - 1) / hues;
   const std::size_t level = std::size_t(round) % lightness.size();

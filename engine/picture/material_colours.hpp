@@ -1,4 +1,4 @@
-// Nacre: the colours of materials, alike in pictures of `nacre mesh` and in the viewer.
+// Nacre: the colours of materials, the same in pictures of `nacre mesh` and in the viewer.
 #pragma once
 
 #include <array>
@@ -8,10 +8,10 @@
 
 namespace nacre {
 
-/// A colour of its own for each material: hues a golden angle apart, seven to a lightness. Encoded sRGB.
+/// A distinct colour for each material: hues a golden angle apart, seven per lightness. Encoded sRGB.
 Color material_colour(int material);
 
-/// Facets to the outside have their material's colour, those between two materials a lighter mixture.
+/// Facets to the outside have the colour of their material, those between two materials a lighter mixture.
 Color pair_colour(const std::array<std::uint16_t, 2>& pair);
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: sRGB, linear light and OKLab, between which colours are converted.
+// Nacre: conversions between sRGB, linear light and OKLab.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Nacre: the small triad of axes in the corner of a picture.
+// Nacre: the small coordinate axes in the corner of a picture.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-/// One axis as the camera sees it: across and down in units of the axis' length, away from the eye in `depth`.
+/// One axis as the camera sees it: horizontal and vertical in units of the axis' length; `depth` is away from the eye.
 struct Axis {
   const char* name;
   Rgba color;
@@ -36,18 +36,18 @@ void draw_arrow(Image& image, const Axis& axis, float x, float y, float size, fl
 
 void draw_name(Image& image, const Axis& axis, float x, float y, float size, float font, const Ink& ink) {
   const float seen_length = std::hypot(axis.across, axis.down);
-  // Where the axis points at the eye, its name goes to the upper left, where no neighbour's is likely.
+  // If the axis points at the eye, its name goes to the upper left, where another name is unlikely.
   const float ux = seen_length > 0.15f ? axis.across / seen_length : -0.7f;
   const float uy = seen_length > 0.15f ? axis.down / seen_length : -0.7f;
   const float center_x = x + size * axis.across + 0.72f * font * ux;
   const float center_y = y + size * axis.down + 0.72f * font * uy;
-  // Small letters are three quarters as high as capitals.
+  // Lower-case letters are three quarters as high as capitals.
   const int cap = text_cap_height(font);
   draw_lettering(image, int(std::lround(center_x)) - text_width(axis.name, font) / 2,
                  int(std::lround(center_y - 0.62f * float(cap))), axis.name, font, ink);
 }
 
-constexpr float axis_length = 2.6f, reach_of_triad = axis_length + 2.1f;  // in font sizes; its middle to the border
+constexpr float axis_length = 2.6f, reach_of_triad = axis_length + 2.1f;  // in font sizes; its centre to the border
 
 void draw_triad(Image& image, float font, const Vec3f& right, const Vec3f& up, const Vec3f& forward) {
   const float size = axis_length * font, reach = reach_of_triad * font;

@@ -17,7 +17,7 @@
 namespace nacre {
 namespace {
 
-/// stb_easy_font's capitals are the upper 7 units of a line; a font's are 0.73 em high.
+/// Capitals of stb_easy_font are the upper 7 units of a line; those of a font are 0.73 em high.
 constexpr float unit_per_em = 0.73f / 7;
 
 const char* spelled(char32_t point) {
@@ -89,7 +89,7 @@ int plain_text_width(std::string_view text, float pixels) {
 void draw_plain_text(Image& image, int x, int y, std::string_view text, float pixels, Rgba color) {
   std::string ascii = to_ascii(text);
   const float unit = pixels * unit_per_em;
-  // No letter has more than 16 segments of four vertices.
+  // No character has more than 16 segments of four vertices.
   std::vector<Vertex> corners(ascii.size() * 16 * 4 + 4);
   const int quads =
       stb_easy_font_print(0, 0, ascii.data(), nullptr, corners.data(), int(corners.size() * sizeof(Vertex)));

@@ -8,7 +8,7 @@
 
 namespace nacre {
 
-/// The same promises as `text_width` and `draw_text`, but signs beyond ASCII are spelled with what ASCII has (10^-3).
+/// As `text_width` and `draw_text`, but characters beyond ASCII are spelled in ASCII (10^-3).
 int plain_text_width(std::string_view text, float pixels);
 void draw_plain_text(Image& image, int x, int y, std::string_view text, float pixels, Rgba color);
 

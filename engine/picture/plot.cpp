@@ -16,10 +16,10 @@ namespace nacre {
 namespace {
 
 constexpr double width = 760, height = 460;
-constexpr double letter = 6.6;                                    // width of one, of 11 points
-constexpr double left = 84, right = 540, top = 48, bottom = 392;  // of the plotting area; the legend stands beside it
+constexpr double letter = 6.6;                                    // width of a character of 11 points
+constexpr double left = 84, right = 540, top = 48, bottom = 392;  // of the plotting area; the legend is beside it
 
-/// Told apart also by those who see few colours (Okabe and Ito), darkest first.
+/// Colours that colour-blind readers can also distinguish (Okabe and Ito), darkest first.
 constexpr std::array<const char*, 8> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#000000", "#999999"};
 
@@ -39,7 +39,7 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// Text of a document in the making.
+/// The text of a document under construction.
 class Svg {
  public:
   template <class... Values>
@@ -105,7 +105,7 @@ Axis make_axis(double low, double high, bool log, const std::vector<double>& mar
   return axis;
 }
 
-/// Throws Error where a line is no line, or none has a point.
+/// Throws Error if a line is invalid, or if no line has a point.
 std::array<Axis, 2> axes_of(const LinePlot& plot) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   double low[2]{inf, inf}, high[2]{-inf, -inf};
@@ -224,7 +224,7 @@ std::string svg_stacked_bars(const StackedBars& plot) {
               left + pitch * (double(i) + 0.15), high, 0.7 * pitch, up(y, from[i]) - high, colour_of(-1, p));
       from[i] += share;
     }
-    const double row = legend_row(plot.parts.size() - 1 - p);  // as they lie in the bars
+    const double row = legend_row(plot.parts.size() - 1 - p);  // in the order of the bars
     svg.add(R"(<rect x="{}" y="{}" width="14" height="14" fill="{}"/>)", right + 16, row - 7, colour_of(-1, p));
     svg.text(right + 38, row + 4.5, "start", plot.parts[p].name);
   }

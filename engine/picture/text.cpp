@@ -1,4 +1,4 @@
-// Nacre: antialiased text, from the TrueType font that the program carries with it.
+// Nacre: antialiased text, from the TrueType font that is embedded in the program.
 #include "engine/picture/text.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ constexpr float cap_height_of_em = 0.729f;
 
 #ifdef NACRE_HAS_FONT
 
-/// The embedded font, or nullptr if its bytes are no font.
+/// The embedded font, or nullptr if its bytes are not a font.
 const stbtt_fontinfo* font() {
   static const struct Font {
     stbtt_fontinfo info{};
@@ -39,7 +39,7 @@ const stbtt_fontinfo* font() {
   return loaded.usable ? &loaded.info : nullptr;
 }
 
-/// Calls place(glyph, x) for each glyph, x in pixels from the left edge, and returns the line's width in pixels.
+/// Calls place(glyph, x) for each glyph, x in pixels from the left edge, and returns the width of the line in pixels.
 template <class Place>
 float lay_out(const stbtt_fontinfo& face, std::string_view text, float scale, Place&& place) {
   float x = 0;
@@ -103,7 +103,7 @@ void draw_text(Image& image, int x, int y, std::string_view text, float pixels, 
 }
 
 std::string text_to_fit(std::string_view text, float pixels, int width) {
-  // Nothing longer than this fits on any line; it also bounds the work on a mad array name.
+  // Nothing longer fits on any line; the limit also bounds the work on an absurdly long array name.
   constexpr std::size_t longest = 400;
   const std::string ellipsis = "\u2026";
   if (text.size() <= longest && text_width(text, pixels) <= width) return std::string(text);

@@ -1,4 +1,4 @@
-// Nacre: round numbers along an axis, and how numbers are written in a picture.
+// Nacre: round numbers along an axis, and the format of numbers in a picture.
 #include "engine/picture/ticks.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-/// Ranges narrower than this, relative to the values, are noise of single precision.
+/// Narrower ranges, relative to the values, are noise of single precision.
 constexpr double narrowest = 1e-6;
 
 std::string with_true_minus(const std::string& number) {
@@ -21,7 +21,7 @@ std::string with_true_minus(const std::string& number) {
 
 int decade(double value) { return int(std::floor(std::log10(value) + 1e-9)); }
 
-/// Labels up to 99999 and down to 0.001 are written out; beyond, thousands are taken out.
+/// Labels up to 99999 and down to 0.001 are written out; beyond that, thousands are factored out.
 int exponent_for(double magnitude) {
   if (!(magnitude > 0)) return 0;
   const int e = decade(magnitude);

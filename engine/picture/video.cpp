@@ -1,4 +1,4 @@
-// Nacre: where the frames of an animation go: a folder of pictures, or a video.
+// Nacre: the destination of the frames of an animation: a folder of pictures, or a video.
 #include "engine/picture/video.hpp"
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ class FrameFolder : public FrameSink {
 
   ~FrameFolder() override {
     std::error_code ignored;
-    if (made_ && count_ == 0) fs::remove(folder_, ignored);  // where it is empty
+    if (made_ && count_ == 0) fs::remove(folder_, ignored);  // if it is empty
   }
 
   void write(const Image& frame) override {
@@ -63,7 +63,7 @@ class FrameFolder : public FrameSink {
 
  private:
   void remove_earlier_frames() const {
-    std::error_code ignored;  // what stays is overwritten, or the frame to come says what is wrong with the folder
+    std::error_code ignored;  // old frames are overwritten, or the next frame reports what is wrong with the folder
     std::vector<fs::path> earlier;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
       if (is_frame_name(entry.path().filename().string()) && entry.is_regular_file(ignored))
@@ -81,16 +81,16 @@ class FrameFolder : public FrameSink {
   int count_ = 0;
 };
 
-/// ffmpeg's words for one kind of file: the container, the encoder, the filter that ends in the encoder's pixels.
+/// ffmpeg's options for one kind of file: the container, the encoder, the filter that gives the encoder's pixels.
 struct Format {
   std::string container, filter;
   Words encoder;
 };
 
-/// The texture is noise to an encoder: its usual quality would smear it, so ask for a finer one.
+/// The texture is noise to an encoder. Its usual quality would smear it, so a higher one is requested.
 Format format_of(const fs::path& file) {
   const std::string extension = lower_extension(file);
-  // HDTV's matrix, stated in the stream: players guess differently where it is not.
+  // The matrix of HDTV, stated in the stream: without it, players guess differently.
   const std::string yuv = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
   const Words tags = {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"};
   Words h264 = {"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
@@ -131,7 +131,7 @@ class Video : public FrameSink {
 
   void finish() override {
     if (!child_) throw Error("cannot write the video " + name_, "it has no frames");
-    // ffmpeg ends with status 0 after some failed writes, so a complaint counts as well.
+    // ffmpeg ends with status 0 after some failed writes, so a message on stderr counts as a failure, too.
     if (!child_->wait() || !child_->first_complaint().empty()) fail();
     output_.commit();
   }
@@ -146,7 +146,7 @@ class Video : public FrameSink {
                    size,       "-framerate",   std::to_string(fps_), "-i",    "pipe:0",
                    "-vf",      format_.filter};
     words.insert(words.end(), format_.encoder.begin(), format_.encoder.end());
-    // "file:" keeps a colon in the name from being taken for a protocol.
+    // "file:" prevents a colon in the name from being read as a protocol.
     words.insert(words.end(), {"-f", format_.container, "file:" + fs::absolute(output_.temporary()).string()});
     child_.emplace(program_, words, stop_);
     packed_.resize(std::size_t(even(width)) * std::size_t(even(height)) * 3);
@@ -154,7 +154,7 @@ class Video : public FrameSink {
 
   static int even(int n) { return n + n % 2; }
 
-  /// Three bytes a pixel; the last column and row stand twice where the size is odd, which 4:2:0 cannot hold.
+  /// Three bytes a pixel; the last column and row are doubled if the size is odd, which 4:2:0 cannot represent.
   void pack(const Image& frame) {
     std::uint8_t* out = packed_.data();
     for (int y = 0; y < even(height_); ++y)
@@ -179,7 +179,7 @@ class Video : public FrameSink {
   OutputFile output_;
   int width_ = 0, height_ = 0;
   std::vector<std::uint8_t> packed_;
-  std::optional<ChildProcess> child_;  ///< after output_: killed before the file it writes to is removed
+  std::optional<ChildProcess> child_;  ///< declared after output_: killed before the file it writes to is removed
 };
 
 }  // namespace
@@ -191,7 +191,7 @@ void FrameSink::add(const Image& frame) {
 }
 
 void check_video_size(int width, int height) {
-  // What libavutil calls a picture size that is invalid: bytes of a padded picture, counted in 31 bits.
+  // The sizes that libavutil rejects: bytes of a padded picture, counted in 31 bits.
   constexpr std::int64_t most = std::numeric_limits<int>::max(), padding = 128, bytes = 8;
   if (bytes * (width + width % 2 + padding) * (height + height % 2 + padding) >= most)
     throw Error(fmt::format("frames of {} x {} pixels are too large for a video", width, height),

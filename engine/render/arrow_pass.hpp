@@ -11,10 +11,10 @@
 namespace nacre {
 
 struct Arrow {
-  Vec3f place;      ///< of its tail, in the model's coordinates
-  Vec3f vector;     ///< from tail to tip, in the world's
+  Vec3f place;      ///< of its tail, in model coordinates
+  Vec3f vector;     ///< from tail to tip, in world coordinates
   Vec3f normal;     ///< of the surface, unit
-  float shade = 0;  ///< 0..1, of the colour map
+  float shade = 0;  ///< 0..1, position in the colour map
 };
 
 struct ArrowStyle {
@@ -24,7 +24,7 @@ struct ArrowStyle {
   bool mapped = false;                          ///< coloured by `shade` instead
 };
 
-/// Solid arrows, that lie on the surface, into what is bound.
+/// Draws solid arrows that lie on the surface, into what is bound.
 class ArrowPass {
  public:
   ArrowPass();
@@ -34,7 +34,7 @@ class ArrowPass {
 
   /// 256 colours, encoded.
   void set_map(std::span<const std::array<float, 3>> colours);
-  /// What is drawn from now on.
+  /// The arrows to draw from now on.
   void set_arrows(std::span<const Arrow> arrows);
   void draw(const View& view, const Placement& placement, const ArrowStyle& style) const;
 

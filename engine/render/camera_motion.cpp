@@ -33,7 +33,7 @@ Camera turn_table(const Camera& camera, double dx, double dy) {
   Vec3d arm = camera.eye - camera.target;
   const double above = std::asin(std::clamp(dot(normalized(arm), up), -1.0, 1.0));
   const double limit = pi / 2 - pi / 180;
-  // Moving down lifts the eye; where it stands beyond the limit already (a view from the top), it may only come back.
+  // Moving down lifts the eye. If it is beyond the limit already (a view from the top), it may only come back.
   const double lifted = std::clamp(above - dy * pi / 2, std::min(-limit, above), std::max(limit, above));
   arm = turned(arm, right, -(lifted - above));
   Camera moved = camera;

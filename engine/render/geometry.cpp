@@ -13,7 +13,7 @@
 namespace nacre {
 namespace {
 
-/// Gives each corner its vertex; a new one where no vertex of its point has its normal.
+/// Assigns a vertex to each corner; makes a new one if no vertex of its point has its normal.
 class VertexMaker {
  public:
   VertexMaker(SurfaceGeometry& geometry, std::span<const Vec3d> points)
@@ -44,7 +44,7 @@ void find_box(SurfaceGeometry& g, std::span<const Vec3d> points, std::span<const
   g.size = std::max({extent.x, extent.y, extent.z, std::numeric_limits<double>::min()});
 }
 
-/// Edges by points, sorted: a key and the triangle corner that it begins at.
+/// Edges by points, sorted: a key, and the triangle corner at which the edge begins.
 void find_edges(SurfaceGeometry& g, std::span<const Vec3d> points, std::span<const Triangle> triangles) {
   struct Edge {
     std::uint64_t key;

@@ -12,14 +12,14 @@
 
 namespace nacre {
 
-/// One vertex: corners that share a point and a normal share it.
+/// One vertex, shared by corners that have the same point and normal.
 struct SurfaceVertex {
   Vec3f position;  ///< model coordinates, 0..1 along the longest side of the bounding box
   Vec3f normal;
   std::uint32_t point;  ///< of the mesh
 };
 
-/// Triangles made ready on the host, on any thread.
+/// Triangles prepared on the host, on any thread.
 struct SurfaceGeometry {
   std::vector<SurfaceVertex> vertices;
   std::vector<Triangle> triangles;                  ///< of vertices
@@ -43,7 +43,7 @@ class SurfaceBuffers {
   SurfaceBuffers(SurfaceBuffers&& other) noexcept { *this = static_cast<SurfaceBuffers&&>(other); }
   SurfaceBuffers& operator=(SurfaceBuffers&& other) noexcept;
 
-  /// Other edges of the same vertices from now on: those of a part of the triangles.
+  /// From now on draws other edges of the same vertices: those of a part of the triangles.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges);
 
   void draw_triangles() const;

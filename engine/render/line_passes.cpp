@@ -1,4 +1,4 @@
-// Nacre: lines over a scene.
+// Nacre: draws lines over a scene.
 #include "engine/render/line_passes.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace nacre {
 namespace {
 
-/// Lines of one colour, blended over what is there, into what is bound.
+/// Lines of one colour, blended over the picture, into what is bound.
 template <class Draw>
 void draw_lines(const Program& program, std::array<float, 4> colour, const Draw& draw) {
   program.set("colour", colour);

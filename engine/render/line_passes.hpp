@@ -1,4 +1,4 @@
-// Nacre: lines over a scene: edges of triangles, boxes of trees.
+// Nacre: draws lines over a scene: edges of triangles, boxes of trees.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace nacre {
 
-/// Draws each edge of a surface once, slightly before its triangles.
+/// Draws each edge of a surface once, slightly in front of its triangles.
 class EdgePass {
  public:
   EdgePass() : program_("edges.vert", "lines.frag") {}
 
-  /// `colour`: encoded, with opacity. Lines fade where triangles are as small as some pixels.
+  /// `colour`: encoded, with opacity. Lines fade where triangles are only some pixels large.
   void draw(const View& view, const SurfaceBuffers& surface, const Placement& placement,
             const std::array<float, 4>& colour) const;
 
@@ -22,12 +22,12 @@ class EdgePass {
   Program program_;
 };
 
-/// Where the corners of a box are in the records of a buffer; floats.
+/// Byte offsets of the corners of a box in the records of a buffer; corners are floats.
 struct BoxLayout {
   std::size_t stride, low, high;  ///< bytes
 };
 
-/// Draws boxes straight from the buffers that the build of a tree has written.
+/// Draws boxes directly from the buffers that the build of a tree has written.
 class BoxPass {
  public:
   BoxPass();

@@ -1,4 +1,4 @@
-// Nacre: an octree of a flow on the graphics device: from a place of the surface to its shown value.
+// Nacre: an octree of a flow on the graphics device: gives the shown value at a position of the surface.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace nacre {
 
-/// The arrays of FlowLookup that describe an octree: those of bricks, or `child` alone of the source's.
+/// The arrays of FlowLookup that describe an octree: those of bricks, or `child` alone for the octree of the thesis.
 struct OctreeLookup {
   int levels = 0;
   Vec3d origin{};        ///< world
@@ -19,15 +19,15 @@ struct OctreeLookup {
   std::span<const std::uint32_t> child = {};
 };
 
-/// Immutable: made once per embedding. The calls are those of SparseTexture.
+/// Immutable: made once per embedding. The functions are those of SparseTexture.
 class OctreeTexture {
  public:
   OctreeTexture() = default;
-  /// Throws Error where the memory is not there. `page`: as for PagedArray.
+  /// Throws Error if memory is insufficient. `page`: as for PagedArray.
   explicit OctreeTexture(const OctreeLookup& lookup, std::size_t page = 0);
 
   explicit operator bool() const { return node_.pages() > 0; }
-  /// GLSL that shaders/octree_texture.glsl builds on.
+  /// The GLSL that shaders/octree_texture.glsl is based on.
   std::string prelude() const;
   int bind(const Program& program, const BufferTexture& shown, int unit) const;
 
@@ -37,7 +37,7 @@ class OctreeTexture {
  private:
   PagedArray node_, layer_;
   std::vector<std::uint32_t> level_start_;
-  std::size_t source_nodes_ = 0;  ///< of the source's octree; 0: it is one of bricks
+  std::size_t source_nodes_ = 0;  ///< of the octree of the thesis; 0: it is one of bricks
   int levels_ = 0;
   Vec3d origin_{};
   double cell_size_ = 1;

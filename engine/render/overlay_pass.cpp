@@ -1,4 +1,4 @@
-// Nacre: puts images over a frame.
+// Nacre: draws images over a frame.
 #include "engine/render/overlay_pass.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace nacre {
 namespace {
 
-using Tile = std::array<float, 2>;  // left upper corner, pixels
+using Tile = std::array<float, 2>;  // upper left corner, pixels
 constexpr int edge = 32;
 
 bool is_clear(const Image& image, int left, int top) {

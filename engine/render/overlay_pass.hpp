@@ -1,4 +1,4 @@
-// Nacre: puts images over a frame: legends, stamps, the triad of axes.
+// Nacre: draws images over a frame: legend, time stamp, axes.
 #pragma once
 
 #include "engine/gl/buffer.hpp"
@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// Draws into what is bound, pixel by pixel and over everything. Only tiles with something on them are drawn: most of
-/// an overlay is clear, and blending all of a frame costs a software renderer more than the scene.
+/// Draws into what is bound, pixel by pixel and over everything. Only tiles that contain something are drawn: most of
+/// an overlay is transparent, and blending all of a frame costs a software renderer more than the scene.
 class OverlayPass {
  public:
   OverlayPass();
@@ -17,9 +17,9 @@ class OverlayPass {
   OverlayPass(const OverlayPass&) = delete;
   OverlayPass& operator=(const OverlayPass&) = delete;
 
-  /// What is drawn from now on; an image without pixels: nothing. It goes up to the graphics device.
+  /// Uploads the image to draw from now on; an image without pixels draws nothing.
   void set_image(const Image& image);
-  /// Puts its right lower corner into that of the picture.
+  /// Puts the image's lower right corner at that of the picture.
   void draw(const View& view) const;
 
  private:

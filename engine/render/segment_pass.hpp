@@ -9,7 +9,7 @@
 
 namespace nacre {
 
-/// Two ends, in the model's coordinates.
+/// Two end points, in model coordinates.
 struct Segment {
   Vec3f from, to;
 };
@@ -17,7 +17,7 @@ struct Segment {
 struct LineStyle {
   std::array<float, 4> colour{0, 0, 0, 1};  ///< encoded, with opacity
   float width = 2;                          ///< pixels
-  bool through = false;                     ///< also where something lies before them
+  bool through = false;                     ///< also drawn where something is in front of them
 };
 
 /// Segments on the graphics device, drawn into what is bound.

@@ -21,7 +21,7 @@ void SlicePass::set_image(const Image& image, bool smooth) {
 }
 
 void SlicePass::set_place(const Vec3d& corner, const Vec3d& across, const Vec3d& up) {
-  const Vec3d third = cross(across, up);  // no depth of its own, but a map that can be inverted
+  const Vec3d third = cross(across, up);  // it has no depth of its own, but the map must be invertible
   const double scale = length(across) / length(third);
   const auto column = [](const Vec3d& v, double w) { return glm::dvec4(v.x, v.y, v.z, w); };
   placement_ = Placement(column(across, 0), column(up, 0), column(third * scale, 0), column(corner, 1));

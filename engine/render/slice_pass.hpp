@@ -15,9 +15,10 @@ class SlicePass {
   SlicePass(const SlicePass&) = delete;
   SlicePass& operator=(const SlicePass&) = delete;
 
-  /// What is shown from now on; row 0 is at the corner. `smooth`: linear between pixels. An empty one: nothing.
+  /// The image to show from now on; row 0 is at the corner. `smooth`: linear between pixels. An empty image shows
+  /// nothing.
   void set_image(const Image& image, bool smooth);
-  /// Where: from `corner`, the image's x runs along `across`, its y along `up` (world, to the far side).
+  /// Its position: from `corner`, the image's x runs along `across` and its y along `up` (world, to the far side).
   void set_place(const Vec3d& corner, const Vec3d& across, const Vec3d& up);
   void draw(const View& view) const;
 

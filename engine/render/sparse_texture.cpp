@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t most_pages = 8;  // of one array: three arrays and the values fit into 32 texture units
 
-/// Reads the lookup's arrays as RefinedGridView does.
+/// Reads the arrays of the look-up as RefinedGridView does.
 class LookupReader {
  public:
   explicit LookupReader(const SparseLookup& lookup) : l_(lookup) {}

@@ -1,4 +1,5 @@
-// Nacre: the look-up arrays of the flow's grid on the graphics device: from a place of the surface to its shown value.
+// Nacre: the look-up arrays of the flow's grid on the graphics device: give the shown value at a position of the
+// surface.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 
 namespace nacre {
 
-/// An array of numbers that a shader reads. One that is larger than the driver allows lies on several pages.
+/// An array of numbers that a shader reads. If it is larger than the driver allows, it is divided into several pages.
 class PagedArray {
  public:
   PagedArray() = default;
@@ -22,9 +23,9 @@ class PagedArray {
   explicit PagedArray(std::span<const std::uint32_t> values, std::size_t most = 0);
 
   std::size_t pages() const { return pages_.size(); }
-  /// GLSL: samplers NAME_0.. and `uint fetch_NAME(uint)`.
+  /// GLSL code: samplers NAME_0.. and `uint fetch_NAME(uint)`.
   std::string source(std::string_view name) const;
-  /// Binds the pages from texture unit `unit` on and tells `program`; returns the next free unit.
+  /// Binds the pages from texture unit `unit` on and informs `program`; returns the next free unit.
   int bind(const Program& program, std::string_view name, int unit) const;
 
  private:
@@ -33,10 +34,10 @@ class PagedArray {
     BufferTexture texture;
   };
   std::vector<Page> pages_;
-  int shift_ = 31;  ///< log2 of a page's elements
+  int shift_ = 31;  ///< log2 of the elements of a page
 };
 
-/// What the look-up needs: the arrays of RefinedGridView and where its grid lies.
+/// What the look-up needs: the arrays of RefinedGridView, and the position of its grid.
 struct SparseLookup {
   Int3 bricks{};
   int subcells = 4, refine = 4;
@@ -45,23 +46,22 @@ struct SparseLookup {
   std::span<const std::uint32_t> brick_index, block, texel;
 };
 
-/// Blocks of (R + 1)^3 texels, in the order of the lookup's: R^3 of their own and, at their upper sides, the first ones
-/// of the blocks there, so that all eight texels around a place are in one block. Each is a surface cell or `none`.
-/// Host only, on any thread.
+/// Blocks of (R + 1)^3 texels, in the order of the look-up's blocks: R^3 of their own and, at their upper sides, the
+/// first ones of the blocks there, so that all eight texels around a position are in one block. Each is a surface cell
+/// or `none`. Host only, on any thread.
 std::vector<std::uint32_t> with_rims(const SparseLookup& lookup);
 
 /// The arrays on the graphics device. Immutable: made once per embedding.
 class SparseTexture {
  public:
   SparseTexture() = default;
-  /// `rimmed`: what `with_rims` makes of `lookup`. Throws Error where the memory is not there. `page`: as for
-  /// PagedArray.
+  /// `rimmed`: what `with_rims` makes of `lookup`. Throws Error if memory is insufficient. `page`: as for PagedArray.
   SparseTexture(const SparseLookup& lookup, std::span<const std::uint32_t> rimmed, std::size_t page = 0);
 
   explicit operator bool() const { return refine_ > 0; }
-  /// GLSL that shaders/sparse_texture.glsl builds on.
+  /// The GLSL that shaders/sparse_texture.glsl is based on.
   std::string prelude() const;
-  /// Binds all, and the values of `shown`, from `unit` on; returns the next free unit.
+  /// Binds all arrays, and the values of `shown`, from `unit` on; returns the next free unit.
   int bind(const Program& program, const BufferTexture& shown, int unit) const;
 
   const Vec3d& origin() const { return origin_; }

@@ -1,4 +1,4 @@
-// Nacre: draws a surface with the texture of flow and a colour map.
+// Nacre: draws a surface with the texture of the flow and a colour map.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace nacre {
 
-/// A value per point of the mesh to colour by, and what colours it gets.
+/// A value per point of the mesh to colour by, and the colours for these values.
 class SurfaceColours {
  public:
   /// 256 colours, encoded.
   void set_map(std::span<const std::array<float, 3>> colours);
-  /// One number per point. They are input, not results: this is the one array that goes up with time.
+  /// One number per point. They are input, not results: this is the only array that is uploaded as time advances.
   void set_scalar(std::span<const float> scalar, double low, double high);
-  void set_range(double low, double high);  ///< of the map
+  void set_range(double low, double high);  ///< of the colour map
   void clear_scalar() { coloured_ = false; }
 
   int bind(const Program& program, int unit) const;
@@ -41,7 +41,7 @@ class SurfacePass {
  public:
   SurfacePass() : plain_("surface.vert", "surface.frag") {}
 
-  /// Looks values up in `texture` from now on; an empty one: plain.
+  /// From now on looks values up in `texture`; an empty one leaves the surface plain.
   void set_texture(SurfaceTexture texture);
   bool textured() const {
     return std::visit([](const auto& texture) { return bool(texture); }, texture_);

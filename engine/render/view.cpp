@@ -1,4 +1,4 @@
-// Nacre: where a frame is seen from. Matrices are put together in double precision, relative to the eye.
+// Nacre: the view of a frame. Matrices are computed in double precision, relative to the eye.
 #include "engine/render/view.hpp"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ glm::dmat4 View::clip_from_seen() const {
   const Vec3d forward = camera.forward(), right = camera.right(), up = cross(right, forward);
   const double distance = length(camera.target - camera.eye), half = 0.5 * camera.height;
   const double half_width = half * width / std::max(height, 1);
-  // Rows: across and up in half pictures at the target; then depth and w by kind of camera.
+  // Rows: horizontal and vertical in half pictures at the target; then depth and w by kind of camera.
   const glm::dvec3 x = to_glm(right) / half_width, y = to_glm(up) / half, z = to_glm(forward);
   glm::dmat4 m(0.0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -70,7 +70,7 @@ glm::dmat4 View::clip_from_seen() const {
     m[3][2] = 0.5;
     m[3][3] = 1;
   } else {
-    m[3][2] = 1e-4 * distance;  // nearer than this is not drawn
+    m[3][2] = 1e-4 * distance;  // whatever is nearer than this is not drawn
   }
   return m;
 }
@@ -84,7 +84,7 @@ void set_view(const Program& program, const View& view, const Placement& world_f
   program.set("seen_from_model", floats(seen));
   program.set("clip_from_model", floats(view.clip_from_seen() * seen));
   program.set("clip_from_seen", floats(view.clip_from_seen()));
-  // Right up to a factor, also for maps that shear; a mirror image has its normals turned back by their own maker.
+  // Correct up to a factor, also for maps that shear. For a mirror image, the maker of the normals turns them back.
   program.set("normal_from_model", floats(glm::dmat3(glm::inverseTranspose(glm::dmat3(world_from_model)))));
   const Vec3d forward = view.camera.forward();
   program.set("ray_direction", std::array<float, 4>{float(forward.x), float(forward.y), float(forward.z),
@@ -92,7 +92,7 @@ void set_view(const Program& program, const View& view, const Placement& world_f
   program.set("light", floats(view.light));
   program.set("ambient", view.ambient);
   program.set("picture_size", std::array<float, 2>{float(view.width), float(view.height)});
-  std::array<float, 4> plane{0, 0, 0, 1};  // nothing is cut
+  std::array<float, 4> plane{0, 0, 0, 1};  // cuts nothing
   if (view.clip) {
     const Vec3d n = normalized(view.clip->normal);
     const double offset = view.clip->offset / std::max(length(view.clip->normal), 1e-300);

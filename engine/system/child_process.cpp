@@ -1,4 +1,4 @@
-// Nacre: other programs: one run to its end, or one that reads what we send it.
+// Nacre: child processes: one that runs to its end, or one that reads what we send.
 #include "engine/system/child_process.hpp"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int longest_pause = 50;  // ms until a wish to stop is seen
+constexpr int longest_pause = 50;  // ms until a request to stop is noticed
 
 [[noreturn]] void fail(const fs::path& program, int error_number) {
   throw Error("cannot start " + program.string(), std::generic_category().message(error_number));
@@ -43,7 +43,7 @@ void close_and_forget(int& file) {
 }
 
 enum class Group {
-  ours,  ///< a Ctrl-C on the terminal reaches the child too
+  ours,  ///< Ctrl-C on the terminal also reaches the child
   own,
 };
 
@@ -62,7 +62,7 @@ int spawn(const fs::path& program, const std::vector<std::string>& arguments, co
   sigset_t all, none;
   sigfillset(&all);
   sigemptyset(&none);
-  posix_spawnattr_setsigdefault(&attributes, &all);  // what this program ignores must still stop the child
+  posix_spawnattr_setsigdefault(&attributes, &all);  // even if this program ignores a signal, it must stop the child
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setpgroup(&attributes, 0);
   const int flags = POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK | (group == Group::own ? POSIX_SPAWN_SETPGROUP : 0);
@@ -78,7 +78,7 @@ int spawn(const fs::path& program, const std::vector<std::string>& arguments, co
   return failed;
 }
 
-/// The status word of waitpid; -1 where there was nothing to wait for.
+/// The status word of waitpid; -1 if there was nothing to wait for.
 int reap(pid_t process) {
   int status = 0;
   pid_t ended = -1;
@@ -87,13 +87,13 @@ int reap(pid_t process) {
   return ended == process ? status : -1;
 }
 
-/// It waits to be reaped; or there is nothing to wait for.
+/// Whether the child has ended and can be reaped, or there is nothing to wait for.
 bool has_ended(pid_t process) {
   siginfo_t info{};
   return ::waitid(P_PID, id_t(process), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ? errno != EINTR : info.si_pid != 0;
 }
 
-/// Both ends of a pipe, closed when it dies.
+/// Both ends of a pipe, closed on destruction.
 struct Pipe {
   int read_end = -1, write_end = -1;
 
@@ -111,7 +111,7 @@ struct Pipe {
   Pipe& operator=(const Pipe&) = delete;
 };
 
-/// A started process, killed and collected at the latest when this dies.
+/// A started process, killed and reaped on destruction at the latest.
 struct Guard {
   pid_t process = -1;
 
@@ -131,14 +131,15 @@ struct Guard {
   }
 };
 
-/// Children that read what we send. None is here that may have been reaped: its number could be another's by now.
+/// Children that read what we send. A child that may have been reaped is never in the list, since its number could be
+/// another's by now.
 struct Running {
   std::mutex mutex;
   std::set<pid_t> processes;
 };
 
 Running& running() {
-  static Running* instance = new Running;  // never destroyed: children may die while statics do
+  static Running* instance = new Running;  // never destroyed: children may end during the destruction of static objects
   return *instance;
 }
 
@@ -148,7 +149,7 @@ struct Sink {
   std::size_t limit;
 };
 
-/// Reads what is there; closes the end at the end of file.
+/// Reads what is available; closes the end at the end of file.
 void drain(const Sink& sink) {
   std::array<char, 65536> buffer;
   const ssize_t n = ::read(*sink.end, buffer.data(), buffer.size());
@@ -157,7 +158,7 @@ void drain(const Sink& sink) {
   sink.text->append(buffer.data(), std::min(std::size_t(n), sink.limit - std::min(sink.limit, sink.text->size())));
 }
 
-/// Reads both pipes until the child closed them (true), or `give_up` says so (false).
+/// Reads both pipes until the child has closed them (true), or until `give_up` returns true (false).
 template <class GiveUp>
 bool drain_until(const std::array<Sink, 2>& sinks, const GiveUp& give_up) {
   while (*sinks[0].end >= 0 || *sinks[1].end >= 0) {
@@ -210,7 +211,7 @@ ChildResult run_child(const fs::path& program, const std::vector<std::string>& a
 ChildProcess::ChildProcess(const fs::path& program, const std::vector<std::string>& arguments,
                            const std::atomic<bool>* stop)
     : stop_(stop) {
-  // A socket and not a pipe: writing to one whose reader is gone can be told not to raise SIGPIPE.
+  // A socket and not a pipe: only for a socket can SIGPIPE be avoided when the reader is gone.
   int ends[2] = {-1, -1};
   complaints_ = ::memfd_create("complaints", MFD_CLOEXEC);
   int failed = complaints_ < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0 ? errno : 0;
@@ -278,7 +279,7 @@ std::string ChildProcess::first_complaint() const {
 void kill_child_processes() noexcept try {
   const std::lock_guard lock(running().mutex);
   for (const pid_t process : running().processes) ::kill(-process, SIGKILL);
-} catch (...) {  // on the way out: nothing better can be done
+} catch (...) {  // on exit: nothing better can be done
 }
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: the extension of a file's name.
+// Nacre: the extension of a file name.
 #pragma once
 
 #include <cctype>
@@ -7,7 +7,7 @@
 
 namespace nacre {
 
-/// With its dot and in small letters: ".vtp" of a.VTP; empty where there is none.
+/// With its dot and in lower case: ".vtp" for a.VTP; empty if there is none.
 inline std::string lower_extension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));

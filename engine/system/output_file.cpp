@@ -1,4 +1,4 @@
-// Nacre: files that appear under their name only when they are whole.
+// Nacre: files that appear under their name only when they are complete.
 #include "engine/system/output_file.hpp"
 
 #include <fcntl.h>
@@ -35,7 +35,7 @@ struct Registry {
 };
 
 Registry& registry() {
-  static Registry* instance = new Registry;  // never destroyed: files may be committed while statics die
+  static Registry* instance = new Registry;  // never destroyed: files may be committed while statics are
   return *instance;
 }
 
@@ -46,7 +46,7 @@ fs::path fresh_name_beside(const fs::path& destination) {
          fmt::format(".nacre-{}-{}{}", ::getpid(), counter++, destination.extension().string());
 }
 
-/// The file that a link leads to, so that a rename replaces the file and not the link.
+/// The file to which a link leads, so that a rename replaces the file and not the link.
 fs::path follow_links(const fs::path& target) {
   constexpr int longest_chain = 40;
   std::error_code error;
@@ -62,7 +62,7 @@ fs::path absolute_name(const fs::path& path) {
   return error ? path : all;
 }
 
-/// A new file that is on the list from its first moment. Returns what `open` does.
+/// A new file that is on the list from the beginning. Returns what `open` returns.
 int open_listed(const fs::path& file) {
   const fs::path name = absolute_name(file);
   const std::lock_guard lock(registry().mutex);
@@ -185,20 +185,20 @@ void drop_unfinished(const fs::path& path) noexcept try {
   const fs::path name = absolute_name(path);
   const std::lock_guard lock(registry().mutex);
   registry().paths.erase(name);
-} catch (...) {  // out of memory: a name too many on the list does no harm
+} catch (...) {  // out of memory: an unnecessary name on the list does no harm
 }
 
 void remove_unfinished_files() noexcept try {
   const std::lock_guard lock(registry().mutex);
   registry().remove_all();
-} catch (...) {  // on the way out: nothing better can be done
+} catch (...) {  // on exit: nothing better can be done
 }
 
 void leave_without_unfinished_files(int status) noexcept {
   try {
     const std::lock_guard lock(registry().mutex);
     registry().remove_all();
-    ::_exit(status);  // while nobody can begin another one
+    ::_exit(status);  // while no other thread can begin another file
   } catch (...) {
     ::_exit(status);
   }

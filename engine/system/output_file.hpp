@@ -1,4 +1,4 @@
-// Nacre: files that appear under their name only when they are whole.
+// Nacre: files that appear under their name only when they are complete.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace nacre {
 
-/// Writes beside `target` and renames on `commit`, so that nobody ever meets half a file and an older one stays until
-/// then. A target that is a link is followed, also to a file that is not there yet; one that is a device or pipe
-/// (/dev/stdout) is written directly, or refused where the format cannot be written so.
-/// Every failure (missing or unwritable folder, full disk, file size limit) throws Error that names the target and why.
+/// Writes beside `target` and renames on `commit`, so that nobody ever sees an incomplete file and an older one stays
+/// until then. If the target is a link, the link is followed, even to a file that does not exist yet. If it is a device
+/// or pipe (/dev/stdout), it is written directly, or refused if the format does not allow that. Every failure (missing
+/// or unwritable folder, full disk, file size limit) throws Error with the name of the target and the reason.
 class OutputFile {
  public:
   enum class Devices { written, refused };
@@ -27,8 +27,8 @@ class OutputFile {
   /// Flushes, closes and renames. Nothing may be written afterwards.
   void commit();
 
-  /// Where the bytes are until `commit`, for another program that writes them: in the target's folder, with the
-  /// target's extension.
+  /// Where the bytes are until `commit`, for another program that writes them: in the folder of the target, with its
+  /// extension.
   const std::filesystem::path& temporary() const { return temporary_; }
 
  private:
@@ -37,27 +37,27 @@ class OutputFile {
 
   std::filesystem::path target_;
   std::filesystem::path destination_;  // the target with links followed
-  std::filesystem::path temporary_;    // the same as destination_ where written directly
+  std::filesystem::path temporary_;    // the same as destination_ if written directly
   std::FILE* stream_ = nullptr;
   bool direct_ = false;
 };
 
-/// Throws as an OutputFile would where `target` cannot be written: before hours of work rather than after. Leaves nothing
-/// behind; devices and pipes are not opened, since who reads them would take that for the end.
+/// Throws as an OutputFile would if `target` cannot be written: before hours of work rather than after. Leaves nothing
+/// behind. Devices and pipes are not opened, since their readers would take that for the end.
 void check_writable(const std::filesystem::path& target);
 
-/// What a user can do about an errno met while writing; empty where we know nothing better than the reason itself.
+/// What a user can do about an errno from writing; empty if we know nothing better than the reason itself.
 const char* advice_on_writing(int error_number);
 
-/// Puts a file or folder on the list of what `remove_unfinished_files` removes, or takes it off.
+/// Adds a file or folder to the list of what `remove_unfinished_files` removes, or removes it from the list.
 void add_unfinished(const std::filesystem::path& path);
 void drop_unfinished(const std::filesystem::path& path) noexcept;
 
-/// Removes the temporaries of all files not committed, for a program that leaves without unwinding.
+/// Removes the temporaries of all files not committed, for a program that exits without unwinding.
 void remove_unfinished_files() noexcept;
 
-/// The same, and ends the program while other threads may still be at work; none of them begins a file any more. Not for a
-/// signal handler.
+/// The same, and ends the program while other threads may still be working; none of them can begin another file. Not
+/// for a signal handler.
 [[noreturn]] void leave_without_unfinished_files(int status) noexcept;
 
 }  // namespace nacre

@@ -1,4 +1,4 @@
-// Nacre: which threads come first.
+// Nacre: priorities of threads.
 #include "engine/system/priority.hpp"
 
 #include <sys/resource.h>

@@ -1,10 +1,10 @@
-// Nacre: which threads come first where there are fewer cores than work.
+// Nacre: priorities of threads, if there are fewer cores than work.
 #pragma once
 
 namespace nacre {
 
-/// This thread, and those that it starts from now on, take what the others leave: drawing comes before computing. Does
-/// nothing where the system knows no priorities of threads.
+/// This thread, and those that it starts from now on, yield to all others: drawing comes before computing. Does nothing
+/// if the system has no priorities of threads.
 void make_way();
 
 }  // namespace nacre

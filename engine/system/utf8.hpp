@@ -1,4 +1,4 @@
-// Nacre: UTF-8 text that may be broken: its code points, and what of it is whole.
+// Nacre: UTF-8 text that may be invalid: its code points, and its valid part.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace nacre {
 
-/// Takes the first code point off `text`, which must not be empty. Bytes that are no UTF-8 give U+FFFD, one byte each;
-/// control characters give a space.
+/// Removes the first code point from `text`, which must not be empty. Bytes that are not UTF-8 give U+FFFD, one byte
+/// each; control characters give a space.
 inline char32_t take_code_point(std::string_view& text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);
@@ -33,8 +33,8 @@ inline char32_t take_code_point(std::string_view& text) {
   return point < 0x20 || point == 0x7F ? U' ' : point;
 }
 
-/// As much of `text` as goes into `most` bytes, in whole characters that any reader takes: what is no UTF-8 (or no
-/// character) becomes U+FFFD, a control character a space.
+/// As much of `text` as fits into `most` bytes, in whole characters that any reader accepts: what is not UTF-8 (or not
+/// a character) becomes U+FFFD, a control character a space.
 inline std::string in_utf8(std::string_view text, std::size_t most = std::string_view::npos) {
   std::string out;
   while (!text.empty()) {

@@ -1,4 +1,4 @@
-// Nacre: VTK's error messages, kept instead of printed.
+// Nacre: stores VTK's error messages instead of printing them.
 #include "engine/io/vtk_import/complaints.hpp"
 
 #include <vtkLogger.h>
@@ -42,7 +42,7 @@ class QuietWindow : public vtkOutputWindow {
   static void keep(const char* text) {
     if (first.empty() && text) first = essence(text);
   }
-  /// The legacy reader only warns of a file that is cut short, and goes on with numbers from nowhere.
+  /// The legacy reader only warns about a truncated file, and continues with arbitrary numbers.
   static void keep_if_data_are_missing(const char* text) {
     if (text && std::string_view(text).find("Error reading") != std::string_view::npos) keep(text);
   }

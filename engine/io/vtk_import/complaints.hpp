@@ -1,11 +1,11 @@
-// Nacre: VTK's error messages, kept instead of printed.
+// Nacre: stores VTK's error messages instead of printing them.
 #pragma once
 
 #include <string>
 
 namespace nacre::vtk_import {
 
-/// From now on VTK prints nothing; its first error is remembered.
+/// From now on VTK prints nothing; its first error is stored.
 void keep_complaints();
 
 /// VTK's first error so far on one line, without source file and class name; empty if there was none.

@@ -1,5 +1,5 @@
-// Nacre: nacre-vtk-import FILE FOLDER: a file that VTK reads becomes one .vtp per time step in FOLDER.
-// nacre-vtk-import --volume FILE FOLDER: the image in it becomes one .vti in FOLDER.
+// Nacre: nacre-vtk-import FILE FOLDER: converts a file that VTK reads to one .vtp per time step in FOLDER.
+// nacre-vtk-import --volume FILE FOLDER: converts the image in it to one .vti in FOLDER.
 // Prints "time path" for each. On failure it prints one line to stderr and exits with 1.
 #include <sys/prctl.h>
 #include <sys/resource.h>

@@ -60,7 +60,7 @@ vtkSmartPointer<vtkAlgorithm> exodus_reader(const std::string& file) {
   return reader.Get();
 }
 
-/// The patches where there are any (wall values live there), else the inner mesh.
+/// The patches if there are any (wall values are stored there), otherwise the inner mesh.
 vtkSmartPointer<vtkAlgorithm> foam_reader(const std::string& file) {
   vtkNew<vtkOpenFOAMReader> reader;
   reader->SetFileName(file.c_str());

@@ -9,10 +9,10 @@
 
 namespace nacre::vtk_import {
 
-/// A reader with the file's name set and all its arrays switched on. Throws std::runtime_error for unknown extensions.
+/// A reader with the name of the file set and all its arrays enabled. Throws std::runtime_error for unknown extensions.
 vtkSmartPointer<vtkAlgorithm> reader_for(const std::string& file);
 
-/// The time steps that the reader announces; one step at 0 where it announces none.
+/// The time steps that the reader reports; one step at 0 if it reports none.
 std::vector<double> time_steps(vtkAlgorithm& reader);
 
 }  // namespace nacre::vtk_import

@@ -1,4 +1,4 @@
-// Nacre: any VTK data set reduced to the triangles of its surface.
+// Nacre: reduces any VTK data set to the triangles of its surface.
 #include "engine/io/vtk_import/surface.hpp"
 
 #include <vtkAppendPolyData.h>
@@ -23,7 +23,7 @@
 namespace nacre::vtk_import {
 namespace {
 
-/// Numbers that VTK's readers and filters add for their own use.
+/// Arrays that VTK's readers and filters add for their own use.
 bool is_bookkeeping(const std::string& name) {
   static const std::set<std::string> names = {"vtkGhostType",       "vtkValidPointMask", "vtkOriginalPointIds",
                                               "vtkOriginalCellIds", "GlobalNodeId",      "GlobalElementId",
@@ -32,7 +32,7 @@ bool is_bookkeeping(const std::string& name) {
   return name.empty() || names.count(name) > 0;
 }
 
-/// VTK's filters follow indices without looking: one that leads nowhere crashes them, or makes up data.
+/// VTK's filters follow indices without checking: an invalid one makes them crash, or invent data.
 void check_indices(vtkCellArray* cells, vtkIdType points) {
   if (!cells || cells->GetNumberOfCells() == 0) return;
   const vtkIdType corners = cells->GetNumberOfConnectivityIds();
@@ -54,7 +54,7 @@ void check_cells(vtkDataSet* data) {
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data)) check_indices(grid->GetCells(), data->GetNumberOfPoints());
 }
 
-/// An array that is too short would be read past its end by every filter.
+/// Every filter would read past the end of an array that is too short.
 void drop_short_arrays(vtkDataSetAttributes* arrays, vtkIdType tuples) {
   for (int i = arrays->GetNumberOfArrays() - 1; i >= 0; --i)
     if (arrays->GetAbstractArray(i)->GetNumberOfTuples() < tuples) arrays->RemoveArray(i);
@@ -72,7 +72,7 @@ vtkSmartPointer<vtkPolyData> outer_polygons(vtkDataSet* data) {
   return result.Get();
 }
 
-/// Cell arrays become point arrays (mean over the polygons around a point), but those of a name that points have.
+/// Cell arrays become point arrays (mean over the polygons around a point), except those whose name a point array has.
 vtkSmartPointer<vtkPolyData> with_cell_arrays_on_points(vtkPolyData* data) {
   vtkCellData* cells = data->GetCellData();
   for (int i = cells->GetNumberOfArrays() - 1; i >= 0; --i) {
@@ -96,7 +96,7 @@ vtkSmartPointer<vtkFloatArray> as_floats(vtkDataArray* array, const std::string&
   return floats.Get();
 }
 
-/// Points, triangles and float arrays on the points, nothing else.
+/// Only points, triangles and float arrays on the points.
 vtkSmartPointer<vtkPolyData> triangles_of(vtkDataSet* data) {
   const vtkSmartPointer<vtkPolyData> polygons = with_cell_arrays_on_points(outer_polygons(data));
   vtkNew<vtkTriangleFilter> triangulate;
@@ -133,7 +133,7 @@ std::vector<vtkSmartPointer<vtkPolyData>> parts_of(vtkDataObject* data) {
   return parts;
 }
 
-/// Gives every part all arrays that any part has: appending would drop what is not everywhere.
+/// Gives every part all arrays that any part has: appending would drop those that are not in all parts.
 void complete_arrays(const std::vector<vtkSmartPointer<vtkPolyData>>& parts) {
   std::map<std::string, int> arrays;
   for (const auto& part : parts)

@@ -1,4 +1,4 @@
-// Nacre: a file that VTK reads as an image.
+// Nacre: reads a file as an image by VTK.
 #include "engine/io/vtk_import/volume.hpp"
 
 #include <vtkDataArray.h>

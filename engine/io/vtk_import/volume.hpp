@@ -1,4 +1,4 @@
-// Nacre: a file that VTK reads as an image.
+// Nacre: reads a file as an image by VTK.
 #pragma once
 
 #include <vtkImageData.h>
@@ -8,8 +8,8 @@
 
 namespace nacre::vtk_import {
 
-/// The image in a .slc or legacy .vtk file. Throws std::runtime_error if VTK
-/// complains or the file holds none.
+/// The image in a .slc or legacy .vtk file. Throws std::runtime_error if VTK reports an error or the file contains no
+/// image.
 vtkSmartPointer<vtkImageData> read_image(const std::string& file);
 
 }  // namespace nacre::vtk_import
