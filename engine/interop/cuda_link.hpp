@@ -1,4 +1,4 @@
-// Nacre: an OpenGL buffer as CUDA sees it. It includes no header of CUDA, so that a build without CUDA has the same
+// Nacre: an OpenGL buffer as CUDA sees it. No header of CUDA is seen here, so that a build without CUDA has the same
 // code.
 #pragma once
 
@@ -9,13 +9,13 @@
 
 namespace nacre {
 
-/// One OpenGL buffer, registered with CUDA for the lifetime of this object. OpenGL must not use it between map and
-/// unmap. All calls on the thread of the context.
+/// One OpenGL buffer, registered with CUDA while this lives. OpenGL must not use it between map and unmap. All calls on
+/// the thread of the context.
 class CudaLink {
  public:
   virtual ~CudaLink() = default;
-  virtual void* map() = 0;   ///< its device pointer; later work of the device waits for draws that use it. Throws Error
-  virtual void unmap() = 0;  ///< further draws wait for the work queued on the device
+  virtual void* map() = 0;  ///< its device pointer; what the device does next waits for draws that use it. Throws Error
+  virtual void unmap() = 0;  ///< the next draws wait for what the device has been told to do
 };
 
 /// Host memory that CUDA copies to at full speed.
@@ -25,14 +25,14 @@ class PinnedMemory {
   virtual void* data() = 0;
 };
 
-/// Whether the current context is on the GPU that CUDA computes on. False in a build without CUDA.
-bool cuda_draws_here();
+/// Is the current context on the GPU that `device` is? False in a build without CUDA.
+bool cuda_draws_here(const Device& device);
 
-/// Registers the buffer named `gl_buffer` for `device`, a CUDA device. Throws Error if CUDA cannot do that, or in a
-/// build without CUDA.
+/// Registers the buffer named `gl_buffer` for `device`, which is a CUDA device. Throws Error where CUDA cannot, or the
+/// build has none.
 std::unique_ptr<CudaLink> link_cuda(Device& device, unsigned gl_buffer);
 
-/// Throws Error if there is not that much memory, or in a build without CUDA.
+/// Throws Error where there is not that much, or the build has no CUDA.
 std::unique_ptr<PinnedMemory> pin_memory(std::size_t bytes);
 
 }  // namespace nacre

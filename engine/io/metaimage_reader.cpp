@@ -1,5 +1,5 @@
-// Nacre: reads MetaImage: a text header, then the values after it or in one other file. It does not use VTK, which
-// invents the values that a damaged file lacks, and ignores the directions of the axes.
+// Nacre: reads MetaImage: a text header, then the values behind it or in one other file. Ours, since VTK makes up the
+// values that a damaged file lacks, and leaves out where the axes point to.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -31,8 +31,8 @@ std::string_view trimmed_view(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// The lines KEY = VALUE, up to the one that names the data file.
-class Header {
+/// The lines KEY = VALUE, up to that of the data file.
+class MetaImageHeader {
  public:
   explicit MetaImageHeader(const fs::path& path) : path_(path), text_(longest_metaimage_header, '\0') {
     std::ifstream file(path, std::ios::binary);
@@ -52,7 +52,7 @@ class Header {
 
   std::size_t size() const { return size_; }  ///< bytes before the values of a LOCAL file
 
-  /// The value of the first of these keys that exists; empty if none does.
+  /// The value of the first of these keys that is there; empty where none is.
   std::string_view text(std::initializer_list<const char*> keys) const {
     for (const char* key : keys)
       if (const auto found = fields_.find(key); found != fields_.end()) return found->second;
@@ -65,7 +65,7 @@ class Header {
     return value[0] == 'T' || value[0] == 't' || value[0] == '1';
   }
 
-  /// N numbers. False if none of the keys exists. Throws Error if the value is not N numbers.
+  /// N numbers. False where none of the keys is there. Throws Error where they are not N numbers.
   template <std::size_t N>
   bool numbers(std::initializer_list<const char*> keys, std::array<double, N>& values) const {
     const std::string_view value = text(keys);
@@ -93,7 +93,7 @@ class Header {
   std::map<std::string, std::string_view> fields_;
 };
 
-/// Calls `use(zero)` with a zero of the C++ type of this name. False if it is not the type of a single number.
+/// Calls `use(zero)` with a zero of the C++ type of this name. False if it is no single number.
 template <class Use>
 bool with_element_type(std::string_view name, Use use) {
   if (name == "MET_CHAR") return use(std::int8_t{}), true;
@@ -146,7 +146,7 @@ void set_place(Volume& volume, const MetaImageHeader& header, const fs::path& pa
 
 struct Stored {
   fs::path file;
-  std::size_t offset = 0;  ///< where the values start
+  std::size_t offset = 0;  ///< where the values begin
 };
 
 Stored find_values(const MetaImageHeader& header, const fs::path& path) {
@@ -164,8 +164,8 @@ Stored find_values(const MetaImageHeader& header, const fs::path& path) {
   return {file, skip < 0 ? std::size_t(-1) : std::size_t(skip)};
 }
 
-/// How many bytes the values occupy in their file.
-std::size_t stored_size(const Header& header, bool packed, std::size_t unpacked, const Stored& stored,
+/// How many bytes the values take in their file.
+std::size_t stored_size(const MetaImageHeader& header, bool packed, std::size_t unpacked, const Stored& stored,
                         const fs::path& path) {
   if (!packed || stored.offset != std::size_t(-1)) return unpacked;
   const std::int64_t size = header.integer("CompressedDataSize", 0);
@@ -175,7 +175,7 @@ std::size_t stored_size(const Header& header, bool packed, std::size_t unpacked,
   return std::size_t(size);
 }
 
-/// From the offset to the end of the file; for the offset -1, the last `needed` bytes.
+/// From the offset to the file's end; its last `needed` bytes for the offset -1.
 std::string stored_bytes(const Stored& stored, std::size_t needed, const fs::path& path) {
   std::error_code code;
   const std::uintmax_t size = fs::file_size(stored.file, code);

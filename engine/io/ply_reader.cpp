@@ -14,13 +14,13 @@
 namespace nacre {
 namespace {
 
-/// One row of an element: a number per scalar property, a list per list property.
-struct Row {
+/// One row of an element: a number per plain property, a list per list property.
+struct PlyRow {
   std::vector<double> numbers;
   std::vector<std::vector<std::int64_t>> lists;
 };
 
-/// The numbers after the header one by one, in any encoding.
+/// The numbers behind the header one after the other, whatever the encoding.
 class PlyBody {
  public:
   PlyBody(std::string_view bytes, const PlyHeader& header)
@@ -30,7 +30,7 @@ class PlyBody {
         end_(bytes.data() + bytes.size()),
         text_(bytes.substr(header.body)) {}
 
-  /// False if the data end or are not a number.
+  /// False where the data end or are no number.
   bool read(PlyType type, double& value) {
     if (ascii_) return text_.number(value);
     const std::size_t size = ply_size(type);
@@ -40,7 +40,7 @@ class PlyBody {
     return true;
   }
 
-  /// At most so many items of at least `bytes` bytes (or one digit and a space) can follow.
+  /// No more items of at least `bytes` bytes (or one digit and a space) can follow.
   std::size_t room_for(std::size_t bytes, std::size_t numbers) const {
     return ascii_ ? text_.remaining() / (2 * std::max<std::size_t>(numbers, 1)) + 1
                   : std::size_t(end_ - at_) / std::max<std::size_t>(bytes, 1);
@@ -69,7 +69,7 @@ class PlyBody {
   TextCursor text_;
 };
 
-/// A list entry as an index; anything but an integer in range is no point.
+/// A list entry as an index; what is no whole number in range is no point.
 std::int64_t as_index(double value) {
   return std::abs(value) < 4e9 && value == std::floor(value) ? std::int64_t(value) : -1;
 }
@@ -94,7 +94,7 @@ bool read_row(PlyBody& body, const PlyElement& element, PlyRow& row) {
   return true;
 }
 
-/// Calls `use(row)` for every row of the element. Throws Error if the data end too early.
+/// Calls `use(row)` for every row of the element. Throws Error where the data end too early.
 template <class Use>
 void for_each_row(PlyBody& body, const PlyElement& element, const std::filesystem::path& path, Use use) {
   std::size_t bytes = 0;
@@ -114,13 +114,13 @@ void for_each_row(PlyBody& body, const PlyElement& element, const std::filesyste
   }
 }
 
-/// The properties of an element that form one array.
+/// Which properties of an element make one array.
 struct ArrayPlan {
   std::string name;
   std::vector<int> properties;
 };
 
-/// "n" for (nx, ny, nz): the common name of three properties that form a vector; empty if they do not.
+/// "n" for (nx, ny, nz): the name that three properties share when they are a vector; empty if they are none.
 std::string shared_name(const std::string& x, const std::string& y, const std::string& z) {
   if (x == "u" && y == "v" && z == "w") return "uvw";
   if (x == "nx" && y == "ny" && z == "nz") return "normals";
@@ -133,7 +133,7 @@ std::string shared_name(const std::string& x, const std::string& y, const std::s
   return last == stem.npos ? stem : stem.substr(0, last + 1);
 }
 
-/// One array per real property, or per three that form a vector; `taken` properties are used otherwise.
+/// One array per real property, or per three that are a vector; `taken` properties have another use.
 std::vector<ArrayPlan> plan_arrays(const PlyElement& element, const std::vector<int>& taken) {
   std::vector<ArrayPlan> plans;
   const auto usable = [&](std::size_t i) {
@@ -197,7 +197,7 @@ void read_faces(PlyBody& body, const PlyElement& element, const std::filesystem:
   });
 }
 
-/// Strips of triangles; -1 ends a strip and begins the next.
+/// Strips of triangles; -1 ends one and begins the next.
 void read_strips(PlyBody& body, const PlyElement& element, const std::filesystem::path& path, RawMesh& mesh) {
   const int corners = find_corner_list(element);
   for_each_row(body, element, path, [&](const PlyRow& row) {

@@ -67,4 +67,3 @@ TEST(DrawDemand, WhatMovesWithTimeIsDrawnTenTimesASecond) {
 
 }  // namespace
 }  // namespace nacre
-

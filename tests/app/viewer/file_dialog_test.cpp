@@ -86,4 +86,3 @@ TEST_F(FileDialogTest, WhereItSavesAClickOnAFolderLeavesTheName) {
 
 }  // namespace
 }  // namespace nacre::test
-

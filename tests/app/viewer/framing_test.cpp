@@ -5,7 +5,7 @@
 
 #include "engine/picture/legend.hpp"
 #include "engine/render/camera_motion.hpp"
-#include "tests/app/still_scene.hpp"
+#include "tests/app/viewer/still_scene.hpp"
 
 namespace nacre::test {
 namespace {

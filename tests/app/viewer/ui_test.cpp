@@ -142,4 +142,3 @@ TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
 
 }  // namespace
 }  // namespace nacre::test
-
