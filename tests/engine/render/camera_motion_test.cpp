@@ -88,17 +88,19 @@ TEST(CameraMotion, DollyKeepsWhatIsUnderTheCursor) {
 }
 
 TEST(CameraMotion, ADeeperTargetShowsTheSamePicture) {
-  for (const bool orthographic : {false, true}) {
-    Camera camera = front();
-    camera.orthographic = orthographic;
-    for (const Vec3d p : {Vec3d(0.3, 0.4, 0.5), Vec3d(-1, 0.2, -2)}) {
-      const Camera c = look_at_depth(camera, camera.target + p);
-      EXPECT_NEAR(dot(camera.target + p - c.target, c.forward()), 0, 1e-12);
-      for (const Vec3d q : {p, Vec3d(1, 1, 1), Vec3d(0, -1, 0.2)})
-        for (const int k : {0, 1})
-          EXPECT_NEAR(place_of(c, camera.target + q, 1.5)[k], place_of(camera, camera.target + q, 1.5)[k], 1e-12);
-    }
+  for (const Vec3d p : {Vec3d(0.3, 0.4, 0.5), Vec3d(-1, 0.2, -2)}) {
+    const Camera camera = front(), c = look_at_depth(camera, camera.target + p);
+    EXPECT_NEAR(dot(camera.target + p - c.target, c.forward()), 0, 1e-12);
+    for (const Vec3d q : {p, Vec3d(1, 1, 1), Vec3d(0, -1, 0.2)})
+      for (const std::size_t k : {0, 1})
+        EXPECT_NEAR(place_of(c, camera.target + q, 1.5)[k], place_of(camera, camera.target + q, 1.5)[k], 1e-12);
   }
+  Camera flat = front();
+  flat.orthographic = true;
+  const Camera c = look_at_depth(flat, flat.target + Vec3d(0.3, 0.4, 0.5));
+  EXPECT_EQ(c.height, flat.height);
+  EXPECT_NEAR(length(cross(c.target - flat.target, flat.forward())), 0, 1e-12) << "it moves along its own direction";
+  EXPECT_NEAR(length((c.target - c.eye) - (flat.target - flat.eye)), 0, 1e-12);
 }
 
 TEST(CameraMotion, ZoomingEndsNearTheSurfaceAndBeforeAllVanishes) {
