@@ -114,9 +114,13 @@ void set_knob(Settings& settings, const std::string& name, const std::string& te
   const std::vector<Knob> table = knobs(settings);
   for (const Knob& knob : table)
     if (knob.is_named(wanted)) return assign(knob, text);
-  const auto nearest = std::min_element(table.begin(), table.end(), [&](const Knob& a, const Knob& b) {
-    return edit_distance(a.name, wanted) < edit_distance(b.name, wanted);
-  });
+  const auto distance = [&](const Knob& knob) {
+    std::size_t least = edit_distance(knob.name, wanted);
+    for (const std::string& old : knob.old_names) least = std::min(least, std::size_t(edit_distance(old, wanted)));
+    return least;
+  };
+  const auto nearest = std::min_element(table.begin(), table.end(),
+                                        [&](const Knob& a, const Knob& b) { return distance(a) < distance(b); });
   throw Error(fmt::format("no knob '{}'", name), "",
               fmt::format("did you mean {}? `nacre --knobs` lists all", nearest->name));
 }
