@@ -14,7 +14,8 @@
 namespace nacre {
 
 /// One block of a device. Permanent arrays grow from its head, temporary ones from its tail, so that the two are never
-/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the tail.
+/// interleaved; both ends are stacks. Nothing is allocated inside a step. Sort and scan take their scratch from the
+/// tail.
 class Arena {
  public:
   Arena(Device& device, std::size_t bytes)
@@ -44,8 +45,8 @@ class Arena {
     return array;
   }
 
-  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the array
-  /// as it was, when the block is full.
+  /// Gives the permanent array that was made last another length; what it holds stays. Throws Error, and leaves the
+  /// array as it was, when the block is full.
   template <class T>
   void resize_last(Array<T>& array, std::size_t count) {
     const std::size_t start = std::size_t(reinterpret_cast<std::uint8_t*>(array.data()) - block_), head = head_;

@@ -7,9 +7,9 @@
 
 namespace nacre {
 
-/// The first GPU. All that is done through a device is done in one stream of its own, in the order of the calls; it does not
-/// wait for the default stream, nor that for it. The stream is never captured (see Executor<Cuda>::repeat), so that another
-/// thread may use the device at any time.
+/// The first GPU. All that is done through a device is done in one stream of its own, in the order of the calls; it
+/// does not wait for the default stream, nor that for it. The stream is never captured (see Executor<Cuda>::repeat), so
+/// that another thread may use the device at any time.
 class CudaDevice final : public Device {
  public:
   explicit CudaDevice(std::size_t arena_limit);

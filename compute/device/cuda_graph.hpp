@@ -47,8 +47,8 @@ class CudaGraph final : public Steps::Record {
   CudaGraph(const CudaGraph&) = delete;
   CudaGraph& operator=(const CudaGraph&) = delete;
 
-  /// Makes it do what `graph` does and launches it. Where only arguments and sizes differ from the last time it is updated,
-  /// else made again.
+  /// Makes it do what `graph` does and launches it. Where only arguments and sizes differ from the last time it is
+  /// updated, else made again.
   void launch(cudaGraph_t graph, cudaStream_t stream) {
     if (executable_ && !update(graph)) clear();
     stream_ = stream;

@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does at
-/// once would overtake them: it is forbidden then, on every backend.
+/// While one lives, this thread only notes its launches down, to run them later (Executor::repeat). What a Device does
+/// at once would overtake them: it is forbidden then, on every backend.
 class Recording {
  public:
   Recording() { ++depth_; }
@@ -58,9 +58,9 @@ std::unique_ptr<Device> make_cpu_device(int threads = 0, bool remote = false);
 /// CUDA.
 int cuda_device_count();
 
-/// The first CUDA device. Its arenas take four fifths of what is free when they are made, but at most `arena_limit` bytes
-/// (0: no limit), so that several pipelines can stand side by side. Throws Error where there is none or the build has no
-/// CUDA.
+/// The first CUDA device. Its arenas take four fifths of what is free when they are made, but at most `arena_limit`
+/// bytes (0: no limit), so that several pipelines can stand side by side. Throws Error where there is none or the build
+/// has no CUDA.
 std::unique_ptr<Device> make_cuda_device(std::size_t arena_limit = 0);
 
 /// `request`: "auto" (CUDA where usable, else CPU), "cpu" or "cuda".

@@ -29,8 +29,8 @@ NACRE_HD_INLINE Float4 store(Lanes a) { return {a.x, a.y, a.z, a.w}; }
 NACRE_HD_INLINE Lanes lanes(float x, float y, float z, float w = 0) { return {x, y, z, w}; }
 NACRE_HD_INLINE Vec3f xyz(Lanes a) { return {a.x, a.y, a.z}; }
 NACRE_HD_INLINE float sum(Lanes a) { return a.x + a.y + (a.z + a.w); }
-/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 3) on. With a branch, since few rows go across
-/// two bricks, and a choice for each float would take more registers than there are.
+/// Four of the eight floats low[0..3], high[0..3], from number `first` (0 to 3) on. With a branch, since few rows go
+/// across two bricks, and a choice for each float would take more registers than there are.
 NACRE_HD_INLINE Lanes four_of(const float* low, const float* high, int first) {
   if (first == 0) return {low[0], low[1], low[2], low[3]};
   const float *lower = low + first, *upper = high + first - 4;

@@ -35,9 +35,9 @@ struct KeptFree {
   double left = 1, top = 0, bottom = 1;
 };
 
-/// A camera that sees all `points` from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z is
-/// up, y for the two z views). They fill the picture, or, where they would reach into what is kept free, what is to the
-/// left of it. Throws Error for any other word.
+/// A camera that sees all `points` from `view`: "iso", "+x", "-x", "+y", "-y", "+z" or "-z" (the side it stands on; z
+/// is up, y for the two z views). They fill the picture, or, where they would reach into what is kept free, what is to
+/// the left of it. Throws Error for any other word.
 Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height,
                   const KeptFree& kept = {});
 

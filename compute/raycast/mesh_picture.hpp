@@ -20,8 +20,8 @@ struct MeshPictureOptions {
   bool edges = true;  ///< draw them where triangles are larger than some pixels
 };
 
-/// Draws `triangles`, flat, lit from beside the camera, both sides alike, each in its colour (encoded sRGB, 0..1; one per
-/// triangle). What lies behind the eye is left out. The same bytes on any number of threads. Returns RGBA, 8 bits a
+/// Draws `triangles`, flat, lit from beside the camera, both sides alike, each in its colour (encoded sRGB, 0..1; one
+/// per triangle). What lies behind the eye is left out. The same bytes on any number of threads. Returns RGBA, 8 bits a
 /// channel, row 0 at the top.
 std::vector<std::uint8_t> mesh_picture(std::span<const Vec3d> points, std::span<const Triangle> triangles,
                                        std::span<const std::array<float, 3>> colours,

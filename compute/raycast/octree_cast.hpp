@@ -73,8 +73,8 @@ NACRE_HD inline Hit meet_planes_beside(const SourceOctreeView& tree, const Int3&
 /// closest triangle. Where it meets none for a cell's length, the planes of neighbours count, too: of an edge the cell
 /// may know the side that the ray does not meet. The planes stand for all of the surface in the cell, which is what the
 /// source's octree knows: they shift the surface by up to a cell where it bends, ends or comes back within one, and are
-/// exact away from the edges of triangles larger than cells. Cells overlap by an eighth along the ray, so that planes of
-/// neighbours which do not quite meet leave no crack.
+/// exact away from the edges of triangles larger than cells. Cells overlap by an eighth along the ray, so that planes
+/// of neighbours which do not quite meet leave no crack.
 NACRE_HD inline bool cast(const SourceOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
   if (tree.cells == 0) return false;
   const double cell_length = 1 / length(ray.direction), slack = 0.125 * cell_length;

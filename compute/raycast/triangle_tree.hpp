@@ -18,8 +18,8 @@ struct TriangleHit {
   Vec3d weights;        ///< of the three corners
 };
 
-/// Boxes over runs of triangles in Morton order, one over two, as an implicit binary tree. It keeps copies of what it is
-/// made of. A ray through a million triangles takes some microseconds.
+/// Boxes over runs of triangles in Morton order, one over two, as an implicit binary tree. It keeps copies of what it
+/// is made of. A ray through a million triangles takes some microseconds.
 class TriangleTree {
  public:
   TriangleTree() = default;

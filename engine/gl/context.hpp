@@ -21,11 +21,12 @@ class Context {
   const std::string& renderer() const { return renderer_; }  ///< e.g. "llvmpipe (LLVM 15.0.6, 256 bits)"
   const std::string& version() const { return version_; }
 
-  /// Has the graphics device been reset (a crash of its driver, another GPU)? All of the context's objects are gone then.
+  /// Has the graphics device been reset (a crash of its driver, another GPU)? All of the context's objects are gone
+  /// then.
   bool lost() const;
 
-  /// What the driver has complained about so far: errors, undefined or deprecated use. Its notes on speed and memory are
-  /// left out.
+  /// What the driver has complained about so far: errors, undefined or deprecated use. Its notes on speed and memory
+  /// are left out.
   std::vector<std::string> messages() const;
 
  protected:

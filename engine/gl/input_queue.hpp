@@ -1,5 +1,5 @@
-// Nacre: what a user does at the keyboard and mouse, in order, handed out frame by frame. However long a frame takes, no
-// tap, click or chord is lost: what would undo or outrun something else of its frame waits for the next.
+// Nacre: what a user does at the keyboard and mouse, in order, handed out frame by frame. However long a frame takes,
+// no tap, click or chord is lost: what would undo or outrun something else of its frame waits for the next.
 #pragma once
 
 #include <deque>

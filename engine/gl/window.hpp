@@ -26,8 +26,8 @@ class Window : public Context {
   GLFWwindow* handle() const { return window_; }
 
   bool should_close() const;
-  /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on; where
-  /// the window is merely minimised, only if `idles`.
+  /// Takes what the user has done. Waits for that, at most a tenth of a second, while there is nothing to draw on;
+  /// where the window is merely minimised, only if `idles`.
   void poll(bool idles);
   void swap();
   void set_title(const std::string& title);

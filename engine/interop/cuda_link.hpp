@@ -1,4 +1,5 @@
-// Nacre: an OpenGL buffer as CUDA sees it. No header of CUDA is seen here, so that a build without CUDA has the same code.
+// Nacre: an OpenGL buffer as CUDA sees it. No header of CUDA is seen here, so that a build without CUDA has the same
+// code.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +28,8 @@ class PinnedMemory {
 /// Is the current context on the GPU that CUDA computes on? False in a build without CUDA.
 bool cuda_draws_here();
 
-/// Registers the buffer named `gl_buffer` for `device`, which is a CUDA device. Throws Error where CUDA cannot, or the build
-/// has none.
+/// Registers the buffer named `gl_buffer` for `device`, which is a CUDA device. Throws Error where CUDA cannot, or the
+/// build has none.
 std::unique_ptr<CudaLink> link_cuda(Device& device, unsigned gl_buffer);
 
 /// Throws Error where there is not that much, or the build has no CUDA.

@@ -31,8 +31,8 @@ class SharedBuffer {
   /// What suits the device and the context that is current.
   static Path best_path(const Device& device);
 
-  /// `format`: how shaders see it as a texture, e.g. GL_R32F. The first frames read zeros. Throws Error where the memory
-  /// is not there, or the device cannot go the path.
+  /// `format`: how shaders see it as a texture, e.g. GL_R32F. The first frames read zeros. Throws Error where the
+  /// memory is not there, or the device cannot go the path.
   SharedBuffer(Device& device, std::size_t bytes, GLenum format, Path path);
   SharedBuffer(Device& device, std::size_t bytes, GLenum format)
       : SharedBuffer(device, bytes, format, best_path(device)) {}

@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// Draws into what is bound, pixel by pixel and over everything. Only tiles with something on them are drawn: most of an
-/// overlay is clear, and blending all of a frame costs a software renderer more than the scene.
+/// Draws into what is bound, pixel by pixel and over everything. Only tiles with something on them are drawn: most of
+/// an overlay is clear, and blending all of a frame costs a software renderer more than the scene.
 class OverlayPass {
  public:
   OverlayPass();

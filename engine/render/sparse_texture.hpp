@@ -45,16 +45,17 @@ struct SparseLookup {
   std::span<const std::uint32_t> brick_index, block, texel;
 };
 
-/// Blocks of (R + 1)^3 texels, in the order of the lookup's: R^3 of their own and, at their upper sides, the first ones of
-/// the blocks there, so that all eight texels around a place are in one block. Each is a surface cell or `none`. Host
-/// only, on any thread.
+/// Blocks of (R + 1)^3 texels, in the order of the lookup's: R^3 of their own and, at their upper sides, the first ones
+/// of the blocks there, so that all eight texels around a place are in one block. Each is a surface cell or `none`.
+/// Host only, on any thread.
 std::vector<std::uint32_t> with_rims(const SparseLookup& lookup);
 
 /// The arrays on the graphics device. Immutable: made once per embedding.
 class SparseTexture {
  public:
   SparseTexture() = default;
-  /// `rimmed`: what `with_rims` makes of `lookup`. Throws Error where the memory is not there. `page`: as for PagedArray.
+  /// `rimmed`: what `with_rims` makes of `lookup`. Throws Error where the memory is not there. `page`: as for
+  /// PagedArray.
   SparseTexture(const SparseLookup& lookup, std::span<const std::uint32_t> rimmed, std::size_t page = 0);
 
   explicit operator bool() const { return refine_ > 0; }

@@ -33,8 +33,8 @@ struct View {
 Vec3d flow_light(const Camera& camera);
 /// The light of mesh_picture.
 Vec3d mesh_light(const Camera& camera);
-/// A light (unit, towards it) turned by `azimuth` about the camera's up, to the right, and raised by `height`, to straight
-/// above or below at most; degrees.
+/// A light (unit, towards it) turned by `azimuth` about the camera's up, to the right, and raised by `height`, to
+/// straight above or below at most; degrees.
 Vec3d turned_light(const Vec3d& light, const Camera& camera, double azimuth, double height);
 
 /// Where a model's coordinates (grid cells, voxels, the world's) are in the world: an affine map.

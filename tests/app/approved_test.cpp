@@ -1,5 +1,5 @@
-// Nacre: pictures that someone has looked at and approved, and what the viewer draws today. After a change that is meant,
-// NACRE_APPROVE=1 writes them anew: look at each before it is committed.
+// Nacre: pictures that someone has looked at and approved, and what the viewer draws today. After a change that is
+// meant, NACRE_APPROVE=1 writes them anew: look at each before it is committed.
 #include <cstdlib>
 
 #include "engine/picture/compose.hpp"

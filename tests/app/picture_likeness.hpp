@@ -48,9 +48,9 @@ inline Image seen_from_afar(const Image& image, int reach) {
 /// Pixel by pixel: for panels, surfaces, letters.
 inline bool are_same(const Image& a, const Image& b) { return share_unmatched(a, b, 0) < few_pixels; }
 
-/// For a crowd of small discs, none of which has to be where it was. What is in one picture is near by in the other, too;
-/// and where eyes cannot part the discs, they cover as much, in the same colours. The first finds what is missing, thin
-/// lines, too; the second, other sizes.
+/// For a crowd of small discs, none of which has to be where it was. What is in one picture is near by in the other,
+/// too; and where eyes cannot part the discs, they cover as much, in the same colours. The first finds what is missing,
+/// thin lines, too; the second, other sizes.
 inline bool are_alike(const Image& a, const Image& b) {
   constexpr int near_by = 3, afar = 7;  // pixels, where a disc has five
   return std::max(share_unmatched(a, b, near_by), share_unmatched(b, a, near_by)) < few_pixels &&

@@ -15,8 +15,8 @@ inline std::string no_viewer() {
   return why;
 }
 
-/// `nacre view` in a window, on a display of its own, begun by a shell in which `first` has been done. Status 77: there is
-/// no Xvfb.
+/// `nacre view` in a window, on a display of its own, begun by a shell in which `first` has been done. Status 77: there
+/// is no Xvfb.
 inline Outcome in_window(const Words& words, const std::string& first = ":") {
   return run("/bin/bash", Words{source_file("tests/app/on_display.sh"), "/bin/bash", "-c",
                                 first + "; exec \"$0\" view --quiet \"$@\"", program_path} +

@@ -9,9 +9,9 @@
 #include "compute/device/executor.hpp"
 
 /// NACRE_DEVICE_TEST(suite, body) runs `template <class Backend> void body(Executor<Backend>&)`: compiled as C++ on
-/// the CPU and on the CPU whose memory pretends to be remote, compiled by nvcc on the first CUDA device (skips where there is
-/// none). Bodies live in `*_body.hpp`; `*_test.cpp` includes executor_cpu.hpp and the body, a `.cu` executor_cuda.cuh
-/// and the body, nothing else.
+/// the CPU and on the CPU whose memory pretends to be remote, compiled by nvcc on the first CUDA device (skips where
+/// there is none). Bodies live in `*_body.hpp`; `*_test.cpp` includes executor_cpu.hpp and the body, a `.cu`
+/// executor_cuda.cuh and the body, nothing else.
 #if defined(__CUDACC__)
 #define NACRE_DEVICE_TEST(suite, body)                                     \
   TEST(suite, body##OnCuda) {                                              \

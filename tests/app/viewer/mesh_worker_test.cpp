@@ -89,7 +89,8 @@ struct MeshWorkerRun {
     }
   }
 
-  /// Takes all events until the worker has nothing to do, or `enough` says so. In lockstep gives a turn for each iteration.
+  /// Takes all events until the worker has nothing to do, or `enough` says so. In lockstep gives a turn for each
+  /// iteration.
   void settle(const std::function<bool()>& enough = [] { return false; }) {
     while (!enough()) {
       worker->grant_turn();

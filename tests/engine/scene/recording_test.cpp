@@ -116,8 +116,8 @@ SessionEvent input_event(double time, const std::string& sample) {
   return event;
 }
 
-/// What a viewer does with a session on a clock, without any scene: it is played, a camera is fitted where there is none,
-/// and it is recorded.
+/// What a viewer does with a session on a clock, without any scene: it is played, a camera is fitted where there is
+/// none, and it is recorded.
 struct Replay {
   Session session;
   SessionPlayer player;
