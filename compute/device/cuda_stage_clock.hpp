@@ -13,8 +13,8 @@
 
 namespace nacre {
 
-/// Two events for each stage, recorded in the stream of its launches. Their distance is known once the stream has come past
-/// them: `collect` hands it to the timers.
+/// Two events for each stage, recorded in the stream of its launches. Their distance is known once the stream has come
+/// past them: `collect` hands it to the timers.
 class CudaStageClock {
  public:
   CudaStageClock() = default;

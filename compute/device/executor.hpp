@@ -56,16 +56,20 @@ class ExecutorBase {
 ///                                    kernel.scratch_bytes() bytes of shared memory
 ///   exclusive_scan(in, out, n)       out[i] = in[0] + .. + in[i-1]; returns the sum of all; in == out allowed
 ///   scan(in, out, n)                 the same without the sum, which the host would have to wait for
-///   sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those below
+/// sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those
+/// below
 ///                                    need not be looked at where they ascend before
 ///   sort_pairs(keys, values, n, bits = 64)  the same by the lowest `bits`, the others being alike; values go with keys
-///   reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if merge
+/// reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if
+/// merge
 ///                                    is exact (integers, minimum, maximum)
 ///   reduce_into(result, n, identity, get, merge)  the same into *result, on the device: nothing waits for it
 ///   fill(array, byte)                all bytes of an array, in the order of the launches
-///   known(get, most)                 get(), a number that the device holds, where it can be had without waiting (on the
+/// known(get, most)                 get(), a number that the device holds, where it can be had without waiting (on
+/// the
 ///                                    CPU); else `most`, which it does not exceed
-///   repeat(steps, body)              body(), which launches and reads nothing back. On CUDA from the second call on its
+/// repeat(steps, body)              body(), which launches and reads nothing back. On CUDA from the second call on
+/// its
 ///                                    launches become one, a graph, which is kept in `steps`
 ///   wait()                           until all is done
 ///   stage(name)                      a scope that times a stage, the device's work included

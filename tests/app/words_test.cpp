@@ -12,7 +12,9 @@ namespace {
 const std::vector<std::string> all_commands = {"flow", "mesh", "view", "sample", "bench", "info"};
 
 class WordsInFiles : public AppTest {};
-/// Does the help begin a line with this option, alone or in a list such as "-h,--help"? `--color` is not in `--colormap`.
+
+/// Does the help begin a line with this option, alone or in a list such as "-h,--help"? `--color` is not in
+/// `--colormap`.
 bool offers(const std::string& help, const std::string& option) {
   const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_'; };
   std::istringstream lines(help);

@@ -52,7 +52,8 @@ inline Surface split(const Surface& s) {
   return out;
 }
 
-/// FILE|SAMPLE[:SPLITS]: a file that the program reads or a built-in flow sample, each triangle cut into four SPLITS times.
+/// FILE|SAMPLE[:SPLITS]: a file that the program reads or a built-in flow sample, each triangle cut into four SPLITS
+/// times.
 inline Surface load_surface(const std::string& word) {
   const std::size_t colon = word.rfind(':');
   const std::string name = word.substr(0, colon);

@@ -2,9 +2,9 @@
 //
 // bench_octree_build MESH|SAMPLE[:SPLITS] [resolution=512,1024] [radius=4.47] [threads=0] [runs=3]
 //
-// MESH is a file that the program reads, SAMPLE a built-in flow sample; SPLITS times every triangle is cut into four. The
-// runs alternate, and medians are compared, without and with the making of Embree's tree (ours has the sorting and bounding
-// of the triangles in it). Embree is given the cells, an upper bound of their distance (the band's
+// MESH is a file that the program reads, SAMPLE a built-in flow sample; SPLITS times every triangle is cut into four.
+// The runs alternate, and medians are compared, without and with the making of Embree's tree (ours has the sorting and
+// bounding of the triangles in it). Embree is given the cells, an upper bound of their distance (the band's
 // radius), and a closest-point function in single precision.
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>

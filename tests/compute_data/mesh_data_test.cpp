@@ -65,8 +65,8 @@ TEST(MeshData, TinyImagesHaveTheirJunctions) {
   }
 }
 
-/// A cube of four quadrants, whose axis is a line where four materials meet: it survives as curves of three. Triangles along
-/// the axis may be slivers: no curve of four materials is stable.
+/// A cube of four quadrants, whose axis is a line where four materials meet: it survives as curves of three. Triangles
+/// along the axis may be slivers: no curve of four materials is stable.
 TEST(MeshData, FourQuadrants) {
   NACRE_NEEDS_SHARED_DATA("labels/junctions");
   const MeshVolume volume = read({"junctions/quadDomainCube.inr"});

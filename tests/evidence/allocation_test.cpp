@@ -1,4 +1,5 @@
-// Nacre: tests that steps and iterations make no memory: the device's blocks stay, the host's few do not grow with the work.
+// Nacre: tests that steps and iterations make no memory: the device's blocks stay, the host's few do not grow with the
+// work.
 #include <atomic>
 #include <cstdlib>
 #include <new>

@@ -21,8 +21,8 @@ inline std::vector<Vec3d> on_sphere(const Vec3d& centre, double radius, int coun
   return points;
 }
 
-/// Signed distance to an ellipsoid, positive inside: the foot on it lies at s_i^2 x_i / (s_i^2 + t) with the largest t that
-/// puts it there.
+/// Signed distance to an ellipsoid, positive inside: the foot on it lies at s_i^2 x_i / (s_i^2 + t) with the largest t
+/// that puts it there.
 inline PlaceFunction ellipsoid(const Vec3d& centre, const Vec3d& semi) {
   return [=](const Vec3d& p) {
     const Vec3d x = p - centre;

@@ -88,8 +88,8 @@ std::vector<LabelledBody> labelled_bodies() {
   return bodies;
 }
 
-/// The materials at the corners of the cube between eight voxel centres that holds a point (in voxels), or of those that it
-/// is within `margin` of: it is in its voxel shell if its own materials are among them.
+/// The materials at the corners of the cube between eight voxel centres that holds a point (in voxels), or of those
+/// that it is within `margin` of: it is in its voxel shell if its own materials are among them.
 std::set<std::uint16_t> around(const MeshVolume& volume, const Vec3d& p, double margin = 0) {
   std::set<std::uint16_t> found;
   const auto low = [&](double x) { return int(std::floor(x - margin)); };
@@ -116,8 +116,8 @@ TEST(LabelEvidence, BodiesGivenAsLabelsShowNoStairs) {
   }
 }
 
-/// Each vertex of a torso's mesh lies in the shell of its materials, to a twentieth of a voxel; on junctions at least in that of
-/// two, since a third that is smoothed away from its voxels' corners may be none of the eight.
+/// Each vertex of a torso's mesh lies in the shell of its materials, to a twentieth of a voxel; on junctions at least
+/// in that of two, since a third that is smoothed away from its voxels' corners may be none of the eight.
 TEST(LabelEvidence, ATorsosBoundariesStayInTheirShells) {
   const MeshVolume volume = make_mesh_volume(std::vector{make_phantom("torso", 40)}, {});
   const MeshRun run = mesh_of(volume);

@@ -146,8 +146,8 @@ TEST(MeshEvidence, EnergyFallsAndCountsConverge) {
   for (std::size_t k = half + 1; k < energy.size(); ++k) EXPECT_LE(energy[k], energy[k - 1] * 1.01) << k;
 }
 
-/// From iteration to iteration, but where control has just changed the particles; a rise of `overshoot` of it is borne, of
-/// all iterations between two controls together none is.
+/// From iteration to iteration, but where control has just changed the particles; a rise of `overshoot` of it is borne,
+/// of all iterations between two controls together none is.
 void expect_falling(const std::vector<double>& energy, const std::vector<std::int64_t>& count, double overshoot) {
   ASSERT_EQ(energy.size(), count.size());
   std::size_t controlled = 0;

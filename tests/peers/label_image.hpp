@@ -1,4 +1,5 @@
-// Nacre: what the programs that run a peer share: a label image and its frame, plain surfaces, results as lines of words.
+// Nacre: what the programs that run a peer share: a label image and its frame, plain surfaces, results as lines of
+// words.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,7 @@
 // Nacre: CGAL's Mesh_3 on a label image, as its examples run it, for run.sh.
 //
-// peer_mesh_3 LABELS OUT.off [vertices=N | size=VOXELS] [work=surface|cells] [threads=2] [distance=VOXELS] [error=SHARE]
+// peer_mesh_3 LABELS OUT.off [vertices=N | size=VOXELS] [work=surface|cells] [threads=2] [distance=VOXELS]
+// [error=SHARE]
 //             [features=SURFACE.off] [parallel=1]
 //
 // vertices=N looks for the facet size that gives N vertices on the surfaces; the last run is the one that is told. The

@@ -2,8 +2,8 @@
 //
 // peer_openvdb MESH|SAMPLE[:SPLITS] [RESOLUTION=512] [RADIUS=2.24] [THREADS=2] [RUNS=3]
 //
-// The runs alternate; medians of wall seconds are told. Both make every cell whose centre lies within RADIUS cells of the
-// surface. Ours keeps its closest point and triangle, OpenVDB its distance and triangle (the index grid).
+// The runs alternate; medians of wall seconds are told. Both make every cell whose centre lies within RADIUS cells of
+// the surface. Ours keeps its closest point and triangle, OpenVDB its distance and triangle (the index grid).
 #include <oneapi/tbb/global_control.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>

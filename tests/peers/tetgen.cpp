@@ -3,8 +3,8 @@
 // peer_tetgen SURFACE.off [SWITCHES=pYAQ]
 //
 // p: a surface; Y: its triangles stay as they are, as ours do; A: regions are told apart; Q: quiet. Add q for better
-// cells. Reading is not in the seconds. Every region within the outermost surface is filled: holes that are the outside's
-// count as cells, too.
+// cells. Reading is not in the seconds. Every region within the outermost surface is filled: holes that are the
+// outside's count as cells, too.
 #define TETLIBRARY  // the header declares the function on strings for libraries only
 #include <tetgen.h>
 

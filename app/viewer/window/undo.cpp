@@ -24,7 +24,7 @@ void Undo::note(const SessionEvent* change, const Session& before, const Session
   const std::optional<SessionEvent> whole = session_change(*pending_, now);  // it may have been pulled to and fro
   if (whole && worth_keeping(*whole)) {
     past_.push_back(std::move(*pending_));
-    if (past_.size() > most) past_.erase(past_.begin());
+    if (past_.size() > max_changes) past_.erase(past_.begin());
     future_.clear();
   }
   pending_.reset();

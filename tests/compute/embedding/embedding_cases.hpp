@@ -60,8 +60,8 @@ inline Vec3d sector_direction(int k) {
   return {std::cos(a), std::sin(a), 0};
 }
 
-/// A body in three sectors about an axis along z. Planes part the sectors; all four materials meet on the axis, where the
-/// body ends above and below.
+/// A body in three sectors about an axis along z. Planes part the sectors; all four materials meet on the axis, where
+/// the body ends above and below.
 inline MeshVolume sectors() {
   std::vector<PlaceFunction> functions{[](const Vec3d&) { return 0.0; }};
   for (int k = 0; k < 3; ++k)

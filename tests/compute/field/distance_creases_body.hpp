@@ -68,8 +68,8 @@ struct InterfaceOffset {
   std::int64_t creased = 0;
 };
 
-/// How far from the points of a surface its interface is read, in smallest spacings. With `as_is` the values stay as the
-/// file has them.
+/// How far from the points of a surface its interface is read, in smallest spacings. With `as_is` the values stay as
+/// the file has them.
 template <class Backend>
 InterfaceOffset interface_offset(Executor<Backend>& exec, const MeshVolume& volume, const std::vector<Vec3d>& points,
                                  const Junction& interface = {0, 1}, bool as_is = false) {

@@ -78,8 +78,8 @@ void MaterialsAreClosedAtTheFaces(Executor<Backend>& exec) {
   }
 }
 
-/// An interface that runs into a face stays straight up to it: what closes the volume does not push it aside. (Beyond the
-/// face its functions go on as they end, which bends it a little in the last half voxel.)
+/// An interface that runs into a face stays straight up to it: what closes the volume does not push it aside. (Beyond
+/// the face its functions go on as they end, which bends it a little in the last half voxel.)
 template <class Backend>
 void InterfacesRunStraightIntoTheFaces(Executor<Backend>& exec) {
   const auto f = [](const Vec3d& p) {

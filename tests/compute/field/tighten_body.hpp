@@ -86,8 +86,8 @@ void AnObliquePlaneHasNoStairs(Executor<Backend>& exec) {
     EXPECT_LT(std::fabs(dot(Vec3d(at.p) - Vec3d(volume_padding + 0.5) - c, n)), 0.5);
 }
 
-/// A plane that rises one voxel in `run` along x and in `other_run` along y, its labels tightened with `stairs`: median error of
-/// its normals, degrees.
+/// A plane that rises one voxel in `run` along x and in `other_run` along y, its labels tightened with `stairs`: median
+/// error of its normals, degrees.
 template <class Backend>
 double slope_error(Executor<Backend>& exec, double run, double other_run, double stairs) {
   const Vec3d n = normalized(Vec3d(-1 / run, -1 / other_run, 1)), c(40.2, 40.1, 16.6);
@@ -126,7 +126,8 @@ struct ShareAtTop {
   }
 };
 
-/// Of the voxels above voxel `top`, what belongs to the lower material, less what does not of those below; along x at y = 8.
+/// Of the voxels above voxel `top`, what belongs to the lower material, less what does not of those below; along x at y
+/// = 8.
 template <class Backend>
 std::vector<float> shares_along_x(Executor<Backend>& exec, const Int3& n,
                                   const std::function<bool(const Vec3d&)>& lower, int top) {

@@ -77,7 +77,8 @@ inline std::vector<std::uint32_t> all_points(const SurfaceMesh& mesh) {
   return numbers;
 }
 
-/// The inner points of a disturbed lattice come back to where all triangles are equilateral; its rim has no rings and stays.
+/// The inner points of a disturbed lattice come back to where all triangles are equilateral; its rim has no rings and
+/// stays.
 template <class Backend>
 void ADisturbedLatticeBecomesEven(Executor<Backend>& exec) {
   constexpr int columns = 12, rows = 10;
@@ -111,8 +112,8 @@ void ADisturbedLatticeBecomesEven(Executor<Backend>& exec) {
   }
 }
 
-/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed, another place. The steps
-/// that follow lead back.
+/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed, another place.
+/// The steps that follow lead back.
 template <class Backend>
 void AShakenLatticeSettlesAgain(Executor<Backend>& exec) {
   const SurfaceMesh even = lattice_mesh(12, 10);

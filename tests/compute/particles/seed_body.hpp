@@ -146,7 +146,8 @@ void NoTwoAtOnePlaceOfAFlatInterface(Executor<Backend>& exec) {
   }
 }
 
-/// Vertices of marching cubes are on their own interfaces, each of which has some; with the anisotropic voxels of a CT, too.
+/// Vertices of marching cubes are on their own interfaces, each of which has some; with the anisotropic voxels of a CT,
+/// too.
 template <class Backend>
 void CubesFindEveryInterface(Executor<Backend>& exec) {
   MeshVolume volume = label_volume({26, 24, 12}, 4, [](const Vec3d& p) {

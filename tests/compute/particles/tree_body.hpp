@@ -14,7 +14,8 @@ namespace nacre::test {
 
 constexpr float tree_extent = 40;  ///< edge of the volume
 
-/// A sphere of particles with sizes from 0.6 to 1.6, its equator (which bounds it) and a second sphere, in random order.
+/// A sphere of particles with sizes from 0.6 to 1.6, its equator (which bounds it) and a second sphere, in random
+/// order.
 struct TreeCase {
   std::vector<Float4> place, direction;
   std::vector<std::uint32_t> interface;

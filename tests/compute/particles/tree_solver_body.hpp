@@ -104,8 +104,8 @@ void AnIterationIsForcesAndAMove(Executor<Backend>& exec) {
   }
 }
 
-/// Two particles on a plane: the Newton step along the line between them, half of it for the stiffness that two directions
-/// share, and no longer than a share of h.
+/// Two particles on a plane: the Newton step along the line between them, half of it for the stiffness that two
+/// directions share, and no longer than a share of h.
 template <class Backend>
 void APairStepsApartAsTheFormulaSays(Executor<Backend>& exec) {
   const AnalyticGround<Plane> ground{{1}};
@@ -283,8 +283,8 @@ void BothGroundsLandOnTheSurface(Executor<Backend>& exec) {
 }
 
 /// Holes fill, crowds thin out, and the count stays where it ends: within a quarter of a hexagonal lattice's, since
-/// energies within the thresholds are left alone, wherever the start was; next to it from a start that was right, or where
-/// the number is known.
+/// energies within the thresholds are left alone, wherever the start was; next to it from a start that was right, or
+/// where the number is known.
 template <class Backend>
 void TheTreesPopulationSettlesFromAnyStart(Executor<Backend>& exec) {
   const BallCase<Backend> ball(exec);
@@ -311,8 +311,8 @@ void TheTreesPopulationSettlesFromAnyStart(Executor<Backend>& exec) {
   }
 }
 
-/// One control of a set that is far too sparse: new particles lie on the surface, at rest, not on top of each other or of
-/// old ones, and old ones are where they were.
+/// One control of a set that is far too sparse: new particles lie on the surface, at rest, not on top of each other or
+/// of old ones, and old ones are where they were.
 template <class Backend>
 void NewParticlesKeepTheirDistance(Executor<Backend>& exec) {
   const BallCase<Backend> ball(exec);

@@ -5,8 +5,8 @@
 namespace nacre::test {
 namespace {
 
-/// A device that keeps the sizes of levels to itself builds the tree by launches for the most that they can be; the other
-/// one by their sizes.
+/// A device that keeps the sizes of levels to itself builds the tree by launches for the most that they can be; the
+/// other one by their sizes.
 TEST(Tree, IsTheSameWhetherSizesAreKnownOrNot) {
   const auto near = make_cpu_device(), remote = make_cpu_device(0, true);
   Executor<Cpu> known(*near), unknown(*remote);

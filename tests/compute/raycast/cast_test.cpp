@@ -77,7 +77,8 @@ TEST_F(RaysAtABox, DiagonalViewSeesAHexagon) {
   EXPECT_NEAR(coverage(*pipeline, camera, 200), 4 * std::sqrt(3.0) / 16, 0.006);
 }
 
-/// However far the eye is, in cells beyond what single precision counts one by one: no ray stands still or falls through.
+/// However far the eye is, in cells beyond what single precision counts one by one: no ray stands still or falls
+/// through.
 TEST_F(RaysAtABox, ADistantCameraSeesTheSame) {
   for (const double distance : {20.0, 300.0, 1e4, 1e6}) {
     Camera camera;
