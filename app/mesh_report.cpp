@@ -66,7 +66,7 @@ json fields_json(const MeshInput& input, const MeshInfo& info) {
           {"crowded_points", info.crowded_points},
           {"crowded_cells", info.crowded_cells},
           {"constrained_voxels", info.constrained_voxels},
-          {"creased_voxels", info.creased_voxels},
+          {"creased_voxels", info.ridge_voxels},
           {"smallest_size_voxels", info.smallest_size},
           {"largest_size_voxels", info.largest_size},
           {"expected_particles", info.expected_particles}};

@@ -14,17 +14,17 @@ namespace {
 
 GatheringTime measure(const MeshParticles& particles, int threads) {
   const std::size_t n = particles.points.size();
-  std::vector<Float4> place(n), direction(n);
+  std::vector<Float4> position(n), direction(n);
   std::vector<std::uint32_t> interface(n);
   std::map<std::array<std::uint16_t, 4>, std::uint32_t> number;
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3f p(particles.points[i]), d = particles.normal[i];
-    place[i] = {p.x, p.y, p.z, particles.size[i]};
+    position[i] = {p.x, p.y, p.z, particles.size[i]};
     direction[i] = {d.x, d.y, d.z, particles.energy[i]};
     interface[i] = number.try_emplace(particles.materials[i], std::uint32_t(number.size())).first->second;
   }
   const std::unique_ptr<Device> device = make_cpu_device(threads);
-  return time_gathering(*device, {place, direction, interface}, &interrupt_flag());
+  return time_gathering(*device, {position, direction, interface}, &interrupt_flag());
 }
 
 }  // namespace

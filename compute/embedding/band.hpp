@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "compute/device/executor.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 
@@ -34,7 +34,7 @@ struct BandPoint {
   Int3 base{};    ///< a cell
   Vec3f local{};  ///< from the lower corner of `base`
 
-  NACRE_HD_INLINE BandPoint operator+(const Vec3f& way) const { return {base, local + way}; }
+  NACRE_HD_INLINE BandPoint operator+(const Vec3f& displacement) const { return {base, local + displacement}; }
   NACRE_HD_INLINE Int3 cell() const {
     return base + Int3(int(std::floor(local.x)), int(std::floor(local.y)), int(std::floor(local.z)));
   }
@@ -81,9 +81,9 @@ struct CellPoint {
   }
 };
 
-/// Closest point of cell `place`, whose record is `point`.
-NACRE_HD_INLINE BandPoint closest_point_of(const Int3& place, const CellPoint& point, float quantum) {
-  return {place, Vec3f(0.5f) + point.offset(quantum)};
+/// Closest point of cell `position`, whose record is `point`.
+NACRE_HD_INLINE BandPoint closest_point_of(const Int3& position, const CellPoint& point, float quantum) {
+  return {position, Vec3f(0.5f) + point.offset(quantum)};
 }
 
 /// Linear interpolation among the 2^3 cells around a point.

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "compute/embedding/band.hpp"
-#include "compute/grid/bits.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/bits.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 
@@ -113,7 +113,7 @@ class BrickOctreeView::Cursor {
  public:
   NACRE_HD_INLINE explicit Cursor(const BrickOctreeView& tree) : tree_(tree) {}
   NACRE_HD_INLINE Cursor(const BrickOctreeView& tree, std::uint32_t brick)
-      : tree_(tree), place_(morton_cell(tree.brick_code[brick])), brick_(brick) {}
+      : tree_(tree), position_(morton_cell(tree.brick_code[brick])), brick_(brick) {}
 
   NACRE_HD_INLINE CellIndex find(const Int3& cell) { return find(cell, &OctreeBrick::band); }
   NACRE_HD_INLINE CellIndex find_surface(const Int3& cell) { return find(cell, &OctreeBrick::surface); }
@@ -147,17 +147,17 @@ class BrickOctreeView::Cursor {
 
   /// Number of the brick that contains `cell`, or `none`.
   NACRE_HD_INLINE std::uint32_t brick_of(const Int3& cell) {
-    const Int3 place{cell.x >> 3, cell.y >> 3, cell.z >> 3};
-    if (place == place_) return brick_;
-    return move(place);
+    const Int3 position{cell.x >> 3, cell.y >> 3, cell.z >> 3};
+    if (position == position_) return brick_;
+    return move(position);
   }
 
  private:
-  NACRE_HD std::uint32_t move(const Int3& place) {
-    const Int3 d = place - place_;
+  NACRE_HD std::uint32_t move(const Int3& position) {
+    const Int3 d = position - position_;
     const bool next = brick_ != none && unsigned(d.x + 1) < 3 && unsigned(d.y + 1) < 3 && unsigned(d.z + 1) < 3;
-    place_ = place;
-    brick_ = next ? tree_.neighbour[27 * std::size_t(brick_) + 13 + d.x + 3 * d.y + 9 * d.z] : tree_.locate(place);
+    position_ = position;
+    brick_ = next ? tree_.neighbour[27 * std::size_t(brick_) + 13 + d.x + 3 * d.y + 9 * d.z] : tree_.locate(position);
     return brick_;
   }
 
@@ -200,7 +200,7 @@ class BrickOctreeView::Cursor {
   }
 
   const BrickOctreeView& tree_;
-  Int3 place_{-4, -4, -4};
+  Int3 position_{-4, -4, -4};
   std::uint32_t brick_ = none;
 };
 

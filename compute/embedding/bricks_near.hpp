@@ -5,7 +5,7 @@
 
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/clusters.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre::detail {
 

@@ -128,14 +128,14 @@ struct FindList {
   const std::uint64_t* brick_code;
   std::uint32_t bricks, places;
   std::uint64_t items;
-  const std::uint64_t* place;  // ascending
+  const std::uint64_t* position;  // ascending
   const std::uint64_t* place_start;
   std::uint64_t* start;
   NACRE_HD void operator()(std::int64_t i) const {
     std::uint32_t low = i < bricks ? 0 : places, high = places;
     while (low < high) {
       const std::uint32_t middle = low + (high - low) / 2;
-      if (place[middle] < brick_code[i])
+      if (position[middle] < brick_code[i])
         low = middle + 1;
       else
         high = middle;
@@ -223,7 +223,7 @@ class BrickOctreeBuilder {
         const auto n = std::int64_t(std::min<std::uint64_t>(most, count - first));
         OctreeBrick* brick = found.data() + first;
         exec_.for_each_team(n,
-                            ClosestInBrick{clusters, radius_, tree_.quantum, lists.places.place.data() + first,
+                            ClosestInBrick{clusters, radius_, tree_.quantum, lists.places.position.data() + first,
                                            lists.places.start.data() + first, lists.item.data(), brick, point.data()});
         exec_.for_each(n, CountCells{brick, band.data(), surface.data()});
         const std::uint32_t cells = exec_.exclusive_scan(band.data(), band.data(), n);
@@ -235,7 +235,7 @@ class BrickOctreeBuilder {
         exec_.for_each_team(n, GatherPoints{brick, point.data(), tree_.point.data()});
       }
     }
-    keep_filled(found, lists.places.place);
+    keep_filled(found, lists.places.position);
   }
 
   /// Some of the bricks found have no cell within the radius.
@@ -259,7 +259,7 @@ class BrickOctreeBuilder {
     tree_.list = arena.permanent<std::uint32_t>(lists.item.size());
     exec_.for_each(std::int64_t(tree_.brick_count) + 1,
                    FindList{tree_.brick_code.data(), tree_.brick_count, lists.places.count, lists.item.size(),
-                            lists.places.place.data(), lists.places.start.data(), tree_.list_start.data()});
+                            lists.places.position.data(), lists.places.start.data(), tree_.list_start.data()});
     exec_.for_each(std::int64_t(lists.item.size()), CopyItems{lists.item.data(), tree_.list.data()});
   }
 

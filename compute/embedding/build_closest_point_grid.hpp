@@ -73,8 +73,8 @@ struct BrickStart {
   }
 };
 
-/// Exact closest points of an octet (2^3 cells) among the clusters of its brick, of which it keeps the few that can hold
-/// one of any of its cells.
+/// Exact closest points of an octet (2^3 cells) among the clusters of its brick, of which it keeps the few that can
+/// hold one of any of its cells.
 struct ClosestOfOctet {
   static constexpr int room = 96;  // clusters kept; with more than that the octet looks at the whole list
 
@@ -125,8 +125,8 @@ struct ClosestOfOctet {
     return std::sqrt(nearest) + clusters.rounding + 1e-3f;
   }
 
-  /// Lists the clusters whose balls come near enough to hold a closest point of a cell of the octet around `centre`, from
-  /// which the surface is at most `near` away; returns how many there are.
+  /// Lists the clusters whose balls come near enough to hold a closest point of a cell of the octet around `centre`,
+  /// from which the surface is at most `near` away; returns how many there are.
   NACRE_HD int keep(const Vec3f& centre, float near, const std::uint64_t* all, int count, std::uint32_t* kept) const {
     const float reach = near + 2 * cell_diagonal + clusters.rounding + 1e-3f;  // to a cell and back
     int few = 0;

@@ -18,7 +18,7 @@ struct InterfaceGrid {
   float cells_per_voxel = 2;
   std::vector<Junction> junctions;  ///< by number: surfaces and curves; ascending, surfaces and curves mixed
   Array<Junction> junction;         ///< the same on the device
-  std::vector<Float4> points;       ///< junction points: place in voxels, sizing field
+  std::vector<Float4> points;       ///< junction points: position in voxels, sizing field
   std::vector<Junction> point_junction;
   int crowded_points = 0;  ///< of the points, those where more than four materials meet
   int crowded_cells = 0;   ///< coarse cells with more junctions than were told apart
@@ -182,7 +182,7 @@ struct EmbedInterface {
     const Float4 n = distance.point[q].normal;
     const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
     if (away > reach) return false;
-    const Vec3f normal(n.x, n.y, n.z), on = distance.place(q), r = p - on;
+    const Vec3f normal(n.x, n.y, n.z), on = distance.position(q), r = p - on;
     Vec3f along = r - normal * dot(r, normal);
     const float most = 2, size = length(along);
     if (size > most) along *= most / size;

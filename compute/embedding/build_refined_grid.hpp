@@ -5,7 +5,7 @@
 #include "compute/embedding/build_closest_point_grid.hpp"
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/refined_grid.hpp"
-#include "compute/grid/bits.hpp"
+#include "compute/math/bits.hpp"
 
 namespace nacre {
 
@@ -14,7 +14,7 @@ struct RefinedGrid {
   int refine = 4;
   std::uint64_t cells = 0;          ///< stored: blocks * R^3
   std::uint32_t surface_cells = 0;  ///< those that the surface passes through
-  Array<std::uint32_t> block, texel, place, block_cell, seed_triangle, neighbour;
+  Array<std::uint32_t> block, texel, position, block_cell, seed_triangle, neighbour;
   Array<Float4> seed;
 
   RefinedGridView view(const ClosestPointGridView& grid) const {
@@ -24,7 +24,7 @@ struct RefinedGrid {
             Divider(refine),
             block.data(),
             texel.data(),
-            place.data(),
+            position.data(),
             block_cell.data(),
             seed.data(),
             seed_triangle.data(),
@@ -32,7 +32,7 @@ struct RefinedGrid {
   }
 
   std::uint64_t bytes() const {
-    return block.bytes() + texel.bytes() + place.bytes() + block_cell.bytes() + seed_triangle.bytes() +
+    return block.bytes() + texel.bytes() + position.bytes() + block_cell.bytes() + seed_triangle.bytes() +
            neighbour.bytes() + seed.bytes();
   }
 };
@@ -96,7 +96,7 @@ struct NumberSurface {
   RefinedGridView texture;
   const std::uint32_t* first;  // per block: number of its first surface cell
   std::uint32_t* texel;
-  std::uint32_t* place;
+  std::uint32_t* position;
   Float4* seed;
   std::uint32_t* seed_triangle;
 
@@ -118,7 +118,7 @@ struct NumberSurface {
       std::uint32_t s = first[b] + count_bits(own & (bit - 1));
       for (int w = 0; w < k / 64; ++w) s += count_bits(mask[w]);
       texel[begin + k] = s;
-      place[s] = begin + k;
+      position[s] = begin + k;
       find_seed(s);
     });
   }
@@ -169,8 +169,8 @@ struct NumberSurface {
 };
 
 /// Tells the cells beside the surface which surface cell holds their closest point, interpolated linearly (its error is
-/// far below a texture cell where the surface is smooth) and snapped to the nearest surface cell where it is not. A team
-/// looks up what lies around a block once for all of its cells; coordinates count from the block's corner.
+/// far below a texture cell where the surface is smooth) and snapped to the nearest surface cell where it is not. A
+/// team looks up what lies around a block once for all of its cells; coordinates count from the block's corner.
 struct ExtendSurface {
   RefinedGridView texture;
   std::uint32_t* texel;
@@ -203,7 +203,8 @@ struct ExtendSurface {
   }
 
  private:
-  /// The surface cell that holds the closest point of a cell of the block, or the nearest one to that; `none` out of reach.
+  /// The surface cell that holds the closest point of a cell of the block, or the nearest one to that; `none` out of
+  /// reach.
   NACRE_HD std::uint32_t closest(const Scratch& around, const Int3& cell) const {
     const Vec3f centre = cell_centre(cell), f = centre * texture.inverse_refine - Vec3f(0.5f);
     const Int3 first{f.x < 0 ? 0 : 1, f.y < 0 ? 0 : 1, f.z < 0 ? 0 : 1};
@@ -232,10 +233,10 @@ struct ExtendSurface {
   }
 
   NACRE_HD bool is_surface(const Scratch& around, const Int3& cell, std::uint32_t& value) const {
-    const Int3 outer = texture.outer(cell), place = outer + Int3(1);
+    const Int3 outer = texture.outer(cell), position = outer + Int3(1);
     std::uint32_t at = none;
-    if (unsigned(place.x) < 3 && unsigned(place.y) < 3 && unsigned(place.z) < 3) {
-      const std::uint32_t b = around.block[(place.z * 3 + place.y) * 3 + place.x];
+    if (unsigned(position.x) < 3 && unsigned(position.y) < 3 && unsigned(position.z) < 3) {
+      const std::uint32_t b = around.block[(position.z * 3 + position.y) * 3 + position.x];
       if (b != none) at = texture.entry_in(b, cell, outer);
     } else {
       at = texture.entry(around.corner + cell);  // a block of few cells
@@ -252,7 +253,7 @@ struct FindNeighbours {
   std::uint32_t* neighbour;
   NACRE_HD void operator()(std::int64_t i) const {
     const auto s = std::uint32_t(i);
-    const std::uint32_t own = texture.place[s] / texture.cells_per_block();
+    const std::uint32_t own = texture.position[s] / texture.cells_per_block();
     const Int3 cell = texture.cell(s), home = texture.outer(cell);
     for (int k = 0; k < 6; ++k) {
       Int3 next = cell;
@@ -293,11 +294,11 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
   Array<std::uint32_t> first = arena.temporary<std::uint32_t>(blocks);
   exec.for_each_team(blocks, detail::CountSurface{refine * refine * refine, fine.texel.data(), first.data()});
   fine.surface_cells = exec.exclusive_scan(first.data(), first.data(), blocks);
-  fine.place = arena.permanent<std::uint32_t>(fine.surface_cells);
+  fine.position = arena.permanent<std::uint32_t>(fine.surface_cells);
   fine.seed = arena.permanent<Float4>(fine.surface_cells);
   fine.seed_triangle = arena.permanent<std::uint32_t>(fine.surface_cells);
   exec.for_each_team(blocks, detail::NumberSurface{mesh, fine.view(grid), first.data(), fine.texel.data(),
-                                                   fine.place.data(), fine.seed.data(), fine.seed_triangle.data()});
+                                                   fine.position.data(), fine.seed.data(), fine.seed_triangle.data()});
   exec.for_each_team(blocks, detail::ExtendSurface{fine.view(grid), fine.texel.data()});
   fine.neighbour = arena.permanent<std::uint32_t>(6 * std::size_t(fine.surface_cells));
   exec.for_each(fine.surface_cells, detail::FindNeighbours{fine.view(grid), fine.neighbour.data()});

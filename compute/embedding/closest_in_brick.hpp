@@ -6,7 +6,7 @@
 #include "compute/device/executor.hpp"
 #include "compute/embedding/brick_octree.hpp"
 #include "compute/embedding/octet_search.hpp"
-#include "compute/grid/eight.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre::detail {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "compute/embedding/triangle.hpp"
-#include "compute/grid/eight.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre {
 

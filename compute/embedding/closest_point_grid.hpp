@@ -5,10 +5,10 @@
 #include <cstdint>
 
 #include "compute/embedding/triangle.hpp"
-#include "compute/grid/lanes.hpp"
-#include "compute/grid/morton.hpp"
-#include "compute/grid/vec.hpp"
-#include "compute/grid/weno4.hpp"
+#include "compute/math/lanes.hpp"
+#include "compute/math/morton.hpp"
+#include "compute/math/vec.hpp"
+#include "compute/math/weno4.hpp"
 
 namespace nacre {
 

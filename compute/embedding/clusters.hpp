@@ -7,7 +7,7 @@
 #include "compute/device/executor.hpp"
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/closest_point_grid.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 

@@ -82,8 +82,8 @@ struct SearchCoarseCell {
     for (int z = 0; z < samples; ++z)
       for (int y = 0; y < samples; ++y)
         for (int x = 0; x < samples; ++x) {
-          const Vec3f place = Vec3f(b * Int3(4)) + Vec3f(x + 0.5f, y + 0.5f, z + 0.5f) * (4.0f / float(samples));
-          search(place / cells_per_voxel, {4 * x / samples, 4 * y / samples, 4 * z / samples}, result);
+          const Vec3f position = Vec3f(b * Int3(4)) + Vec3f(x + 0.5f, y + 0.5f, z + 0.5f) * (4.0f / float(samples));
+          search(position / cells_per_voxel, {4 * x / samples, 4 * y / samples, 4 * z / samples}, result);
         }
   }
 
@@ -188,15 +188,15 @@ struct SearchCoarseCell {
       for (int y = low.y; y < low.y + width; ++y)
         for (int x = low.x; x < low.x + width; ++x) {
           const std::uint32_t m = field.voxel_material[field.voxel_number(x, y, z)];
-          int place = 0;
-          while (place < count && material[place] < m) ++place;
-          if (place < count && material[place] == m) continue;
+          int position = 0;
+          while (position < count && material[position] < m) ++position;
+          if (position < count && material[position] == m) continue;
           if (count == most) {
             complete = false;
             continue;
           }
-          for (int j = count; j > place; --j) material[j] = material[j - 1];
-          material[place] = m;
+          for (int j = count; j > position; --j) material[j] = material[j - 1];
+          material[position] = m;
           ++count;
         }
   }
@@ -243,7 +243,7 @@ struct ListFirst {
   }
 };
 
-/// Junction points near the coarse cells in which one was found: place and size; size 0 where there is none.
+/// Junction points near the coarse cells in which one was found: position and size; size 0 where there is none.
 struct FindJunctionPoints {
   MaterialBricksView field;
   SizingFieldView size;
@@ -310,10 +310,10 @@ int junction_points(Executor<Backend>& exec, const MaterialBricks& b, const Sizi
                     std::vector<Float4>& points, std::vector<Junction>& junctions) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  Array<Float4> place = arena.temporary<Float4>(search.count);
+  Array<Float4> position = arena.temporary<Float4>(search.count);
   exec.for_each(search.count, detail::FindJunctionPoints{b.view(), size.view(), coarse, cells_per_voxel,
-                                                         search.found.data(), place.data()});
-  const std::vector<Float4> all = place.download();
+                                                         search.found.data(), position.data()});
+  const std::vector<Float4> all = position.download();
   const std::vector<FoundJunction> found = search.found.download(0, search.count);
   std::vector<bool> crowded;
   for (std::size_t i = 0; i < all.size(); ++i) {

@@ -18,8 +18,8 @@
 #include "compute/embedding/closest_of_eight.hpp"
 #include "compute/embedding/clusters.hpp"
 #include "compute/embedding/triangle_frame.hpp"
-#include "compute/grid/bits.hpp"
-#include "compute/grid/eight.hpp"
+#include "compute/math/bits.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre::detail {
 
@@ -65,7 +65,7 @@ struct ClusterView {
       const float error = frame[start[c]].distances(centre, half, squared);
       return {error, error};
     }
-    squared = nacre::squared(ways_to_corners(Vec3f(centre) - b.centre, half));
+    squared = nacre::squared(displacements_to_corners(Vec3f(centre) - b.centre, half));
     return {b.radius + rounding + 1e-3f, rounding + 1e-3f};
   }
 };
@@ -100,7 +100,7 @@ class OctetSearch {
   NACRE_HD void search(std::uint64_t count, const At& at) {
     Eight bound = eight(1e30f);
     for (std::uint64_t k = 0; k < count; ++k)
-      bound = min(bound, squared(ways_to_corners(at_ - clusters_.bound[at(k)].centre, 0.5f)));
+      bound = min(bound, squared(displacements_to_corners(at_ - clusters_.bound[at(k)].centre, 0.5f)));
     bound = sqrt(bound) + slack_;
     nearest_ = min(nearest_, bound * bound);
     look();
@@ -164,7 +164,7 @@ class OctetSearch {
 
   /// Whether a cluster comes near enough to a cell.
   NACRE_HD_INLINE bool in_reach(const ClusterBound& b) const {
-    const EightWays w = ways_to_corners(at_ - b.centre, 0.5f);
+    const EightDisplacements w = displacements_to_corners(at_ - b.centre, 0.5f);
     const Eight zero = eight(0), along = dot(w, b.normal);
     const Eight above = max(max(along, zero - along) - b.thickness, zero);
     const Eight across = max(squared(w) - along * along, zero);

@@ -34,11 +34,11 @@ struct FindBrickNeighbours {
 
   NACRE_HD void operator()(std::int64_t i) const {
     const auto self = std::uint32_t(i);
-    const Int3 place = morton_cell(code[self]);
+    const Int3 position = morton_cell(code[self]);
     const unsigned bricks = 1u << levels;
     neighbour[27 * std::size_t(self) + 13] = self;
     for (int k = 0; k < 13; ++k) {
-      const Int3 p = place + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const Int3 p = position + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       if (unsigned(p.x) >= bricks || unsigned(p.y) >= bricks || unsigned(p.z) >= bricks) continue;
       const std::uint32_t other = find(morton(p), self);
       if (other == none) continue;
@@ -86,7 +86,7 @@ OctreeNodes build_octree_nodes(Executor<Backend>& exec, const Array<std::uint64_
   const Array<std::uint64_t>* child = &brick_code;
   for (int l = levels - 1; l >= 0; --l) {
     level[l] = runs_of(exec, child->data(), child->size(), 3);
-    child = &level[l].place;
+    child = &level[l].position;
   }
   std::vector<std::uint32_t> start(levels + 1, 0);
   std::uint64_t total = 0;
@@ -98,7 +98,7 @@ OctreeNodes build_octree_nodes(Executor<Backend>& exec, const Array<std::uint64_
   nodes.node = arena.permanent<OctreeNode>(total);
   nodes.level_start = arena.permanent_copy<std::uint32_t>(start);
   for (int l = 0; l < levels; ++l)
-    exec.for_each(level[l].count, detail::WriteNode{(l + 1 < levels ? level[l + 1].place : brick_code).data(),
+    exec.for_each(level[l].count, detail::WriteNode{(l + 1 < levels ? level[l + 1].position : brick_code).data(),
                                                     level[l].start.data(), nodes.node.data() + start[l]});
   return nodes;
 }

@@ -5,14 +5,14 @@
 
 #include "compute/device/error.hpp"
 #include "compute/device/executor.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 
-/// Runs of equal places among sorted codes: `place` ascends; run k is codes start[k] .. start[k + 1] - 1.
+/// Runs of equal places among sorted codes: `position` ascends; run k is codes start[k] .. start[k + 1] - 1.
 struct CodeRuns {
   std::uint32_t count = 0;
-  Array<std::uint64_t> place;
+  Array<std::uint64_t> position;
   Array<std::uint64_t> start;  ///< count + 1 entries
 };
 
@@ -24,7 +24,7 @@ struct PlaceLists {
 
 namespace detail {
 
-/// Counts the places of an item if `place` is null, otherwise writes them. It is one kernel for both, because a
+/// Counts the places of an item if `position` is null, otherwise writes them. It is one kernel for both, because a
 /// compiler may round two instantiations of the same geometry differently. The first places of an item are stored when
 /// they are counted, so that only an item with more is processed twice.
 template <class Enumerate>
@@ -34,26 +34,26 @@ struct EnumeratePlaces {
   std::uint64_t items, pairs;
   std::uint64_t* count;  // later: where the item's places begin
   std::uint64_t* first;  // `kept` per item
-  std::uint64_t* place;
+  std::uint64_t* position;
   std::uint32_t* item;
 
   NACRE_HD void operator()(std::int64_t i) const {
-    std::uint64_t at = place ? count[i] : 0;
-    if (place) {
+    std::uint64_t at = position ? count[i] : 0;
+    if (position) {
       const std::uint64_t end = std::uint64_t(i) + 1 < items ? count[i + 1] : pairs;
       if (end - at <= kept) {
-        for (std::uint64_t k = at; k < end; ++k) place[k] = first[kept * i + (k - at)], item[k] = std::uint32_t(i);
+        for (std::uint64_t k = at; k < end; ++k) position[k] = first[kept * i + (k - at)], item[k] = std::uint32_t(i);
         return;
       }
     }
     enumerate(i, [&](std::uint64_t code) {
-      if (place)
-        place[at] = code, item[at] = std::uint32_t(i);
+      if (position)
+        position[at] = code, item[at] = std::uint32_t(i);
       else if (at < kept)
         first[kept * i + at] = code;
       ++at;
     });
-    if (!place) count[i] = at;
+    if (!position) count[i] = at;
   }
 };
 
@@ -77,11 +77,11 @@ struct WriteRun {
   std::uint64_t codes;
   std::uint32_t runs;
   const std::uint32_t* number;  // exclusive scan of the flags
-  std::uint64_t* place;
+  std::uint64_t* position;
   std::uint64_t* start;
   NACRE_HD void operator()(std::int64_t i) const {
     if (head(i)) {
-      place[number[i]] = head.code[i] >> head.shift;
+      position[number[i]] = head.code[i] >> head.shift;
       start[number[i]] = std::uint64_t(i);
     }
     if (std::uint64_t(i) + 1 == codes) start[runs] = codes;
@@ -101,14 +101,14 @@ CodeRuns runs_of(Executor<Backend>& exec, const std::uint64_t* code, std::uint64
   const std::uint64_t count = exec.reduce(std::int64_t(n), std::uint64_t(0), head, Add{});
   if (count >= none) throw Error("the grid is too fine", "over 2^32 bricks", "lower the resolution");
   runs.count = std::uint32_t(count);
-  runs.place = arena.temporary<std::uint64_t>(count);
+  runs.position = arena.temporary<std::uint64_t>(count);
   runs.start = arena.temporary<std::uint64_t>(count + 1);
   Arena::Scope scope(arena);
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(n);
   exec.for_each(std::int64_t(n), detail::FlagRunHead{head, number.data()});
   exec.exclusive_scan(number.data(), number.data(), std::int64_t(n));
   exec.for_each(std::int64_t(n),
-                detail::WriteRun{head, n, runs.count, number.data(), runs.place.data(), runs.start.data()});
+                detail::WriteRun{head, n, runs.count, number.data(), runs.position.data(), runs.start.data()});
   return runs;
 }
 

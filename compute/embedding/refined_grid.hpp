@@ -20,7 +20,7 @@ struct RefinedGridView {
   Divider divide{4};                             ///< by refine
   const std::uint32_t* block = nullptr;          ///< per closest-point cell: its block of R^3 texture cells, or `none`
   const std::uint32_t* texel = nullptr;          ///< per texture cell of a block: surface cell number, or `none`
-  const std::uint32_t* place = nullptr;          ///< per surface cell: index of its texture cell in `texel`
+  const std::uint32_t* position = nullptr;       ///< per surface cell: index of its texture cell in `texel`
   const std::uint32_t* block_cell = nullptr;     ///< per block: address of its closest-point cell
   const Float4* seed = nullptr;                  ///< per surface cell: closest point minus centre; w unused
   const std::uint32_t* seed_triangle = nullptr;  ///< per surface cell: the triangle of its closest point
@@ -62,7 +62,7 @@ struct RefinedGridView {
   }
 
   /// Coordinates of surface cell `s`.
-  NACRE_HD Int3 cell(std::uint32_t s) const { return texel_cell(place[s]); }
+  NACRE_HD Int3 cell(std::uint32_t s) const { return texel_cell(position[s]); }
 
   NACRE_HD Int3 texel_cell(std::uint32_t at) const {
     const std::uint32_t b = at / cells_per_block();

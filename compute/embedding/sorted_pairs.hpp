@@ -28,11 +28,11 @@ struct EnumerateKeys {
       keys[at] = std::uint64_t(first[i]) << 32 | std::uint64_t(i);
       if (end == at + 1) return;
     }
-    enumerate(i, [&](std::uint64_t place) {
+    enumerate(i, [&](std::uint64_t position) {
       if (keys)
-        keys[at] = place << 32 | std::uint64_t(i);
+        keys[at] = position << 32 | std::uint64_t(i);
       else if (at == 0)
-        first[i] = std::uint32_t(place);
+        first[i] = std::uint32_t(position);
       ++at;
     });
     if (!keys) count[i] = at;
@@ -51,16 +51,16 @@ struct ListStart {
   std::uint64_t pairs;
   const std::uint64_t* keys;
   Offset* start;
-  NACRE_HD void operator()(std::int64_t place) const {
+  NACRE_HD void operator()(std::int64_t position) const {
     std::uint64_t low = 0, high = pairs;
     while (low < high) {
       const std::uint64_t middle = (low + high) / 2;
-      if (keys[middle] >> 32 < std::uint64_t(place))
+      if (keys[middle] >> 32 < std::uint64_t(position))
         low = middle + 1;
       else
         high = middle;
     }
-    start[place] = Offset(low);
+    start[position] = Offset(low);
   }
 };
 

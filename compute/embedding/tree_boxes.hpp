@@ -7,7 +7,7 @@
 #include "compute/device/executor.hpp"
 #include "compute/embedding/build_brick_octree.hpp"
 #include "compute/embedding/build_closest_point_grid.hpp"
-#include "compute/embedding/build_source_octree.hpp"
+#include "compute/embedding/build_thesis_octree.hpp"
 
 namespace nacre {
 
@@ -25,8 +25,8 @@ struct CodesBelow {
   }
 };
 
-struct SourceCodesBelow {
-  const SourceNode* node;  // of a height
+struct ThesisCodesBelow {
+  const ThesisNode* node;  // of a height
   std::uint32_t first;     // number of the first node of the height below
   const std::uint64_t* code;
   std::uint64_t* below;
@@ -52,8 +52,8 @@ inline std::vector<std::uint64_t> box_levels(const BrickOctree& tree) {
   return start;
 }
 
-/// The same for the source's tree: nodes down to those of 2^3 cells. Cells are not boxes of their own.
-inline std::vector<std::uint64_t> box_levels(const SourceOctree& tree) {
+/// The same for the thesis octree: nodes down to those of 2^3 cells. Cells are not boxes of their own.
+inline std::vector<std::uint64_t> box_levels(const ThesisOctree& tree) {
   std::vector<std::uint64_t> start{0};
   for (std::size_t height = tree.height_start.size() - 1; height > 0; --height)
     start.push_back(start.back() + tree.height_start[height] - tree.height_start[height - 1]);
@@ -74,13 +74,13 @@ void write_boxes(Executor<Backend>& exec, const BrickOctree& tree, std::uint64_t
 }
 
 template <class Backend>
-void write_boxes(Executor<Backend>& exec, const SourceOctree& tree, std::uint64_t* memory) {
+void write_boxes(Executor<Backend>& exec, const ThesisOctree& tree, std::uint64_t* memory) {
   const std::vector<std::uint64_t> start = box_levels(tree);
   const std::vector<std::uint32_t>& number = tree.height_start;
   exec.device().fill(memory, 0, sizeof(std::uint64_t));
   for (std::size_t l = 0, height = number.size() - 2; height > 0; ++l, --height)
     exec.for_each(std::int64_t(start[l + 1] - start[l]),
-                  detail::SourceCodesBelow{tree.node.data() + number[height], number[height - 1], memory + start[l],
+                  detail::ThesisCodesBelow{tree.node.data() + number[height], number[height - 1], memory + start[l],
                                            memory + start[l + 1]});
 }
 

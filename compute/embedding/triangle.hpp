@@ -1,7 +1,7 @@
 // Nacre: geometry of one triangle: closest point, overlap with a box, barycentric coordinates.
 #pragma once
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 

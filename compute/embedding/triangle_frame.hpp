@@ -5,7 +5,7 @@
 
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/triangle.hpp"
-#include "compute/grid/eight.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre {
 
@@ -22,8 +22,8 @@ struct TriangleFrame {
   /// the error of the distances (not of their squares).
   NACRE_HD_INLINE float distances(const Vec3d& centre, float half, Eight& squared) const {
     const Vec3f w(centre - origin);
-    const EightWays ways = ways_to_corners(w, half);
-    const Eight x = dot(ways, u), y = dot(ways, v), z = dot(ways, n);
+    const EightDisplacements displacements = displacements_to_corners(w, half);
+    const Eight x = dot(displacements, u), y = dot(displacements, v), z = dot(displacements, n);
     const Eight zero = eight(0);
 
     const Eight beside_ab = max(max(zero - x, x - length), zero);

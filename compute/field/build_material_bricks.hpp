@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compute/device/executor.hpp"
-#include "compute/field/distance_creases.hpp"
+#include "compute/field/distance_ridges.hpp"
 #include "compute/field/material_bricks.hpp"
 
 namespace nacre {
@@ -68,8 +68,8 @@ struct PadMaterials {
   }
 };
 
-/// The materials within 4 voxels of a block, ascending; calls visit(material) if there are two or more. Returns how many
-/// there are.
+/// The materials within 4 voxels of a block, ascending; calls visit(material) if there are two or more. Returns how
+/// many there are.
 struct BlockMaterials {
   Int3 blocks;
   const std::uint16_t* voxel_material;
@@ -88,12 +88,12 @@ struct BlockMaterials {
         for (int x = at_least(b.x * block_size - reach); x < at_most((b.x + 1) * block_size + reach, n.x); ++x) {
           if (line[x] == last) continue;
           last = line[x];
-          int place = 0;
-          while (place < count && found[place] < last) ++place;
-          if (place < count && found[place] == last) continue;
+          int position = 0;
+          while (position < count && found[position] < last) ++position;
+          if (position < count && found[position] == last) continue;
           if (count == max_block_materials) return max_block_materials + 1;
-          for (int k = count; k > place; --k) found[k] = found[k - 1];
-          found[place] = std::uint16_t(last);
+          for (int k = count; k > position; --k) found[k] = found[k - 1];
+          found[position] = std::uint16_t(last);
           ++count;
         }
       }
@@ -157,9 +157,9 @@ struct BrickVoxels {
   }
 };
 
-/// Values of one material: how far it is behind the winner, cut off at 1. Beyond the volume's faces all functions go on as
-/// they end, but the outside's, which is mirrored at the winner's: the face lies half a voxel outside of the last centres,
-/// and interfaces that run into it stay straight.
+/// Values of one material: how far it is behind the winner, cut off at 1. Beyond the volume's faces all functions go on
+/// as they end, but the outside's, which is mirrored at the winner's: the face lies half a voxel outside of the last
+/// centres, and interfaces that run into it stay straight.
 struct FillIndicator {
   BrickVoxels voxels;
   const float* top;  ///< per voxel of the file: the winner's value
@@ -212,8 +212,8 @@ struct NumberBricks {
 
 }  // namespace detail
 
-/// Lays out the bricks: blocks, lists of materials, voxels' materials; `value` is not filled yet. `material`: per voxel of
-/// the file. `kernel` and `spacing` (per axis, in units of the smallest) are kept. Throws Error where more than
+/// Lays out the bricks: blocks, lists of materials, voxels' materials; `value` is not filled yet. `material`: per voxel
+/// of the file. `kernel` and `spacing` (per axis, in units of the smallest) are kept. Throws Error where more than
 /// max_block_materials lie within 4 voxels of one block.
 template <class Backend>
 MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const Vec3d& spacing, CubicKernel kernel,
@@ -258,8 +258,9 @@ MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const V
   return b;
 }
 
-/// Values of indicator functions, one array per material. Only how far each is behind the winner matters: that is stored, in
-/// units of `range` and cut off at -1, since a function that is far behind would ring through the interpolation.
+/// Values of indicator functions, one array per material. Only how far each is behind the winner matters: that is
+/// stored, in units of `range` and cut off at -1, since a function that is far behind would ring through the
+/// interpolation.
 template <class Backend>
 void fill_indicators(Executor<Backend>& exec, MaterialBricks& b, std::span<const std::uint16_t> material,
                      std::span<const std::vector<float>> values, float range) {
@@ -298,8 +299,9 @@ inline float indicator_range(const Int3& dims, std::span<const std::uint16_t> ma
   return most > 0 ? float(most) : 1.0f;
 }
 
-/// Functions of the layers between the levels of a scalar volume, divided by `scale`. Where the values are a signed distance
-/// with this `slope` (0: they are not) and there is one level, its creases are taken out; returns in how many voxels.
+/// Functions of the layers between the levels of a scalar volume, divided by `scale`. Where the values are a signed
+/// distance with this `slope` (0: they are not) and there is one level, its ridges are taken out; returns in how many
+/// voxels.
 template <class Backend>
 std::int64_t fill_scalar(Executor<Backend>& exec, MaterialBricks& b, std::span<const float> values,
                          std::span<const float> levels, float scale, float slope) {
@@ -309,13 +311,13 @@ std::int64_t fill_scalar(Executor<Backend>& exec, MaterialBricks& b, std::span<c
   from.upload(values);
   cuts.upload(levels);
   const Vec3f cells = b.cells_per_unit, spacing{1 / cells.x, 1 / cells.y, 1 / cells.z};
-  const std::int64_t creased =
-      slope > 0 && levels.size() == 1 ? smooth_creases(exec, b.dims, spacing, from, levels[0], slope) : 0;
+  const std::int64_t on_ridge =
+      slope > 0 && levels.size() == 1 ? smooth_ridges(exec, b.dims, spacing, from, levels[0], slope) : 0;
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 1});
   const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
   exec.for_each((b.bricks - 2) * brick_voxels,
                 detail::FillScalar{voxels, from.data(), cuts.data(), int(levels.size()), 1 / scale, b.value.data()});
-  return creased;
+  return on_ridge;
 }
 
 }  // namespace nacre

@@ -1,7 +1,7 @@
 // Nacre: weights of cubic reconstruction along one axis: values, first and second derivatives.
 #pragma once
 
-#include "compute/grid/lanes.hpp"
+#include "compute/math/lanes.hpp"
 
 namespace nacre {
 

@@ -14,8 +14,8 @@ namespace nacre {
 
 /// A point of an interface.
 struct InterfacePoint {
-  Float4 place;   ///< position in voxels; w: 0, or -1 where there is none
-  Float4 normal;  ///< unit, towards the lower of the two materials; w: the larger principal curvature, per voxel
+  Float4 position;  ///< position in voxels; w: 0, or -1 where there is none
+  Float4 normal;    ///< unit, towards the lower of the two materials; w: the larger principal curvature, per voxel
   Junction surface;
 };
 
@@ -63,7 +63,9 @@ struct DistanceFieldView {
   const InterfacePoint* point = nullptr;
   float reach = 0;
 
-  NACRE_HD Vec3f place(std::uint32_t q) const { return {point[q].place.x, point[q].place.y, point[q].place.z}; }
+  NACRE_HD Vec3f position(std::uint32_t q) const {
+    return {point[q].position.x, point[q].position.y, point[q].position.z};
+  }
 
   /// The closest of the points that the eight cells around `p` know (outside of the lattice: the cells nearest to it);
   /// `none` where they know none.
@@ -76,7 +78,7 @@ struct DistanceFieldView {
       const Int3 c = max(Int3(0), min(first + Int3(k & 1, k >> 1 & 1, k >> 2), lattice.cells - Int3(1)));
       const std::uint32_t q = nearest[lattice.number(c.x, c.y, c.z)];
       if (q == none || q == best) continue;
-      const Vec3f r = place(q) - p;
+      const Vec3f r = position(q) - p;
       if (dot(r, r) < least) least = dot(r, r), best = q;
     }
     distance = std::sqrt(least);
@@ -170,7 +172,7 @@ struct FindInterfacePoints {
     const MaterialBricksView& field = boundary.field;
     const Vec3f u = field.cells_per_unit, p{(v.x + 0.5f) / u.x, (v.y + 0.5f) / u.y, (v.z + 0.5f) / u.z};
     InterfacePoint& result = point[start[i]];
-    result.place = {0, 0, 0, -1};
+    result.position = {0, 0, 0, -1};
     if (!field.inside(p, 3)) return;
     const std::int64_t block = field.block_at(p);
     const std::uint32_t own = field.voxel_material[field.voxel_number(v.x, v.y, v.z)];
@@ -193,7 +195,7 @@ struct FindInterfacePoints {
     const CubicStencil there(field, found.p);
     const float curvature =
         largest_curvature(there.curvature(field, surface.material(0)), there.curvature(field, surface.material(1)));
-    result.place = {found.p.x, found.p.y, found.p.z, 0};
+    result.position = {found.p.x, found.p.y, found.p.z, 0};
     result.normal = {found.direction.x, found.direction.y, found.direction.z, curvature};
     result.surface = surface;
     nearest[i] = start[i];
@@ -255,7 +257,7 @@ struct JumpFlood {
           if (unsigned(x) >= unsigned(lattice.cells.x)) continue;
           const std::uint32_t q = row[x];
           if (q == none || q == best) continue;
-          const Vec3f r = from.place(q) - p;
+          const Vec3f r = from.position(q) - p;
           const float d = dot(r, r);
           if (d < least || (d == least && q < best)) least = d, best = q;
         }

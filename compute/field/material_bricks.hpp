@@ -6,7 +6,7 @@
 
 #include "compute/device/backend.hpp"
 #include "compute/field/cubic.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 
@@ -26,10 +26,10 @@ inline constexpr int brick_voxels = block_size * block_size * block_size;
 inline constexpr int volume_padding = 8;  ///< voxels of outside around the volume
 
 /// Material m's indicator function f_m: material i is where f_i is the largest (sec. 3.6, with > for the misprinted <).
-/// A block lists those materials that occur within 4 voxels of it, if there are two or more, and has a brick of values for
-/// each. Two bricks serve all others: number 0 holds the value of a material that is absent, 1 of one that fills a block.
-/// Points are in voxels, isotropic: the smallest spacing is 1; voxel (i, j, k) of the padded volume has its centre at
-/// ((i, j, k) + 0.5) / cells_per_unit.
+/// A block lists those materials that occur within 4 voxels of it, if there are two or more, and has a brick of values
+/// for each. Two bricks serve all others: number 0 holds the value of a material that is absent, 1 of one that fills a
+/// block. Points are in voxels, isotropic: the smallest spacing is 1; voxel (i, j, k) of the padded volume has its
+/// centre at ((i, j, k) + 0.5) / cells_per_unit.
 struct MaterialBricksView {
   Int3 blocks{};
   Vec3f cells_per_unit{1, 1, 1};  ///< at most 1, per axis

@@ -1,4 +1,4 @@
-// Nacre: the sizing field: how far apart particles shall be (Meyer et al. 2007; source notes).
+// Nacre: the sizing field: how far apart particles shall be (Meyer et al. 2007).
 #pragma once
 
 #include <algorithm>
@@ -55,8 +55,9 @@ struct SizingFieldView {
 namespace detail {
 
 /// The medial axis by shrinking balls (Ma, Bae & Choi 2012): the largest ball that touches the interface at a point and
-/// holds no other interface point. Its radius is the distance to the medial axis along the normal; a ball that is stopped
-/// by points seen under less than 75 degrees from its centre goes on growing: noise and wide wedges make no medial axis.
+/// holds no other interface point. Its radius is the distance to the medial axis along the normal; a ball that is
+/// stopped by points seen under less than 75 degrees from its centre goes on growing: noise and wide wedges make no
+/// medial axis.
 struct MedialRadius {
   DistanceFieldView distance;
   float most;       ///< no ball is larger: the field knows what is near the centre of one that large
@@ -76,7 +77,7 @@ struct MedialRadius {
       float d = 0;
       const std::uint32_t q = distance.closest(centre, d);
       if (q == none || d >= r - tolerance) return r;
-      const Float4 at = distance.point[q].place;
+      const Float4 at = distance.point[q].position;
       const Vec3f to_q = Vec3f(at.x, at.y, at.z) - p;
       const float along = dot(to_q, towards), square = dot(to_q, to_q);
       if (along <= 0.02f || square < 0.05f) return r;
@@ -96,11 +97,11 @@ struct SizeAtInterface {
   float* at_point;
   NACRE_HD void operator()(std::int64_t i) const {
     const InterfacePoint& q = radius.distance.point[i];
-    if (q.place.w < 0) {
+    if (q.position.w < 0) {
       at_point[i] = rule.max_size;
       return;
     }
-    const Vec3f p{q.place.x, q.place.y, q.place.z}, n{q.normal.x, q.normal.y, q.normal.z};
+    const Vec3f p{q.position.x, q.position.y, q.position.z}, n{q.normal.x, q.normal.y, q.normal.z};
     at_point[i] = rule.size(min(radius(p, n), radius(p, -n)), 1 / max(q.normal.w, 1e-3f));
   }
 };
@@ -117,14 +118,14 @@ struct SpreadSize {
       h[i] = rule.max_size;
       return;
     }
-    const Float4 at = distance.point[q].place;
+    const Float4 at = distance.point[q].position;
     h[i] = min(rule.max_size, at_point[q] + rule.delta * length(Vec3f(at.x, at.y, at.z) -
                                                                 distance.lattice.centre(distance.lattice.cell(i))));
   }
 };
 
-/// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis. Looks at tiles
-/// that have changed, or one beside them has: elsewhere `from` and `to` are alike.
+/// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis. Looks at
+/// tiles that have changed, or one beside them has: elsewhere `from` and `to` are alike.
 struct LimitSlope {
   Lattice lattice;
   float delta;
@@ -171,10 +172,11 @@ struct LimitSlope {
       if (v[axis] > 0) a = from[i - stride[axis]];
       if (v[axis] + 1 < lattice.cells[axis]) a = min(a, from[i + stride[axis]]);
       if (a >= own) continue;
-      int place = count++;
-      for (; place > 0 && low[place - 1] > a; --place) low[place] = low[place - 1], step[place] = step[place - 1];
-      low[place] = a;
-      step[place] = lattice.spacing[axis];
+      int position = count++;
+      for (; position > 0 && low[position - 1] > a; --position)
+        low[position] = low[position - 1], step[position] = step[position - 1];
+      low[position] = a;
+      step[position] = lattice.spacing[axis];
     }
     float best = own;
     // sum over the used axes of ((x - low) / step)^2 = delta^2; more axes as long as x lies above their values.
@@ -224,9 +226,9 @@ struct SizingField {
   SizingFieldView view() const { return {lattice, h.data()}; }
 };
 
-/// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball (with
-/// `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On the
-/// lattice of `distance`; a body that its reach does not see across counts as wide.
+/// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball
+/// (with `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On
+/// the lattice of `distance`; a body that its reach does not see across counts as wide.
 template <class Backend>
 SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule) {
   Arena& arena = exec.arena();

@@ -1,21 +1,22 @@
-// Nacre: where the boundary of labels lies between two voxels: stairs of labels are read as the slopes they stand for.
+// Nacre: where the boundary of labels lies between two voxels: staircases of labels are read as the slopes they stand
+// for.
 #pragma once
 
 #include "compute/field/material_bricks.hpp"
 
 namespace nacre {
 
-/// A slope that is flatter than 45 degrees against an axis shows in labels as a flight of stairs: treads, and steps where they
-/// end. Here it is taken back: the boundary reaches a voxel centre where the tread ends and is in between in proportion, plus
-/// the bend that the lengths of the next treads tell. So a plane's labels give the plane, however wide its treads are
-/// (shape-based interpolation, Raya & Udupa 1990, along treads instead of between slices). Walls are no steps: treads that
-/// end there are left as they are.
+/// A slope that is flatter than 45 degrees against an axis shows in labels as a staircase: treads, and steps where they
+/// end. Here it is taken back: the boundary reaches a voxel centre where the tread ends and is in between in
+/// proportion, plus the bend that the lengths of the next treads tell. So a plane's labels give the plane, however wide
+/// its treads are (shape-based interpolation, Raya & Udupa 1990, along treads instead of between slices). Walls are no
+/// steps: treads that end there are left as they are.
 struct LabelSlopes {
   MaterialBricksView field;
-  float reach = 32;  ///< the farthest end of a tread that is looked for, in voxels; 0: stairs stay
+  float reach = 32;  ///< the farthest end of a tread that is looked for, in voxels; 0: staircases stay
 
-  /// What of voxel `v` belongs to another material than its own beyond face `axis`, `side` (-1 or 1): 0 to 0.5. Zero, too,
-  /// where the boundary lies beyond that face.
+  /// What of voxel `v` belongs to another material than its own beyond face `axis`, `side` (-1 or 1): 0 to 0.5. Zero,
+  /// too, where the boundary lies beyond that face.
   NACRE_HD float share_beyond(const Int3& v, int axis, int side) const {
     Int3 up{};
     up[axis] = side;
@@ -67,7 +68,8 @@ struct LabelSlopes {
       inverse += 1 / distance;
       farthest = max(farthest, distance);
     }
-    /// Where there is none, as on the top of a hill, the tread is thought to end as far away as the farthest of the others.
+    /// Where there is none, as on the top of a hill, the tread is thought to end as far away as the farthest of the
+    /// others.
     NACRE_HD float weight(const Ends& others) const {
       return count > 0 ? inverse : float(others.count) / others.farthest;
     }
@@ -83,7 +85,8 @@ struct LabelSlopes {
   NACRE_HD std::uint16_t label(const Int3& v) const { return field.voxel_material[field.voxel_number(v.x, v.y, v.z)]; }
   NACRE_HD bool inside(const Int3& v) const { return is_within(v, field.voxels()); }
 
-  /// The first voxel along a direction that is not of the tread, and how many steps away it is; 0 where none is within reach.
+  /// The first voxel along a direction that is not of the tread, and how many steps away it is; 0 where none is within
+  /// reach.
   NACRE_HD int leave(Tread& tread, const Int3& direction, float voxel) const {
     for (int k = 1; float(k) * voxel <= reach; ++k) {
       tread.at = tread.at + direction;
@@ -110,7 +113,8 @@ struct LabelSlopes {
     return result;
   }
 
-  /// How many voxels of material `from` there are before one of `to`; 0 where they are too many, or another one follows.
+  /// How many voxels of material `from` there are before one of `to`; 0 where they are too many, or another one
+  /// follows.
   NACRE_HD int height(Int3 at, const Int3& towards, std::uint16_t from, std::uint16_t to) const {
     for (int k = 1; k <= highest_step; ++k) {
       at = at + towards;

@@ -158,31 +158,32 @@ struct HoldVoxels {
     const Int3 n = smooth.blocks;
     const Int3 low = Int3(int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)) * Int3(block_size);
     std::uint64_t count = 0;
-    for (int place = 0; place < brick_voxels; ++place) {
-      const Int3 v = low + Int3(place % block_size, place / block_size % block_size, place / (block_size * block_size));
+    for (int position = 0; position < brick_voxels; ++position) {
+      const Int3 v =
+          low + Int3(position % block_size, position / block_size % block_size, position / (block_size * block_size));
       if (smooth.voxel_material[smooth.voxel_number(v.x, v.y, v.z)] != own) continue;
-      count += hold(v, place, brick, first, last) ? 1 : 0;
+      count += hold(v, position, brick, first, last) ? 1 : 0;
     }
     if (count > 0) atomic_add(held, count);
   }
 
  private:
-  NACRE_HD bool hold(const Int3& v, int place, std::uint32_t mine, std::uint32_t first, std::uint32_t last) const {
+  NACRE_HD bool hold(const Int3& v, int position, std::uint32_t mine, std::uint32_t first, std::uint32_t last) const {
     std::uint32_t rival = first;
     float most = -3e38f;
     for (std::uint32_t k = first; k < last; ++k) {
-      const float f = smooth.value[std::size_t(k) * brick_voxels + place];
+      const float f = smooth.value[std::size_t(k) * brick_voxels + position];
       if (k != mine && f > most) most = f, rival = k;
     }
-    const float lead = smooth.value[std::size_t(mine) * brick_voxels + place] - most;
+    const float lead = smooth.value[std::size_t(mine) * brick_voxels + position] - most;
     if (lead >= thin_margin) return false;
     const float wanted = is_thin(v, smooth.brick_material[mine]) ? thin_margin : margin;
     if (lead >= wanted) return false;
     const float share = 0.5f * gain * (1.2f * wanted - lead);  // a little more, so that rounds come to an end
-    correction[std::size_t(mine) * brick_voxels + place] = share;
+    correction[std::size_t(mine) * brick_voxels + position] = share;
     relaxed_store(changed + mine, 1);
     // Others may lower the same rival's brick at this place only for this voxel: the place is the voxel's own.
-    correction[std::size_t(rival) * brick_voxels + place] = -share;
+    correction[std::size_t(rival) * brick_voxels + position] = -share;
     relaxed_store(changed + rival, 1);
     return true;
   }
@@ -211,12 +212,13 @@ struct TightenResult {
   std::int64_t left = 0;  ///< of the last round: still off by more than nothing
 };
 
-/// Fills the bricks of a label volume. Whitaker 2000 moves the binary boundary by its curvature and holds it in the shell
-/// between the inner and outer voxel centres. Here the indicators of all materials are diffused at once, which is that
-/// motion (Merriman, Bence & Osher 1992), by 2 G - G G, which leaves quadratics alone, so that boundaries do not shrink
-/// with their curvature to leading order. Voxels that would change sides are then held by narrow Gaussians: the result is
-/// smooth everywhere, and every voxel's centre stays in its material, thin ones by a wider margin. `width`: of G in voxels,
-/// up to 1.5; 0: the binary functions as they are. `stairs`: the reach of LabelSlopes, voxels; 0: all of a voxel is of its label.
+/// Fills the bricks of a label volume. Whitaker 2000 moves the binary boundary by its curvature and holds it in the
+/// shell between the inner and outer voxel centres. Here the indicators of all materials are diffused at once, which is
+/// that motion (Merriman, Bence & Osher 1992), by 2 G - G G, which leaves quadratics alone, so that boundaries do not
+/// shrink with their curvature to leading order. Voxels that would change sides are then held by narrow Gaussians: the
+/// result is smooth everywhere, and every voxel's centre stays in its material, thin ones by a wider margin. `width`:
+/// of G in voxels, up to 1.5; 0: the binary functions as they are. `stairs`: the reach of LabelSlopes, voxels; 0: all
+/// of a voxel is of its label.
 template <class Backend>
 TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, double stairs) {
   constexpr int reach = 6, narrow_reach = 2;

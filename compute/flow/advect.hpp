@@ -6,8 +6,8 @@
 
 namespace nacre {
 
-/// Fourth-order Runge-Kutta in space and time over the fraction `h` of step `j` from time `u` in it. False where a stage
-/// leaves the band.
+/// Fourth-order Runge-Kutta in space and time over the fraction `h` of step `j` from time `u` in it. False where a
+/// stage leaves the band.
 NACRE_HD inline bool runge_kutta4(const FlowField& field, const Vec3f& p, int j, float u, float h, Vec3f& end) {
   Vec3f k1, k2, k3, k4;
   const float middle = u + 0.5f * h, last = u + h < 1 ? u + h : 1;
@@ -58,8 +58,8 @@ struct ReleaseParticles {
       h = h < 1 - u ? h : 1 - u;
       Vec3f end, landed;
       bool moved = runge_kutta4(field, p, j, u, h, end);
-      const Vec3f way = moved ? end - p : Vec3f{};
-      if (moved && dot(way, way) * scale * scale < at_rest * at_rest * h * h) {
+      const Vec3f displacement = moved ? end - p : Vec3f{};
+      if (moved && dot(displacement, displacement) * scale * scale < at_rest * at_rest * h * h) {
         u += h;
         continue;
       }

@@ -16,7 +16,7 @@ struct ReleaseBandParticles {
   const float* carried;          ///< per surface cell, 0..1
   std::uint64_t* sums[max_ttl];  ///< buffers of the coming steps
   int ttl;
-  bool from_centres;  ///< start at the cells' centres, as the source does, not at their closest points
+  bool from_centres;  ///< start at the cells' centres, as the dissertation does, not at their closest points
 
   static constexpr float tolerance = 0.3f;      // cells that the estimates of a piece may differ by
   static constexpr float longest = 12;          // cells of a piece
@@ -25,10 +25,10 @@ struct ReleaseBandParticles {
 
   using Cursor = typename View::Cursor;
 
-  NACRE_HD void operator()(CellIndex home, CellIndex cell, const Int3& place, Cursor& cursor) const {
+  NACRE_HD void operator()(CellIndex home, CellIndex cell, const Int3& position, Cursor& cursor) const {
     const std::uint32_t value16 = Deposit::quantise(carried[home]);
-    BandPoint p{place, Vec3f(0.5f)};
-    if (!from_centres) p = closest_point_of(place, field.view.point[cell], field.view.quantum);
+    BandPoint p{position, Vec3f(0.5f)};
+    if (!from_centres) p = closest_point_of(position, field.view.point[cell], field.view.quantum);
     Cursor drawing = cursor;
     atomic_add(sums[0] + home, Deposit::pack(value16));
     CellIndex here = home;
@@ -47,19 +47,19 @@ struct ReleaseBandParticles {
     float u = 0, h = 1;
     while (u < 1) {
       h = h < 1 - u ? h : 1 - u;
-      Vec3f way;
+      Vec3f displacement;
       float doubt;
-      const bool moved = runge_kutta4(cursor, p, j, u, h, way, doubt);
-      if (!moved || doubt > tolerance * tolerance || dot(way, way) > longest * longest) {
+      const bool moved = runge_kutta4(cursor, p, j, u, h, displacement, doubt);
+      if (!moved || doubt > tolerance * tolerance || dot(displacement, displacement) > longest * longest) {
         if (h > shortest) {
           h *= 0.5f;
           continue;
         }
         if (!moved) break;  // out of the band: the path ends there
       }
-      if (dot(way, way) >= at_rest * at_rest * h * h) {
-        hits += draw(drawing, sums[j], p, way, value16);
-        p = p + way;
+      if (dot(displacement, displacement) >= at_rest * at_rest * h * h) {
+        hits += draw(drawing, sums[j], p, displacement, value16);
+        p = p + displacement;
       }
       u += h;
       h *= 2;
@@ -67,9 +67,9 @@ struct ReleaseBandParticles {
     return hits;
   }
 
-  /// The way of the fraction `h` of step `j` from time `u` in it; `doubt`: squared distance between the two estimates
-  /// of its middle, in cells.
-  NACRE_HD_INLINE bool runge_kutta4(Cursor& cursor, const BandPoint& p, int j, float u, float h, Vec3f& way,
+  /// The displacement in the fraction `h` of step `j` from time `u` in it; `doubt`: squared distance between the two
+  /// estimates of its middle, in cells.
+  NACRE_HD_INLINE bool runge_kutta4(Cursor& cursor, const BandPoint& p, int j, float u, float h, Vec3f& displacement,
                                     float& doubt) const {
     Vec3f k1, k2, k3, k4;
     const float middle = u + 0.5f * h, last = u + h < 1 ? u + h : 1;
@@ -77,19 +77,20 @@ struct ReleaseBandParticles {
     if (!field.velocity(cursor, p + k1 * (0.5f * h), j, middle, k2)) return false;
     if (!field.velocity(cursor, p + k2 * (0.5f * h), j, middle, k3)) return false;
     if (!field.velocity(cursor, p + k3 * h, j, last, k4)) return false;
-    way = (k1 + (k2 + k3) * 2.0f + k4) * (h / 6.0f);
+    displacement = (k1 + (k2 + k3) * 2.0f + k4) * (h / 6.0f);
     const Vec3f d = (k3 - k2) * h;
     doubt = dot(d, d);
     return true;
   }
 
-  /// The line of cells from `p` to `p + way`, without the cell of `p` (as deposit_line). Returns how many were hit.
-  NACRE_HD_INLINE static int draw(Cursor& cursor, std::uint64_t* sums, const BandPoint& p, const Vec3f& way,
+  /// The line of cells from `p` to `p + displacement`, without the cell of `p` (as deposit_line). Returns how many were
+  /// hit.
+  NACRE_HD_INLINE static int draw(Cursor& cursor, std::uint64_t* sums, const BandPoint& p, const Vec3f& displacement,
                                   std::uint32_t value16) {
-    const Int3 cells = (p + way).cell() - p.cell();
+    const Int3 cells = (p + displacement).cell() - p.cell();
     const int x = cells.x < 0 ? -cells.x : cells.x, y = cells.y < 0 ? -cells.y : cells.y;
     const int z = cells.z < 0 ? -cells.z : cells.z, xy = x > y ? x : y, n = xy > z ? xy : z;
-    const Vec3f step = way * (1.0f / float(n > 0 ? n : 1));
+    const Vec3f step = displacement * (1.0f / float(n > 0 ? n : 1));
     int hits = 0;
     for (int i = 1; i <= n; ++i) {
       const CellIndex cell = cursor.find_surface((p + step * float(i)).cell());

@@ -6,15 +6,15 @@
 #include "compute/embedding/brick_octree.hpp"
 #include "compute/flow/filter.hpp"
 #include "compute/flow/sample_band.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 
 /// White noise of the cell that holds a cell's closest point: it does not change along normals, as if it were extended.
 template <class View>
-NACRE_HD_INLINE float extended_noise(const View& view, const Int3& place, CellIndex cell, std::uint32_t seed,
+NACRE_HD_INLINE float extended_noise(const View& view, const Int3& position, CellIndex cell, std::uint32_t seed,
                                      std::uint32_t step) {
-  const Int3 home = closest_point_of(place, view.point[cell], view.quantum).cell();
+  const Int3 home = closest_point_of(position, view.point[cell], view.quantum).cell();
   const std::uint64_t code = morton(home);
   return float(philox(std::uint32_t(code), std::uint32_t(code >> 32), seed ^ (step * 0x85EBCA6Bu)).a >> 8) *
          (1.0f / 16777216.0f);
@@ -26,8 +26,8 @@ struct FillBandNoise {
   View view;
   std::uint32_t seed;
   float *value, *carried;
-  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor&) const {
-    value[s] = carried[s] = extended_noise(view, place, cell, seed, 0);
+  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor&) const {
+    value[s] = carried[s] = extended_noise(view, position, cell, seed, 0);
   }
 };
 
@@ -43,14 +43,14 @@ struct NormaliseAndExtend {
   bool sharp;              ///< a cell's own deposits count alone, where it has some (see Normalise)
   float* value;            ///< 0..1; may be `otherwise` itself
 
-  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor& cursor) const {
+  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor& cursor) const {
     float sum = 0, hits = 0;
     if (sharp) {
       sum = float(Deposit::value(sums[s]));
       hits = float(Deposit::hits(sums[s]));
     }
     if (hits == 0) {
-      const SplineWeights weights(closest_point_of(place, view.point[cell], view.quantum));
+      const SplineWeights weights(closest_point_of(position, view.point[cell], view.quantum));
       cursor.each_surface_of_27(weights.first, [&](int k, CellIndex at) {
         const std::uint64_t d = sums[at];
         const float w = weights.w[0][k % 3] * weights.w[1][k / 3 % 3] * weights.w[2][k / 9];
@@ -90,12 +90,12 @@ struct BrickMoments {
 struct LocalBrickMoments {
   const Float4* moments;
 
-  NACRE_HD Vec3f at(const BrickOctreeView& view, const Int3& place, BrickOctreeView::Cursor& cursor) const {
-    const std::uint32_t* neighbour = view.neighbour + 27 * std::size_t(cursor.brick_of(place));
+  NACRE_HD Vec3f at(const BrickOctreeView& view, const Int3& position, BrickOctreeView::Cursor& cursor) const {
+    const std::uint32_t* neighbour = view.neighbour + 27 * std::size_t(cursor.brick_of(position));
     int side[3];
     float f[3];
     for (int axis = 0; axis < 3; ++axis) {
-      const float x = (float(place[axis] & 7) + 0.5f) / 8 - 0.5f;  // from the brick's centre, in bricks
+      const float x = (float(position[axis] & 7) + 0.5f) / 8 - 0.5f;  // from the brick's centre, in bricks
       side[axis] = x < 0 ? -1 : 1;
       f[axis] = std::fabs(x);
     }
@@ -130,8 +130,8 @@ struct EqualiseBand {
   float local;
   float* detail;
 
-  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& place, typename View::Cursor& cursor) const {
-    const Vec3f m = moments.at(view, place, cursor);
+  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& position, typename View::Cursor& cursor) const {
+    const Vec3f m = moments.at(view, position, cursor);
     const TextureSpread all = *whole;
     float shift = 0, spread = all.deviation;
     if (m.x > 0) {
@@ -144,8 +144,8 @@ struct EqualiseBand {
   }
 };
 
-/// What the next step's particles carry: sharpened by the plain 3-D Laplacian of the extended values, clamped, jittered.
-/// A neighbour that the surface does not pass through has the value at its own closest point.
+/// What the next step's particles carry: sharpened by the plain 3-D Laplacian of the extended values, clamped,
+/// jittered. A neighbour that the surface does not pass through has the value at its own closest point.
 template <class View>
 struct SharpenBand {
   View view;
@@ -154,25 +154,25 @@ struct SharpenBand {
   std::uint32_t seed, step;
   float* carried;
 
-  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor& cursor) const {
+  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor& cursor) const {
     const float white_noise = 0.28867513f;  // its standard deviation
     const float own = detail[s];
     float laplacian = 0;
     for (int k = 0; k < 6 && sharpen > 0; ++k) {
-      Int3 next = place;
+      Int3 next = position;
       next[k / 2] += k & 1 ? 1 : -1;
       laplacian += extended(next, own, cursor) - own;
     }
     const float sharp = clamp01(0.5f + white_noise * (own - sharpen * laplacian));
-    carried[s] = sharp + jitter * (extended_noise(view, place, cell, seed, step + 1) - sharp);
+    carried[s] = sharp + jitter * (extended_noise(view, position, cell, seed, step + 1) - sharp);
   }
 
-  NACRE_HD_INLINE float extended(const Int3& place, float missing, typename View::Cursor& cursor) const {
-    const CellIndex surface = cursor.find_surface(place);
+  NACRE_HD_INLINE float extended(const Int3& position, float missing, typename View::Cursor& cursor) const {
+    const CellIndex surface = cursor.find_surface(position);
     if (surface != no_cell) return detail[surface];
-    const CellIndex cell = cursor.find(place);
+    const CellIndex cell = cursor.find(position);
     if (cell == no_cell) return missing;
-    return sample_near(cursor, detail, closest_point_of(place, view.point[cell], view.quantum), missing);
+    return sample_near(cursor, detail, closest_point_of(position, view.point[cell], view.quantum), missing);
   }
 };
 

@@ -56,9 +56,9 @@ struct ExtendVelocity {
   SpeedScale scale;
   std::uint32_t* slot;
 
-  NACRE_HD void operator()(CellIndex cell, const Int3& place, typename View::Cursor&) const {
+  NACRE_HD void operator()(CellIndex cell, const Int3& position, typename View::Cursor&) const {
     const CellPoint point = view.point[cell];
-    const Vec3d p = Vec3d(place) + Vec3d(0.5) + Vec3d(point.offset(view.quantum));
+    const Vec3d p = Vec3d(position) + Vec3d(0.5) + Vec3d(point.offset(view.quantum));
     const Vec3f w = interpolation_weights(mesh.corners(point.triangle), p);
     const Triangle corner = mesh.triangles[point.triangle];
     const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;

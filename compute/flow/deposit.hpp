@@ -42,9 +42,9 @@ NACRE_HD_INLINE int deposit_line(const RefinedGridView& texture, std::uint64_t* 
   return hits;
 }
 
-/// Normalised frame: the mean of what was deposited in each cell, or, where nothing was, in the six cells around it. Lines
-/// are not antialiased (Alg. 5.4 does so): streaks are convolved along the flow afterwards, which hides their steps, and
-/// what particles carry stays as sharp as a cell.
+/// Normalised frame: the mean of what was deposited in each cell, or, where nothing was, in the six cells around it.
+/// Lines are not antialiased (Alg. 5.4 does so): streaks are convolved along the flow afterwards, which hides their
+/// steps, and what particles carry stays as sharp as a cell.
 struct Normalise {
   RefinedGridView texture;
   const std::uint64_t* sums;

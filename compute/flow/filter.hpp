@@ -114,9 +114,9 @@ struct BlurMoments {
   }
 };
 
-/// How far a value is from the mean, in standard deviations; mean and deviation are the local ones to the share `local`,
-/// else those of the whole texture. Without it what a diverging flow stretches grows into blotches, step by step.
-/// Gives that of `ahead`.
+/// How far a value is from the mean, in standard deviations; mean and deviation are the local ones to the share
+/// `local`, else those of the whole texture. Without it what a diverging flow stretches grows into blotches, step by
+/// step. Gives that of `ahead`.
 struct Equalise {
   RefinedGridView texture;
   const float* ahead;

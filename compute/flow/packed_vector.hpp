@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <cstring>
 
-#include "compute/grid/lanes.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/lanes.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 
-/// Three signed 9-bit mantissas (x lowest) and one 5-bit exponent: component = mantissa * 2^(exponent - 29), up to 1020.
-/// The direction is off by at most 0.4 degrees however short the vector is, down to 2^-29 cells.
+/// Three signed 9-bit mantissas (x lowest) and one 5-bit exponent: component = mantissa * 2^(exponent - 29), up to
+/// 1020. The direction is off by at most 0.4 degrees however short the vector is, down to 2^-29 cells.
 struct PackedVector {
   static constexpr int bias = 29, largest = 255;
 

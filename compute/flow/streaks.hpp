@@ -1,6 +1,6 @@
-// Nacre: streaks for the eye: the moving texture, high-passed and convolved along the flow of the frame (Cabral & Leedom
-// 1993, Okada & Kao 1997). What particles carry is not touched by it, so the texture moves as before; its direction is
-// that of the present flow, also where the flow is slow and particles leave no lines.
+// Nacre: streaks for the eye: the moving texture, high-passed and convolved along the flow of the frame (Cabral &
+// Leedom 1993, Okada & Kao 1997). What particles carry is not touched by it, so the texture moves as before; its
+// direction is that of the present flow, also where the flow is slow and particles leave no lines.
 #pragma once
 
 #include "compute/embedding/band.hpp"
@@ -80,8 +80,8 @@ struct GridStreaks {
 struct BrickStreaks {
   BrickOctreeView view;
 
-  NACRE_HD_INLINE SurfaceFoot foot(CellIndex, const Int3& place) const {
-    const CellPoint point = view.point[BrickOctreeView::Cursor(view).find(place)];
+  NACRE_HD_INLINE SurfaceFoot foot(CellIndex, const Int3& position) const {
+    const CellPoint point = view.point[BrickOctreeView::Cursor(view).find(position)];
     return {point.offset(view.quantum), point.triangle};
   }
 
@@ -113,8 +113,8 @@ struct OnGridStreaks {
 template <class Kernel>
 struct OnBrickStreaks {
   Kernel kernel;
-  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& place, BrickOctreeView::Cursor&) const {
-    kernel(s, place);
+  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& position, BrickOctreeView::Cursor&) const {
+    kernel(s, position);
   }
 };
 
@@ -139,9 +139,9 @@ struct MarkStreakCells {
   float least;           ///< speed below which nothing flows
   StreakCell* cells;
 
-  NACRE_HD void operator()(CellIndex s, const Int3& place) const {
-    const SurfaceFoot foot = streaks.foot(s, place);
-    const Vec3f w(barycentric(mesh.corners(foot.triangle), (Vec3d(place) + Vec3d(0.5) + Vec3d(foot.offset)) * cell));
+  NACRE_HD void operator()(CellIndex s, const Int3& position) const {
+    const SurfaceFoot foot = streaks.foot(s, position);
+    const Vec3f w(barycentric(mesh.corners(foot.triangle), (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * cell));
     const Triangle corner = mesh.triangles[foot.triangle];
     const Vec3f n = mesh.normal(foot.triangle, w);
     const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
@@ -152,9 +152,9 @@ struct MarkStreakCells {
   }
 };
 
-/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow, less most of the mean of
-/// those around. Without that they would be as wide as the lines that particles draw; less all of it they are thinner than
-/// a cell and lose their way.
+/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow, less most of the mean
+/// of those around. Without that they would be as wide as the lines that particles draw; less all of it they are
+/// thinner than a cell and lose their way.
 template <class Streaks>
 struct HighPass {
   Streaks streaks;
@@ -163,7 +163,7 @@ struct HighPass {
 
   static constexpr float share = 0.3f;
 
-  NACRE_HD void operator()(CellIndex s, const Int3& place) const {
+  NACRE_HD void operator()(CellIndex s, const Int3& position) const {
     typename Streaks::Cursor cursor(streaks);
     const auto at = [&](const Int3& cell) {
       const NearSurfaceCell found = cursor.find(cell);
@@ -174,10 +174,10 @@ struct HighPass {
     if (const std::uint32_t direction = cells[s].direction) {
       const Vec3f d = PackedDirection::unpack(direction);
       const Vec3f p = Vec3f(0.5f) + PackedDirection::unpack(cells[s].normal) * cells[s].plane;
-      along = 0.5f * own + 0.25f * (at(place + floor_cell(p + d)) + at(place + floor_cell(p - d)));
+      along = 0.5f * own + 0.25f * (at(position + floor_cell(p + d)) + at(position + floor_cell(p - d)));
     }
     for (int k = 0; k < 6; ++k) {
-      Int3 next = place;
+      Int3 next = position;
       next[k / 2] += k & 1 ? 1 : -1;
       around += at(next);
     }
@@ -185,8 +185,8 @@ struct HighPass {
   }
 };
 
-/// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or to
-/// where the flow or the surface ends or turns back.
+/// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
+/// to where the flow or the surface ends or turns back.
 template <class Streaks>
 struct ConvolveAlongFlow {
   Streaks streaks;
@@ -196,11 +196,11 @@ struct ConvolveAlongFlow {
 
   static constexpr float gain = 4;  ///< a mean of so many values is small
 
-  NACRE_HD void operator()(CellIndex home, const Int3& place) const {
-    result[home] = clamp01(0.5f + gain * mean(home, place));
+  NACRE_HD void operator()(CellIndex home, const Int3& position) const {
+    result[home] = clamp01(0.5f + gain * mean(home, position));
   }
 
-  NACRE_HD_INLINE float mean(CellIndex home, const Int3& place) const {
+  NACRE_HD_INLINE float mean(CellIndex home, const Int3& position) const {
     const StreakCell own = cells[home];
     float sum = own.value;
     if (own.direction == 0) return sum;
@@ -214,7 +214,7 @@ struct ConvolveAlongFlow {
       for (int i = 0; i < steps; ++i) {
         p = p + d * 3.0f - before;  // two cells by Adams and Bashforth's second order: one direction a step
         const Vec3f low{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
-        const NearSurfaceCell found = cursor.find(place + Int3(int(low.x), int(low.y), int(low.z)));
+        const NearSurfaceCell found = cursor.find(position + Int3(int(low.x), int(low.y), int(low.z)));
         if (found.cell == no_cell) break;
         const StreakCell cell = cells[found.cell];
         const Vec3f next = PackedDirection::unpack(cell.direction) * float(side);

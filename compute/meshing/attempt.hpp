@@ -11,8 +11,8 @@
 
 namespace nacre {
 
-/// Follows points while some move, go and come. Points are numbered as they are given: those that stay keep their order, new
-/// ones come behind. A mesh of them names them by `point_of`, ascending, and may leave some out.
+/// Follows points while some move, go and come. Points are numbered as they are given: those that stay keep their
+/// order, new ones come behind. A mesh of them names them by `point_of`, ascending, and may leave some out.
 class Attempt {
  public:
   /// What a mesh shows of its points, and its points of them.
@@ -35,8 +35,8 @@ class Attempt {
   void change(std::span<const std::uint8_t> gone, std::size_t points);
   /// Compares each patch with what it was before; once after each change, by the mesh of the points now.
   void judge(const View& now);
-  /// Marks the points of the mesh last judged that are in patches with triangles below the rule, before and still: to go on
-  /// with. Empty where there are none.
+  /// Marks the points of the mesh last judged that are in patches with triangles below the rule, before and still: to
+  /// go on with. Empty where there are none.
   std::vector<std::uint8_t> open(const View& now) const;
   /// The points with those patches put back that are no better than before, in order; empty where all are better.
   std::vector<Source> taken_back() const;

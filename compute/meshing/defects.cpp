@@ -154,8 +154,8 @@ void choose(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<con
 
 bool has_corner(const Triangle& t, std::uint32_t point) { return t.a == point || t.b == point || t.c == point; }
 
-/// New points in the facets where a surface of two materials touches itself, or another one off the junctions; at junctions
-/// `anyhow`. Not next to old ones.
+/// New points in the facets where a surface of two materials touches itself, or another one off the junctions; at
+/// junctions `anyhow`. Not next to old ones.
 void fill_in(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const std::uint8_t> order,
              std::span<const float> size, std::span<const std::array<std::uint32_t, 2>> touching, bool anyhow,
              MeshDefects& defects) {
@@ -185,15 +185,15 @@ void fill_before_rim(const SurfaceMesh& mesh, const VertexTable& facets_at, std:
   const Triangle& c = mesh.triangles[t];
   const auto p = corners(mesh, t);
   const Vec3d across = (p[(flat + 1) % 3] + p[(flat + 2) % 3]) / 2.0 - p[flat];
-  const Vec3d place = p[flat] + normalized(across) * (in_front * double(size[c[flat]]));
-  if (!is_finite(place)) return;
+  const Vec3d position = p[flat] + normalized(across) * (in_front * double(size[c[flat]]));
+  if (!is_finite(position)) return;
   for (int k = 0; k < 3; ++k)
     for (const std::uint32_t corner : facets_at.corners(c[k]))
       for (int j = 0; j < 3; ++j) {
         const std::uint32_t q = mesh.triangles[corner / 3][j];
-        if (length(mesh.points[q] - place) < crowd * size[q]) return;
+        if (length(mesh.points[q] - position) < crowd * size[q]) return;
       }
-  defects.insert.push_back({place, mesh.materials[t], c[flat]});
+  defects.insert.push_back({position, mesh.materials[t], c[flat]});
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ struct DefectRule {
   bool fills = true;
 };
 
-/// The least that is asked of a mesh, with a margin. Once all particles have been smoothed, only triangles below it make
-/// particles come and go.
+/// The least that is asked of a mesh, with a margin. Once all particles have been smoothed, only triangles below it
+/// make particles come and go.
 inline constexpr DefectRule worst_defects{0, 0.31, 0.17, false};
 /// Triangles with a smaller ratio are worth further rounds of smoothing.
 inline constexpr double wanted_ratio = 0.5;
@@ -28,7 +28,7 @@ inline constexpr double wanted_ratio = 0.5;
 /// What to change about the particles of a mesh before they are triangulated again.
 struct MeshDefects {
   struct NewPoint {
-    Vec3d place;
+    Vec3d position;
     std::array<std::uint16_t, 2> materials;
     std::uint32_t at;  ///< a point of the mesh that it is next to
   };
@@ -37,21 +37,22 @@ struct MeshDefects {
   std::vector<NewPoint> insert;       ///< near the interface of two materials
 };
 
-/// Bad triangles come from particles that are far too close together (under half of the smaller `size`): one of the two is
-/// to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all edges are
-/// long, from one that lies flat between its neighbours: it is to go if it is on a surface. One on a rim stays: a new point
-/// is put in front of it or, as a last resort (`rule.fills` unset), the nearest corner on the surface is to go, and where all
-/// are on curves the flat one. A point of a surface that stands between two neighbours on a curve goes, too: it bends the
-/// curve aside. Small bodies keep theirs (a closed surface of 24 points; of 12, if they are too close together), but for those
-/// nearer than 0.2 sizes; there a new point splits the longest edge, if it is long. `touching` are edges (two points), or
-/// vertices (one point twice), where a surface touches itself: off the junctions that shows that it is too coarsely sampled,
-/// and new points go into the middle of the facets there; as a last resort at junctions, too. `order` (2 surface, 1 curve,
-/// 0 point; of a junction that the mesh has: lift_off_junctions) and `size` (world units) are per point of the mesh.
+/// Bad triangles come from particles that are far too close together (under half of the smaller `size`): one of the two
+/// is to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all
+/// edges are long, from one that lies flat between its neighbours: it is to go if it is on a surface. One on a rim
+/// stays: a new point is put in front of it or, as a last resort (`rule.fills` unset), the nearest corner on the
+/// surface is to go, and where all are on curves the flat one. A point of a surface that stands between two neighbours
+/// on a curve goes, too: it bends the curve aside. Small bodies keep theirs (a closed surface of 24 points; of 12, if
+/// they are too close together), but for those nearer than 0.2 sizes; there a new point splits the longest edge, if it
+/// is long. `touching` are edges (two points), or vertices (one point twice), where a surface touches itself: off the
+/// junctions that shows that it is too coarsely sampled, and new points go into the middle of the facets there; as a
+/// last resort at junctions, too. `order` (2 surface, 1 curve, 0 point; of a junction that the mesh has:
+/// lift_off_junctions) and `size` (world units) are per point of the mesh.
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
 
-/// A point of a junction counts as a surface's where the mesh has no junction: too little of a third material comes there for
-/// a cell of its own. So triangles are judged by what the mesh shows. `order` is per point of the mesh.
+/// A point of a junction counts as a surface's where the mesh has no junction: too little of a third material comes
+/// there for a cell of its own. So triangles are judged by what the mesh shows. `order` is per point of the mesh.
 void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order);
 
 /// How far a triangle is above the least ratio of `rule`, as a multiple of it; below 1 where it is bad.

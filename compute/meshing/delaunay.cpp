@@ -144,16 +144,16 @@ class PlaceTable {
   }
 
   /// The first point there, or `none`.
-  std::uint32_t find(const Vec3d& place) const { return slots_[slot_of(place)]; }
+  std::uint32_t find(const Vec3d& position) const { return slots_[slot_of(position)]; }
 
  private:
   /// That of the place, or the empty one where it would go.
-  std::size_t slot_of(const Vec3d& place) const {
+  std::size_t slot_of(const Vec3d& position) const {
     std::uint64_t key = 0;
-    for (const double x : {place.x, place.y, place.z})
+    for (const double x : {position.x, position.y, position.z})
       key = (std::rotl(key, 21) ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 is 0
     std::size_t slot = (key ^ key >> 32) & (slots_.size() - 1);
-    while (slots_[slot] != none && !(points_[slots_[slot]] == place)) slot = (slot + 1) & (slots_.size() - 1);
+    while (slots_[slot] != none && !(points_[slots_[slot]] == position)) slot = (slot + 1) & (slots_.size() - 1);
     return slot;
   }
 
@@ -253,8 +253,8 @@ struct Delaunay::Held {
   std::vector<Vec3d> points;
   std::vector<Vertex> vertices;  ///< per point
 
-  /// Takes out the points that are not in `now`; the numbers of those that are to be put in, ascending. All, where building
-  /// anew costs less: then all of this is as new.
+  /// Takes out the points that are not in `now`; the numbers of those that are to be put in, ascending. All, where
+  /// building anew costs less: then all of this is as new.
   std::vector<std::uint32_t> keep(std::span<const Vec3d> now, const std::atomic<bool>* stop) {
     const PlaceTable known(points);
     std::vector<Vertex> at(now.size());

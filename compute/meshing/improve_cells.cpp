@@ -198,20 +198,20 @@ class Improvement {
 
   /// Looks for a better place of a point in ever smaller steps. The cells at it are all of one material.
   bool move(std::uint32_t p) {
-    static constexpr std::array<std::array<int, 3>, 14> ways = {{{1, 0, 0},
-                                                                 {-1, 0, 0},
-                                                                 {0, 1, 0},
-                                                                 {0, -1, 0},
-                                                                 {0, 0, 1},
-                                                                 {0, 0, -1},
-                                                                 {1, 1, 1},
-                                                                 {-1, -1, -1},
-                                                                 {1, 1, -1},
-                                                                 {-1, -1, 1},
-                                                                 {1, -1, 1},
-                                                                 {-1, 1, -1},
-                                                                 {-1, 1, 1},
-                                                                 {1, -1, -1}}};
+    static constexpr std::array<std::array<int, 3>, 14> directions = {{{1, 0, 0},
+                                                                       {-1, 0, 0},
+                                                                       {0, 1, 0},
+                                                                       {0, -1, 0},
+                                                                       {0, 0, 1},
+                                                                       {0, 0, -1},
+                                                                       {1, 1, 1},
+                                                                       {-1, -1, -1},
+                                                                       {1, 1, -1},
+                                                                       {-1, -1, 1},
+                                                                       {1, -1, 1},
+                                                                       {-1, 1, -1},
+                                                                       {-1, 1, 1},
+                                                                       {1, -1, -1}}};
     const std::vector<std::int32_t> star = cells_at(p);
     const Vec3d before = points_[p];
     const double start = shape(store_.vertices(star[0]));
@@ -222,7 +222,7 @@ class Improvement {
       bool found = false;
       const Vec3d from = points_[p];
       Vec3d to = from;
-      for (const auto& [x, y, z] : ways) {
+      for (const auto& [x, y, z] : directions) {
         points_[p] = from + step / std::sqrt(double(x * x + y * y + z * z)) * Vec3d(x, y, z);
         const double worst = worst_of_at_least(star, best + gain);
         if (worst < best + gain) continue;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/meshing/delaunay.hpp"
 
 namespace nacre {

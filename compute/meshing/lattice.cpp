@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "compute/device/error.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 namespace {
@@ -85,8 +85,8 @@ class Octree {
     const double unit = edge_ / double(1 << (deepest + 1));
     const double jitter = 1e-3 * edge(finest_) / unit;
     for (const Code key : found) {
-      const Vec3d place(double(key & mask), double(key >> 21 & mask), double(key >> 42));
-      points.push_back(corner_ + unit * (place + jitter * random_direction(key)));
+      const Vec3d position(double(key & mask), double(key >> 21 & mask), double(key >> 42));
+      points.push_back(corner_ + unit * (position + jitter * random_direction(key)));
     }
     return points;
   }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {

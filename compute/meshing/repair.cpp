@@ -16,7 +16,7 @@
 #include "compute/meshing/cell_rings.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/interface_facets.hpp"
-#include "compute/meshing/umbrellas.hpp"
+#include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
 namespace {
@@ -75,7 +75,7 @@ class Repair {
       check_stop(stop_);
       const Place place = waiting_.front();
       waiting_.pop_front();
-      if (excess(place) > 0 && !improve(place, steps)) stuck.push_back(place);
+      if (excess(place) > 0 && !repair_at(place, steps)) stuck.push_back(place);
     }
     std::sort(stuck.begin(), stuck.end());
     stuck.erase(std::unique(stuck.begin(), stuck.end()), stuck.end());
@@ -108,7 +108,7 @@ class Repair {
 
   // ---- how badly a place touches itself
 
-  /// Wedges or umbrellas of each material beyond its first, summed.
+  /// Wedges or vertex fans of each material beyond its first, summed.
   int excess(const Place& place) { return place.a == place.b ? vertex_excess(place) : edge_excess(place); }
 
   int edge_excess(const Place& edge) {
@@ -141,7 +141,7 @@ class Repair {
       }
     }
     int extra = 0;
-    for (const MaterialCount& c : counter_.umbrellas(facets_)) extra += c.count - 1;
+    for (const MaterialCount& c : counter_.vertex_fans(facets_)) extra += c.count - 1;
     return extra;
   }
 
@@ -217,7 +217,7 @@ class Repair {
   }
 
   /// The smallest change at a place that helps.
-  bool improve(const Place& place, int steps) {
+  bool repair_at(const Place& place, int steps) {
     tries_ = most_tries;
     const std::vector<Change> changes = changes_at(place);
     return std::any_of(changes.begin(), changes.end(), [&](const Change& c) { return try_change(c, 1, steps); });
@@ -378,7 +378,7 @@ class Repair {
         const Triangle& t = facets.triangles[corner / 3];
         facets_.push_back({t[int((corner + 1) % 3)], t[int((corner + 2) % 3)], facets.materials[corner / 3]});
       }
-      const auto& counts = counter_.umbrellas(facets_);
+      const auto& counts = counter_.vertex_fans(facets_);
       if (std::any_of(counts.begin(), counts.end(), [](const MaterialCount& c) { return c.count > 1; }))
         places.push_back({std::uint32_t(v), std::uint32_t(v), facets.cell[vertices.corners(v)[0] / 3]});
     }
@@ -390,8 +390,8 @@ class Repair {
   std::vector<std::uint16_t>& label_;
   const std::atomic<bool>* stop_;
   CellRings rings_;
-  UmbrellaCounter counter_;
-  std::vector<UmbrellaCounter::Facet> facets_;
+  VertexFanCounter counter_;
+  std::vector<VertexFanCounter::Facet> facets_;
   std::vector<std::int64_t> left_;  // cells per label
   std::deque<Place> waiting_;
   int tries_ = 0;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/meshing/delaunay.hpp"
 
 namespace nacre {

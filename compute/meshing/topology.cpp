@@ -6,7 +6,7 @@
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/incidence.hpp"
-#include "compute/meshing/umbrellas.hpp"
+#include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
 namespace {
@@ -128,15 +128,15 @@ class Examination {
 
   /// Each material's surface must pass the edge as often one way as the other.
   void count_passes(std::size_t edge) {
-    const auto pass = [&](std::uint16_t material, int way) {
+    const auto pass = [&](std::uint16_t material, int sign) {
       if (last_edge_[material] != edge) passes_[material] = 0;
       last_edge_[material] = edge;
-      passes_[material] += way;
+      passes_[material] += sign;
     };
     for (const std::uint32_t use : edges_.uses(edge)) {
-      const int way = mesh_.triangles[use / 3][int(use % 3)] == edges_.a(edge) ? 1 : -1;
-      pass(materials_of(use)[0], -way);
-      pass(materials_of(use)[1], way);
+      const int sign = mesh_.triangles[use / 3][int(use % 3)] == edges_.a(edge) ? 1 : -1;
+      pass(materials_of(use)[0], -sign);
+      pass(materials_of(use)[1], sign);
     }
     bool consistent = true;
     for (const std::uint32_t use : edges_.uses(edge))
@@ -162,7 +162,7 @@ class Examination {
   }
 
   void count_vertices() {
-    std::vector<UmbrellaCounter::Facet> facets;
+    std::vector<VertexFanCounter::Facet> facets;
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
       facets.clear();
       for (const std::uint32_t corner : vertices_.corners(v)) {
@@ -172,9 +172,9 @@ class Examination {
       }
       ++(facets.empty() ? report_.unused_points : report_.vertices);
       bool pinched = false;
-      for (const auto& [material, umbrellas] : counter_.umbrellas(facets)) {
+      for (const auto& [material, vertex_fans] : counter_.vertex_fans(facets)) {
         ++report_.materials[material].vertices;
-        pinched = pinched || umbrellas > 1;
+        pinched = pinched || vertex_fans > 1;
       }
       if (pinched) ++(on_junction_[v] ? report_.pinched_vertices : report_.nonmanifold_vertices);
     }
@@ -198,7 +198,7 @@ class Examination {
   const SurfaceMesh& mesh_;
   EdgeTable edges_;
   VertexTable vertices_;
-  UmbrellaCounter counter_;
+  VertexFanCounter counter_;
   std::vector<char> on_junction_;
   std::vector<int> passes_;  // per material, at the edge in last_edge_
   std::vector<std::size_t> last_edge_;

@@ -21,8 +21,8 @@ struct TriangleRings {
   std::vector<RingEdge> edge;
 };
 
-/// Rings of those points of `mesh` that `wanted` marks, for `particles` particles, of which point_of[v] is point v. Throws
-/// Error where there are more than 1.4 billion triangles.
+/// Rings of those points of `mesh` that `wanted` marks, for `particles` particles, of which point_of[v] is point v.
+/// Throws Error where there are more than 1.4 billion triangles.
 TriangleRings triangle_rings(const SurfaceMesh& mesh, std::span<const std::uint32_t> point_of,
                              std::span<const std::uint8_t> wanted, std::size_t particles);
 

@@ -45,8 +45,8 @@ struct BinGrid {
 
 /// Shortest edge for particles of size up to `largest` that move by up to `step` of it in their turn. Neighbours reach
 /// support * min(h_i, h_j) from a trial position, and a neighbour may have left its bin by a step, too, earlier in the
-/// same iteration: (sqrt 3 + 2 step) h. With steps of up to h/2 that is the (1 + sqrt 3) h of the source notes; with
-/// the source's own step of h it is (2 + sqrt 3) h.
+/// same iteration: (sqrt 3 + 2 step) h. With steps of up to h/2 that is the (1 + sqrt 3) h that holds then; with
+/// the dissertation's own step of h it is (2 + sqrt 3) h.
 inline float bin_edge(float largest, float step) { return (support + 2 * step) * largest; }
 
 /// Bins between `low` and `high`; the edge grows until there are at most `most` of them, which keeps everything right.
@@ -86,10 +86,10 @@ struct Extent {
 };
 
 struct ExtentOf {
-  const Float4* place;
+  const Float4* position;
   NACRE_HD Extent operator()(std::int64_t i) const {
-    const Vec3f p(place[i].x, place[i].y, place[i].z);
-    return {p, p, place[i].w};
+    const Vec3f p(position[i].x, position[i].y, position[i].z);
+    return {p, p, position[i].w};
   }
 };
 
@@ -101,10 +101,10 @@ struct MergeExtents {
 
 struct BinKeys {
   BinGrid grid;
-  const Float4* place;
+  const Float4* position;
   std::uint64_t* keys;
   NACRE_HD void operator()(std::int64_t i) const {
-    const std::uint32_t bin = grid.number(grid.bin({place[i].x, place[i].y, place[i].z}));
+    const std::uint32_t bin = grid.number(grid.bin({position[i].x, position[i].y, position[i].z}));
     keys[i] = std::uint64_t(bin) << 32 | std::uint64_t(i);
   }
 };
@@ -153,7 +153,7 @@ struct SplitColours {
 
 template <class Backend>
 detail::Extent particle_extent(Executor<Backend>& exec, const ParticleSet& set) {
-  return exec.reduce(set.count, detail::Extent{Vec3f(3e38f), Vec3f(-3e38f), 0}, detail::ExtentOf{set.place.data()},
+  return exec.reduce(set.count, detail::Extent{Vec3f(3e38f), Vec3f(-3e38f), 0}, detail::ExtentOf{set.position.data()},
                      detail::MergeExtents{});
 }
 
@@ -181,7 +181,7 @@ Bins build_bins(Executor<Backend>& exec, const ParticleSet& set, float step) {
   Arena::Scope scope(arena);
   Array<std::uint64_t> keys = arena.temporary<std::uint64_t>(n);
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(n), colour = arena.temporary<std::uint32_t>(28);
-  exec.for_each(n, detail::BinKeys{bins.grid, set.place.data(), keys.data()});
+  exec.for_each(n, detail::BinKeys{bins.grid, set.position.data(), keys.data()});
   exec.sort(keys.data(), n);
   exec.for_each(n, detail::FindBins{keys.data(), n, set.fixed, bins.order.data(), bins.first.data(), bins.last.data(),
                                     number.data()});

@@ -13,7 +13,7 @@ namespace detail {
 /// How far from a particle its second one goes, in h.
 inline constexpr float gap_distance = 0.8f;
 
-/// The emptiest place at some distance from a particle: where the energy is the lowest, of eight around it on a
+/// The emptiest position at some distance from a particle: where the energy is the lowest, of eight around it on a
 /// surface, of the two beside it on a curve.
 template <class Group, class Near>
 NACRE_HD inline Vec3f find_gap(Group& group, const Near& near, const Mover& at, int order, float turn) {
@@ -61,9 +61,9 @@ struct PlanBin {
     if (fate == Fate::split) gap = find_gap(team, near, at, order, uniform_random(rule.seed + 1, i, step));
     team.wait();
     if (!team.first()) return;
-    const Float4 place{at.p.x, at.p.y, at.p.z, at.h};
+    const Float4 position{at.p.x, at.p.y, at.p.z, at.h};
     direction[i].w = e.energy;
-    plan_particle(plan, fate, surface, table, i, interface, place, direction[i], gap);
+    plan_particle(plan, fate, surface, table, i, interface, position, direction[i], gap);
   }
 };
 

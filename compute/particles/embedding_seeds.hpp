@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "compute/embedding/build_interface_grid.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 #include "compute/particles/seed.hpp"
 
 namespace nacre {
@@ -19,10 +19,10 @@ class EmbeddingSeeds {
       : grid_(grid.view()),
         order_of_(order_of),
         brick_coarse_(grid.brick_coarse.data()),
-        places_(grid.cells()),
+        sites_(grid.cells()),
         order_(order) {}
 
-  std::int64_t places() const { return places_; }
+  std::int64_t sites() const { return sites_; }
   NACRE_HD int order() const { return order_; }
   NACRE_HD std::uint32_t interface(std::int64_t i) const { return grid_.brick_interface[i / 64]; }
   NACRE_HD std::uint64_t code(std::int64_t i) const { return morton(cell(i)); }
@@ -39,7 +39,7 @@ class EmbeddingSeeds {
                        : 3 * cell * (1 - away) / (pi * d.w);
   }
 
-  NACRE_HD SeedPlace place(std::int64_t i) const {
+  NACRE_HD SeedSite site(std::int64_t i) const {
     const Float4 o = store(load(grid_.cell[i])), d = grid_.direction(i);
     return {cell_centre(cell(i)) + Vec3f(o.x, o.y, o.z), {d.x, d.y, d.z}, d.w, grid_.cells_per_voxel};
   }
@@ -56,7 +56,7 @@ class EmbeddingSeeds {
   InterfaceGridView grid_;
   const std::uint8_t* order_of_;
   const std::uint32_t* brick_coarse_;
-  std::int64_t places_;
+  std::int64_t sites_;
   int order_;
 };
 

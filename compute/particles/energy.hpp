@@ -35,7 +35,7 @@ NACRE_HD_INLINE PairEnergy cotangent_energy(float d) {
 }
 
 /// Energy of a particle among the six neighbours of a hexagonal lattice with spacing h: 6 E(1/sqrt 3) = 0.7108 (the
-/// 3.462 of sec. 3.1.3 is six scaled distances; see the source notes).
+/// 3.462 of sec. 3.1.3 is six scaled distances).
 inline constexpr float hexagonal_energy = 0.7108f;
 /// ... among the two neighbours of a row with spacing h, the rim of such a lattice: 2 E(1/sqrt 3). (At a scaled
 /// distance of 1/2, which would be the next round number, the rim's edges are an eighth too short for the triangles on

@@ -25,8 +25,8 @@ GatheringTime time_gathering(Device& device, const HostParticles& particles, con
   Executor<Cpu> exec(device);
   exec.watch(stop);
   ParticleSet set;
-  set.count = std::int64_t(particles.place.size());
-  set.place = exec.arena().permanent_copy<Float4>(particles.place);
+  set.count = std::int64_t(particles.position.size());
+  set.position = exec.arena().permanent_copy<Float4>(particles.position);
   set.direction = exec.arena().permanent_copy<Float4>(particles.direction);
   set.interface = exec.arena().permanent_copy<std::uint32_t>(particles.interface);
   GatheringTime best{1e300, 1e300};

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "compute/device/device.hpp"
-#include "compute/grid/lanes.hpp"
+#include "compute/math/lanes.hpp"
 
 namespace nacre {
 
@@ -18,7 +18,7 @@ struct GatheringTime {
 
 /// Particles in host memory, as ParticleSet has them: one entry of each array per particle.
 struct HostParticles {
-  std::span<const Float4> place, direction;
+  std::span<const Float4> position, direction;
   std::span<const std::uint32_t> interface;
 };
 

@@ -7,7 +7,7 @@
 #include "compute/field/build_material_bricks.hpp"
 #include "compute/field/sizing.hpp"
 #include "compute/field/voxel_edges.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 #include "compute/particles/seed.hpp"
 
 namespace nacre {
@@ -41,8 +41,8 @@ struct ListCubeEdges {
 
 /// A vertex of marching cubes on an interface.
 struct CubeVertex {
-  Float4 place;   ///< position in voxels; h
-  Float4 normal;  ///< unit; the area that the vertex stands for, 0 where it is of no use
+  Float4 position;  ///< position in voxels; h
+  Float4 normal;    ///< unit; the area that the vertex stands for, 0 where it is of no use
   std::uint32_t interface;
 };
 
@@ -72,7 +72,7 @@ struct FindCubeVertices {
     if (!project(field, surface, p + (q - p) * t, 2, at)) return;
     if (junction_margin(field, surface, at.p, at.steepness) < 0) return;  // a third material lies over it
     const Vec3f& d = at.direction;
-    result.place = {at.p.x, at.p.y, at.p.z, size(at.p)};
+    result.position = {at.p.x, at.p.y, at.p.z, size(at.p)};
     result.normal = {d.x, d.y, d.z, area(f.gradient + (g.gradient - f.gradient) * t, edge[i].axis)};
   }
 
@@ -88,8 +88,9 @@ struct FindCubeVertices {
   NACRE_HD FieldSample lead(const Vec3f& p, const Junction& surface) const {
     return CubicStencil(field, p).difference(field, surface.material(0), surface.material(1));
   }
-  /// Edges along an axis meet |n| times an area of their grid on a surface; times |n| again, the three axes make its area.
-  /// The normal is that of the voxels' differences, as marching cubes has it: the interpolated one waves with the voxels.
+  /// Edges along an axis meet |n| times an area of their grid on a surface; times |n| again, the three axes make its
+  /// area. The normal is that of the voxels' differences, as marching cubes has it: the interpolated one waves with the
+  /// voxels.
   NACRE_HD float area(const Vec3f& gradient, int axis) const {
     const Vec3f& u = field.cells_per_unit;
     return std::fabs(gradient[axis]) / max(length(gradient), 1e-12f) * u[axis] / (u.x * u.y * u.z);
@@ -99,32 +100,32 @@ struct FindCubeVertices {
 }  // namespace detail
 
 /// Vertices of marching cubes on all interfaces of two materials, in temporary memory of the caller's scope: every
-/// component of voxels has some, however thin. As a source of seeds each stands for the area that it is the only one on,
-/// so that there are as many seeds as the sizing field asks for, not as many as vertices; the source leaves that to the
-/// control of the population.
+/// component of voxels has some, however thin. As a source of seeds each stands for the area that it is the only one
+/// on, so that there are as many seeds as the sizing field asks for, not as many as vertices; the dissertation leaves
+/// that to the control of the population.
 class MarchingCubesSeeds {
  public:
-  MarchingCubesSeeds(const detail::CubeVertex* vertex, std::int64_t places) : vertex_(vertex), places_(places) {}
+  MarchingCubesSeeds(const detail::CubeVertex* vertex, std::int64_t sites) : vertex_(vertex), sites_(sites) {}
 
-  std::int64_t places() const { return places_; }
+  std::int64_t sites() const { return sites_; }
   NACRE_HD int order() const { return 2; }
   NACRE_HD std::uint32_t interface(std::int64_t i) const { return vertex_[i].interface; }
   NACRE_HD std::uint64_t code(std::int64_t i) const {
-    const Float4 p = vertex_[i].place;
+    const Float4 p = vertex_[i].position;
     return morton(Int3(int(2 * p.x), int(2 * p.y), int(2 * p.z)));
   }
   NACRE_HD float share(std::int64_t i) const {
-    const float h = vertex_[i].place.w, area = vertex_[i].normal.w;
+    const float h = vertex_[i].position.w, area = vertex_[i].normal.w;
     return area > 0 ? area * hexagonal_density / (h * h) : 0;
   }
-  NACRE_HD SeedPlace place(std::int64_t i) const {
-    const Float4 p = vertex_[i].place, d = vertex_[i].normal;
+  NACRE_HD SeedSite site(std::int64_t i) const {
+    const Float4 p = vertex_[i].position, d = vertex_[i].normal;
     return {{p.x, p.y, p.z}, {d.x, d.y, d.z}, p.w, 1};
   }
 
  private:
   const detail::CubeVertex* vertex_;
-  std::int64_t places_;
+  std::int64_t sites_;
 };
 
 /// `table`: the surfaces and curves that there are, ascending.

@@ -16,8 +16,8 @@ struct Mover {
   Vec3f direction;  ///< normal or tangent
 };
 
-/// Energy of a particle, its gradient and its second derivatives with respect to the particle's place, and `stiffness`,
-/// half of the sum of the pairs' second derivatives along their own lines: a scale for damping.
+/// Energy of a particle, its gradient and its second derivatives with respect to the particle's position, and
+/// `stiffness`, half of the sum of the pairs' second derivatives along their own lines: a scale for damping.
 struct PairSums {
   float energy = 0;
   Vec3f gradient;

@@ -25,7 +25,7 @@ struct NeighbourhoodView {
   std::int64_t fixed;
   const std::uint32_t *order, *first, *last, *occupied;
   const std::uint64_t* start;  ///< per occupied bin: exclusive sum of the sizes of the neighbourhoods before it
-  const Float4 *place, *direction;
+  const Float4 *position, *direction;
   const std::uint32_t* interface;
   NeighbourhoodMemory memory;
 };
@@ -77,7 +77,7 @@ NACRE_HD inline Neighbourhood copy_neighbourhood(Team& team, const Neighbourhood
     const NeighbourhoodMemory to = result.rows.from(result.count);
     team.each(n, [&](int j) {
       const std::uint32_t i = view.order[first + j];
-      const Float4 p = view.place[i], d = view.direction[i];
+      const Float4 p = view.position[i], d = view.direction[i];
       to.x[j] = p.x, to.y[j] = p.y, to.z[j] = p.z, to.h[j] = p.w;
       to.nx[j] = d.x, to.ny[j] = d.y, to.nz[j] = d.z;
       to.tag[j] = view.interface[i] | (i < view.fixed ? Relation::fixed : 0);
@@ -123,7 +123,7 @@ NACRE_HD_INLINE int compact(const Flag& flag, int n, const Put& put) {
 
 }  // namespace detail
 
-/// Of a neighbourhood, the particles that one of them may feel at any place of its next step, in the team's scratch.
+/// Of a neighbourhood, the particles that one of them may feel at any position of its next step, in the team's scratch.
 /// There are 256 places; where more are near (seeds on top of each other), sums go over as many lists as it takes.
 class NearInNeighbourhood {
  public:
@@ -225,7 +225,7 @@ class Neighbourhoods {
              bins_.last.data(),
              bins_.occupied.data(),
              start_.data(),
-             set.place.data(),
+             set.position.data(),
              set.direction.data(),
              set.interface.data(),
              {floats(), floats(), floats(), floats(), floats(), floats(), floats(), words(), words()}};

@@ -8,7 +8,7 @@
 #include "compute/device/array.hpp"
 #include "compute/device/error.hpp"
 #include "compute/field/interface.hpp"
-#include "compute/grid/lanes.hpp"
+#include "compute/math/lanes.hpp"
 #include "compute/particles/energy.hpp"
 
 namespace nacre {
@@ -17,17 +17,17 @@ namespace nacre {
 /// Arrays are larger than `count` and hold nothing behind it.
 struct ParticleSet {
   std::int64_t fixed = 0, count = 0;
-  Array<Float4> place;             ///< x, y, z in voxels; h, the sizing field there
+  Array<Float4> position;          ///< x, y, z in voxels; h, the sizing field there
   Array<Float4> direction;         ///< unit normal (surface) or tangent (curve); the particle's energy
   Array<std::uint32_t> interface;  ///< number of its junction in the table of Junctions
-  std::int64_t capacity() const { return std::int64_t(place.size()); }
+  std::int64_t capacity() const { return std::int64_t(position.size()); }
 };
 
 /// Particles with room for `capacity`, in permanent memory: an Arena, or an AllocationPlan.
 template <class Memory>
 ParticleSet allocate_particle_set(Memory& memory, std::int64_t capacity) {
   ParticleSet set;
-  set.place = memory.template permanent<Float4>(capacity);
+  set.position = memory.template permanent<Float4>(capacity);
   set.direction = memory.template permanent<Float4>(capacity);
   set.interface = memory.template permanent<std::uint32_t>(capacity);
   return set;
@@ -40,7 +40,7 @@ inline void require_capacity(const ParticleSet& set, std::int64_t count) {
                 "raise `min_size` or `epsilon`");
 }
 
-/// When particles are added and deleted (sec. 3.1.3 and the source notes: a random share of the deviation decides, so
+/// When particles are added and deleted (sec. 3.1.3: a random share of the deviation decides, so
 /// that neighbours do not all split at once).
 struct PopulationRule {
   float ideal_energy = hexagonal_energy;

@@ -1,5 +1,5 @@
 // Nacre: which particles the serial and the red-black solver add and delete, so that each has the energy of its ideal
-// neighbourhood (sec. 3.1.3; source notes on the original program), and how the new set is written. control.hpp runs
+// neighbourhood (sec. 3.1.3), and how the new set is written. control.hpp runs
 // it; the tree solver has a rule of its own (tree_population.hpp).
 #pragma once
 
@@ -55,7 +55,8 @@ NACRE_HD inline Fate population_fate(const PopulationRule& rule, const Populatio
 /// What is decided for the particles of a set before any is added or deleted; fixed ones have no entry that counts.
 struct PopulationPlan {
   std::uint32_t* copies;  ///< per particle: how many there will be in its place, and which companions (see below)
-  Float4* child_place;    ///< of the second, where there are two; more than two have places of their own (spread_place)
+  Float4*
+      child_position;  ///< of the second, where there are two; more than two have places of their own (spread_position)
   Float4* child_direction;
 
   /// Of an entry of `copies`: 0 to 4.
@@ -70,10 +71,10 @@ namespace detail {
 /// Puts a new particle of `interface` near p; false where the interface is not there.
 template <class Surface>
 NACRE_HD inline bool put_particle(const Surface& surface, std::uint32_t interface, const Vec3f& p, float reach,
-                                  Float4& place, Float4& direction) {
+                                  Float4& position, Float4& direction) {
   Vec3f on, d;
   if (!surface.project(interface, p, reach, on, d)) return false;
-  place = {on.x, on.y, on.z, surface.size(on)};
+  position = {on.x, on.y, on.z, surface.size(on)};
   direction = {d.x, d.y, d.z, 0};
   return true;
 }
@@ -81,10 +82,10 @@ NACRE_HD inline bool put_particle(const Surface& surface, std::uint32_t interfac
 /// Where the k-th of up to three companions of a lonely particle would be: around it on a surface, on both sides on a
 /// curve.
 template <class Surface>
-NACRE_HD inline bool spread_place(const Surface& surface, const Junction& junction, std::uint32_t interface,
-                                  const Float4& place, const Float4& direction, int k, Float4& to,
-                                  Float4& to_direction) {
-  const Vec3f p(place.x, place.y, place.z), d(direction.x, direction.y, direction.z);
+NACRE_HD inline bool spread_position(const Surface& surface, const Junction& junction, std::uint32_t interface,
+                                     const Float4& position, const Float4& direction, int k, Float4& to,
+                                     Float4& to_direction) {
+  const Vec3f p(position.x, position.y, position.z), d(direction.x, direction.y, direction.z);
   Vec3f away;
   if (junction.order() == 1 && k < 2) {
     away = d * (k == 0 ? 1.0f : -1.0f);
@@ -95,7 +96,7 @@ NACRE_HD inline bool spread_place(const Surface& surface, const Junction& juncti
   } else {
     return false;
   }
-  return put_particle(surface, interface, p + away * place.w, 0.5f * place.w, to, to_direction);
+  return put_particle(surface, interface, p + away * position.w, 0.5f * position.w, to, to_direction);
 }
 
 }  // namespace detail
@@ -103,17 +104,18 @@ NACRE_HD inline bool spread_place(const Surface& surface, const Junction& juncti
 /// Notes what becomes of particle i; `gap` is where a second one goes when it splits.
 template <class Surface>
 NACRE_HD inline void plan_particle(const PopulationPlan& plan, Fate fate, const Surface& surface, const Junction* table,
-                                   std::int64_t i, std::uint32_t interface, const Float4& place,
+                                   std::int64_t i, std::uint32_t interface, const Float4& position,
                                    const Float4& direction, const Vec3f& gap) {
   std::uint32_t copies = fate == Fate::deleted ? 0 : 1;
   if (fate == Fate::split)
-    copies +=
-        detail::put_particle(surface, interface, gap, 0.5f * place.w, plan.child_place[i], plan.child_direction[i]) ? 1
-                                                                                                                    : 0;
+    copies += detail::put_particle(surface, interface, gap, 0.5f * position.w, plan.child_position[i],
+                                   plan.child_direction[i])
+                  ? 1
+                  : 0;
   Float4 to, to_direction;
   for (int k = 0; fate == Fate::spread && k < 3; ++k)
-    if (detail::spread_place(surface, table[interface], interface, place, direction, k, to, to_direction)) {
-      plan.child_place[i] = to, plan.child_direction[i] = to_direction;  // counts where it is the only one
+    if (detail::spread_position(surface, table[interface], interface, position, direction, k, to, to_direction)) {
+      plan.child_position[i] = to, plan.child_direction[i] = to_direction;  // counts where it is the only one
       copies = PopulationPlan::with_companion(copies, k);
     }
   plan.copies[i] = copies;
@@ -153,7 +155,7 @@ struct CopiesInOrder {
 /// The arrays of a set and what its particles carry.
 template <class T>
 struct ParticleRows {
-  Float4 *place, *direction;
+  Float4 *position, *direction;
   std::uint32_t* interface;
   T* carried;
 };
@@ -173,22 +175,22 @@ struct WritePopulation {
     const std::uint32_t entry = i < fixed ? 1 : plan.copies[i], copies = PopulationPlan::count(entry);
     if (copies == 0) return;
     std::int64_t at = i < fixed ? i : fixed + start[k];
-    const Float4 place = from.place[i], direction = from.direction[i];
+    const Float4 position = from.position[i], direction = from.direction[i];
     const std::uint32_t interface = from.interface[i];
-    write(at, place, direction, interface, from.carried[i]);
-    if (copies == 2) write(at + 1, plan.child_place[i], plan.child_direction[i], interface, fresh);
+    write(at, position, direction, interface, from.carried[i]);
+    if (copies == 2) write(at + 1, plan.child_position[i], plan.child_direction[i], interface, fresh);
     for (int c = 0; copies > 2 && c < 3; ++c) {
       if (!PopulationPlan::has_companion(entry, c)) continue;
-      Float4 child = plan.child_place[i], child_direction = plan.child_direction[i];
-      spread_place(surface, table[interface], interface, place, direction, c, child, child_direction);
+      Float4 child = plan.child_position[i], child_direction = plan.child_direction[i];
+      spread_position(surface, table[interface], interface, position, direction, c, child, child_direction);
       write(++at, child, child_direction, interface, fresh);
     }
   }
 
  private:
-  NACRE_HD void write(std::int64_t at, const Float4& place, const Float4& direction, std::uint32_t interface,
+  NACRE_HD void write(std::int64_t at, const Float4& position, const Float4& direction, std::uint32_t interface,
                       const T& carried) const {
-    to.place[at] = place, to.direction[at] = direction, to.interface[at] = interface, to.carried[at] = carried;
+    to.position[at] = position, to.direction[at] = direction, to.interface[at] = interface, to.carried[at] = carried;
   }
 };
 
@@ -257,12 +259,12 @@ IterationResult apply_population(Executor<Backend>& exec, ParticleSet& set, Part
   exec.for_each(set.count, detail::CopiesInOrder{plan.copies, order, set.fixed, start.data()});
   exec.exclusive_scan(start.data(), start.data(), set.count);
   const auto rows = [](const ParticleSet& of, const Array<T>& with) {
-    return detail::ParticleRows<T>{of.place.data(), of.direction.data(), of.interface.data(), with.data()};
+    return detail::ParticleRows<T>{of.position.data(), of.direction.data(), of.interface.data(), with.data()};
   };
   exec.for_each(set.count,
                 detail::WritePopulation<T, Surface>{plan, surface, table.data(), order, start.data(), set.fixed, fresh,
                                                     rows(set, carried), rows(spare, spare_carried)});
-  std::swap(set.place, spare.place);
+  std::swap(set.position, spare.position);
   std::swap(set.direction, spare.direction);
   std::swap(set.interface, spare.interface);
   std::swap(carried, spare_carried);

@@ -8,7 +8,7 @@
 namespace nacre {
 
 /// How particles get back onto their interface: by Newton's method on the fields themselves, for the last steps ...
-struct FieldGround {
+struct FieldProjector {
   MaterialBricksView field;
   const Junction* junction;
   SizingFieldView size;
@@ -21,9 +21,9 @@ struct FieldGround {
 };
 
 /// ... or by the closest points of the embedding (sec. 4.2.1), wherever particles are farther apart than its cells.
-struct EmbeddedGround {
+struct EmbeddedProjector {
   InterfaceGridView grid;
-  FieldGround fields;
+  FieldProjector fields;
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on) const {
     return h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
                                            : nacre::project(grid, interface, p, on);

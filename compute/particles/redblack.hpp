@@ -18,7 +18,7 @@ struct RelaxBin {
   SolverParameters parameters;
   const Junction* table;
   float largest;
-  Float4 *place, *direction;
+  Float4 *position, *direction;
   float* damping;
 
   std::size_t scratch_bytes() const { return NearInNeighbourhood::bytes + projection_scratch<Surface>(); }
@@ -37,12 +37,12 @@ struct RelaxBin {
     const RelaxedParticle done =
         relax_particle(team, near, team.scratch() + NearInNeighbourhood::bytes, surface, parameters, interface,
                        table[interface].order(), largest, start, damping[i]);
-    team.wait();  // all lanes have read the old place
+    team.wait();  // all lanes have read the old position
     if (team.first()) {
       const Mover& at = done.at;
       r.x[k] = at.p.x, r.y[k] = at.p.y, r.z[k] = at.p.z, r.h[k] = at.h;
       r.nx[k] = at.direction.x, r.ny[k] = at.direction.y, r.nz[k] = at.direction.z;
-      place[i] = {at.p.x, at.p.y, at.p.z, at.h};
+      position[i] = {at.p.x, at.p.y, at.p.z, at.h};
       direction[i] = {at.direction.x, at.direction.y, at.direction.z, done.energy};
       damping[i] = done.damping;
     }
@@ -61,10 +61,10 @@ IterationResult redblack_iteration(Executor<Backend>& exec, ParticleSet& set, So
                                    const SolverParameters& parameters) {
   if (set.count <= set.fixed) return {};
   Arena::Scope scope(exec.arena());
-  exec.for_each(set.count - set.fixed, detail::ReadSize<Surface>{surface, set.place.data() + set.fixed});
+  exec.for_each(set.count - set.fixed, detail::ReadSize<Surface>{surface, set.position.data() + set.fixed});
   Neighbourhoods<Backend> neighbourhoods(exec, set, parameters.step);
   neighbourhoods.for_each(detail::RelaxBin<Surface>{surface, parameters, table.data(), neighbourhoods.bins().largest,
-                                                    set.place.data(), set.direction.data(), state.damping.data()});
+                                                    set.position.data(), set.direction.data(), state.damping.data()});
   return {mean_energy(exec, set), 0, 0};
 }
 

@@ -32,9 +32,9 @@ struct InverseMeanRatio {
 /// One simultaneous step of every particle that has a ring: `share` of Newton's on the sum of f over its triangles, in
 /// the tangent plane of its surface or along its curve, then back onto the interface. Points stay, as do particles that
 /// would leave their interface.
-template <class Ground>
+template <class Projector>
 struct SmoothInRing {
-  Ground ground;
+  Projector projector;
   const std::uint32_t* first;  ///< per particle, one more at the end: of its edges
   const RingEdge* edge;
   const std::uint8_t* order;  ///< per interface
@@ -55,7 +55,7 @@ struct SmoothInRing {
     const Vec3f p(at.x, at.y, at.z), n(d.x, d.y, d.z);
     const Vec3f v = step(i, p, n, order[group] == 2, at.w);
     EmbeddedPoint on;
-    if (!(dot(v, v) > 1e-8f * at.w * at.w) || !ground.project(group, p + v, at.w, on) || on.margin < 0) return;
+    if (!(dot(v, v) > 1e-8f * at.w * at.w) || !projector.project(group, p + v, at.w, on) || on.margin < 0) return;
     const Vec3f off = on.p - p - v;
     if (!(dot(off, off) < 0.25f * at.w * at.w)) return;
     const float sign = order[group] == 1 && dot(on.direction, n) < 0 ? -1.0f : 1.0f;
@@ -64,7 +64,7 @@ struct SmoothInRing {
   }
 
  private:
-  NACRE_HD Vec3f place(std::uint32_t k) const { return {from[k].x, from[k].y, from[k].z}; }
+  NACRE_HD Vec3f position(std::uint32_t k) const { return {from[k].x, from[k].y, from[k].z}; }
 
   NACRE_HD float random(std::int64_t i, std::uint32_t axis) const {
     return 2 * uniform_random(shake, std::uint32_t(i), axis) - 1;
@@ -75,7 +75,7 @@ struct SmoothInRing {
     const Vec3f s = on_surface ? normalized(cross(n, helper)) : n, t = on_surface ? cross(n, s) : Vec3f();
     float gs = 0, gt = 0, hss = 0, hst = 0, htt = 0, least = h;
     for (std::uint32_t c = first[i]; c < first[i + 1]; ++c) {
-      const Vec3f a = place(edge[c].a), side = place(edge[c].b) - a;
+      const Vec3f a = position(edge[c].a), side = position(edge[c].b) - a;
       const float u = length(side);
       if (!(u > 1e-6f)) continue;
       const Vec3f along = side / u, r = p - a - side * 0.5f;

@@ -1,4 +1,4 @@
-// Nacre: the first particles: spread by the sizing field over places on the interfaces, along a space-filling curve.
+// Nacre: the first particles: spread by the sizing field over sites on the interfaces, along a space-filling curve.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace nacre {
 inline constexpr float hexagonal_density = 1.1547005f;
 
 /// Where a particle may begin. What says so is a source of seeds (embedding_seeds.hpp, marching_cubes_seeds.hpp):
-///   std::int64_t places() const            numbers of places are below this
-///   int order() const                      junction order of all its places
-///   float share(i) const                   of place i: how many particles the sizing field asks for there; 0: none
+///   std::int64_t sites() const             numbers of sites are below this
+///   int order() const                      junction order of all its sites
+///   float share(i) const                   of site i: how many particles the sizing field asks for there; 0: none
 ///   std::uint32_t interface(i) const       where the share is not 0
 ///   std::uint64_t code(i) const            Morton code of its cell, below 2^48
-///   SeedPlace place(i) const
-struct SeedPlace {
+///   SeedSite site(i) const
+struct SeedSite {
   Vec3f middle;           ///< in cells
   Vec3f direction;        ///< unit normal of a surface, tangent of a curve
   float size;             ///< h, voxels
@@ -29,22 +29,22 @@ struct SeedPlace {
 namespace detail {
 
 template <class Source>
-struct CountSeedPlaces {
+struct CountSeedSites {
   Source source;
   std::uint32_t* count;
   NACRE_HD void operator()(std::int64_t i) const { count[i] = source.share(i) > 0 ? 1 : 0; }
 };
 
 template <class Source>
-struct ListSeedPlaces {
+struct ListSeedSites {
   Source source;
   const std::uint32_t* start;
   std::uint64_t* key;
-  std::uint32_t* place;
+  std::uint32_t* site;
   NACRE_HD void operator()(std::int64_t i) const {
     if (!(source.share(i) > 0)) return;
     key[start[i]] = std::uint64_t(source.interface(i)) << 48 | source.code(i);
-    place[start[i]] = std::uint32_t(i);
+    site[start[i]] = std::uint32_t(i);
   }
 };
 
@@ -52,51 +52,51 @@ struct ListSeedPlaces {
 template <class Source>
 struct SeedShares {
   Source source;
-  const std::uint32_t* place;
+  const std::uint32_t* site;
   double scale;
   std::uint64_t* share;
   NACRE_HD void operator()(std::int64_t i) const {
-    share[i] = std::uint64_t(double(source.share(place[i])) * scale * 16777216.0);
+    share[i] = std::uint64_t(double(source.share(site[i])) * scale * 16777216.0);
   }
 };
 
-/// A place gets as many particles as whole numbers lie in its stretch of the running sum.
+/// A site gets as many particles as whole numbers lie in its stretch of the running sum.
 struct CountSeeds {
   const std::uint64_t* sum;
   std::uint64_t total;
-  std::int64_t places;
+  std::int64_t sites;
   std::uint32_t* count;
   NACRE_HD void operator()(std::int64_t i) const {
-    const std::uint64_t half = 1u << 23, end = i + 1 < places ? sum[i + 1] : total;
+    const std::uint64_t half = 1u << 23, end = i + 1 < sites ? sum[i + 1] : total;
     count[i] = std::uint32_t(((end + half) >> 24) - ((sum[i] + half) >> 24));
   }
 };
 
-/// Seeds stand beside their places, along the interface: two places may be at one point (two cells across a flat
-/// interface have the same closest one), and particles there would never part. Those of a place that has several spread
+/// Seeds stand beside their sites, along the interface: two sites may be at one point (two cells across a flat
+/// interface have the same closest one), and particles there would never part. Those of a site that has several spread
 /// over its cell.
 template <class Source>
 struct WriteSeeds {
   Source source;
-  const std::uint32_t* place_number;
+  const std::uint32_t* site_number;
   const std::uint32_t* start;  ///< the counts scanned
   const std::uint32_t* count;
   std::uint32_t random;  ///< seed of the random numbers
   std::int64_t first;
-  Float4* place;
+  Float4* position;
   Float4* direction;
   std::uint32_t* interface;
   Float4* velocity;
   NACRE_HD void operator()(std::int64_t i) const {
     if (count[i] == 0) return;
-    const std::int64_t at = place_number[i];
-    const SeedPlace seed = source.place(at);
+    const std::int64_t at = site_number[i];
+    const SeedSite seed = source.site(at);
     const std::uint32_t of = source.interface(at);
     const Vec3f& d = seed.direction;
     for (std::uint32_t k = 0; k < count[i]; ++k) {
       const Vec3f p = (seed.middle + aside(at, k, count[i], d)) / seed.cells_per_voxel;
       const std::int64_t to = first + start[i] + k;
-      place[to] = {p.x, p.y, p.z, seed.size};
+      position[to] = {p.x, p.y, p.z, seed.size};
       direction[to] = {d.x, d.y, d.z, 0};
       interface[to] = of;
       velocity[to] = {0, 0, 0, 0};
@@ -128,7 +128,7 @@ struct SumShares {
 /// How many particles the sizing field asks for on the interfaces of a source of seeds.
 template <class Backend, class Source>
 double expected_particles(Executor<Backend>& exec, const Source& source) {
-  return double(exec.reduce(source.places(), std::uint64_t(0), detail::SumShares<Source>{source}, Add{})) / 16777216.0;
+  return double(exec.reduce(source.sites(), std::uint64_t(0), detail::SumShares<Source>{source}, Add{})) / 16777216.0;
 }
 
 /// Puts seeds behind the particles of a set; returns how many. `scale`: times as many as the sizing field asks for;
@@ -140,27 +140,27 @@ std::int64_t seed_particles(Executor<Backend>& exec, const Source& source, doubl
   Arena::Scope scope(arena);
   std::int64_t n = 0;
   Array<std::uint64_t> key;
-  Array<std::uint32_t> place;
+  Array<std::uint32_t> site;
   {
-    Array<std::uint32_t> start = arena.temporary<std::uint32_t>(source.places());
-    exec.for_each(source.places(), detail::CountSeedPlaces<Source>{source, start.data()});
-    n = exec.exclusive_scan(start.data(), start.data(), source.places());
+    Array<std::uint32_t> start = arena.temporary<std::uint32_t>(source.sites());
+    exec.for_each(source.sites(), detail::CountSeedSites<Source>{source, start.data()});
+    n = exec.exclusive_scan(start.data(), start.data(), source.sites());
     if (n == 0) return 0;
     key = arena.temporary<std::uint64_t>(n);
-    place = arena.temporary<std::uint32_t>(n);
-    exec.for_each(source.places(), detail::ListSeedPlaces<Source>{source, start.data(), key.data(), place.data()});
+    site = arena.temporary<std::uint32_t>(n);
+    exec.for_each(source.sites(), detail::ListSeedSites<Source>{source, start.data(), key.data(), site.data()});
   }
-  exec.sort_pairs(key.data(), place.data(), n);
+  exec.sort_pairs(key.data(), site.data(), n);
   Array<std::uint64_t> sum = arena.temporary<std::uint64_t>(n);
-  exec.for_each(n, detail::SeedShares<Source>{source, place.data(), scale, sum.data()});
+  exec.for_each(n, detail::SeedShares<Source>{source, site.data(), scale, sum.data()});
   const std::uint64_t total = exec.exclusive_scan(sum.data(), sum.data(), n);
   Array<std::uint32_t> count = arena.temporary<std::uint32_t>(n), start = arena.temporary<std::uint32_t>(n);
   exec.for_each(n, detail::CountSeeds{sum.data(), total, n, count.data()});
   const std::int64_t seeds = exec.exclusive_scan(count.data(), start.data(), n);
   require_capacity(set, set.count + seeds);
   exec.for_each(
-      n, detail::WriteSeeds<Source>{source, place.data(), start.data(), count.data(), random, set.count,
-                                    set.place.data(), set.direction.data(), set.interface.data(), velocity.data()});
+      n, detail::WriteSeeds<Source>{source, site.data(), start.data(), count.data(), random, set.count,
+                                    set.position.data(), set.direction.data(), set.interface.data(), velocity.data()});
   set.count += seeds;
   return seeds;
 }

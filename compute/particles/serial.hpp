@@ -34,7 +34,7 @@ struct LinkedBins {
   }
 };
 
-/// All particles that one may feel at any place of its next step.
+/// All particles that one may feel at any position of its next step.
 class NearInBins {
  public:
   template <class Set>
@@ -46,7 +46,7 @@ class NearInBins {
       const Int3 b = centre + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       if (!bins.grid.has(b)) continue;
       for (std::uint32_t i = bins.head[bins.grid.number(b)]; i != LinkedBins::none; i = bins.next[i]) {
-        const Float4 q = set.place[i];
+        const Float4 q = set.position[i];
         const Vec3f r = Vec3f(q.x, q.y, q.z) - at.p;
         const float reach = step * at.h + support * q.w;
         if (dot(r, r) >= reach * reach || i == mine) continue;
@@ -88,7 +88,7 @@ struct SerialTurn {
   const Junction* table;
   float largest;
   std::int64_t fixed, first, last;
-  Float4 *place, *direction;
+  Float4 *position, *direction;
   const std::uint32_t* interface;
   float* damping;
   LinkedBins* bins;
@@ -100,7 +100,7 @@ struct SerialTurn {
 
  private:
   void relax(std::uint32_t i) const {
-    const Float4 p = place[i], d = direction[i];
+    const Float4 p = position[i], d = direction[i];
     const Mover start{{p.x, p.y, p.z}, p.w, {d.x, d.y, d.z}};
     near->gather(*bins, *this, {table, interface[i]}, i, start, parameters.step);
     OneLane lane;
@@ -108,7 +108,7 @@ struct SerialTurn {
     const RelaxedParticle done = relax_particle(lane, *near, scratch, surface, parameters, interface[i],
                                                 table[interface[i]].order(), largest, start, damping[i]);
     const Mover& at = done.at;
-    place[i] = {at.p.x, at.p.y, at.p.z, at.h};
+    position[i] = {at.p.x, at.p.y, at.p.z, at.h};
     direction[i] = {at.direction.x, at.direction.y, at.direction.z, done.energy};
     damping[i] = done.damping;
     if (done.moved) bins->move(i, at.p);
@@ -116,11 +116,12 @@ struct SerialTurn {
 };
 
 struct FillBins {
-  const Float4* place;
+  const Float4* position;
   std::int64_t count;
   LinkedBins* bins;
   void operator()(std::int64_t) const {
-    for (std::int64_t i = count; i-- > 0;) bins->insert(std::uint32_t(i), {place[i].x, place[i].y, place[i].z});
+    for (std::int64_t i = count; i-- > 0;)
+      bins->insert(std::uint32_t(i), {position[i].x, position[i].y, position[i].z});
   }
 };
 
@@ -137,20 +138,21 @@ IterationResult serial_iteration(Executor<Backend>& exec, ParticleSet& set, Solv
                 "use `device` cpu, or another `solver`");
   } else {
     if (set.count <= set.fixed) return {};
-    exec.for_each(set.count - set.fixed, detail::ReadSize<Surface>{surface, set.place.data() + set.fixed});
+    exec.for_each(set.count - set.fixed, detail::ReadSize<Surface>{surface, set.position.data() + set.fixed});
     const std::int64_t n = set.count;
     const detail::Extent extent = particle_extent(exec, set);
     detail::LinkedBins bins;
     bins.grid = make_bin_grid(extent.low, extent.high, bin_edge(extent.largest, parameters.step), most_bins(n));
     bins.head.assign(bins.grid.bins(), detail::LinkedBins::none);
     for (auto* of : {&bins.next, &bins.before, &bins.bin}) of->resize(n);
-    exec.for_each(1, detail::FillBins{set.place.data(), n, &bins});
+    exec.for_each(1, detail::FillBins{set.position.data(), n, &bins});
     detail::NearInBins near;
     const std::int64_t piece = 1024;  // between two looks at the stop flag
     for (std::int64_t first = set.fixed; first < n; first += piece)
-      exec.for_each(1, detail::SerialTurn<Surface>{surface, parameters, table.data(), extent.largest, set.fixed, first,
-                                                   std::min(first + piece, n), set.place.data(), set.direction.data(),
-                                                   set.interface.data(), state.damping.data(), &bins, &near});
+      exec.for_each(1,
+                    detail::SerialTurn<Surface>{surface, parameters, table.data(), extent.largest, set.fixed, first,
+                                                std::min(first + piece, n), set.position.data(), set.direction.data(),
+                                                set.interface.data(), state.damping.data(), &bins, &near});
     return {mean_energy(exec, set), 0, 0};
   }
 }

@@ -12,7 +12,7 @@ namespace nacre {
 /// Sec. 3.1.2.2. Damping is the lambda of Levenberg and Marquardt: per particle, for the whole run.
 struct SolverParameters {
   PopulationRule population;
-  float step = 0.5f;           ///< longest step of a particle, in h; the source allows 1
+  float step = 0.5f;           ///< longest step of a particle, in h; the dissertation allows 1
   float reach = 0.5f;          ///< a trial position must be this close to its junction, in h
   float first_damping = 0.1f;  ///< of a new particle
   float least_damping = 1e-4f;
@@ -60,8 +60,10 @@ struct MovingEnergy {
 template <class Surface>
 struct ReadSize {
   Surface surface;
-  Float4* place;
-  NACRE_HD void operator()(std::int64_t i) const { place[i].w = surface.size({place[i].x, place[i].y, place[i].z}); }
+  Float4* position;
+  NACRE_HD void operator()(std::int64_t i) const {
+    position[i].w = surface.size({position[i].x, position[i].y, position[i].z});
+  }
 };
 
 }  // namespace detail

@@ -7,13 +7,13 @@
 #include <string>
 
 #include "compute/device/executor.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 #include "compute/particles/particle_set.hpp"
 
 namespace nacre {
 
-/// A node: particles [first, last) of the sorted arrays, and what stands for them from afar: the mean of their places,
-/// sizes and normals, and their number as mass.
+/// A node: particles [first, last) of the sorted arrays, and what stands for them from afar: the mean of their
+/// positions, sizes and normals, and their number as mass.
 struct TreeNode {
   std::uint32_t first = 0, last = 0;
   std::uint32_t child = 0;     ///< number of the first child; children are consecutive
@@ -39,7 +39,7 @@ struct TreeView {
   static constexpr int bits = 16;  ///< Morton levels
 
   const TreeNode* node = nullptr;
-  const Float4* place = nullptr;      ///< sorted
+  const Float4* position = nullptr;   ///< sorted
   const Float4* direction = nullptr;  ///< sorted
   float theta = 0;
 
@@ -76,15 +76,15 @@ struct TreeView {
 
 namespace detail {
 
-/// Sorting key: interface, then Morton code of the place on a grid of 2^16 per axis over the volume.
+/// Sorting key: interface, then Morton code of the position on a grid of 2^16 per axis over the volume.
 struct TreeKey {
-  const Float4* place;
+  const Float4* position;
   const std::uint32_t* interface;
   float scale;
   std::uint64_t* key;
   std::uint32_t* number;
   NACRE_HD void operator()(std::int64_t i) const {
-    const Float4 p = place[i];
+    const Float4 p = position[i];
     const auto digit = [&](float x) {
       const float d = x * scale;
       return d <= 0 ? 0 : d >= 65535 ? 65535 : int(d);
@@ -195,7 +195,7 @@ struct MakeChildren {
 /// Bounds and means of a level's nodes from their particles or children.
 struct SummariseNodes {
   TreeNode* node;
-  const Float4* place;
+  const Float4* position;
   const Float4* direction;
   std::uint32_t begin;
   NACRE_HD void operator()(std::int64_t i) const {
@@ -205,12 +205,12 @@ struct SummariseNodes {
     float h = 0, largest = 0;
     if (n.children == 0) {
       for (std::uint32_t k = n.first; k < n.last; ++k) {
-        const Vec3f p(place[k].x, place[k].y, place[k].z);
+        const Vec3f p(position[k].x, position[k].y, position[k].z);
         low = min(low, p), high = max(high, p);
         centre += p;
         normal += Vec3f(direction[k].x, direction[k].y, direction[k].z);
-        h += place[k].w;
-        largest = max(largest, place[k].w);
+        h += position[k].w;
+        largest = max(largest, position[k].w);
       }
     } else {
       for (std::uint32_t k = n.child; k < n.child + n.children; ++k) {
@@ -232,17 +232,17 @@ struct SummariseNodes {
 
 struct GatherParticles {
   const std::uint32_t* number;
-  const Float4* place;
+  const Float4* position;
   const Float4* direction;
   const std::uint32_t* interface;
   const Float4* velocity;
-  Float4* to_place;
+  Float4* to_position;
   Float4* to_direction;
   std::uint32_t* to_interface;
   Float4* to_velocity;
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t k = number[i];
-    to_place[i] = place[k];
+    to_position[i] = position[k];
     to_direction[i] = direction[k];
     to_interface[i] = interface[k];
     to_velocity[i] = velocity[k];
@@ -338,13 +338,13 @@ class Tree {
   template <class Backend>
   void summarise(Executor<Backend>& exec, const ParticleSet& particles) {
     for (std::size_t l = level_.size() - 1; l-- > 0;)
-      exec.for_each(level_[l + 1] - level_[l], detail::SummariseNodes{node_.data(), particles.place.data(),
+      exec.for_each(level_[l + 1] - level_[l], detail::SummariseNodes{node_.data(), particles.position.data(),
                                                                       particles.direction.data(), level_[l]});
     bounded_ = nodes();
   }
 
   TreeView view(const ParticleSet& particles, float theta) const {
-    return {node_.data(), particles.place.data(), particles.direction.data(), theta};
+    return {node_.data(), particles.position.data(), particles.direction.data(), theta};
   }
   std::int64_t interfaces() const { return interfaces_; }
   const std::uint32_t* leaves() const { return leaf_.data(); }

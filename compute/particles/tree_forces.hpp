@@ -16,7 +16,7 @@ struct RelatedView {
 /// Sums over the neighbours of one particle.
 struct ForceSum {
   float energy = 0;
-  Vec3f gradient;       ///< of the energy with respect to the particle's place, per voxel
+  Vec3f gradient;       ///< of the energy with respect to the particle's position, per voxel
   float stiffness = 0;  ///< sum of second derivatives
 };
 
@@ -100,7 +100,7 @@ struct LeafForces {
     const auto compute = [&] {
       if (count == 0) return;  // most often on a rim, which is near few leaves
       team.each(targets, [&](int t) {
-        const Float4 p = tree.place[from + t], n = tree.direction[from + t];
+        const Float4 p = tree.position[from + t], n = tree.direction[from + t];
         // A curve's tangents may point either way; its particles, and those of a rim, concern each other fully.
         detail::add_forces(c, count, {p.x, p.y, p.z}, p.w, {n.x, n.y, n.z}, by_normal && order == 2, sums[t]);
       });
@@ -113,7 +113,7 @@ struct LeafForces {
             const int room = detail::Candidates::capacity - count;
             const int n = int(last - first) < room ? int(last - first) : room;
             team.each(n, [&](int k) {
-              const Float4 p = tree.place[first + k], d = tree.direction[first + k];
+              const Float4 p = tree.position[first + k], d = tree.direction[first + k];
               put(c, count + k, p, d, 1);
             });
             count += n;
@@ -136,7 +136,7 @@ struct LeafForces {
   }
 };
 
-/// Energy and force at a place that need not be a particle's: one walk for one point.
+/// Energy and force at a position that need not be a particle's: one walk for one point.
 NACRE_HD inline ForceSum force_at(const TreeView& tree, const RelatedView& related, std::uint32_t group, const Vec3f& p,
                                   float h, const Vec3f& n) {
   ForceSum sum;
@@ -156,7 +156,7 @@ NACRE_HD inline ForceSum force_at(const TreeView& tree, const RelatedView& relat
     tree.walk(
         root, p, p, support * h,
         [&](std::uint32_t first, std::uint32_t last) {
-          for (std::uint32_t q = first; q < last; ++q) add(tree.place[q], tree.direction[q], 1);
+          for (std::uint32_t q = first; q < last; ++q) add(tree.position[q], tree.direction[q], 1);
         },
         [&](const TreeNode& node) { add(node.centre, node.normal, node.mass()); });
   }

@@ -17,7 +17,7 @@ namespace nacre {
 struct TreePopulation {
   TreeView tree;
   RelatedView related;
-  EmbeddedGround ground;
+  EmbeddedProjector projector;
   PopulationRule rule;
   int order;               ///< of the particles that may come and go
   const Float4* gradient;  ///< of the energy, per particle, as the forces were computed last
@@ -33,7 +33,7 @@ namespace detail {
 struct JudgeParticle {
   TreeView tree;
   RelatedView related;
-  EmbeddedGround ground;
+  EmbeddedProjector projector;
   PopulationRule rule;
   int order;
   float demand;  ///< share of the particles to be added (above 0) or deleted for the target's sake
@@ -41,7 +41,7 @@ struct JudgeParticle {
   const std::uint32_t* interface;
   const Float4* gradient;
   const float* energy;
-  Float4* child;  ///< place and h of the new particle; h = 0: none
+  Float4* child;  ///< position and h of the new particle; h = 0: none
   Float4* child_direction;
   float* deletion;  ///< energy of one to be deleted, else 0
 
@@ -50,7 +50,7 @@ struct JudgeParticle {
     deletion[i] = 0;
     const std::uint32_t group = interface[i];
     if (related.order[group] != order) return;
-    const Float4 at = tree.place[i], d = tree.direction[i];
+    const Float4 at = tree.position[i], d = tree.direction[i];
     const float ideal = rule.ideal_energy;
     const float bias = uniform_random(rule.seed, std::uint32_t(i), round) * (energy[i] - ideal) / ideal;
     const float chance = uniform_random(rule.seed ^ 0x9e3779b9u, std::uint32_t(i), round);
@@ -78,7 +78,7 @@ struct JudgeParticle {
       tree.walk(
           related.related[k], p, p, 2 * reach,
           [&](std::uint32_t first, std::uint32_t last) {
-            for (std::uint32_t q = first; q < last; ++q) add(tree.place[q], 1);
+            for (std::uint32_t q = first; q < last; ++q) add(tree.position[q], 1);
           },
           [&](const TreeNode& node) { add(node.centre, node.mass()); });
     return count <= needed;
@@ -99,7 +99,7 @@ struct JudgeParticle {
       away = order == 2 ? s * std::cos(angle) + t * std::sin(angle) : n * (angle < pi ? 1.0f : -1.0f);
     }
     EmbeddedPoint on;
-    if (!ground.project(group, p + normalized(away) * (0.8f * at.w), at.w, on) || on.margin < 0) return;
+    if (!projector.project(group, p + normalized(away) * (0.8f * at.w), at.w, on) || on.margin < 0) return;
     const Vec3f r = on.p - p;
     if (dot(r, r) < 0.16f * at.w * at.w) return;
     // Only where there is room: its energy there must not be that of a crowd.
@@ -127,10 +127,10 @@ struct SettleConflicts {
     const std::uint32_t group = interface[i];
     if (related.order[group] != order) return;
     if (deletion[i] > 0) {
-      const Float4 at = tree.place[i];
+      const Float4 at = tree.position[i];
       bool most = true;
       each_near(group, {at.x, at.y, at.z}, 0.9f * at.w, [&](std::uint32_t q) {
-        if (q != i && near(at, tree.place[q], 0.9f) &&
+        if (q != i && near(at, tree.position[q], 0.9f) &&
             (deletion[q] > deletion[i] || (deletion[q] == deletion[i] && q < std::uint32_t(i))))
           most = false;
       });
@@ -169,25 +169,25 @@ struct SettleConflicts {
 struct CopyPopulation {
   const std::uint32_t* copies;
   const std::uint32_t* start;
-  const Float4* place;
+  const Float4* position;
   const Float4* direction;
   const std::uint32_t* interface;
   const Float4* velocity;
   const Float4* child;
   const Float4* child_direction;
-  Float4* to_place;
+  Float4* to_position;
   Float4* to_direction;
   std::uint32_t* to_interface;
   Float4* to_velocity;
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t at = start[i];
     if (copies[i] == 0) return;
-    to_place[at] = place[i];
+    to_position[at] = position[i];
     to_direction[at] = direction[i];
     to_interface[at] = interface[i];
     to_velocity[at] = velocity[i];
     if (copies[i] < 2) return;
-    to_place[at + 1] = child[i];
+    to_position[at + 1] = child[i];
     to_direction[at + 1] = child_direction[i];
     to_interface[at + 1] = interface[i];
     to_velocity[at + 1] = {0, 0, 0, 0};
@@ -235,10 +235,10 @@ IterationResult control_population(Executor<Backend>& exec, const TreePopulation
   const std::int64_t n = set.count;
   Arena::Scope scope(exec.arena());
   const detail::PopulationScratch to(exec.arena(), n);
-  exec.for_each(
-      n, detail::JudgeParticle{by.tree, by.related, by.ground, by.rule, by.order, detail::tree_demand(by.rule, movers),
-                               by.round, set.interface.data(), by.gradient, by.energy, to.child.data(),
-                               to.child_direction.data(), to.deletion.data()});
+  exec.for_each(n,
+                detail::JudgeParticle{by.tree, by.related, by.projector, by.rule, by.order,
+                                      detail::tree_demand(by.rule, movers), by.round, set.interface.data(), by.gradient,
+                                      by.energy, to.child.data(), to.child_direction.data(), to.deletion.data()});
   TreeView exact = by.tree;
   exact.theta = 0;
   exec.for_each(n, detail::SettleConflicts{exact, by.related, by.order, set.interface.data(), to.child.data(),
@@ -248,9 +248,9 @@ IterationResult control_population(Executor<Backend>& exec, const TreePopulation
   IterationResult result;
   result.added = std::int64_t(exec.reduce(n, std::uint64_t(0), detail::CountOf{to.copies.data(), 2}, Add{}));
   result.deleted = std::int64_t(exec.reduce(n, std::uint64_t(0), detail::CountOf{to.copies.data(), 0}, Add{}));
-  exec.for_each(n, detail::CopyPopulation{to.copies.data(), to.start.data(), set.place.data(), set.direction.data(),
+  exec.for_each(n, detail::CopyPopulation{to.copies.data(), to.start.data(), set.position.data(), set.direction.data(),
                                           set.interface.data(), velocity.data(), to.child.data(),
-                                          to.child_direction.data(), spare.place.data(), spare.direction.data(),
+                                          to.child_direction.data(), spare.position.data(), spare.direction.data(),
                                           spare.interface.data(), spare_velocity.data()});
   spare.count = total;
   std::swap(set, spare);

@@ -14,7 +14,7 @@ namespace nacre {
 /// What the tree solver can be told.
 struct TreeRule {
   float theta = 0.5f;
-  float step = 1.2f;       ///< share of the Newton step (source notes: what simultaneous steps can reach)
+  float step = 1.2f;       ///< share of the Newton step
   float momentum = 0.85f;  ///< heavy ball
   float longest = 0.3f;    ///< of a step, in h
 };
@@ -22,23 +22,23 @@ struct TreeRule {
 namespace detail {
 
 /// One step in the tangent space, then back onto the interface.
-template <class Ground>
+template <class Projector>
 struct MoveParticle {
-  Ground ground;
+  Projector projector;
   RelatedView related;
   TreeRule rule;
   int order;
   const std::uint32_t* interface;
   const Float4* gradient;
   const float* energy;
-  Float4* place;
+  Float4* position;
   Float4* direction;  ///< w gets the energy
   Float4* velocity;
 
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t group = interface[i];
     if (related.order[group] != order) return;
-    const Float4 at = place[i], d = direction[i], g4 = gradient[i], v4 = velocity[i];
+    const Float4 at = position[i], d = direction[i], g4 = gradient[i], v4 = velocity[i];
     const Vec3f p(at.x, at.y, at.z), n(d.x, d.y, d.z), g(g4.x, g4.y, g4.z);
     const auto tangential = [&](const Vec3f& v) { return order == 2 ? v - n * dot(n, v) : n * dot(n, v); };
     // In a plane the neighbours' stiffness is shared by two directions.
@@ -58,14 +58,14 @@ struct MoveParticle {
     }
     // Tangents of a curve are kept pointing the same way.
     const float sign = order == 1 && dot(on.direction, n) < 0 ? -1.0f : 1.0f;
-    place[i] = {on.p.x, on.p.y, on.p.z, on.h};
+    position[i] = {on.p.x, on.p.y, on.p.z, on.h};
     direction[i] = {sign * on.direction.x, sign * on.direction.y, sign * on.direction.z, energy[i]};
     velocity[i] = {v.x, v.y, v.z, 0};
   }
 
  private:
   NACRE_HD bool arrives(std::uint32_t group, const Vec3f& p, const Vec3f& v, float h, EmbeddedPoint& on) const {
-    if (!ground.project(group, p + v, h, on) || on.margin < 0) return false;
+    if (!projector.project(group, p + v, h, on) || on.margin < 0) return false;
     const Vec3f off = on.p - p - v;
     return dot(off, off) < h * h;
   }
@@ -128,10 +128,11 @@ class TreeSolver {
     const int bits =
         std::min(64, 3 * TreeView::bits + int(std::bit_width(std::uint64_t(tree_.interfaces()))));  // of keys
     exec.repeat(rebuilding_, [&] {
-      exec.for_each(n, detail::TreeKey{from.place.data(), from.interface.data(), scale_, key_.data(), number_.data()});
+      exec.for_each(n,
+                    detail::TreeKey{from.position.data(), from.interface.data(), scale_, key_.data(), number_.data()});
       exec.sort_pairs(key_.data(), number_.data(), n, bits);
-      exec.for_each(n, detail::GatherParticles{number_.data(), from.place.data(), from.direction.data(),
-                                               from.interface.data(), velocity_[0].data(), to.place.data(),
+      exec.for_each(n, detail::GatherParticles{number_.data(), from.position.data(), from.direction.data(),
+                                               from.interface.data(), velocity_[0].data(), to.position.data(),
                                                to.direction.data(), to.interface.data(), velocity_[1].data()});
       tree_.launch_build(exec, key_, n);
     });
@@ -149,33 +150,33 @@ class TreeSolver {
   }
 
   /// `forces`, then `move` by them; returns what `forces` does.
-  template <class Backend, class Ground>
-  double iterate(Executor<Backend>& exec, const Ground& ground, const RelatedView& related, int order,
+  template <class Backend, class Projector>
+  double iterate(Executor<Backend>& exec, const Projector& projector, const RelatedView& related, int order,
                  const TreeRule& rule, std::int64_t movers) {
     exec.repeat(iterating_, [&] {
       launch_forces(exec, related, order, rule.theta);
-      move(exec, ground, related, order, rule);
+      move(exec, projector, related, order, rule);
     });
     return mean_energy(movers);  // the one thing that the host waits for
   }
 
   /// A step from the forces. The tree's order is kept; its bounds follow.
-  template <class Backend, class Ground>
-  void move(Executor<Backend>& exec, const Ground& ground, const RelatedView& related, int order,
+  template <class Backend, class Projector>
+  void move(Executor<Backend>& exec, const Projector& projector, const RelatedView& related, int order,
             const TreeRule& rule) {
     ParticleSet& set = set_[0];
-    exec.for_each(set.count, detail::MoveParticle<Ground>{ground, related, rule, order, set.interface.data(),
-                                                          gradient_.data(), energy_.data(), set.place.data(),
-                                                          set.direction.data(), velocity_[0].data()});
+    exec.for_each(set.count, detail::MoveParticle<Projector>{projector, related, rule, order, set.interface.data(),
+                                                             gradient_.data(), energy_.data(), set.position.data(),
+                                                             set.direction.data(), velocity_[0].data()});
     tree_.summarise(exec, set);
   }
 
   /// Splits and deletes by the energies of the last `forces`; `movers`: particles of this order. The tree is out of
   /// date after it.
   template <class Backend>
-  IterationResult control(Executor<Backend>& exec, const EmbeddedGround& ground, const RelatedView& related, int order,
-                          float theta, const PopulationRule& rule, std::int64_t movers, int round) {
-    const TreePopulation population{view(theta), related,          ground,         rule,
+  IterationResult control(Executor<Backend>& exec, const EmbeddedProjector& projector, const RelatedView& related,
+                          int order, float theta, const PopulationRule& rule, std::int64_t movers, int round) {
+    const TreePopulation population{view(theta), related,          projector,      rule,
                                     order,       gradient_.data(), energy_.data(), std::uint32_t(round)};
     return control_population(exec, population, movers, set_[0], set_[1], velocity_[0], velocity_[1]);
   }

@@ -110,7 +110,8 @@ int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, F
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = (b.upper[axis] - b.lower[axis]) / domain.cell_size;
     domain.extent[axis] = std::max(1, int(std::ceil(cells - 1e-9)));
-    // In the middle of the cube, but off the cell faces: an axis-aligned wall on a face would touch two layers of cells.
+    // In the middle of the cube, but off the cell faces: an axis-aligned wall on a face would touch two layers of
+    // cells.
     const double corner = std::floor(0.5 * (n - cells)) + 0.37;
     domain.origin[axis] = b.lower[axis] - corner * domain.cell_size;
   }

@@ -1,4 +1,5 @@
-// Nacre: what the methods of the flow pipeline have in common: the mesh on the device, time, the ring of steps, the view.
+// Nacre: what the methods of the flow pipeline have in common: the mesh on the device, time, the ring of steps, the
+// view.
 #pragma once
 
 #include <algorithm>
@@ -99,8 +100,8 @@ class FlowMethodOn : public FlowMethod {
     load_present(k);
   }
 
-  /// Streaks of `value` along the flow of the frame, around 1/2, into `streaks`. `cell`: edge of a texture cell in cells
-  /// of the domain.
+  /// Streaks of `value` along the flow of the frame, around 1/2, into `streaks`. `cell`: edge of a texture cell in
+  /// cells of the domain.
   template <class Streaks>
   void draw_streaks(const Streaks& on, std::int64_t n, double cell, const float* value, StreakCell* cells,
                     float* streaks) {
@@ -118,8 +119,8 @@ class FlowMethodOn : public FlowMethod {
     return vectors_.start + (vectors_.end - vectors_.start) * share;
   }
 
-  /// Draws what `pixel` casts into: sets its camera, light, colours and background, and runs it on every pixel. `dims` is
-  /// the extent of the domain in cells. RGBA, row 0 at the top.
+  /// Draws what `pixel` casts into: sets its camera, light, colours and background, and runs it on every pixel. `dims`
+  /// is the extent of the domain in cells. RGBA, row 0 at the top.
   template <class Pixel>
   std::vector<std::uint8_t> draw(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) {
     Arena& arena = exec_.arena();

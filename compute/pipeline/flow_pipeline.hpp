@@ -13,7 +13,7 @@
 #include "compute/device/device.hpp"
 #include "compute/device/executor.hpp"
 #include "compute/device/stage_timers.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/raycast/camera.hpp"
 
 namespace nacre {
@@ -85,13 +85,13 @@ struct FlowValues {
   explicit FlowValues(std::size_t n) : centre(n), value(n), velocity(n), normal(n), closest_point(n) {}
 };
 
-/// The arrays of the embedding that lead from a point of the surface to its shown value, on the host, for a renderer that
-/// looks values up by itself.
+/// The arrays of the embedding that lead from a point of the surface to its shown value, on the host, for a renderer
+/// that looks values up by itself.
 struct FlowLookup {
   enum class Kind {
     grid,    ///< RefinedGridView says how
     octree,  ///< BrickOctreeView
-    source   ///< SourceOctreeView
+    thesis   ///< SourceOctreeView
   };
   Kind kind = Kind::grid;
   std::uint64_t values = 0;  ///< how many are shown
@@ -109,7 +109,7 @@ struct FlowLookup {
   std::vector<std::uint32_t> level_start;  ///< first node of each level
   std::vector<std::uint32_t> layer;        ///< per brick and z: 64 bits for surface cells (8 y + x), the first's number
 
-  // The source's octree, whose leaves are cells.
+  // The thesis octree, whose leaves are cells.
   std::vector<std::uint32_t> child;  ///< 8 per node, the root last: numbers of nodes, of cells in the lowest; all ones
 };
 

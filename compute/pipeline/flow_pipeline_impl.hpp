@@ -33,7 +33,7 @@ class FlowPipelineOf final : public FlowPipeline {
     if (parameters.method == EmbeddingKind::grid) return std::make_unique<GridFlow<Backend>>(exec_, parameters);
     if (parameters.octree == OctreeKind::brick)
       return std::make_unique<OctreeFlow<Backend, BrickBand>>(exec_, parameters);
-    return std::make_unique<OctreeFlow<Backend, SourceBand>>(exec_, parameters);
+    return std::make_unique<OctreeFlow<Backend, ThesisBand>>(exec_, parameters);
   }
 
   mutable Executor<Backend> exec_;

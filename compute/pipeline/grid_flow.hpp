@@ -136,8 +136,9 @@ class GridFlow final : public FlowMethodOn<Backend> {
       auto stage = exec_.stage("deposit");
       normalise(done, value_, 1, value_);
       exec_.fill(done, 0);
-      // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the mean
-      // of this frame and of what older particles have already left in the next one; else the texture lags the flow.
+      // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the
+      // mean of this frame and of what older particles have already left in the next one; else the texture lags the
+      // flow.
       normalise(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
     }
     show();
@@ -220,7 +221,7 @@ FlowValues GridFlow<Backend>::values() const {
   FlowValues values(n);
   values.value = this->download_frame(frame_, n);
   const std::vector<Float4> seed = fine_.seed.download();
-  const std::vector<std::uint32_t> place = fine_.place.download(), triangle = fine_.seed_triangle.download();
+  const std::vector<std::uint32_t> position = fine_.position.download(), triangle = fine_.seed_triangle.download();
   const std::vector<std::uint32_t> block_cell = fine_.block_cell.download();
   const std::vector<std::uint64_t> code = coarse_.brick_code.download();
   ClosestPointGridView grid = coarse_.view();
@@ -229,7 +230,7 @@ FlowValues GridFlow<Backend>::values() const {
   texture.block_cell = block_cell.data();
   const typename Base::Describe describe(*this);
   for (std::size_t s = 0; s < n; ++s) {
-    const Vec3d centre = Vec3d(texture.texel_cell(place[s])) + Vec3d(0.5);
+    const Vec3d centre = Vec3d(texture.texel_cell(position[s])) + Vec3d(0.5);
     const Vec3d surface = centre + Vec3d(seed[s].x, seed[s].y, seed[s].z);
     describe(values, s, centre / double(refine_), surface / double(refine_), triangle[s]);
   }

@@ -6,16 +6,16 @@ namespace nacre {
 std::size_t replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
                               std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
                               const VolumeFrame& frame, std::size_t capacity) {
-  auto& [place, direction, interface] = particles;
+  auto& [position, direction, interface] = particles;
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < place.size(); ++i)
-    if (!gone[i]) place[kept] = place[i], direction[kept] = direction[i], interface[kept++] = interface[i];
-  place.resize(kept), direction.resize(kept), interface.resize(kept);
+  for (std::size_t i = 0; i < position.size(); ++i)
+    if (!gone[i]) position[kept] = position[i], direction[kept] = direction[i], interface[kept++] = interface[i];
+  position.resize(kept), direction.resize(kept), interface.resize(kept);
   for (const MeshDefects::NewPoint& p : born) {
     const auto number = table.find(Junction(p.materials[0], p.materials[1]));
-    if (!number || place.size() == capacity) continue;
-    const Vec3d at = frame.to_voxels(p.place);
-    place.push_back({float(at.x), float(at.y), float(at.z), 0});
+    if (!number || position.size() == capacity) continue;
+    const Vec3d at = frame.to_voxels(p.position);
+    position.push_back({float(at.x), float(at.y), float(at.z), 0});
     direction.push_back({0, 0, 0, 0});
     interface.push_back(*number);
   }
@@ -27,17 +27,17 @@ HostParticles take_back(std::span<const Attempt::Source> sources, const HostPart
   HostParticles mixed;
   for (const auto& [was_before, i] : sources) {
     const HostParticles& from = was_before ? before : now;
-    mixed.place.push_back(from.place[i]);
+    mixed.position.push_back(from.position[i]);
     mixed.direction.push_back(from.direction[i]);
     mixed.interface.push_back(from.interface[i]);
   }
   return mixed;
 }
 
-std::vector<Vec3d> world_positions(std::span<const Float4> place, const VolumeFrame& frame) {
+std::vector<Vec3d> world_positions(std::span<const Float4> position, const VolumeFrame& frame) {
   std::vector<Vec3d> points;
-  points.reserve(place.size());
-  for (const Float4& p : place) points.push_back(frame.to_world(Vec3d(p.x, p.y, p.z)));
+  points.reserve(position.size());
+  for (const Float4& p : position) points.push_back(frame.to_world(Vec3d(p.x, p.y, p.z)));
   return points;
 }
 
@@ -49,11 +49,11 @@ std::array<std::int64_t, 3> count_by_order(std::span<const std::uint32_t> interf
 
 MeshParticles describe_particles(const HostParticles& particles, const JunctionTable& table, const VolumeFrame& frame) {
   MeshParticles result;
-  result.points = world_positions(particles.place, frame);
+  result.points = world_positions(particles.position, frame);
   for (std::size_t i = 0; i < particles.count(); ++i) {
-    const Float4 &place = particles.place[i], &direction = particles.direction[i];
+    const Float4 &position = particles.position[i], &direction = particles.direction[i];
     const Junction j = table.junctions[particles.interface[i]];
-    result.size.push_back(place.w * float(frame.unit));
+    result.size.push_back(position.w * float(frame.unit));
     result.energy.push_back(direction.w);
     result.normal.push_back(frame.direction_to_world({direction.x, direction.y, direction.z}));
     result.order.push_back(std::uint8_t(j.order()));

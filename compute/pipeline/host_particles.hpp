@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compute/embedding/junction_table.hpp"
-#include "compute/grid/lanes.hpp"
+#include "compute/math/lanes.hpp"
 #include "compute/meshing/attempt.hpp"
 #include "compute/meshing/defects.hpp"
 #include "compute/pipeline/volume_frame.hpp"
@@ -17,10 +17,10 @@ namespace nacre {
 
 /// Particles in the order of a ParticleSet, which says what each array holds.
 struct HostParticles {
-  std::vector<Float4> place, direction;
+  std::vector<Float4> position, direction;
   std::vector<std::uint32_t> interface;
 
-  std::size_t count() const { return place.size(); }
+  std::size_t count() const { return position.size(); }
 };
 
 /// Takes out the particles that `gone` marks, and puts new ones behind those that stay, of size 0 and without
@@ -34,7 +34,7 @@ HostParticles take_back(std::span<const Attempt::Source> sources, const HostPart
                         const HostParticles& now);
 
 /// World coordinates.
-std::vector<Vec3d> world_positions(std::span<const Float4> place, const VolumeFrame& frame);
+std::vector<Vec3d> world_positions(std::span<const Float4> position, const VolumeFrame& frame);
 
 /// How many particles are at points, on curves and on surfaces.
 std::array<std::int64_t, 3> count_by_order(std::span<const std::uint32_t> interface, const JunctionTable& table);

@@ -51,8 +51,8 @@ class MeshFields {
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
   double expected(int order) const { return expected_[order]; }  ///< particles, from area and sizing field
   EmbeddingSeeds seeds(int order) const { return {grid_, order_.data(), order}; }
-  FieldGround field_ground() const { return {bricks_.view(), junction_.data(), size_.view()}; }
-  EmbeddedGround embedded_ground() const { return {grid_.view(), field_ground()}; }
+  FieldProjector field_projector() const { return {bricks_.view(), junction_.data(), size_.view()}; }
+  EmbeddedProjector embedded_projector() const { return {grid_.view(), field_projector()}; }
 
  private:
   FieldRecipe recipe(const MeshParameters& p) const { return field_recipe(p, *kind_, bricks_, size_.small); }
@@ -100,7 +100,7 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
     for (const float v : values) scale = std::max(scale, std::fabs(v));
     const Vec3f spacing(frame_.relative_spacing());
     const float slope = volume.levels.size() == 1 ? distance_slope(volume.dims, spacing, values, volume.levels[0]) : 0;
-    info.creased_voxels = fill_scalar(exec_, bricks_, values, volume.levels, scale > 0 ? scale : 1, slope);
+    info.ridge_voxels = fill_scalar(exec_, bricks_, values, volume.levels, scale > 0 ? scale : 1, slope);
   }
   least_area_ = least_boundary_area(exec_, bricks_);
   info.blocks = bricks_.blocks;

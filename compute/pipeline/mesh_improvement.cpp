@@ -75,7 +75,7 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
   Triangulated made;
   particles_.in_stage("triangulate", [&] {
     const HostParticles particles = particles_.download();
-    const std::vector<Vec3d> points = world_positions(particles.place, frame_);
+    const std::vector<Vec3d> points = world_positions(particles.position, frame_);
     const DelaunayCells cells = delaunay_.cells(points, rule_.stop);
     std::vector<std::uint16_t> label = particles_.material_at(cells.circumcentres);
     const LabelRepair repair = repair_labels(points, cells, label, rule_.stop);
@@ -83,7 +83,7 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
     check_stop(rule_.stop);
     for (const std::uint32_t i : made.point_of) {
       made.order.push_back(table_.order[particles.interface[i]]);
-      made.size.push_back(particles.place[i].w * float(frame_.unit));
+      made.size.push_back(particles.position[i].w * float(frame_.unit));
     }
     lift_off_junctions(made.mesh, made.order);
     made.touching = points_of_places(repair.places, made.point_of);
@@ -158,11 +158,11 @@ bool MeshImprovement::take_back_attempt() {
 /// them. How many have moved by more than a hundredth of their size.
 std::int64_t MeshImprovement::smooth(Triangulated& made, std::span<const std::uint8_t> moving,
                                      const SmoothingRule& rule) {
-  const std::vector<Float4> before = particles_.download().place;
+  const std::vector<Float4> before = particles_.download().position;
   TriangleRings rings;
   particles_.in_stage("smooth", [&] { rings = triangle_rings(made.mesh, made.point_of, moving, before.size()); });
   particles_.smooth(rings, rule, [&](int turns) { tell_("smooth", fraction(), turns, 0); });
-  const std::vector<Float4> after = particles_.download().place;
+  const std::vector<Float4> after = particles_.download().position;
   std::int64_t far = 0;
   for (std::size_t v = 0; v < made.point_of.size(); ++v) {
     const Float4 a = before[made.point_of[v]], b = after[made.point_of[v]];

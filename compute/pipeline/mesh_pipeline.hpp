@@ -12,18 +12,18 @@
 
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
-#include "compute/grid/lanes.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/lanes.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
 
-/// What can be turned. Ranges and help are in the knob table (engine/scene/settings/knobs.hpp). Lengths are in voxels: edges of
-/// the volume's smallest voxel spacing.
+/// What can be turned. Ranges and help are in the knob table (engine/scene/settings/knobs.hpp). Lengths are in voxels:
+/// edges of the volume's smallest voxel spacing.
 struct MeshParameters {
   std::string solver = "tree";         ///< tree (ch. 4), redblack (sec. 3.2), serial (sec. 3.1)
-  double tighten = 1.2;                ///< width of the smoothing of label boundaries; 0: keep the stairs
-  double stairs = 32;                  ///< how far ends of treads are looked for, to read stairs as slopes; 0: not
+  double tighten = 1.2;                ///< width of the smoothing of label boundaries; 0: keep the staircase
+  double stairs = 32;                  ///< how far ends of treads are looked for, to read staircases as slopes; 0: not
   double epsilon = 0.5;                ///< sizing: share of the local feature size
   double delta = 0.4;                  ///< sizing: largest slope (Lipschitz constant)
   double min_size = 0.5;               ///< sizing: smallest distance of particles
@@ -39,12 +39,12 @@ struct MeshParameters {
   double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)
   double add_below = 0.65;             ///< split particles with less than this share of the ideal energy
   double delete_above = 1.75;          ///< delete particles with more
-  bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the source's rule
-  int control_every = 10;              ///< iterations between two controls of the population
-  int smooth = 2;                      ///< rounds of moving particles within the triangles around them
-  int mend = 12;                       ///< rounds of mending bad triangles after the first triangulation, at most
-  std::string seeds = "auto";          ///< embedding, marching-cubes; auto: the former for tree, the latter for others
-  int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
+  bool by_density = true;      ///< serial, redblack: control by the estimated density; false: the dissertation's rule
+  int control_every = 10;      ///< iterations between two controls of the population
+  int smooth = 2;              ///< rounds of moving particles within the triangles around them
+  int mend = 12;               ///< rounds of mending bad triangles after the first triangulation, at most
+  std::string seeds = "auto";  ///< embedding, marching-cubes; auto: the former for tree, the latter for others
+  int particles = 0;           ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };
 
@@ -81,8 +81,8 @@ struct MeshInfo {
   int crowded_points = 0;        ///< of these, where more than four materials meet
   /// Materials that meet (0xffff: none) on each surface and curve, ascending, then at each kind of junction point.
   std::vector<std::array<std::uint16_t, 4>> junctions;
-  std::int64_t constrained_voxels = 0;  ///< where tightening was held back to keep a voxel on its side
-  std::int64_t creased_voxels = 0;      ///< of a signed distance, where a crease near the interface was taken out
+  std::int64_t constrained_voxels = 0;         ///< where tightening was held back to keep a voxel on its side
+  std::int64_t ridge_voxels = 0;               ///< of a signed distance, where a ridge near the interface was taken out
   double smallest_size = 0, largest_size = 0;  ///< of the sizing field on the interfaces, voxels
   double expected_particles = 0;               ///< from area and sizing field
   std::int64_t seeded = 0, final = 0;
@@ -122,7 +122,7 @@ using MeshProgressCallback = std::function<void(const MeshProgress&)>;
 
 /// Where a renderer wants particles: memory of the pipeline's device, room for `capacity` of them in both arrays.
 struct ShownParticles {
-  Float4* place = nullptr;      ///< x, y, z in voxels; h, voxels
+  Float4* position = nullptr;   ///< x, y, z in voxels; h, voxels
   Float4* direction = nullptr;  ///< unit: normal of a surface, tangent of a curve, zero at a point; energy
   std::int64_t capacity = 0;
 };

@@ -67,7 +67,7 @@ struct DistanceAt {
     if (q == none || away > distances.reach) return;
     const Float4 n = distances.point[q].normal;
     const Vec3f s = distances.lattice.spacing;
-    const float along = dot(p - distances.place(q), Vec3f(n.x, n.y, n.z));
+    const float along = dot(p - distances.position(q), Vec3f(n.x, n.y, n.z));
     const float beside = std::sqrt(std::fmax(away * away - along * along, 0.0f)) - std::fmax(s.x, std::fmax(s.y, s.z));
     distance[i] = beside > 0 ? std::sqrt(along * along + beside * beside) : std::fabs(along);
   }
@@ -109,9 +109,10 @@ template <class Backend>
 std::vector<std::uint16_t> material_at(Executor<Backend>& exec, const MeshFields<Backend>& fields,
                                        std::span<const Vec3d> points) {
   Arena::Scope scope(exec.arena());
-  const Array<Vec3f> place = detail::upload_points(exec, fields.frame(), points);
+  const Array<Vec3f> position = detail::upload_points(exec, fields.frame(), points);
   Array<std::uint16_t> material = exec.arena().template temporary<std::uint16_t>(points.size());
-  exec.for_each(std::int64_t(points.size()), detail::MaterialAt{fields.bricks().view(), place.data(), material.data()});
+  exec.for_each(std::int64_t(points.size()),
+                detail::MaterialAt{fields.bricks().view(), position.data(), material.data()});
   return material.download();
 }
 
@@ -120,18 +121,18 @@ template <class Backend>
 std::vector<float> field_at(Executor<Backend>& exec, const MeshFields<Backend>& fields, MeshField field,
                             std::span<const Vec3d> points) {
   Arena::Scope scope(exec.arena());
-  const Array<Vec3f> place = detail::upload_points(exec, fields.frame(), points);
+  const Array<Vec3f> position = detail::upload_points(exec, fields.frame(), points);
   Array<float> value = exec.arena().template temporary<float>(points.size());
   const MaterialBricksView bricks = fields.bricks().view();
   const std::int64_t n = std::int64_t(points.size());
   if (field == MeshField::material) {
-    exec.for_each(n, detail::PictureMaterialAt{bricks, place.data(), value.data()});
+    exec.for_each(n, detail::PictureMaterialAt{bricks, position.data(), value.data()});
     return value.download();
   }
   if (field == MeshField::distance)
-    exec.for_each(n, detail::DistanceAt{bricks, fields.distance().view(), place.data(), value.data()});
+    exec.for_each(n, detail::DistanceAt{bricks, fields.distance().view(), position.data(), value.data()});
   else
-    exec.for_each(n, detail::SizeAt{bricks, fields.size().view(), place.data(), value.data()});
+    exec.for_each(n, detail::SizeAt{bricks, fields.size().view(), position.data(), value.data()});
   std::vector<float> result = value.download();
   for (float& x : result) x *= float(fields.frame().unit);
   return result;
@@ -143,12 +144,12 @@ std::vector<float> distance_to_interfaces(Executor<Backend>& exec, const MeshFie
                                           std::span<const Vec3d> points, std::span<const Junction> interfaces) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  const Array<Vec3f> place = detail::upload_points(exec, fields.frame(), points);
+  const Array<Vec3f> position = detail::upload_points(exec, fields.frame(), points);
   Array<Junction> junction = arena.template temporary<Junction>(interfaces.size());
   junction.upload(interfaces);
   Array<float> distance = arena.template temporary<float>(points.size());
   exec.for_each(std::int64_t(points.size()),
-                detail::DistanceToInterface{fields.bricks().view(), place.data(), junction.data(), distance.data()});
+                detail::DistanceToInterface{fields.bricks().view(), position.data(), junction.data(), distance.data()});
   return distance.download();
 }
 

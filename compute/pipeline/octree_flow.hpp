@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "compute/embedding/build_brick_octree.hpp"
-#include "compute/embedding/build_source_octree.hpp"
+#include "compute/embedding/build_thesis_octree.hpp"
 #include "compute/embedding/tree_boxes.hpp"
 #include "compute/flow/band_advect.hpp"
 #include "compute/flow/band_filter.hpp"
@@ -34,9 +34,9 @@ struct BrickBand {
   }
 };
 
-/// The source's octree of cells and its flow: every cell of the band releases a particle from its centre.
-struct SourceBand {
-  using Octree = SourceOctree;
+/// The thesis octree of cells and its flow: every cell of the band releases a particle from its centre.
+struct ThesisBand {
+  using Octree = ThesisOctree;
   static constexpr const char* name = "source octree";
   static constexpr bool from_centres = true, local_contrast = false;
   static constexpr int smallest_box = 2;
@@ -45,7 +45,7 @@ struct SourceBand {
   template <class Backend>
   static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
                       const FlowDomain& domain, const FlowParameters& parameters) {
-    return build_source_octree(exec, mesh, triangles, levels, domain.radius, parameters.neighbour_index);
+    return build_thesis_octree(exec, mesh, triangles, levels, domain.radius, parameters.neighbour_index);
   }
 };
 
@@ -63,7 +63,7 @@ struct SampleBandAt {
 
 /// Whether a triangle touches a cell that has a value of its own: all do among bricks.
 NACRE_HD inline bool is_touched(const BrickOctreeView&, CellIndex) { return true; }
-NACRE_HD inline bool is_touched(const SourceOctreeView& view, CellIndex cell) { return view.touches(cell); }
+NACRE_HD inline bool is_touched(const ThesisOctreeView& view, CellIndex cell) { return view.touches(cell); }
 
 /// What a renderer needs of the tree.
 inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
@@ -84,12 +84,12 @@ inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
     }
 }
 
-inline void fill_lookup(const SourceOctree& tree, FlowLookup& lookup) {
-  lookup.kind = FlowLookup::Kind::source;
-  const std::vector<SourceNode> nodes = tree.node.download();
+inline void fill_lookup(const ThesisOctree& tree, FlowLookup& lookup) {
+  lookup.kind = FlowLookup::Kind::thesis;
+  const std::vector<ThesisNode> nodes = tree.node.download();
   if (8 * nodes.size() > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower `resolution`");
   lookup.child.reserve(8 * nodes.size());
-  for (const SourceNode& node : nodes) lookup.child.insert(lookup.child.end(), node.child, node.child + 8);
+  for (const ThesisNode& node : nodes) lookup.child.insert(lookup.child.end(), node.child, node.child + 8);
 }
 
 /// What an output needs of each cell that has a value.
@@ -98,8 +98,8 @@ struct GatherSurface {
   View view;
   std::uint64_t* code;  ///< Morton code of its place; all ones where no triangle touches it
   CellPoint* point;
-  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& place, typename View::Cursor&) const {
-    code[s] = is_touched(view, cell) ? morton(place) : ~std::uint64_t(0);
+  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor&) const {
+    code[s] = is_touched(view, cell) ? morton(position) : ~std::uint64_t(0);
     point[s] = view.point[cell];
   }
 };

@@ -20,11 +20,11 @@ struct ProjectParticle {
   SizingFieldView size;
   const Junction* junction;
   const std::uint32_t* interface;
-  Float4* place;
+  Float4* position;
   Float4* direction;
   std::uint8_t* lost;
   NACRE_HD void operator()(std::int64_t i) const {
-    const Float4 at = place[i];
+    const Float4 at = position[i];
     const Junction j = junction[interface[i]];
     lost[i] = 0;
     if (j.order() == 0) return;
@@ -33,7 +33,7 @@ struct ProjectParticle {
     if (!project(field, j, {at.x, at.y, at.z}, 0.7f, on)) return;
     if (junction_margin(field, j, on.p, on.steepness) < -0.02f) return;
     lost[i] = 0;
-    place[i] = {on.p.x, on.p.y, on.p.z, at.w > 0 ? at.w : size(on.p)};
+    position[i] = {on.p.x, on.p.y, on.p.z, at.w > 0 ? at.w : size(on.p)};
     direction[i] = {on.direction.x, on.direction.y, on.direction.z, direction[i].w};
   }
 };
@@ -91,14 +91,14 @@ template <class Backend>
 HostParticles ParticleStore<Backend>::download() const {
   const ParticleSet& set = solver_->particles();
   const std::size_t n = std::size_t(set.count);
-  return {set.place.download(0, n), set.direction.download(0, n), set.interface.download(0, n)};
+  return {set.position.download(0, n), set.direction.download(0, n), set.interface.download(0, n)};
 }
 
 template <class Backend>
 void ParticleStore<Backend>::upload(const HostParticles& particles) {
   ParticleSet& set = solver_->particles();
   set.count = std::int64_t(particles.count());
-  set.place.upload(particles.place);
+  set.position.upload(particles.position);
   set.direction.upload(particles.direction);
   set.interface.upload(particles.interface);
   rest();
@@ -127,9 +127,10 @@ void ParticleStore<Backend>::project(std::size_t first) {
   const std::int64_t count = set.count - std::int64_t(first);
   Arena::Scope scope(exec_.arena());
   Array<std::uint8_t> lost = exec_.arena().template temporary<std::uint8_t>(count);
-  exec_.for_each(count, detail::ProjectParticle{fields_.bricks().view(), fields_.size().view(),
-                                                fields_.junctions().data(), set.interface.data() + first,
-                                                set.place.data() + first, set.direction.data() + first, lost.data()});
+  exec_.for_each(count,
+                 detail::ProjectParticle{fields_.bricks().view(), fields_.size().view(), fields_.junctions().data(),
+                                         set.interface.data() + first, set.position.data() + first,
+                                         set.direction.data() + first, lost.data()});
   std::vector<std::uint8_t> gone = lost.download();
   gone.insert(gone.begin(), first, 0);
   if (std::find(gone.begin(), gone.end(), 1) != gone.end()) change(gone, {});
@@ -145,13 +146,13 @@ void ParticleStore<Backend>::smooth(const TriangleRings& rings, const SmoothingR
   scratch.edge.upload(rings.edge);
   const auto turn = [&](const Array<Float4>& from, Array<Float4>& to, std::uint32_t shake) {
     auto stage = exec_.stage("smooth");
-    exec_.for_each(set.count, detail::SmoothInRing<FieldGround>{
-                                  fields_.field_ground(), scratch.first.data(), scratch.edge.data(), fields_.order(),
+    exec_.for_each(set.count, detail::SmoothInRing<FieldProjector>{
+                                  fields_.field_projector(), scratch.first.data(), scratch.edge.data(), fields_.order(),
                                   set.interface.data(), from.data(), to.data(), set.direction.data(), shake});
   };
   for (int k = 0; k < rule.turns; k += 2) {
-    turn(set.place, scratch.moved, k == 0 ? rule.shake : 0);
-    turn(scratch.moved, set.place, 0);
+    turn(set.position, scratch.moved, k == 0 ? rule.shake : 0);
+    turn(scratch.moved, set.position, 0);
     turned(k + 2);
   }
 }

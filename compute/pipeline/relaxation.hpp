@@ -116,7 +116,7 @@ void Relaxation<Backend>::spread_seeds(const MeshParameters& parameters) {
   const std::int64_t movers = solver.movers(exec_, fields_.related(), 2);
   for (int k = 0; k < 16; ++k) {
     if (k % 4 == 0) solver.rebuild(exec_);
-    solver.iterate(exec_, fields_.embedded_ground(), fields_.related(), 2, rule, movers);
+    solver.iterate(exec_, fields_.embedded_projector(), fields_.related(), 2, rule, movers);
   }
 }
 
@@ -160,7 +160,7 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
   TreeSolver& solver = particles_.solver();
   const MeshParameters& parameters = run.parameters;
   const RelatedView related = fields_.related();
-  const EmbeddedGround ground = fields_.embedded_ground();
+  const EmbeddedProjector projector = fields_.embedded_projector();
   const int order = phase.order;
   std::int64_t movers = solver.movers(exec_, related, order);
   const TreeRule rule = tree_rule(parameters);
@@ -178,11 +178,12 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
       if (!sorted || k % 5 == 0) solver.rebuild(exec_);
       sorted = true;
       energy = control ? solver.forces(exec_, related, order, rule.theta, movers)
-                       : solver.iterate(exec_, ground, related, order, rule, movers);
+                       : solver.iterate(exec_, projector, related, order, rule, movers);
     }
     if (control) {
       auto stage = exec_.stage("population");
-      const IterationResult changed = solver.control(exec_, ground, related, order, rule.theta, population, movers, k);
+      const IterationResult changed =
+          solver.control(exec_, projector, related, order, rule.theta, population, movers, k);
       movers = solver.movers(exec_, related, order);
       controls = changed.added + changed.deleted > 0;
       sorted = false;

@@ -20,7 +20,7 @@ void put_points(const MeshFields<Backend>& fields, ParticleSet& set, Array<Float
   std::vector<std::uint32_t> interface;
   for (const Junction& j : grid.point_junction) interface.push_back(*fields.table().find(j));
   const std::vector<Float4> zero(n, Float4{0, 0, 0, 0});
-  set.place.upload(grid.points);
+  set.position.upload(grid.points);
   set.direction.upload(zero);
   set.interface.upload(interface);
   velocity.upload(zero);

@@ -27,17 +27,17 @@ struct CountLowerOrders {
 struct ShowParticle {
   const std::uint8_t* order;
   const std::uint32_t* interface;
-  const Float4* place;
+  const Float4* position;
   const Float4* direction;
   const std::uint64_t* before;  ///< scanned
   std::int64_t points, curves;  ///< of all
-  Float4* to_place;
+  Float4* to_position;
   Float4* to_direction;
   NACRE_HD void operator()(std::int64_t i) const {
     const std::int64_t p = std::int64_t(before[i] >> 32), c = std::int64_t(before[i] & 0xffffffff);
     const int mine = order[interface[i]];
     const std::int64_t at = mine == 0 ? p : mine == 1 ? points + c : points + curves + (i - p - c);
-    to_place[at] = place[i];
+    to_position[at] = position[i];
     to_direction[at] = direction[i];
   }
 };
@@ -85,8 +85,8 @@ ShownCounts show_particles(Executor<Backend>& exec, const ParticleSet& set, cons
   counts.surfaces = set.count - counts.points - counts.curves;
   if (set.count <= memory.capacity)
     exec.for_each(set.count,
-                  detail::ShowParticle{order, set.interface.data(), set.place.data(), set.direction.data(),
-                                       before.data(), counts.points, counts.curves, memory.place, memory.direction});
+                  detail::ShowParticle{order, set.interface.data(), set.position.data(), set.direction.data(),
+                                       before.data(), counts.points, counts.curves, memory.position, memory.direction});
   return counts;
 }
 

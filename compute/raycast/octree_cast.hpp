@@ -41,7 +41,7 @@ NACRE_HD inline bool cast(const BrickOctreeView& tree, const MeshView& mesh, con
 
 namespace detail {
 /// Parameter at which the ray meets the plane of a cell's closest triangle; very large if it is parallel to the plane.
-NACRE_HD inline Hit meet_plane(const SourceOctreeView& tree, CellIndex cell, const MeshView& mesh, const Ray& ray) {
+NACRE_HD inline Hit meet_plane(const ThesisOctreeView& tree, CellIndex cell, const MeshView& mesh, const Ray& ray) {
   const std::uint32_t triangle = tree.point[cell].triangle;
   const Corners c = mesh.corners(triangle);
   const Vec3d n = plane_normal(c);
@@ -51,14 +51,14 @@ NACRE_HD inline Hit meet_plane(const SourceOctreeView& tree, CellIndex cell, con
   return {t, triangle, Vec3f(barycentric(c, ray.at(t)))};
 }
 
-/// The nearest hit between two parameters, among the planes of the cells around `place` whose triangles are at most
+/// The nearest hit between two parameters, among the planes of the cells around `position` whose triangles are at most
 /// half a cell away.
-NACRE_HD inline Hit meet_planes_beside(const SourceOctreeView& tree, const Int3& place, const MeshView& mesh,
+NACRE_HD inline Hit meet_planes_beside(const ThesisOctreeView& tree, const Int3& position, const MeshView& mesh,
                                        const Ray& ray, double from, double to) {
-  SourceOctreeView::Cursor cursor(tree);
+  ThesisOctreeView::Cursor cursor(tree);
   Hit nearest;
   for (int k = 0; k < 27; ++k) {
-    const CellIndex cell = cursor.find(place + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+    const CellIndex cell = cursor.find(position + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
     if (k == 13 || cell == no_cell || !tree.touches(cell)) continue;
     const Hit hit = meet_plane(tree, cell, mesh, ray);
     if (!(hit.t >= from && hit.t <= to && hit.t < nearest.t)) continue;
@@ -75,7 +75,7 @@ NACRE_HD inline Hit meet_planes_beside(const SourceOctreeView& tree, const Int3&
 /// the octree of the thesis knows no more. They shift the surface by up to a cell where it bends, ends or returns
 /// within one cell, and are exact away from the edges of triangles larger than cells. Cells overlap by an eighth along
 /// the ray, so that planes of neighbours which do not quite meet leave no crack.
-NACRE_HD inline bool cast(const SourceOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
+NACRE_HD inline bool cast(const ThesisOctreeView& tree, const MeshView& mesh, const Ray& ray, Hit& hit) {
   if (tree.cells == 0) return false;
   const double cell_length = 1 / length(ray.direction), slack = 0.125 * cell_length;
   const AscendingRay ascending(ray, tree.size());

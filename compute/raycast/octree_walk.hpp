@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "compute/embedding/brick_octree.hpp"
-#include "compute/embedding/source_octree.hpp"
+#include "compute/embedding/thesis_octree.hpp"
 #include "compute/raycast/ray.hpp"
 
 namespace nacre {
@@ -70,8 +70,8 @@ NACRE_HD_INLINE bool octree_child(const BrickOctreeView& tree, int level, std::u
   return true;
 }
 
-NACRE_HD_INLINE std::uint32_t octree_root(const SourceOctreeView& tree) { return tree.root; }
-NACRE_HD_INLINE bool octree_child(const SourceOctreeView& tree, int, std::uint32_t at, int octant,
+NACRE_HD_INLINE std::uint32_t octree_root(const ThesisOctreeView& tree) { return tree.root; }
+NACRE_HD_INLINE bool octree_child(const ThesisOctreeView& tree, int, std::uint32_t at, int octant,
                                   std::uint32_t& child) {
   child = tree.node[at].child[octant];
   return child != none;

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 namespace {

@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 
 struct TriangleHit {
   std::uint32_t triangle = 0;
   double distance = 0;  ///< from the ray's origin
-  Vec3d place;          ///< world
+  Vec3d position;       ///< world
   Vec3d weights;        ///< of the three corners
 };
 

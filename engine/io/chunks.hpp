@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "engine/io/raw_mesh.hpp"
 #include "engine/io/vtk_xml.hpp"
 

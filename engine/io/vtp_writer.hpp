@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "engine/io/vtk_inline.hpp"
 #include "engine/scene/surface/surface.hpp"
 

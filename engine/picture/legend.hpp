@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/raycast/camera.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/compose.hpp"

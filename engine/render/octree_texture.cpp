@@ -10,7 +10,7 @@ OctreeTexture::OctreeTexture(const OctreeLookup& lookup, std::size_t page)
     : node_(lookup.child.empty() ? lookup.node : lookup.child, page),
       layer_(lookup.child.empty() ? PagedArray(lookup.layer, page) : PagedArray()),
       level_start_(lookup.level_start.begin(), lookup.level_start.end()),
-      source_nodes_(lookup.child.size() / 8),
+      thesis_nodes_(lookup.child.size() / 8),
       levels_(lookup.levels),
       origin_(lookup.origin),
       cell_size_(lookup.cell_size) {
@@ -20,7 +20,7 @@ OctreeTexture::OctreeTexture(const OctreeLookup& lookup, std::size_t page)
 std::string OctreeTexture::prelude() const {
   const std::string tree =
       fmt::format("#define TEXTURED\n#define OCTREE\n#define LEVELS {}\n", levels_) + node_.source("node");
-  if (source_nodes_ > 0) return tree + fmt::format("#define SOURCE_OCTREE\n#define ROOT {}u\n", source_nodes_ - 1);
+  if (thesis_nodes_ > 0) return tree + fmt::format("#define SOURCE_OCTREE\n#define ROOT {}u\n", thesis_nodes_ - 1);
   std::vector<std::string> starts;
   for (const std::uint32_t start : level_start_) starts.push_back(fmt::format("{}u", start));
   return tree + fmt::format("const uint level_start[] = uint[]({});\n", fmt::join(starts, ", ")) +

@@ -37,7 +37,7 @@ class OctreeTexture {
  private:
   PagedArray node_, layer_;
   std::vector<std::uint32_t> level_start_;
-  std::size_t source_nodes_ = 0;  ///< of the octree of the thesis; 0: it is one of bricks
+  std::size_t thesis_nodes_ = 0;  ///< of the octree of the thesis; 0: it is one of bricks
   int levels_ = 0;
   Vec3d origin_{};
   double cell_size_ = 1;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "engine/gl/buffer.hpp"
 #include "engine/gl/shader.hpp"
 #include "engine/gl/texture.hpp"

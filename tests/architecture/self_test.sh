@@ -33,10 +33,10 @@ expect_silence() {
 good_tree() {
   rm -rf "${tree:?}"/*
   plant compute/device/a.hpp '#include <vector>'
-  plant compute/grid/b.hpp '#include "compute/device/a.hpp"'
-  plant engine/scene/c.hpp '#include "compute/grid/b.hpp"'
+  plant compute/math/b.hpp '#include "compute/device/a.hpp"'
+  plant engine/scene/c.hpp '#include "compute/math/b.hpp"'
   plant engine/io/d.cpp '#include "engine/scene/c.hpp"'
-  plant app/main.cpp '#include "engine/io/e.hpp"' '#include "compute/grid/b.hpp"'
+  plant app/main.cpp '#include "engine/io/e.hpp"' '#include "compute/math/b.hpp"'
   plant engine/io/e.hpp
 }
 
@@ -44,10 +44,10 @@ good_tree
 expect_silence layers.sh
 expect_silence habits.sh
 
-plant compute/grid/up.hpp '#include "engine/scene/c.hpp"'
-expect layers.sh 'compute/grid/up.hpp: include "engine/scene/c.hpp" points upwards'
+plant compute/math/up.hpp '#include "engine/scene/c.hpp"'
+expect layers.sh 'compute/math/up.hpp: include "engine/scene/c.hpp" points upwards'
 good_tree
-plant compute/device/up.hpp '  #  include "compute/grid/b.hpp"'
+plant compute/device/up.hpp '  #  include "compute/math/b.hpp"'
 expect layers.sh 'points upwards in compute'
 good_tree
 plant engine/scene/samples/f.hpp
@@ -70,14 +70,14 @@ plant compute/other/new.hpp '#include "compute/device/a.hpp"'
 expect layers.sh 'without a place in its order'
 
 good_tree
-plant compute/grid/long.cu {1..20}
-expect habits.sh 'compute/grid/long.cu: 22 lines'
+plant compute/math/long.cu {1..20}
+expect habits.sh 'compute/math/long.cu: 22 lines'
 good_tree
-plant compute/grid/long.hpp {1..500}
-expect habits.sh 'compute/grid/long.hpp: 502 lines'
+plant compute/math/long.hpp {1..500}
+expect habits.sh 'compute/math/long.hpp: 502 lines'
 good_tree
-plant compute/grid/wide.hpp "// $(printf 'é%.0s' {1..117})" "// $(printf 'é%.0s' {1..118})"
-expect habits.sh 'compute/grid/wide.hpp:4: longer than 120 characters'
+plant compute/math/wide.hpp "// $(printf 'é%.0s' {1..117})" "// $(printf 'é%.0s' {1..118})"
+expect habits.sh 'compute/math/wide.hpp:4: longer than 120 characters'
 if bash "$here/habits.sh" "$tree" | grep -q 'wide.hpp:3'; then
   echo "habits.sh takes bytes for characters"
   exit 1

@@ -56,15 +56,15 @@ Vec3f closest_point_in_single(const Vec3f& a, const Vec3f& b, const Vec3f& c, co
 struct Query {
   const Vec3f* points;
   const Triangle* triangles;
-  Vec3f place, closest;
+  Vec3f position, closest;
   std::uint32_t triangle;
 };
 
 bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
   Query& q = *static_cast<Query*>(arguments->userPtr);
   const Triangle t = q.triangles[arguments->primID];
-  const Vec3f p = closest_point_in_single(q.points[t.a], q.points[t.b], q.points[t.c], q.place);
-  const float distance = length(p - q.place);
+  const Vec3f p = closest_point_in_single(q.points[t.a], q.points[t.b], q.points[t.c], q.position);
+  const float distance = length(p - q.position);
   if (distance >= arguments->query->radius) return false;
   arguments->query->radius = distance;
   q.closest = p;
@@ -124,9 +124,9 @@ class EmbreeQueries {
       for (std::uint64_t rest = tree.brick[b].band.word[z]; rest; rest &= rest - 1) {
         const int k = __builtin_ctzll(rest);
         Query q{points_.data(), triangles_.data(), Vec3f(corner + Int3(k & 7, k >> 3, z)) + Vec3f(0.5f), {}, none};
-        RTCPointQuery point{q.place.x, q.place.y, q.place.z, 0, tree.radius + 0.01f};
+        RTCPointQuery point{q.position.x, q.position.y, q.position.z, 0, tree.radius + 0.01f};
         rtcPointQuery(scene_, &point, &context, nullptr, &q);
-        out[cell++] = CellPoint::pack(Vec3d(q.closest - q.place), tree.quantum, q.triangle);
+        out[cell++] = CellPoint::pack(Vec3d(q.closest - q.position), tree.quantum, q.triangle);
       }
   }
 

@@ -9,7 +9,7 @@
 
 #include "compute/device/executor.hpp"
 #include "compute/embedding/closest_point_grid.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre::test {
 

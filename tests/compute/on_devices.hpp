@@ -9,10 +9,10 @@
 #include "compute/device/executor.hpp"
 
 /// NACRE_DEVICE_TEST(suite, body) runs `template <class Backend> void body(Executor<Backend>&)`: compiled as C++ on
-/// the CPU and on the CPU whose memory pretends to be remote, compiled by nvcc on the first CUDA device (skips where there is
-/// none). Bodies live in `*_body.hpp`; `*_test.cpp` includes executor_cpu.hpp and the body, a `.cu` executor_cuda.cuh
-/// and the body, nothing else. Bodies of one program with the same name lie in namespaces of their own, or the linker would
-/// take one for all.
+/// the CPU and on the CPU whose memory pretends to be remote, compiled by nvcc on the first CUDA device (skips where
+/// there is none). Bodies live in `*_body.hpp`; `*_test.cpp` includes executor_cpu.hpp and the body, a `.cu`
+/// executor_cuda.cuh and the body, nothing else. Bodies of one program with the same name lie in namespaces of their
+/// own, or the linker would take one for all.
 #if defined(__CUDACC__)
 #define NACRE_DEVICE_TEST(suite, body)                                     \
   TEST(suite, body##OnCuda) {                                              \

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compute/embedding/triangle.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre::test {
 

@@ -9,7 +9,7 @@ namespace nacre::test {
 namespace {
 
 /// Labels say where a surface is to half a voxel; smoothing them finds it, and its normals.
-void expect_no_stairs(const char* what, const MeshRun& run, const std::vector<ExactInterface>& interfaces) {
+void expect_no_staircase(const char* what, const MeshRun& run, const std::vector<ExactInterface>& interfaces) {
   for (const ExactInterface& exact : interfaces) {
     const InterfaceError error = interface_error(run.mesh, exact);
     std::printf("%s as labels, %d|%d: distance mean %.4f max %.4f, from exact %.4f, normals %.2f degrees\n", what,
@@ -29,7 +29,7 @@ TEST(LabelEvidence, TwoSpheresMeetInACircle) {
   volume.values.clear();
   const MeshRun run = mesh_of(volume);
   expect_topology(run.mesh, {2, 2, 2});
-  expect_no_stairs("two spheres", run, interfaces_of(centres, 13.8));
+  expect_no_staircase("two spheres", run, interfaces_of(centres, 13.8));
   expect_good_shapes(run);
 }
 
@@ -39,7 +39,7 @@ TEST(LabelEvidence, NestedShells) {
     return r < 6.2 ? 3 : r < 9.1 ? 2 : r < 12.4 ? 1 : 0;
   }));
   expect_topology(run.mesh, {2, 4, 4, 2});
-  expect_no_stairs("nested shells", run, nested_shells());
+  expect_no_staircase("nested shells", run, nested_shells());
   print_quality("nested shells", run);
   EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.95);
 }
@@ -103,14 +103,14 @@ std::set<std::uint16_t> around(const MeshVolume& volume, const Vec3d& p, double 
   return found;
 }
 
-TEST(LabelEvidence, BodiesGivenAsLabelsShowNoStairs) {
+TEST(LabelEvidence, BodiesGivenAsLabelsShowNoStaircase) {
   for (const LabelledBody& body : labelled_bodies()) {
     SCOPED_TRACE(body.name);
     const MeshVolume volume = label_volume({51, 51, 51}, 2, [&](const Vec3d& p) { return body.distance(p) > 0; });
     const MeshRun run = mesh_of(volume);
     for (const Vec3d& p : run.mesh.points) EXPECT_EQ(around(volume, p).size(), 2u) << p.x << " " << p.y << " " << p.z;
     expect_topology(run.mesh, {body.euler, body.euler});
-    expect_no_stairs(body.name, run, {{0, 1, body.distance, body.points}});
+    expect_no_staircase(body.name, run, {{0, 1, body.distance, body.points}});
     print_quality(body.name, run);
     EXPECT_GE(surface_quality(run.mesh).all.radius_ratio_mean, 0.97);
   }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "compute/device/device.hpp"
-#include "compute/grid/lanes.hpp"
+#include "compute/math/lanes.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 
 namespace nacre::gpu_tests {
@@ -17,7 +17,7 @@ namespace nacre::gpu_tests {
 struct HostEmbedding {
   std::vector<std::uint64_t> brick_code;
   std::vector<Float4> offset;
-  std::vector<std::uint32_t> triangle, texel, block_cell, place, neighbour;
+  std::vector<std::uint32_t> triangle, texel, block_cell, position, neighbour;
   std::vector<Float4> seed;
 };
 
@@ -36,8 +36,8 @@ class BackendRuns {
   virtual std::vector<std::uint64_t> sort(std::span<const std::uint64_t> keys) = 0;
   virtual std::uint64_t sum(std::span<const std::uint32_t> in) = 0;
   virtual float maximum(std::span<const float> in) = 0;  ///< -1 for none
-  /// A repeated part, called once for each of `sizes`: clears n numbers, makes number i random, adds all up, puts sums of
-  /// those before in their place. Returns the numbers and their sum after each call.
+  /// A repeated part, called once for each of `sizes`: clears n numbers, makes number i random, adds all up, puts sums
+  /// of those before in their place. Returns the numbers and their sum after each call.
   virtual std::vector<std::vector<std::uint64_t>> repeat(std::span<const std::int64_t> sizes) = 0;
   virtual long graphs_made() const = 0;  ///< by all calls of `repeat` so far; 0 where there are none
   /// Calls of a repeated part of ten launches, of which the fifth asks to stop; how many of `calls` were interrupted.

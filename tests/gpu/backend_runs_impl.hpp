@@ -201,7 +201,7 @@ HostEmbedding BackendRunsOf<Backend>::embed(const FlowMesh& mesh, const FlowPara
       build_closest_point_grid(exec_, view, triangles, domain.bricks, parameters.subcells, float(domain.radius));
   const RefinedGrid fine = build_refined_grid(exec_, view, triangles, coarse, parameters.refine);
   HostEmbedding host{coarse.brick_code.download(), coarse.offset.download(),   coarse.triangle.download(),
-                     fine.texel.download(),        fine.block_cell.download(), fine.place.download(),
+                     fine.texel.download(),        fine.block_cell.download(), fine.position.download(),
                      fine.neighbour.download(),    fine.seed.download()};
   arena().rewind(mark);
   return host;

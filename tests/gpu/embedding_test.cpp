@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "compute/embedding/triangle.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "tests/gpu/each_backend.hpp"
 #include "tests/gpu/shapes.hpp"
@@ -37,8 +37,8 @@ struct Reference {
 
   /// Of surface cell `s` of the texture, in cells of the grid.
   Vec3d texture_centre(const HostEmbedding& grid, std::size_t s) const {
-    const std::size_t volume = std::size_t(refine) * refine * refine, place = grid.place[s];
-    const Int3 c = cell(grid, grid.block_cell[place / volume]) * Int3(refine) + within(place % volume, refine);
+    const std::size_t volume = std::size_t(refine) * refine * refine, position = grid.position[s];
+    const Int3 c = cell(grid, grid.block_cell[position / volume]) * Int3(refine) + within(position % volume, refine);
     return (Vec3d(c) + Vec3d(0.5)) / double(refine);
   }
 
@@ -61,9 +61,9 @@ class Embedding : public EachBackend {
     const auto cpu = make_cpu_device();
     const HostEmbedding expected = make_runs(Cpu{}, *cpu)->embed(shape.mesh(), parameters);
     const HostEmbedding found = runs->embed(shape.mesh(), parameters);
-    ASSERT_GT(expected.place.size(), 1000u);
+    ASSERT_GT(expected.position.size(), 1000u);
     ASSERT_EQ(found.brick_code, expected.brick_code);
-    ASSERT_EQ(found.place, expected.place) << "surface cells";
+    ASSERT_EQ(found.position, expected.position) << "surface cells";
     expect_as_near(found, expected, reference);
     expect_seeds(found, expected, reference);
     EXPECT_LE(differing_share(found.texel, expected.texel), 1e-4);  // a float may fall on either side of a cell

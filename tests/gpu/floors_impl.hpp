@@ -14,16 +14,16 @@ namespace nacre::gpu_tests {
 
 /// Points along a spiral from pole to pole, as close as on a hexagonal lattice of spacing h = 1; their order is random.
 inline std::vector<Float4> spiral_on_sphere(std::int64_t n, double radius) {
-  std::vector<Float4> place(n);
+  std::vector<Float4> position(n);
   for (std::int64_t i = 0; i < n; ++i) {
     const double z = 1 - (2 * double(i) + 1) / double(n), r = std::sqrt(1 - z * z);
     const double turn = 2.399963229728653 * double(i);  // the golden angle
-    place[i] = {float(radius * (1.1 + r * std::cos(turn))), float(radius * (1.1 + r * std::sin(turn))),
-                float(radius * (1.1 + z)), 1};
+    position[i] = {float(radius * (1.1 + r * std::cos(turn))), float(radius * (1.1 + r * std::sin(turn))),
+                   float(radius * (1.1 + z)), 1};
   }
   for (std::int64_t i = n; i-- > 1;)
-    std::swap(place[i], place[(std::uint64_t(philox(std::uint32_t(i), 0, 5).a) * std::uint64_t(i + 1)) >> 32]);
-  return place;
+    std::swap(position[i], position[(std::uint64_t(philox(std::uint32_t(i), 0, 5).a) * std::uint64_t(i + 1)) >> 32]);
+  return position;
 }
 
 /// Median of `runs` calls of `body` after three that are not counted; `prepare` goes before each.
@@ -52,10 +52,10 @@ ParticleTimes time_particles_on(Device& device, std::int64_t n, int runs) {
   const auto related = arena.template permanent_copy<std::uint32_t>(std::vector<std::uint32_t>{0});
   const auto order = arena.template permanent_copy<std::uint8_t>(std::vector<std::uint8_t>{2});
   const RelatedView view{start.data(), related.data(), order.data()};
-  const std::vector<Float4> place = spiral_on_sphere(n, radius);
-  std::vector<Float4> normal(place.size());
+  const std::vector<Float4> position = spiral_on_sphere(n, radius);
+  std::vector<Float4> normal(position.size());
   const auto outwards = [&](float x) { return float(x / radius - 1.1); };
-  std::transform(place.begin(), place.end(), normal.begin(), [&](const Float4& p) {
+  std::transform(position.begin(), position.end(), normal.begin(), [&](const Float4& p) {
     return Float4{outwards(p.x), outwards(p.y), outwards(p.z), 0};
   });
   // The solver keeps its particles in the tree's order: each build gets them in random order again.
@@ -63,7 +63,7 @@ ParticleTimes time_particles_on(Device& device, std::int64_t n, int runs) {
   const auto put = [&] {
     ParticleSet& set = solver.particles();
     set.count = n;
-    set.place.upload(place);
+    set.position.upload(position);
     set.direction.upload(normal);
     exec.fill(set.interface, 0);
     exec.fill(solver.velocity(), 0);

@@ -76,8 +76,8 @@ MeshOnDevice run_case(Device& device, const Case& c) {
   return first;
 }
 
-/// A ball in a lopsided shell as labels; three balls that meet in two points; a torus with graded sizes; a shell one voxel
-/// thick, given as distances.
+/// A ball in a lopsided shell as labels; three balls that meet in two points; a torus with graded sizes; a shell one
+/// voxel thick, given as distances.
 std::vector<Case> cases() {
   const Vec3d c(20.2, 19.7, 20.4);
   std::vector<Case> all;
@@ -122,7 +122,7 @@ void expect_alike(const char* what, const MeshOnDevice& a, const MeshOnDevice& b
   EXPECT_EQ(a.info.surfaces, b.info.surfaces);
   EXPECT_EQ(a.info.curves, b.info.curves);
   EXPECT_EQ(a.info.points, b.info.points);
-  EXPECT_NEAR(double(b.info.creased_voxels), double(a.info.creased_voxels), 0.01 * double(a.info.creased_voxels));
+  EXPECT_NEAR(double(b.info.ridge_voxels), double(a.info.ridge_voxels), 0.01 * double(a.info.ridge_voxels));
   EXPECT_NEAR(b.info.expected_particles, a.info.expected_particles, 0.002 * a.info.expected_particles);
   EXPECT_LT(std::fabs(count), 0.01);
   EXPECT_LT(std::fabs(ratio), 0.005);
@@ -171,7 +171,7 @@ TEST(MeshOnCuda, ShowsItsParticlesWhileTheyMove) {
   const auto gpu = make_cuda_device(arena_limit);
   for (const char* solver : {"tree", "redblack"}) {
     const auto pipeline = make_mesh_pipeline(*gpu);
-    const test::Lent<Float4> place(*gpu, 100000), direction(*gpu, 100000);
+    const test::Lent<Float4> position(*gpu, 100000), direction(*gpu, 100000);
     const test::Lent<ShownBox> boxes(*gpu, 100000);
     pipeline->parameters.solver = solver;
     pipeline->parameters.iterations = 10;
@@ -181,7 +181,7 @@ TEST(MeshOnCuda, ShowsItsParticlesWhileTheyMove) {
     pipeline->progress = [&](const MeshProgress& p) {
       if (p.iteration % 4 != 1) return;
       ++looks;
-      test::expect_shown(*pipeline, place, direction);
+      test::expect_shown(*pipeline, position, direction);
       EXPECT_GT(pipeline->show_boxes(boxes.data(), boxes.size()), 10);
     };
     pipeline->relax();

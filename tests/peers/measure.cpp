@@ -22,7 +22,7 @@ double distance_to_face(const Vec3d& p, const Vec3d& centre, int axis) {
 }
 
 /// Distance of a point in index coordinates to the nearest face between two labels; `reach` where there is none nearer.
-double distance_to_stairs(const LabelImage& image, const Vec3d& p, int reach) {
+double distance_to_staircase(const LabelImage& image, const Vec3d& p, int reach) {
   double nearest = reach;
   const Int3 middle(int(std::floor(p.x + 0.5)), int(std::floor(p.y + 0.5)), int(std::floor(p.z + 0.5)));
   for (int z = middle.z - reach - 1; z <= middle.z + reach; ++z)
@@ -102,7 +102,7 @@ void run(int count, char** words) {
   tell("angle_max", q.angle_max);
   tell("share_under_25", q.share_under_25);
   tell_distances("stairs", vertices, centres,
-                 [&](const Vec3d& p) { return distance_to_stairs(image, image.to_index(p), 2); });
+                 [&](const Vec3d& p) { return distance_to_staircase(image, image.to_index(p), 2); });
   if (count < 7) return;
   const Spheres spheres = parse_spheres(words + 3);
   tell_distances("sphere", vertices, centres,

@@ -32,13 +32,14 @@ std::optional<ProbeResult> FlowScene::probe(const Vec3d& from, const Vec3d& alon
   const Range part = kept_part(view_.clip, from, along);
   const std::optional<TriangleHit> hit = results_.tree->first(from, along, part.low, part.high);
   if (!hit) return {};
-  return ProbeResult{hit->place, describe(*hit)};
+  return ProbeResult{hit->position, describe(*hit)};
 }
 
 std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
   const Triangle& t = results_.tree->triangles()[hit.triangle];
-  std::vector<std::string> lines{fmt::format("position: {:.5g} {:.5g} {:.5g}", hit.place.x, hit.place.y, hit.place.z),
-                                 fmt::format("triangle: {}", hit.triangle)};
+  std::vector<std::string> lines{
+      fmt::format("position: {:.5g} {:.5g} {:.5g}", hit.position.x, hit.position.y, hit.position.z),
+      fmt::format("triangle: {}", hit.triangle)};
   if (vectors_) {
     const Vec3f v = interpolate(*vectors_, t, hit.weights);
     lines.push_back(fmt::format("{}: {:.4g} {:.4g} {:.4g}", results_.data.array, v.x, v.y, v.z));
@@ -50,12 +51,12 @@ std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
   if (!shown_) return lines;
   // The texture's value lies on the device of compute: the worker looks it up between its steps.
   const double near = shown_->info.cell_size;
-  if (!asked_ || asked_step_ != taken_ || length(*asked_ - hit.place) > 0.5 * near) {
-    worker_.sample(hit.place);
-    asked_ = hit.place;
+  if (!asked_ || asked_step_ != taken_ || length(*asked_ - hit.position) > 0.5 * near) {
+    worker_.sample(hit.position);
+    asked_ = hit.position;
     asked_step_ = taken_;
   }
-  if (sampled_ && length(sampled_->place - hit.place) <= near)
+  if (sampled_ && length(sampled_->place - hit.position) <= near)
     lines.push_back(fmt::format("texture: {:.2f}", sampled_->value));
   return lines;
 }

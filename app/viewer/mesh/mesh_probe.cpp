@@ -53,7 +53,8 @@ std::optional<TriangleHit> MeshScene::first_seen(const Vec3d& from, const Vec3d&
     const std::optional<TriangleHit> hit = rays_.first(from, along, near);
     if (!hit) return {};
     const auto& pair = results_.mesh->materials[hit->triangle];
-    if (!is_cut(clip, hit->place) && std::max(material_styles_[pair[0]].opacity, material_styles_[pair[1]].opacity) > 0)
+    if (!is_cut(clip, hit->position) &&
+        std::max(material_styles_[pair[0]].opacity, material_styles_[pair[1]].opacity) > 0)
       return hit;
     near = std::nextafter(hit->distance, std::numeric_limits<double>::infinity());
   }
@@ -85,7 +86,7 @@ std::optional<ProbeResult> MeshScene::probe(const Vec3d& from, const Vec3d& alon
   if (!hit && !slice) return {};
   const bool on_slice = slice && (!hit || *slice < hit->distance);
   ProbeResult probed;
-  probed.position = on_slice ? from + along * *slice : hit->place;
+  probed.position = on_slice ? from + along * *slice : hit->position;
   probed.lines.push_back(position_line("position", probed.position));
   probed.lines.push_back(position_line("voxel", volume.to_voxels(probed.position)));
   if (!on_slice) describe_hit(probed, *hit);

@@ -101,8 +101,8 @@ void MeshScene::lend(bool wait) {
   LentMemory memory;
   memory.lease = lease_;
   memory.particles.capacity = capacity_;
-  memory.particles.place = static_cast<Float4*>(place_->begin_write(wait));
-  if (!memory.particles.place) return;
+  memory.particles.position = static_cast<Float4*>(place_->begin_write(wait));
+  if (!memory.particles.position) return;
   memory.particles.direction = static_cast<Float4*>(direction_->begin_write(wait));
   if (!memory.particles.direction) return place_->cancel_write();
   if (settings_.look.boxes) {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 

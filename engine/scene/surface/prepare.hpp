@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "engine/scene/surface/surface.hpp"
 
 namespace nacre {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "compute/device/random.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 

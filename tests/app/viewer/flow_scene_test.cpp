@@ -211,7 +211,7 @@ TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
   EXPECT_GT(probed->position.y, camera.target.y);
 }
 
-TEST_F(FlowInView, SourceTreesAreDrawnToo) {
+TEST_F(FlowInView, ThesisOctreesAreDrawnToo) {
   Session session = small_session();
   session.settings.flow.method = EmbeddingKind::octree;
   open(session);

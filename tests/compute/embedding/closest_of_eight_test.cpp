@@ -14,8 +14,8 @@ Vec3d corner(const Vec3d& centre, double half, int k) {
 
 TEST(ClosestOfEight, AgreesWithOnePlaceAtATime) {
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> place(-4, 4);
-  auto point = [&] { return Vec3d(place(random), place(random), place(random)); };
+  std::uniform_real_distribution<double> position(-4, 4);
+  auto point = [&] { return Vec3d(position(random), position(random), position(random)); };
   int compared = 0;
   for (int round = 0; round < 20000; ++round) {
     const double far = round % 3 == 0 ? 1e6 : 0, size = round % 2 ? 1 : 0.1;

@@ -49,14 +49,14 @@ struct HostGrid {
 
 /// A refined grid on the host.
 struct HostTexture {
-  std::vector<std::uint32_t> block, texel, place, block_cell, seed_triangle, neighbour;
+  std::vector<std::uint32_t> block, texel, position, block_cell, seed_triangle, neighbour;
   std::vector<Float4> seed;
   RefinedGridView view;
 
   HostTexture(const RefinedGrid& fine, const HostGrid& grid)
       : block(fine.block.download()),
         texel(fine.texel.download()),
-        place(fine.place.download()),
+        position(fine.position.download()),
         block_cell(fine.block_cell.download()),
         seed_triangle(fine.seed_triangle.download()),
         neighbour(fine.neighbour.download()),
@@ -64,7 +64,7 @@ struct HostTexture {
         view(fine.view(grid.view)) {
     view.block = block.data();
     view.texel = texel.data();
-    view.place = place.data();
+    view.position = position.data();
     view.block_cell = block_cell.data();
     view.seed_triangle = seed_triangle.data();
     view.neighbour = neighbour.data();

@@ -41,7 +41,7 @@ inline void check_surface_cells(const Mesh& mesh, const HostTexture& texture, st
   for (std::uint32_t s = 0; s < count; ++s) {
     const Int3 c = texture.view.cell(s);
     const std::size_t at = (std::size_t(c.z) * dims.y + c.y) * dims.x + c.x;
-    wrong += !touched[at] || texture.view.surface_cell(c) != s || texture.texel[texture.place[s]] != s;
+    wrong += !touched[at] || texture.view.surface_cell(c) != s || texture.texel[texture.position[s]] != s;
     touched[at] = false;  // a second number for the same cell would be a mistake
   }
   EXPECT_EQ(wrong, 0u);

@@ -17,9 +17,9 @@ void PointsLieOnTheSphere(Executor<Backend>& exec) {
   std::size_t points = 0;
   std::vector<double> bends;
   for (const InterfacePoint& q : d.point.download()) {
-    if (q.place.w < 0) continue;
+    if (q.position.w < 0) continue;
     ++points;
-    const Vec3f r = Vec3f(q.place.x, q.place.y, q.place.z) - c, n(q.normal.x, q.normal.y, q.normal.z);
+    const Vec3f r = Vec3f(q.position.x, q.position.y, q.position.z) - c, n(q.normal.x, q.normal.y, q.normal.z);
     EXPECT_NEAR(length(r), sphere_radius, 0.05);
     EXPECT_LT(length(n - normalized(r)), 0.05f);  // towards the lower material: out
     EXPECT_EQ(q.surface, Junction(0, 1));
@@ -42,8 +42,8 @@ void expect_nearest(Executor<Backend>& exec, const MeshVolume& volume, float spa
     const Vec3f p = d.lattice.centre(d.lattice.cell(std::int64_t(i)));
     float least = 1e30f;
     for (const InterfacePoint& q : points)
-      if (q.place.w >= 0) {
-        const Vec3f r = Vec3f(q.place.x, q.place.y, q.place.z) - p;
+      if (q.position.w >= 0) {
+        const Vec3f r = Vec3f(q.position.x, q.position.y, q.position.z) - p;
         least = std::min(least, dot(r, r));
       }
     least = std::sqrt(least);
@@ -53,7 +53,7 @@ void expect_nearest(Executor<Backend>& exec, const MeshVolume& volume, float spa
     }
     ++within;
     ASSERT_NE(nearest[i], none) << least;
-    const Float4 at = points[nearest[i]].place;
+    const Float4 at = points[nearest[i]].position;
     ASSERT_GE(at.w, 0);
     const float found = length(Vec3f(at.x, at.y, at.z) - p);
     ASSERT_LE(found, least + 0.25f);

@@ -19,12 +19,12 @@ inline constexpr float wide_range = 40;  ///< of indicator functions: none is cu
 template <class Backend>
 MaterialBricks bricks_of(Executor<Backend>& exec, const MeshVolume& volume, double width = 1.2,
                          CubicKernel kernel = CubicKernel::catmull_rom, TightenResult* result = nullptr,
-                         float range = wide_range, double stairs = 32) {
+                         float range = wide_range, double staircase = 32) {
   const Vec3d& s = volume.spacing;
   MaterialBricks b =
       lay_out_bricks(exec, volume.dims, s / std::min({s.x, s.y, s.z}), kernel, std::span(volume.material));
   if (volume.kind == MeshVolume::Kind::labels) {
-    const TightenResult r = tighten(exec, b, width, stairs);
+    const TightenResult r = tighten(exec, b, width, staircase);
     if (result) *result = r;
   } else if (volume.kind == MeshVolume::Kind::indicators) {
     fill_indicators(exec, b, volume.material, volume.values, range);

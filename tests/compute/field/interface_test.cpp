@@ -101,8 +101,8 @@ INSTANTIATE_TEST_SUITE_P(Project, Ways, testing::Values(by_difference, by_indica
 
 TEST_P(Ways, ReachTheSurfaceOfABall) {
   const HostField host = ball_field(6);
-  for (const Vec3f& place : places_near({0, 0, 0}, 1, 300)) {
-    const Vec3f p = centre + normalized(place) * (6 + 0.9f * place.x);
+  for (const Vec3f& position : places_near({0, 0, 0}, 1, 300)) {
+    const Vec3f p = centre + normalized(position) * (6 + 0.9f * position.x);
     JunctionPoint at;
     ASSERT_TRUE(GetParam()(host.view(), Junction(0, 1), p, 1.5f, at));
     EXPECT_NEAR(length(at.p - centre), 6, 0.02f);
@@ -114,9 +114,9 @@ TEST_P(Ways, ReachTheSurfaceOfABall) {
 
 TEST_P(Ways, ReachItThroughFlatVoxels) {
   const HostField host = ball_field(6, {1, 1, 0.5f}, {3, 3, 2});
-  for (const Vec3f& place : places_near({0, 0, 0}, 1, 100)) {
+  for (const Vec3f& position : places_near({0, 0, 0}, 1, 100)) {
     JunctionPoint at;
-    ASSERT_TRUE(GetParam()(host.view(), Junction(0, 1), centre + normalized(place) * 6.4f, 1, at));
+    ASSERT_TRUE(GetParam()(host.view(), Junction(0, 1), centre + normalized(position) * 6.4f, 1, at));
     EXPECT_NEAR(length(at.p - centre), 6, 0.06f);
   }
 }

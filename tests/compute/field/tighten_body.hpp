@@ -1,4 +1,4 @@
-// Nacre: test bodies for tightening: nothing changes sides, and no stairs are left.
+// Nacre: test bodies for tightening: nothing changes sides, and no staircases are left.
 #pragma once
 
 #include "compute/device/random.hpp"
@@ -68,7 +68,7 @@ std::vector<double> normal_errors(Executor<Backend>& exec, const MaterialBricks&
 }
 
 template <class Backend>
-void AnObliquePlaneHasNoStairs(Executor<Backend>& exec) {
+void AnObliquePlaneHasNoStaircase(Executor<Backend>& exec) {
   const Vec3d n = normalized(Vec3d(0.8, 0.33, 0.21)), c(20.2, 17.1, 16.6);
   const MeshVolume volume = label_volume({40, 34, 33}, 2, [&](const Vec3d& p) { return dot(p - c, n) > 0; });
   const Vec3d s = normalized(cross(n, Vec3d(0, 0, 1))), t = cross(n, s);
@@ -77,19 +77,19 @@ void AnObliquePlaneHasNoStairs(Executor<Backend>& exec) {
     for (int j = -40; j <= 40; ++j) places.push_back(in_fields(c + s * (i * 0.23) + t * (j * 0.23)));
   const auto normal = [&](const Vec3f&) { return Vec3f(n); };
   const auto smooth = normal_errors(exec, bricks_of(exec, volume), places, normal);
-  const auto stairs = normal_errors(exec, bricks_of(exec, volume, 0), places, normal);
+  const auto staircase = normal_errors(exec, bricks_of(exec, volume, 0), places, normal);
   std::printf("oblique plane: median normal error %.2f degrees, largest %.2f; untightened %.2f\n", median_of(smooth),
-              *std::max_element(smooth.begin(), smooth.end()), median_of(stairs));
+              *std::max_element(smooth.begin(), smooth.end()), median_of(staircase));
   EXPECT_LE(median_of(smooth), 3);
-  EXPECT_GE(median_of(stairs), 4 * median_of(smooth));
+  EXPECT_GE(median_of(staircase), 4 * median_of(smooth));
   for (const JunctionPoint& at : bring_onto(exec, bricks_of(exec, volume), Junction(0, 1), places))
     EXPECT_LT(std::fabs(dot(Vec3d(at.p) - Vec3d(volume_padding + 0.5) - c, n)), 0.5);
 }
 
-/// A plane that rises one voxel in `run` along x and in `other_run` along y, its labels tightened with `stairs`: median
-/// error of its normals, degrees.
+/// A plane that rises one voxel in `run` along x and in `other_run` along y, its labels tightened with `staircase`:
+/// median error of its normals, degrees.
 template <class Backend>
-double slope_error(Executor<Backend>& exec, double run, double other_run, double stairs) {
+double slope_error(Executor<Backend>& exec, double run, double other_run, double staircase) {
   const Vec3d n = normalized(Vec3d(-1 / run, -1 / other_run, 1)), c(40.2, 40.1, 16.6);
   const MeshVolume volume = label_volume({80, 80, 33}, 2, [&](const Vec3d& p) { return dot(p - c, n) > 0; });
   std::vector<Vec3f> places;
@@ -99,14 +99,14 @@ double slope_error(Executor<Backend>& exec, double run, double other_run, double
       places.push_back(in_fields(c + Vec3d(x, y, x / run + y / other_run)));
     }
   const std::size_t mark = exec.arena().mark();
-  const MaterialBricks b = bricks_of(exec, volume, 1.2, CubicKernel::catmull_rom, nullptr, wide_range, stairs);
+  const MaterialBricks b = bricks_of(exec, volume, 1.2, CubicKernel::catmull_rom, nullptr, wide_range, staircase);
   const double error = median_of(normal_errors(exec, b, places, [&](const Vec3f&) { return Vec3f(n); }));
   exec.arena().rewind(mark);
   return error;
 }
 
 template <class Backend>
-void StairsBecomeSlopes(Executor<Backend>& exec) {
+void StaircasesBecomeSlopes(Executor<Backend>& exec) {
   const double runs[][2] = {{3, 7}, {5, 1e9}, {12, 1e9}, {12.3, 19.7}, {30, 1e9}, {30, 41}};
   for (const auto& [run, other] : runs) {
     const double off = slope_error(exec, run, other, 0), on = slope_error(exec, run, other, 32);
@@ -144,8 +144,8 @@ std::vector<float> shares_along_x(Executor<Backend>& exec, const Int3& n,
 /// Four treads of six voxels: in the middle ones the boundary runs from centre to centre.
 template <class Backend>
 void ATreadIsReadAsASlope(Executor<Backend>& exec) {
-  const auto stairs = [](const Vec3d& p) { return p.z <= 4 + int(p.x) / 6; };
-  const auto second = shares_along_x(exec, {24, 17, 16}, stairs, 5);
+  const auto staircase = [](const Vec3d& p) { return p.z <= 4 + int(p.x) / 6; };
+  const auto second = shares_along_x(exec, {24, 17, 16}, staircase, 5);
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(second[6 + k], (k - 2.5f) / 6, 1e-5f) << k;
   for (const int x : {0, 3, 5, 12, 20}) EXPECT_EQ(second[x], 0) << x;  // the boundary is not there
 }
@@ -157,9 +157,9 @@ void WallsAreNoSteps(Executor<Backend>& exec) {
     const auto shares = shares_along_x(exec, n, lower, top);
     return std::all_of(shares.begin(), shares.end(), [](float s) { return s == 0; });
   };
-  const auto stairs = [](int step) { return [=](const Vec3d& p) { return p.z <= 4 + step * (int(p.x) / 8); }; };
-  EXPECT_FALSE(all_zero({24, 17, 20}, 7, stairs(3)));
-  EXPECT_TRUE(all_zero({24, 17, 20}, 8, stairs(4)));
+  const auto staircase = [](int step) { return [=](const Vec3d& p) { return p.z <= 4 + step * (int(p.x) / 8); }; };
+  EXPECT_FALSE(all_zero({24, 17, 20}, 7, staircase(3)));
+  EXPECT_TRUE(all_zero({24, 17, 20}, 8, staircase(4)));
   EXPECT_TRUE(all_zero({24, 17, 20}, 7, [](const Vec3d& p) {
     return p.z >= 5 && p.z < 8 && p.x > 6 && p.x < 16 && p.y > 3 && p.y < 13;
   }));
@@ -206,8 +206,8 @@ void ABallOfLabelsBecomesRound(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(Tighten, EveryVoxelStaysInItsMaterial)
 NACRE_DEVICE_TEST(Tighten, EvenTheWorstVoxelsStay)
 NACRE_DEVICE_TEST(Tighten, WithoutWidthTheLabelsAreLeftAlone)
-NACRE_DEVICE_TEST(Tighten, AnObliquePlaneHasNoStairs)
-NACRE_DEVICE_TEST(Tighten, StairsBecomeSlopes)
+NACRE_DEVICE_TEST(Tighten, AnObliquePlaneHasNoStaircase)
+NACRE_DEVICE_TEST(Tighten, StaircasesBecomeSlopes)
 NACRE_DEVICE_TEST(Tighten, ATreadIsReadAsASlope)
 NACRE_DEVICE_TEST(Tighten, WallsAreNoSteps)
 NACRE_DEVICE_TEST(Tighten, ABallOfLabelsBecomesRound)

@@ -35,8 +35,8 @@ struct Ball {
 struct ExtendHarmonics {
   Ball ball;
   double* values;
-  NACRE_HD void operator()(CellIndex cell, const Int3& place, BrickOctreeView::Cursor&) const {
-    const Vec3d x = ball.unit(Vec3d(place) + Vec3d(0.5));
+  NACRE_HD void operator()(CellIndex cell, const Int3& position, BrickOctreeView::Cursor&) const {
+    const Vec3d x = ball.unit(Vec3d(position) + Vec3d(0.5));
     values[cell] = x.x * x.y + 0.5 * (x.z * x.z - x.x * x.x) + x.z * (x.x * x.x - x.y * x.y);
   }
 };
@@ -45,10 +45,10 @@ struct ExtendHarmonics {
 struct PlainOperators {
   const double* values;
   double* out;  ///< 4 per cell: gradient, Laplacian; NaN where a neighbour is missing
-  NACRE_HD void operator()(CellIndex cell, const Int3& place, BrickOctreeView::Cursor& cursor) const {
+  NACRE_HD void operator()(CellIndex cell, const Int3& position, BrickOctreeView::Cursor& cursor) const {
     double laplacian = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      Int3 low = place, high = place;
+      Int3 low = position, high = position;
       low[axis] -= 1;
       high[axis] += 1;
       const CellIndex a = cursor.find(low), b = cursor.find(high);
@@ -65,8 +65,8 @@ struct AtSurface {
   Ball ball;
   const double* operators;
   double* out;  ///< 7 per surface cell: gradient, Laplacian, the unit vector
-  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& place, BrickOctreeView::Cursor& cursor) const {
-    const Vec3d unit = ball.unit(Vec3d(place) + Vec3d(0.5));
+  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& position, BrickOctreeView::Cursor& cursor) const {
+    const Vec3d unit = ball.unit(Vec3d(position) + Vec3d(0.5));
     const LinearWeights weights(band_point(ball.centre + unit * ball.radius));
     CellIndex at[8];
     const unsigned there = cursor.eight(weights.first, at);

@@ -117,7 +117,7 @@ TEST(Defects, BeforeAFlatCornerOnARimIsRoomForOneMore) {
   ball.size.assign(6, 1);
   const MeshDefects d = ball.defects({0, 0.3, 0.3});
   ASSERT_EQ(d.insert.size(), 1u);
-  EXPECT_LT(length(d.insert[0].place - Vec3d(0, 0.8, 0)), 0.3);
+  EXPECT_LT(length(d.insert[0].position - Vec3d(0, 0.8, 0)), 0.3);
   EXPECT_EQ(d.insert[0].materials, (std::array<std::uint16_t, 2>{1, 2}));
   EXPECT_EQ(std::count(d.remove.begin(), d.remove.end(), 1u), 0);
   ball.mesh.points[5].y = 0.9;
@@ -167,7 +167,7 @@ TEST(Defects, SmallBodiesKeepAllOfTheirs) {
     const MeshDefects d = ball.defects({0, 0.1, 0.1});
     EXPECT_EQ(d.remove, count == 24 ? Points{} : Points{t.c});
     ASSERT_EQ(d.insert.size(), count == 24 ? 1u : 0u);
-    for (const auto& p : d.insert) EXPECT_LT(length(p.place - middle), 1e-12) << "a new point instead";
+    for (const auto& p : d.insert) EXPECT_LT(length(p.position - middle), 1e-12) << "a new point instead";
   }
 }
 
@@ -208,8 +208,8 @@ TEST(Defects, PlacesThatTouchGetNewPointsUnlessTheyAreCrowded) {
   ASSERT_EQ(edge.insert.size(), 2u) << "one in each facet";
   for (const auto& p : edge.insert) {
     EXPECT_EQ(p.materials, (std::array<std::uint16_t, 2>{0, 1}));
-    EXPECT_NEAR(length(p.place), 1, 0.01);
-    EXPECT_LT(length(p.place - ball.points[t.a]), 2 * ball.size[0]);
+    EXPECT_NEAR(length(p.position), 1, 0.01);
+    EXPECT_LT(length(p.position - ball.points[t.a]), 2 * ball.size[0]);
   }
   const std::size_t facets =
       std::size_t(std::count_if(ball.mesh.triangles.begin(), ball.mesh.triangles.end(),

@@ -86,7 +86,7 @@ TEST(Topology, BodiesOfOneMaterialThatTouch) {
   add_tetrahedron(mesh, {0, 1, 4, 5}, 1);
   TopologyReport r = check_topology(mesh, 2);
   EXPECT_EQ(r.nonmanifold_edges, 1);
-  EXPECT_EQ(r.nonmanifold_vertices, 0);  // the edge joins the two umbrellas
+  EXPECT_EQ(r.nonmanifold_vertices, 0);  // the edge joins the two vertex fans
   EXPECT_EQ(r.inconsistent_edges, 0);
   EXPECT_EQ(r.materials[1].euler, 3);
   EXPECT_EQ(r.materials[1].components, 1);

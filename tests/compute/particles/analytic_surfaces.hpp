@@ -6,7 +6,7 @@
 
 #include "compute/device/random.hpp"
 #include "compute/field/interface.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 #include "compute/particles/solver_state.hpp"
 
 namespace nacre::test {
@@ -76,16 +76,16 @@ struct Seeds {
 template <class Backend, class Surface>
 ParticleSet make_particles(Executor<Backend>& exec, const Surface& surface, const Seeds& seeds, std::int64_t capacity) {
   ParticleSet set = make_particle_set(exec, capacity);
-  std::vector<Float4> place, direction;
+  std::vector<Float4> position, direction;
   for (std::size_t k = 0; k < seeds.points.size(); ++k) {
     Vec3f on, d;
     surface.project(seeds.interface[k], seeds.points[k], 1e9f, on, d);
-    place.push_back({on.x, on.y, on.z, surface.size(on)});
+    position.push_back({on.x, on.y, on.z, surface.size(on)});
     direction.push_back({d.x, d.y, d.z, 0});
   }
   set.fixed = seeds.fixed;
-  set.count = std::int64_t(place.size());
-  set.place.upload(place);
+  set.count = std::int64_t(position.size());
+  set.position.upload(position);
   set.direction.upload(direction);
   set.interface.upload(seeds.interface);
   return set;

@@ -42,7 +42,7 @@ TEST(BinGrid, TheEdgeGrowsUntilTheBinsFit) {
   EXPECT_LE(make_bin_grid({0, 0, 0}, {1, 1, 1}, 0, 1000).bins(), 1000);  // particles without a size
 }
 
-TEST(BinGrid, TheEdgeHoldsAllNeighboursOfATrialPosition) {  // source notes: (1 + sqrt 3) h for steps of up to h/2
+TEST(BinGrid, TheEdgeHoldsAllNeighboursOfATrialPosition) {  // (1 + sqrt 3) h for steps of up to h/2
   EXPECT_NEAR(bin_edge(1, 0.5f), 1 + std::sqrt(3.0), 1e-5);
   EXPECT_NEAR(bin_edge(2, 1), 2 * (2 + std::sqrt(3.0)), 1e-5);
   // Particles of bins three apart move towards each other by a step each, and still do not feel each other; a particle
@@ -57,13 +57,13 @@ TEST(BinGrid, TheEdgeHoldsAllNeighboursOfATrialPosition) {  // source notes: (1 
 /// Many particles, half of them fixed, in a box.
 template <class Backend>
 ParticleSet boxful(Executor<Backend>& exec, std::int64_t count, float extent, float h) {
-  std::vector<Float4> place;
+  std::vector<Float4> position;
   for (std::int64_t k = 0; k < count; ++k) {
     const auto at = [&](std::uint32_t axis) { return extent * uniform_random(9, std::uint32_t(k), axis); };
-    place.push_back({at(0), at(1), 0.3f * at(2), h * (0.5f + 0.5f * uniform_random(9, std::uint32_t(k), 3))});
+    position.push_back({at(0), at(1), 0.3f * at(2), h * (0.5f + 0.5f * uniform_random(9, std::uint32_t(k), 3))});
   }
   ParticleSet set = make_particle_set(exec, count);
-  set.place.upload(place);
+  set.position.upload(position);
   set.direction.fill_bytes(0);
   set.interface.fill_bytes(0);
   set.count = count, set.fixed = count / 2;
@@ -77,13 +77,13 @@ TEST(Bins, HoldEveryParticleOnceAndInOrder) {
   Arena::Scope scope(exec.arena());
   const Bins bins = build_bins(exec, set, 0.5f);
   const auto order = bins.order.download(), first = bins.first.download(), last = bins.last.download();
-  const auto place = set.place.download();
+  const auto position = set.position.download();
   std::set<std::uint32_t> seen;
   std::vector<std::uint32_t> with_movers;
   for (std::uint32_t b = 0; b < bins.grid.bins(); ++b) {
     bool moving = false;
     for (std::uint32_t k = first[b]; k < last[b]; ++k) {
-      const Float4 p = place[order[k]];
+      const Float4 p = position[order[k]];
       EXPECT_EQ(bins.grid.number(bins.grid.bin({p.x, p.y, p.z})), b);
       if (k > first[b]) {
         EXPECT_LT(order[k - 1], order[k]);
@@ -167,14 +167,14 @@ void expect_all_pairs(float extent) {
   Array<Float4> result = exec.arena().permanent<Float4>(count);
   Neighbourhoods<Cpu> neighbourhoods(exec, set, 0.5f);
   neighbourhoods.for_each(SumNear{table.data(), result.data()});
-  const auto place = set.place.download();
+  const auto position = set.position.download();
   const auto sums = result.download();
   for (std::int64_t i = 0; i < count; ++i) {
     double energy = 0;
     int neighbours = 0;
     for (std::int64_t j = 0; j < count; ++j) {
       if (j == i) continue;
-      const Float4 a = place[i], b = place[j];
+      const Float4 a = position[i], b = position[j];
       const float d = length(Vec3f(a.x - b.x, a.y - b.y, a.z - b.z)) / (support * std::min(a.w, b.w));
       energy += cotangent_energy(d).energy;
       if (d < 1) ++neighbours;

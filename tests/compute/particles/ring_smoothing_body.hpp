@@ -8,7 +8,7 @@
 #include "compute/meshing/quality.hpp"
 #include "compute/particles/ring_smoothing.hpp"
 #include "tests/compute/on_devices.hpp"
-#include "tests/compute/particles/analytic_ground.hpp"
+#include "tests/compute/particles/analytic_projector.hpp"
 
 namespace nacre::test {
 
@@ -16,7 +16,7 @@ namespace nacre::test {
 template <class Backend>
 struct RingRun {
   Executor<Backend>& exec;
-  Array<Float4> place, moved, direction;
+  Array<Float4> position, moved, direction;
   Array<std::uint32_t> first, interface;
   Array<RingEdge> edge;
   Array<std::uint8_t> order;
@@ -29,7 +29,7 @@ struct RingRun {
     std::vector<Float4> places;
     for (const Vec3f& p : points) places.push_back({p.x, p.y, p.z, 1});
     const Vec3f d = normal_or_tangent;
-    place = arena.template permanent_copy<Float4>(places);
+    position = arena.template permanent_copy<Float4>(places);
     moved = arena.template permanent_copy<Float4>(places);
     direction = arena.template permanent_copy<Float4>(std::vector<Float4>(points.size(), Float4{d.x, d.y, d.z, 7}));
     first = arena.template permanent_copy<std::uint32_t>(rings.first);
@@ -38,16 +38,17 @@ struct RingRun {
     order = arena.template permanent_copy<std::uint8_t>(std::vector<std::uint8_t>{std::uint8_t(junction_order)});
   }
 
-  template <class Ground>
-  std::vector<Vec3f> turns(const Ground& ground, int count, std::uint32_t shake = 0) {
+  template <class Projector>
+  std::vector<Vec3f> turns(const Projector& projector, int count, std::uint32_t shake = 0) {
     for (int k = 0; k < count; ++k) {
-      exec.for_each(std::int64_t(place.size()),
-                    detail::SmoothInRing<Ground>{ground, first.data(), edge.data(), order.data(), interface.data(),
-                                                 place.data(), moved.data(), direction.data(), shake});
-      std::swap(place, moved);
+      exec.for_each(
+          std::int64_t(position.size()),
+          detail::SmoothInRing<Projector>{projector, first.data(), edge.data(), order.data(), interface.data(),
+                                          position.data(), moved.data(), direction.data(), shake});
+      std::swap(position, moved);
     }
     std::vector<Vec3f> points;
-    for (const Float4& p : place.download()) points.push_back({p.x, p.y, p.z});
+    for (const Float4& p : position.download()) points.push_back({p.x, p.y, p.z});
     return points;
   }
 };
@@ -96,16 +97,16 @@ void ADisturbedLatticeBecomesEven(Executor<Backend>& exec) {
     }
   const TriangleRings rings = triangle_rings(even, all_points(even), inner, points.size());
   RingRun<Backend> run(exec, points, {0, 0, 1}, 2, rings);
-  const AnalyticGround<Plane> ground{{1}};
+  const AnalyticProjector<Plane> projector{{1}};
   const auto worst = [&](const std::vector<Vec3f>& now) {
     SurfaceMesh mesh = even;
     for (std::size_t v = 0; v < now.size(); ++v) mesh.points[v] = Vec3d(now[v]);
     return surface_quality(mesh).all.radius_ratio_min;
   };
   EXPECT_LT(worst(points), 0.75);
-  const std::vector<Vec3f> few = run.turns(ground, SmoothingRule().turns);
+  const std::vector<Vec3f> few = run.turns(projector, SmoothingRule().turns);
   EXPECT_GT(worst(few), 0.9);
-  const std::vector<Vec3f> many = run.turns(ground, 60);
+  const std::vector<Vec3f> many = run.turns(projector, 60);
   for (std::size_t v = 0; v < many.size(); ++v) {
     EXPECT_LT(length(Vec3d(many[v]) - even.points[v]), 0.01) << v;
     EXPECT_TRUE(inner[v] || few[v] == points[v]) << v;
@@ -124,9 +125,9 @@ void AShakenLatticeSettlesAgain(Executor<Backend>& exec) {
     points.push_back(Vec3f(even.points[v]));
   }
   const TriangleRings rings = triangle_rings(even, all_points(even), inner, points.size());
-  const AnalyticGround<Plane> ground{{1}};
+  const AnalyticProjector<Plane> projector{{1}};
   const auto shaken = [&](std::uint32_t seed) {
-    return RingRun<Backend>(exec, points, {0, 0, 1}, 2, rings).turns(ground, 1, seed);
+    return RingRun<Backend>(exec, points, {0, 0, 1}, 2, rings).turns(projector, 1, seed);
   };
   const std::vector<Vec3f> once = shaken(3), other = shaken(5);
   const float most = 0.3f * std::sqrt(0.75f) + 1e-5f;
@@ -142,7 +143,7 @@ void AShakenLatticeSettlesAgain(Executor<Backend>& exec) {
   EXPECT_GT(far / 80, 0.1);  // of 80 inner points; 0.2 by the square's mean
   EXPECT_EQ(differ, 80);
   RingRun<Backend> run(exec, once, {0, 0, 1}, 2, rings);
-  const std::vector<Vec3f> settled = run.turns(ground, 60);
+  const std::vector<Vec3f> settled = run.turns(projector, 60);
   for (std::size_t v = 0; v < settled.size(); ++v) EXPECT_LT(length(settled[v] - points[v]), 0.01f) << v;
 }
 
@@ -161,14 +162,14 @@ void CurvesAreKeptAndPointsStay(Executor<Backend>& exec) {
   rings.first = {0, 2, 2, 2, 2};
   rings.edge = {{1, 2}, {2, 3}};
   const std::vector<Vec3f> points = {{20.2f, 20, 0}, {20, 21, 0}, {21, 21, 0}, {22, 21, 0}};
-  const Line ground;
+  const Line projector;
   RingRun<Backend> curve(exec, points, {1, 0, 0}, 1, rings);
-  const std::vector<Vec3f> slid = curve.turns(ground, 60);
+  const std::vector<Vec3f> slid = curve.turns(projector, 60);
   EXPECT_NEAR(slid[0].x, 21, 0.01) << "between the two";
   EXPECT_NEAR(slid[0].y, 20, 1e-5);
   EXPECT_EQ(curve.direction.download()[0].w, 7);
   RingRun<Backend> point(exec, points, {0, 0, 0}, 0, rings);
-  EXPECT_TRUE(point.turns(ground, 4)[0] == points[0]);
+  EXPECT_TRUE(point.turns(projector, 4)[0] == points[0]);
 }
 
 /// Nobody leaves the interface: beyond the rim there is none.
@@ -179,8 +180,8 @@ void NobodyIsSmoothedOverTheRim(Executor<Backend>& exec) {
   rings.edge = {{1, 2}};
   const std::vector<Vec3f> points = {{9.9f, 0, 0}, {9.4f, -1, 0}, {9.4f, 1, 0}};  // its best place is at 11.1
   const Vec3f up(0, 0, 1);
-  EXPECT_GT(RingRun<Backend>(exec, points, up, 2, rings).turns(AnalyticGround<Plane>{{1}}, 1)[0].x, 10);
-  EXPECT_TRUE(RingRun<Backend>(exec, points, up, 2, rings).turns(AnalyticGround<Plane>{{1}, 10}, 1)[0] == points[0]);
+  EXPECT_GT(RingRun<Backend>(exec, points, up, 2, rings).turns(AnalyticProjector<Plane>{{1}}, 1)[0].x, 10);
+  EXPECT_TRUE(RingRun<Backend>(exec, points, up, 2, rings).turns(AnalyticProjector<Plane>{{1}, 10}, 1)[0] == points[0]);
 }
 
 NACRE_DEVICE_TEST(RingSmoothing, ADisturbedLatticeBecomesEven)

@@ -18,7 +18,7 @@ inline constexpr SeedsFrom both_sources[] = {SeedsFrom::embedding, SeedsFrom::ma
 /// What comes of a source of seeds.
 struct SeededPlaces {
   double expected = 0;
-  std::vector<Float4> place, direction;
+  std::vector<Float4> position, direction;
   std::vector<std::uint32_t> interface;
 };
 
@@ -35,7 +35,7 @@ SeededPlaces seeds_of(Executor<Backend>& exec, const Embedding& e, SeedsFrom fro
     Array<Float4> velocity = arena.template permanent<Float4>(std::size_t(set.capacity()));
     const std::int64_t n = seed_particles(exec, source, scale, random, set, velocity);
     EXPECT_EQ(n, set.count);
-    result.place = set.place.download(0, std::size_t(n));
+    result.position = set.position.download(0, std::size_t(n));
     result.direction = set.direction.download(0, std::size_t(n));
     result.interface = set.interface.download(0, std::size_t(n));
   };
@@ -60,15 +60,15 @@ void AsManyAsTheSizingFieldAsksFor(Executor<Backend>& exec) {
     for (const double scale : {1.0, 0.5, 1.5, 20.0}) {  // at last, far more than there are cells
       const SeededPlaces seeds = seeds_of(exec, e, from, 2, scale);
       EXPECT_NEAR(seeds.expected, wanted, 0.03 * wanted) << int(from);
-      EXPECT_NEAR(double(seeds.place.size()), scale * seeds.expected, 0.01 * scale * seeds.expected);
+      EXPECT_NEAR(double(seeds.position.size()), scale * seeds.expected, 0.01 * scale * seeds.expected);
       double above = 0;
-      for (const Float4& p : seeds.place) {
+      for (const Float4& p : seeds.position) {
         const Vec3f r = Vec3f(p.x, p.y, p.z) - in_fields(c);
         ASSERT_NEAR(length(r), 8.3, 0.05);
         ASSERT_NEAR(p.w, 0.8, 1e-3);
         above += r.x + r.y > 0 ? 1 : 0;
       }
-      EXPECT_NEAR(above / double(seeds.place.size()), 0.5, 0.03);  // spread evenly
+      EXPECT_NEAR(above / double(seeds.position.size()), 0.5, 0.03);  // spread evenly
     }
 }
 
@@ -87,7 +87,7 @@ void EveryComponentGetsParticles(Executor<Backend>& exec) {
     const SeededPlaces seeds = seeds_of(exec, e, from, 2, 1);
     for (const Vec3d& i : islands) {
       const Vec3f at = in_fields(i);
-      const auto there = std::count_if(seeds.place.begin(), seeds.place.end(),
+      const auto there = std::count_if(seeds.position.begin(), seeds.position.end(),
                                        [&](const Float4& p) { return length(Vec3f(p.x, p.y, p.z) - at) < 1.2f; });
       EXPECT_GE(there, 6) << int(from) << ": " << i.x << ' ' << i.y << ' ' << i.z;
     }
@@ -97,16 +97,16 @@ void EveryComponentGetsParticles(Executor<Backend>& exec) {
 template <class Backend>
 void CurvesAreSeededByTheirLength(Executor<Backend>& exec) {
   const Embedding e = embedding_of(exec, sectors());
-  const auto [expected, place, direction, interface] = seeds_of(exec, e, SeedsFrom::embedding, 1, 1);
-  EXPECT_NEAR(double(place.size()), expected, 2);
+  const auto [expected, position, direction, interface] = seeds_of(exec, e, SeedsFrom::embedding, 1, 1);
+  EXPECT_NEAR(double(position.size()), expected, 2);
   const std::uint32_t axis = e.number_of(Junction(1, 2, 3));
   double covered = 0;
-  for (std::size_t k = 0; k < place.size(); ++k) {
+  for (std::size_t k = 0; k < position.size(); ++k) {
     EXPECT_EQ(e.grid.junctions[interface[k]].order(), 1);
     if (interface[k] != axis) continue;
-    const Vec3f r = Vec3f(place[k].x, place[k].y, place[k].z) - in_fields(sector_centre);
+    const Vec3f r = Vec3f(position[k].x, position[k].y, position[k].z) - in_fields(sector_centre);
     EXPECT_LT(std::hypot(r.x, r.y), 0.02);
-    covered += place[k].w;  // h apart
+    covered += position[k].w;  // h apart
   }
   EXPECT_NEAR(covered, 2 * sector_radius, 0.06 * 2 * sector_radius);
 }
@@ -115,7 +115,9 @@ void CurvesAreSeededByTheirLength(Executor<Backend>& exec) {
 template <class Backend>
 void AnotherSeedIsAnotherStart(Executor<Backend>& exec) {
   const Embedding e = embedding_of(exec, sectors());
-  const auto places = [&](std::uint32_t random) { return seeds_of(exec, e, SeedsFrom::embedding, 2, 1, random).place; };
+  const auto places = [&](std::uint32_t random) {
+    return seeds_of(exec, e, SeedsFrom::embedding, 2, 1, random).position;
+  };
   const std::vector<Float4> one = places(1), two = places(2), again = places(1);
   ASSERT_EQ(one.size(), two.size());
   std::size_t alike = 0;
@@ -137,12 +139,12 @@ void NoTwoAtOnePlaceOfAFlatInterface(Executor<Backend>& exec) {
     return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
   };
   for (const SeedsFrom from : both_sources) {
-    std::vector<Float4> place = seeds_of(exec, e, from, 2, 1).place;
-    std::sort(place.begin(), place.end(), along_x);
-    ASSERT_GT(place.size(), 4000u) << int(from);
-    for (std::size_t i = 0; i < place.size(); ++i)
-      for (std::size_t k = i + 1; k < place.size() && place[k].x - place[i].x < 1e-3f; ++k)
-        ASSERT_GT(std::hypot(place[k].y - place[i].y, place[k].z - place[i].z), 1e-3f);
+    std::vector<Float4> position = seeds_of(exec, e, from, 2, 1).position;
+    std::sort(position.begin(), position.end(), along_x);
+    ASSERT_GT(position.size(), 4000u) << int(from);
+    for (std::size_t i = 0; i < position.size(); ++i)
+      for (std::size_t k = i + 1; k < position.size() && position[k].x - position[i].x < 1e-3f; ++k)
+        ASSERT_GT(std::hypot(position[k].y - position[i].y, position[k].z - position[i].z), 1e-3f);
   }
 }
 

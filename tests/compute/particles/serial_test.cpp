@@ -69,9 +69,9 @@ TEST(Serial, StepsAreAsShortAsTheyMustBe) {
   const auto after = run.places();
   bool moved = false;
   for (std::size_t k = 0; k < before.size(); ++k) {
-    const float way = length(xyz_of(after[k]) - xyz_of(before[k]));
-    EXPECT_LE(way, 0.1001f);
-    moved = moved || way > 0.05f;
+    const float displacement = length(xyz_of(after[k]) - xyz_of(before[k]));
+    EXPECT_LE(displacement, 0.1001f);
+    moved = moved || displacement > 0.05f;
   }
   EXPECT_TRUE(moved);
 }

@@ -49,20 +49,20 @@ struct Relaxation {
   }
   IterationResult control() { return control_population(exec, set, state, table, surface, parameters); }
 
-  std::vector<Float4> places() const { return set.place.download(0, std::size_t(set.count)); }
+  std::vector<Float4> places() const { return set.position.download(0, std::size_t(set.count)); }
   std::vector<Float4> directions() const { return set.direction.download(0, std::size_t(set.count)); }
 };
 
 inline Vec3f xyz_of(const Float4& a) { return {a.x, a.y, a.z}; }
 
 /// Distance of each point from the nearest other one, over the smaller h of the two; `from` skips the first ones.
-inline std::vector<double> spacings(const std::vector<Float4>& place, std::size_t from = 0) {
+inline std::vector<double> spacings(const std::vector<Float4>& position, std::size_t from = 0) {
   std::vector<double> result;
-  for (std::size_t i = from; i < place.size(); ++i) {
+  for (std::size_t i = from; i < position.size(); ++i) {
     float nearest = 1e30f;
-    for (std::size_t j = 0; j < place.size(); ++j) {
-      const Vec3f r = xyz_of(place[i]) - xyz_of(place[j]);
-      if (j != i) nearest = std::min(nearest, std::sqrt(dot(r, r)) / std::min(place[i].w, place[j].w));
+    for (std::size_t j = 0; j < position.size(); ++j) {
+      const Vec3f r = xyz_of(position[i]) - xyz_of(position[j]);
+      if (j != i) nearest = std::min(nearest, std::sqrt(dot(r, r)) / std::min(position[i].w, position[j].w));
     }
     result.push_back(nearest);
   }

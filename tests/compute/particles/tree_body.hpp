@@ -17,12 +17,12 @@ constexpr float tree_extent = 40;  ///< edge of the volume
 /// A sphere of particles with sizes from 0.6 to 1.6, its equator (which bounds it) and a second sphere, in random
 /// order.
 struct TreeCase {
-  std::vector<Float4> place, direction;
+  std::vector<Float4> position, direction;
   std::vector<std::uint32_t> interface;
 };
 
 inline void add_particle(TreeCase& c, const Vec3f& p, const Vec3f& n, std::uint32_t interface) {
-  c.place.push_back({p.x + 20, p.y + 20, p.z + 20, 1.1f + 0.05f * p.x});
+  c.position.push_back({p.x + 20, p.y + 20, p.z + 20, 1.1f + 0.05f * p.x});
   c.direction.push_back({n.x, n.y, n.z, 0});
   c.interface.push_back(interface);
 }
@@ -48,23 +48,23 @@ struct TreeRun {
   RelatedView view;
 
   TreeRun(Executor<Backend>& e, const TreeCase& c)
-      : exec(e), solver(e, std::int64_t(c.place.size()) + 100, 3, tree_extent) {
+      : exec(e), solver(e, std::int64_t(c.position.size()) + 100, 3, tree_extent) {
     Arena& arena = exec.arena();
     start = arena.template permanent_copy<std::uint32_t>(std::vector<std::uint32_t>{0, 2, 3, 4});
     related = arena.template permanent_copy<std::uint32_t>(std::vector<std::uint32_t>{0, 1, 1, 2});
     order = arena.template permanent_copy<std::uint8_t>(std::vector<std::uint8_t>{2, 1, 2});
     view = {start.data(), related.data(), order.data()};
     ParticleSet& set = solver.particles();
-    set.count = std::int64_t(c.place.size());
-    set.place.upload(c.place);
+    set.count = std::int64_t(c.position.size());
+    set.position.upload(c.position);
     set.direction.upload(c.direction);
     set.interface.upload(c.interface);
-    solver.velocity().upload(std::vector<Float4>(c.place.size(), Float4{0, 0, 0, 0}));
+    solver.velocity().upload(std::vector<Float4>(c.position.size(), Float4{0, 0, 0, 0}));
     solver.rebuild(exec);
   }
 
   std::size_t count() const { return std::size_t(solver.particles().count); }
-  std::vector<Float4> places() const { return solver.particles().place.download(0, count()); }
+  std::vector<Float4> places() const { return solver.particles().position.download(0, count()); }
   std::vector<Float4> directions() const { return solver.particles().direction.download(0, count()); }
   std::vector<std::uint32_t> interfaces() const { return solver.particles().interface.download(0, count()); }
 
@@ -87,15 +87,15 @@ struct ExactForce {
 };
 
 /// All pairs, in double: the oracle.
-inline std::vector<ExactForce> all_pairs(const std::vector<Float4>& place, const std::vector<Float4>& direction,
+inline std::vector<ExactForce> all_pairs(const std::vector<Float4>& position, const std::vector<Float4>& direction,
                                          const std::vector<std::uint32_t>& interface) {
-  std::vector<ExactForce> result(place.size());
-  for (std::size_t i = 0; i < place.size(); ++i)
-    for (std::size_t j = 0; j < place.size(); ++j) {
+  std::vector<ExactForce> result(position.size());
+  for (std::size_t i = 0; i < position.size(); ++i)
+    for (std::size_t j = 0; j < position.size(); ++j) {
       const bool own = interface[i] == interface[j], rim = interface[i] == 0 && interface[j] == 1;
       if (i == j || interface[i] == 1 || !(own || rim)) continue;
-      const Vec3d r(place[i].x - place[j].x, place[i].y - place[j].y, place[i].z - place[j].z);
-      const double unit = 2 / (double(support) * (place[i].w + place[j].w)), d = length(r) * unit;
+      const Vec3d r(position[i].x - position[j].x, position[i].y - position[j].y, position[i].z - position[j].z);
+      const double unit = 2 / (double(support) * (position[i].w + position[j].w)), d = length(r) * unit;
       if (d >= 1 || d == 0) continue;
       const double x = std::max(d, 0.02) * M_PI / 2, cot = 1 / std::tan(x);
       const double cosine =
@@ -197,26 +197,26 @@ template <class Backend>
 void NodesHoldTheirParticles(Executor<Backend>& exec) {
   const TreeCase c = graded_case(3000);
   TreeRun<Backend> run(exec, c);
-  const std::vector<Float4> place = run.places();
+  const std::vector<Float4> position = run.places();
   const std::vector<std::uint32_t> interface = run.interfaces();
-  ASSERT_EQ(place.size(), c.place.size());
+  ASSERT_EQ(position.size(), c.position.size());
   EXPECT_TRUE(std::is_sorted(interface.begin(), interface.end()));
   std::multiset<float> before, after;
-  for (const Float4& p : c.place) before.insert(p.x);
-  for (const Float4& p : place) after.insert(p.x);
+  for (const Float4& p : c.position) before.insert(p.x);
+  for (const Float4& p : position) after.insert(p.x);
   EXPECT_EQ(before, after);  // none is lost, none doubled
   const std::vector<TreeNode> nodes = nodes_of(run);
-  std::vector<int> leaves(place.size(), 0);
+  std::vector<int> leaves(position.size(), 0);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const TreeNode& n = nodes[k];
     Vec3d sum;
     float largest = 0;
     for (std::uint32_t i = n.first; i < n.last; ++i) {
-      const Vec3f p(place[i].x, place[i].y, place[i].z);
+      const Vec3f p(position[i].x, position[i].y, position[i].z);
       for (int axis = 0; axis < 3; ++axis) ASSERT_TRUE(p[axis] >= n.low[axis] && p[axis] <= n.high[axis]) << k;
       ASSERT_EQ(interface[i], interface[n.first]);
       sum += Vec3d(p);
-      largest = std::max(largest, place[i].w);
+      largest = std::max(largest, position[i].w);
       leaves[i] += n.children == 0 ? 1 : 0;
     }
     if (n.first == n.last) continue;

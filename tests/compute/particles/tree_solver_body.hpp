@@ -10,7 +10,7 @@
 #include "compute/particles/tree_solver.hpp"
 #include "tests/compute/embedding/embedding_cases.hpp"
 #include "tests/compute/on_devices.hpp"
-#include "tests/compute/particles/analytic_ground.hpp"
+#include "tests/compute/particles/analytic_projector.hpp"
 #include "tests/compute/particles/solver_cases.hpp"
 
 namespace nacre::test {
@@ -39,38 +39,38 @@ struct TreeSolverRun {
     view = {start.data(), related.data(), order.data()};
   }
 
-  void put(const std::vector<Float4>& place, const std::vector<Float4>& direction,
+  void put(const std::vector<Float4>& position, const std::vector<Float4>& direction,
            const std::vector<std::uint32_t>& interface) {
     ParticleSet& set = solver.particles();
-    set.count = std::int64_t(place.size());
-    set.place.upload(place);
+    set.count = std::int64_t(position.size());
+    set.position.upload(position);
     set.direction.upload(direction);
     set.interface.upload(interface);
-    solver.velocity().upload(std::vector<Float4>(place.size(), Float4{0, 0, 0, 0}));
+    solver.velocity().upload(std::vector<Float4>(position.size(), Float4{0, 0, 0, 0}));
   }
 
   /// Puts points onto their interfaces and makes them the particles.
-  template <class Ground>
-  void seed(const Ground& ground, const std::vector<Vec3f>& points, const std::vector<std::uint32_t>& interface) {
-    std::vector<Float4> place, direction;
+  template <class Projector>
+  void seed(const Projector& projector, const std::vector<Vec3f>& points, const std::vector<std::uint32_t>& interface) {
+    std::vector<Float4> position, direction;
     for (std::size_t k = 0; k < points.size(); ++k) {
       EmbeddedPoint on;
-      ASSERT_TRUE(ground.project(interface[k], points[k], 1, on)) << k;
-      place.push_back({on.p.x, on.p.y, on.p.z, on.h});
+      ASSERT_TRUE(projector.project(interface[k], points[k], 1, on)) << k;
+      position.push_back({on.p.x, on.p.y, on.p.z, on.h});
       direction.push_back({on.direction.x, on.direction.y, on.direction.z, 0});
     }
-    put(place, direction, interface);
+    put(position, direction, interface);
   }
 
   /// One iteration as the pipeline makes it; returns the mean energy before the step.
-  template <class Ground>
-  double step(const Ground& ground, int of_order) {
+  template <class Projector>
+  double step(const Projector& projector, int of_order) {
     solver.rebuild(exec);
-    return solver.iterate(exec, ground, view, of_order, rule, solver.movers(exec, view, of_order));
+    return solver.iterate(exec, projector, view, of_order, rule, solver.movers(exec, view, of_order));
   }
 
   std::size_t count() const { return std::size_t(solver.particles().count); }
-  std::vector<Float4> places() const { return solver.particles().place.download(0, count()); }
+  std::vector<Float4> places() const { return solver.particles().position.download(0, count()); }
   std::vector<Float4> directions() const { return solver.particles().direction.download(0, count()); }
   std::vector<std::uint32_t> interfaces() const { return solver.particles().interface.download(0, count()); }
   std::vector<Float4> velocities() { return solver.velocity().download(0, count()); }
@@ -83,18 +83,18 @@ TreeSolverRun<Backend> one_surface(Executor<Backend>& exec, std::int64_t capacit
 
 template <class Backend>
 void AnIterationIsForcesAndAMove(Executor<Backend>& exec) {
-  const AnalyticGround<Plane> ground{{1}};
+  const AnalyticProjector<Plane> projector{{1}};
   std::vector<Vec3f> points;
   for (int k = 0; k < 500; ++k) points.push_back({20 + 0.7f * float(k % 25), 20 + 0.9f * float(k / 25), 0});
   const std::vector<std::uint32_t> interface(points.size(), 0);
   TreeSolverRun<Backend> at_once = one_surface(exec, 600), apart = one_surface(exec, 600);
-  at_once.seed(ground, points, interface);
-  apart.seed(ground, points, interface);
+  at_once.seed(projector, points, interface);
+  apart.seed(projector, points, interface);
   for (int k = 0; k < 4; ++k) {
     if (k != 2) at_once.solver.rebuild(exec), apart.solver.rebuild(exec);
-    const double energy = at_once.solver.iterate(exec, ground, at_once.view, 2, at_once.rule, 500);
+    const double energy = at_once.solver.iterate(exec, projector, at_once.view, 2, at_once.rule, 500);
     EXPECT_EQ(energy, apart.solver.forces(exec, apart.view, 2, apart.rule.theta, 500)) << k;
-    apart.solver.move(exec, ground, apart.view, 2, apart.rule);
+    apart.solver.move(exec, projector, apart.view, 2, apart.rule);
     const auto bytes = [](const std::vector<Float4>& v) {
       return std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(Float4));
     };
@@ -108,33 +108,33 @@ void AnIterationIsForcesAndAMove(Executor<Backend>& exec) {
 /// directions share, and no longer than a share of h.
 template <class Backend>
 void APairStepsApartAsTheFormulaSays(Executor<Backend>& exec) {
-  const AnalyticGround<Plane> ground{{1}};
+  const AnalyticProjector<Plane> projector{{1}};
   for (const float distance : {0.5f, 1.1f, 1.6f}) {
     TreeSolverRun<Backend> run = one_surface(exec, 100);
     const Vec3f a(20, 20, 0), b(20 + distance, 20, 0);
-    run.seed(ground, {a, b}, {0, 0});
+    run.seed(projector, {a, b}, {0, 0});
     const PairForce force = pair_force(a, 1, b, 1);
     for (const float longest : {0.3f, 0.05f}) {
       run.rule.longest = longest;
-      run.seed(ground, {a, b}, {0, 0});
-      const double energy = run.step(ground, 2);
+      run.seed(projector, {a, b}, {0, 0});
+      const double energy = run.step(projector, 2);
       EXPECT_NEAR(energy, force.energy, 1e-4 * force.energy + 1e-6);
       const float newton = run.rule.step / (0.5f * force.stiffness) * std::fabs(force.gradient.x);
       const float expected = std::min(newton, longest);
-      std::vector<Float4> place = run.places();
-      if (place[0].x > place[1].x) std::swap(place[0], place[1]);
-      EXPECT_NEAR(place[0].x, a.x - expected, 1e-4) << distance;
-      EXPECT_NEAR(place[1].x, b.x + expected, 1e-4) << distance;
-      EXPECT_NEAR(place[0].y, 20, 1e-6);
+      std::vector<Float4> position = run.places();
+      if (position[0].x > position[1].x) std::swap(position[0], position[1]);
+      EXPECT_NEAR(position[0].x, a.x - expected, 1e-4) << distance;
+      EXPECT_NEAR(position[1].x, b.x + expected, 1e-4) << distance;
+      EXPECT_NEAR(position[0].y, 20, 1e-6);
       for (const Float4& d : run.directions()) EXPECT_NEAR(d.w, force.energy, 1e-4 * force.energy + 1e-6);
     }
     // The second step carries the share `momentum` of the first along.
     run.rule = {};
     run.rule.step = 0.1f;
-    run.seed(ground, {a, b}, {0, 0});
-    run.step(ground, 2);
+    run.seed(projector, {a, b}, {0, 0});
+    run.step(projector, 2);
     const std::vector<Float4> once = run.places(), first = run.velocities();
-    run.step(ground, 2);
+    run.step(projector, 2);
     const float gap = std::fabs(once[0].x - once[1].x);
     const PairForce next = pair_force({0, 0, 0}, 1, {gap, 0, 0}, 1);
     const float expected = 0.85f * std::fabs(first[0].x) + 0.1f / (0.5f * next.stiffness) * std::fabs(next.gradient.x);
@@ -147,28 +147,28 @@ template <class Backend>
 void NobodyStepsOverTheRim(Executor<Backend>& exec) {
   const Vec3f pushed(9.9f, 0, 0), pusher(9.4f, 0, 0);
   for (const float rim : {10.5f, 10.0f, 9.95f}) {  // the step is 0.3 long
-    const AnalyticGround<Plane> ground{{1}, rim};
+    const AnalyticProjector<Plane> projector{{1}, rim};
     TreeSolverRun<Backend> run = one_surface(exec, 100);
-    run.seed(ground, {pushed, pusher}, {0, 0});
-    run.step(ground, 2);
-    const std::vector<Float4> place = run.places(), velocity = run.velocities();
-    const std::size_t k = place[0].x > place[1].x ? 0 : 1;
+    run.seed(projector, {pushed, pusher}, {0, 0});
+    run.step(projector, 2);
+    const std::vector<Float4> position = run.places(), velocity = run.velocities();
+    const std::size_t k = position[0].x > position[1].x ? 0 : 1;
     const float expected = rim > 10.2f ? 0.3f : rim > 9.98f ? 0.075f : 0;
-    EXPECT_NEAR(place[k].x, 9.9f + expected, 1e-5) << rim;
+    EXPECT_NEAR(position[k].x, 9.9f + expected, 1e-5) << rim;
     EXPECT_NEAR(velocity[k].x, expected, 1e-5) << rim;
-    EXPECT_NEAR(place[1 - k].x, 9.1f, 1e-5) << "the other one has room";
+    EXPECT_NEAR(position[1 - k].x, 9.1f, 1e-5) << "the other one has room";
     EXPECT_GT(run.directions()[k].w, 0) << "the energy is kept up to date";
   }
 }
 
 template <class Backend>
 void RandomParticlesSpreadEvenlyOnASphere(Executor<Backend>& exec) {
-  const AnalyticGround<Spheres> ground{{{10}, 1}};
+  const AnalyticProjector<Spheres> projector{{{10}, 1}};
   const int n = int(ideal_count(4 * M_PI * 100));
   TreeSolverRun<Backend> run = one_surface(exec, n);
-  run.seed(ground, scattered_on_sphere(10, n, 7), std::vector<std::uint32_t>(std::size_t(n), 0));
+  run.seed(projector, scattered_on_sphere(10, n, 7), std::vector<std::uint32_t>(std::size_t(n), 0));
   std::vector<double> energy;
-  for (int k = 0; k < 120; ++k) energy.push_back(run.step(ground, 2));
+  for (int k = 0; k < 120; ++k) energy.push_back(run.step(projector, 2));
   EXPECT_GT(energy.front(), 4 * hexagonal_energy);
   for (std::size_t k = 20; k < energy.size(); ++k) EXPECT_LT(energy[k], 1.005 * energy[k - 1]) << k;
   EXPECT_NEAR(energy.back(), hexagonal_energy, 0.05 * hexagonal_energy);
@@ -176,11 +176,11 @@ void RandomParticlesSpreadEvenlyOnASphere(Executor<Backend>& exec) {
   const std::vector<double> nearest = spacings(run.places());
   EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0.7);
   EXPECT_GT(mean(nearest), 0.93);
-  const std::vector<Float4> place = run.places(), direction = run.directions();
-  for (std::size_t k = 0; k < place.size(); ++k) {
-    ASSERT_NEAR(length(xyz_of(place[k])), 10, 1e-4) << k;
-    ASSERT_LT(length(xyz_of(direction[k]) - normalized(xyz_of(place[k]))), 1e-5) << k;
-    ASSERT_EQ(place[k].w, 1);
+  const std::vector<Float4> position = run.places(), direction = run.directions();
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    ASSERT_NEAR(length(xyz_of(position[k])), 10, 1e-4) << k;
+    ASSERT_LT(length(xyz_of(direction[k]) - normalized(xyz_of(position[k]))), 1e-5) << k;
+    ASSERT_EQ(position[k].w, 1);
   }
 }
 
@@ -188,7 +188,7 @@ void RandomParticlesSpreadEvenlyOnASphere(Executor<Backend>& exec) {
 /// feel them, and they stay.
 template <class Backend>
 void LowerOrdersAreFeltAndStay(Executor<Backend>& exec) {
-  const AnalyticGround<Disc> ground{{6, 1}};
+  const AnalyticProjector<Disc> projector{{6, 1}};
   TreeSolverRun<Backend> run(exec, 400, {2, 1}, {{0, 1}, {1}});
   std::vector<Vec3f> points;
   std::vector<std::uint32_t> interface;
@@ -203,22 +203,22 @@ void LowerOrdersAreFeltAndStay(Executor<Backend>& exec) {
     points.push_back({r * std::cos(a), r * std::sin(a), 0});
     interface.push_back(0);
   }
-  run.seed(ground, points, interface);
+  run.seed(projector, points, interface);
   EXPECT_EQ(run.solver.movers(exec, run.view, 1), on_rim);
   EXPECT_EQ(run.solver.movers(exec, run.view, 2), inside);
   const auto of_interface = [&](std::uint32_t which) {
     std::vector<Vec3f> result;
-    const std::vector<Float4> place = run.places();
+    const std::vector<Float4> position = run.places();
     const std::vector<std::uint32_t> on = run.interfaces();
-    for (std::size_t k = 0; k < place.size(); ++k)
-      if (on[k] == which) result.push_back(xyz_of(place[k]));
+    for (std::size_t k = 0; k < position.size(); ++k)
+      if (on[k] == which) result.push_back(xyz_of(position[k]));
     const auto angle = [](const Vec3f& p) { return std::atan2(p.y, p.x); };
     std::sort(result.begin(), result.end(), [&](const Vec3f& p, const Vec3f& q) { return angle(p) < angle(q); });
     return result;
   };
   const std::vector<Vec3f> disc_before = of_interface(0);
   double energy = 0;
-  for (int k = 0; k < 300; ++k) energy = run.step(ground, 1);
+  for (int k = 0; k < 300; ++k) energy = run.step(projector, 1);
   EXPECT_EQ(of_interface(0), disc_before) << "order 2 waits for its turn";
   const std::vector<Vec3f> rim = of_interface(1);
   const double step = 2 * 6 * std::sin(M_PI / on_rim);
@@ -226,7 +226,7 @@ void LowerOrdersAreFeltAndStay(Executor<Backend>& exec) {
     EXPECT_NEAR(length(rim[std::size_t(k)] - rim[std::size_t((k + 1) % on_rim)]), step, 0.01);
   const double expected = 2 * cotangent_energy(float(step) / support).energy;  // of its two neighbours
   EXPECT_NEAR(energy, expected, 0.01 * expected);
-  for (int k = 0; k < 120; ++k) run.step(ground, 2);
+  for (int k = 0; k < 120; ++k) run.step(projector, 2);
   EXPECT_EQ(of_interface(1), rim) << "order 1 is done";
   const std::vector<double> nearest = spacings(run.places());
   EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0.65) << "from the rim, too";
@@ -241,19 +241,19 @@ struct BallCase {
 
   explicit BallCase(Executor<Backend>& exec)
       : e(embedding_of(exec, scalar_volume({25, 24, 25}, ball({12.2, 11.8, 12.1}, radius)))) {}
-  FieldGround fields() const { return {e.bricks.view(), e.grid.junction.data(), e.size.view()}; }
-  EmbeddedGround ground() const { return {e.grid.view(), fields()}; }
+  FieldProjector fields() const { return {e.bricks.view(), e.grid.junction.data(), e.size.view()}; }
+  EmbeddedProjector projector() const { return {e.grid.view(), fields()}; }
   double ideal() const { return ideal_count(4 * M_PI * radius * radius); }  // h is 1
 
   /// Random particles on it, put there by the formula.
   void seed(TreeSolverRun<Backend>& run, double share) const {
-    std::vector<Float4> place, direction;
+    std::vector<Float4> position, direction;
     for (const Vec3f& p : scattered_on_sphere(float(radius), int(share * ideal()), 11)) {
       const Vec3f at = p + in_fields(centre), n = normalized(p);
-      place.push_back({at.x, at.y, at.z, 1});
+      position.push_back({at.x, at.y, at.z, 1});
       direction.push_back({n.x, n.y, n.z, 0});
     }
-    run.put(place, direction, std::vector<std::uint32_t>(place.size(), 0));
+    run.put(position, direction, std::vector<std::uint32_t>(position.size(), 0));
   }
   double off(const Float4& p) const { return std::fabs(length(xyz_of(p) - in_fields(centre)) - radius); }
 };
@@ -263,17 +263,17 @@ IterationResult control_once(TreeSolverRun<Backend>& run, const BallCase<Backend
                              int round) {
   run.solver.rebuild(run.exec);
   run.solver.forces(run.exec, run.view, 2, run.rule.theta, run.solver.movers(run.exec, run.view, 2));
-  return run.solver.control(run.exec, ball.ground(), run.view, 2, run.rule.theta, rule, std::int64_t(run.count()),
+  return run.solver.control(run.exec, ball.projector(), run.view, 2, run.rule.theta, rule, std::int64_t(run.count()),
                             round);
 }
 
 template <class Backend>
-void BothGroundsLandOnTheSurface(Executor<Backend>& exec) {
+void BothProjectorsLandOnTheSurface(Executor<Backend>& exec) {
   const BallCase<Backend> ball(exec);
   TreeSolverRun<Backend> run = one_surface(exec, 2000), exact = one_surface(exec, 2000);
   ball.seed(run, 1);
   ball.seed(exact, 1);
-  for (int k = 0; k < 10; ++k) run.step(ball.ground(), 2), exact.step(ball.fields(), 2);
+  for (int k = 0; k < 10; ++k) run.step(ball.projector(), 2), exact.step(ball.fields(), 2);
   double embedded = 0, fields = 0;
   for (const Float4& p : run.places()) embedded = std::max(embedded, ball.off(p));
   for (const Float4& p : exact.places()) fields = std::max(fields, ball.off(p));
@@ -296,7 +296,7 @@ void TheTreesPopulationSettlesFromAnyStart(Executor<Backend>& exec) {
     if (known) rule.target = std::int64_t(ball.ideal());
     std::int64_t added = 0, deleted = 0, last = 1;
     for (int k = 1; k <= 100; ++k) {
-      run.step(ball.ground(), 2);
+      run.step(ball.projector(), 2);
       if (k % 10 != 0 || k > 80) continue;
       const IterationResult changed = control_once(run, ball, rule, k);
       added += changed.added, deleted += changed.deleted, last = changed.added + changed.deleted;
@@ -367,9 +367,9 @@ void IslandsKeepTheirParticlesAndRulesAreKept(Executor<Backend>& exec) {
   for (int k = 0; k < 24; ++k)
     points.push_back(in_fields(ball.centre) + Vec3f(8, 0.02f * float(k % 5), 0.02f * float(k / 5)));
   const auto crowd = [&] {
-    std::vector<Float4> place, direction;
-    for (const Vec3f& p : points) place.push_back({p.x, p.y, p.z, 1}), direction.push_back({1, 0, 0, 0});
-    island.put(place, direction, std::vector<std::uint32_t>(place.size(), 0));
+    std::vector<Float4> position, direction;
+    for (const Vec3f& p : points) position.push_back({p.x, p.y, p.z, 1}), direction.push_back({1, 0, 0, 0});
+    island.put(position, direction, std::vector<std::uint32_t>(position.size(), 0));
   };
   crowd();
   EXPECT_EQ(control_once(island, ball, PopulationRule(), 1).deleted, 0);
@@ -392,7 +392,7 @@ NACRE_DEVICE_TEST(TreeSolver, APairStepsApartAsTheFormulaSays)
 NACRE_DEVICE_TEST(TreeSolver, NobodyStepsOverTheRim)
 NACRE_DEVICE_TEST(TreeSolver, RandomParticlesSpreadEvenlyOnASphere)
 NACRE_DEVICE_TEST(TreeSolver, LowerOrdersAreFeltAndStay)
-NACRE_DEVICE_TEST(TreeSolver, BothGroundsLandOnTheSurface)
+NACRE_DEVICE_TEST(TreeSolver, BothProjectorsLandOnTheSurface)
 NACRE_DEVICE_TEST(TreeSolver, TheTreesPopulationSettlesFromAnyStart)
 NACRE_DEVICE_TEST(TreeSolver, NewParticlesKeepTheirDistance)
 NACRE_DEVICE_TEST(TreeSolver, DeletedParticlesWereNoNeighbours)

@@ -19,7 +19,7 @@ VolumeFrame tilted_frame() {
 HostParticles in_a_row(int count) {
   HostParticles particles;
   for (int k = 0; k < count; ++k) {
-    particles.place.push_back({float(k), 0, 0, 1});
+    particles.position.push_back({float(k), 0, 0, 1});
     particles.direction.push_back({0, 0, 1, float(k)});
     particles.interface.push_back(0);
   }
@@ -28,7 +28,7 @@ HostParticles in_a_row(int count) {
 
 std::vector<float> xs(const HostParticles& particles) {
   std::vector<float> x;
-  for (const Float4& p : particles.place) x.push_back(p.x);
+  for (const Float4& p : particles.position) x.push_back(p.x);
   return x;
 }
 
@@ -43,11 +43,11 @@ TEST(HostParticles, SomeGoAndOthersCome) {
                                                 {frame.to_world({5, 5, 5}), {0, 1}, 0}};
   EXPECT_EQ(replace_particles(particles, gone, born, table, frame, 3), 2u);
   ASSERT_EQ(particles.count(), 3u) << "none on an interface that is not there, and no more than there is room for";
-  EXPECT_EQ(particles.place[1].x, 2);
+  EXPECT_EQ(particles.position[1].x, 2);
   EXPECT_EQ(particles.direction[1].w, 2);
-  EXPECT_NEAR(particles.place[2].x, 7, 1e-5);
-  EXPECT_NEAR(particles.place[2].z, 9, 1e-5);
-  EXPECT_EQ(particles.place[2].w, 0);
+  EXPECT_NEAR(particles.position[2].x, 7, 1e-5);
+  EXPECT_NEAR(particles.position[2].z, 9, 1e-5);
+  EXPECT_EQ(particles.position[2].w, 0);
   EXPECT_EQ(particles.interface, (std::vector<std::uint32_t>{0, 0, 1}));
   EXPECT_EQ(count_by_order(particles.interface, table), (std::array<std::int64_t, 3>{0, 0, 3}));
 }
@@ -55,7 +55,7 @@ TEST(HostParticles, SomeGoAndOthersCome) {
 TEST(HostParticles, AreTakenBackOneByOne) {
   const HostParticles before = in_a_row(3);
   HostParticles now = in_a_row(3);
-  for (Float4& p : now.place) p.x += 10;
+  for (Float4& p : now.position) p.x += 10;
   const std::vector<Attempt::Source> sources{{true, 2}, {false, 0}, {true, 1}};
   EXPECT_EQ(xs(take_back(sources, before, now)), (std::vector<float>{2, 10, 1}));
 }

@@ -57,7 +57,7 @@ class SphereParticles : public MovableParticles {
   }
 
   void add(const Vec3d& direction) {
-    particles_.place.push_back({});
+    particles_.position.push_back({});
     particles_.direction.push_back({});
     particles_.interface.push_back(0);
     put(particles_.count() - 1, direction);
@@ -76,12 +76,12 @@ class SphereParticles : public MovableParticles {
 
  private:
   Vec3d world(std::size_t i) const {
-    const Float4& p = particles_.place[i];
+    const Float4& p = particles_.position[i];
     return frame.to_world({p.x, p.y, p.z});
   }
   void put(std::size_t i, const Vec3d& near) {
     const Vec3d n = near / length(near), p = frame.to_voxels(n * radius);
-    particles_.place[i] = {float(p.x), float(p.y), float(p.z), 1};
+    particles_.position[i] = {float(p.x), float(p.y), float(p.z), 1};
     particles_.direction[i] = {float(n.x), float(n.y), float(n.z), 0};
   }
 

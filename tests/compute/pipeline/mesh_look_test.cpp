@@ -147,7 +147,7 @@ class MeshShow : public ::testing::TestWithParam<std::string> {
     pipeline_->build_fields();
   }
 
-  ShownParticles lent() const { return shown_memory(place_, direction_); }
+  ShownParticles lent() const { return shown_memory(position_, direction_); }
 
   /// Boxes have particles in them, and those of the order that moves lie in one. `slack`: voxels.
   void expect_boxes(int order, float slack = 1e-4f) {
@@ -155,11 +155,11 @@ class MeshShow : public ::testing::TestWithParam<std::string> {
     const std::int64_t n = pipeline_->show_boxes(boxes_.data(), capacity);
     ASSERT_GT(n, 0);
     ASSERT_LE(n, capacity);
-    const std::vector<Float4> place = place_.look();
+    const std::vector<Float4> position = position_.look();
     const std::vector<ShownBox> boxes = boxes_.look();
     std::vector<int> inside(std::size_t(n), 0);
     for (std::int64_t i = 0; i < counts.total(); ++i) {
-      const Float4 p = place[std::size_t(i)];
+      const Float4 p = position[std::size_t(i)];
       bool any = false;
       for (std::size_t b = 0; b < std::size_t(n); ++b) {
         const Vec3f &low = boxes[b].low, &high = boxes[b].high;
@@ -178,13 +178,13 @@ class MeshShow : public ::testing::TestWithParam<std::string> {
   const MeshVolume volume_ = askew(three_balls());
   const std::unique_ptr<Device> device_ = make_cpu_device(2, true);  // memory that the host cannot look into
   const std::unique_ptr<MeshPipeline> pipeline_ = make_mesh_pipeline(*device_);
-  const Lent<Float4> place_{*device_, capacity}, direction_{*device_, capacity};
+  const Lent<Float4> position_{*device_, capacity}, direction_{*device_, capacity};
   const Lent<ShownBox> boxes_{*device_, capacity};
 };
 
 TEST_P(MeshShow, ParticlesAreShownAsTheyAreOrderByOrder) {
   pipeline_->relax();
-  expect_shown(*pipeline_, place_, direction_);
+  expect_shown(*pipeline_, position_, direction_);
   const ShownCounts counts = pipeline_->show_particles(lent());
   EXPECT_EQ(counts.points, pipeline_->info().points);
   EXPECT_GT(counts.points, 0);
@@ -192,7 +192,7 @@ TEST_P(MeshShow, ParticlesAreShownAsTheyAreOrderByOrder) {
   EXPECT_GT(counts.surfaces, 200);
   expect_boxes(2, 0.3f);  // the last step onto the fields comes after the tree
   pipeline_->triangulate();
-  expect_shown(*pipeline_, place_, direction_);
+  expect_shown(*pipeline_, position_, direction_);
 }
 
 TEST_P(MeshShow, TheyCanBeFollowedWhileTheyMove) {
@@ -205,7 +205,7 @@ TEST_P(MeshShow, TheyCanBeFollowedWhileTheyMove) {
     EXPECT_EQ(counts.points, pipeline_->info().points);
     EXPECT_GT(counts.curves, 0);
     ++(smooths ? smoothing : counts.surfaces == 0 ? curves_alone : with_surfaces);
-    expect_shown(*pipeline_, place_, direction_);
+    expect_shown(*pipeline_, position_, direction_);
     if (!smooths) expect_boxes(counts.surfaces == 0 ? 1 : 2);  // the tree is not needed any more
   };
   pipeline_->relax();
@@ -226,7 +226,7 @@ TEST_P(MeshShow, NothingIsWrittenWhereItDoesNotFit) {
   ShownParticles small = lent();
   small.capacity = counts.total() - 1;
   EXPECT_EQ(pipeline_->show_particles(small).total(), counts.total());
-  EXPECT_TRUE(place_.untouched());
+  EXPECT_TRUE(position_.untouched());
   EXPECT_TRUE(direction_.untouched());
   const std::int64_t boxes = pipeline_->show_boxes(nullptr, 0);
   EXPECT_GT(boxes, 10);
@@ -234,7 +234,7 @@ TEST_P(MeshShow, NothingIsWrittenWhereItDoesNotFit) {
   EXPECT_TRUE(boxes_.untouched());
   small.capacity = counts.total();
   pipeline_->show_particles(small);
-  EXPECT_FALSE(place_.untouched());
+  EXPECT_FALSE(position_.untouched());
   EXPECT_FALSE(direction_.untouched());
   pipeline_->show_boxes(boxes_.data(), boxes);
   EXPECT_FALSE(boxes_.untouched());

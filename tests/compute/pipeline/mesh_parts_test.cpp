@@ -107,7 +107,7 @@ TEST(Relaxation, BringsTheParticlesToRestByEachSolver) {
     EXPECT_LT(parts.info.energy.back(), parts.info.energy.front());
     const HostParticles particles = parts.particles.download();
     EXPECT_NEAR(double(particles.count()), 4 * M_PI * 36 / 0.866, 100);
-    for (const Float4& p : particles.place)
+    for (const Float4& p : particles.position)
       EXPECT_NEAR(length(parts.fields.frame().to_world({p.x, p.y, p.z}) - Vec3d(11, 12, 11.5)), 6, 0.05);
   }
 }

@@ -104,7 +104,7 @@ inline PlaceFunction ball(const Vec3d& centre, double radius) {
 }
 
 /// Where a place of the volume is in the fields' voxels, at a spacing of one.
-inline Vec3f in_fields(const Vec3d& place) { return Vec3f(place + Vec3d(volume_padding + 0.5)); }
+inline Vec3f in_fields(const Vec3d& position) { return Vec3f(position + Vec3d(volume_padding + 0.5)); }
 
 /// Directions spread evenly over the sphere (a spiral of golden angles).
 inline std::vector<Vec3d> even_directions(int count) {

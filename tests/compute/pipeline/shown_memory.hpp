@@ -44,8 +44,8 @@ class Lent {
   T* data_;
 };
 
-inline ShownParticles shown_memory(const Lent<Float4>& place, const Lent<Float4>& direction) {
-  return {place.data(), direction.data(), std::min(place.size(), direction.size())};
+inline ShownParticles shown_memory(const Lent<Float4>& position, const Lent<Float4>& direction) {
+  return {position.data(), direction.data(), std::min(position.size(), direction.size())};
 }
 
 /// Junction order of the shown particle number i.
@@ -54,11 +54,11 @@ inline int order_of(const ShownCounts& counts, std::int64_t i) {
 }
 
 /// The particles of `particles()`, order by order, each order as it lies there, are the shown ones.
-inline void expect_shown(MeshPipeline& pipeline, const Lent<Float4>& to_place, const Lent<Float4>& to_direction) {
-  const ShownCounts counts = pipeline.show_particles(shown_memory(to_place, to_direction));
+inline void expect_shown(MeshPipeline& pipeline, const Lent<Float4>& to_position, const Lent<Float4>& to_direction) {
+  const ShownCounts counts = pipeline.show_particles(shown_memory(to_position, to_direction));
   const MeshParticles all = pipeline.particles();
   ASSERT_EQ(counts.total(), std::int64_t(all.points.size()));
-  const std::vector<Float4> place = to_place.look(), direction = to_direction.look();
+  const std::vector<Float4> position = to_position.look(), direction = to_direction.look();
   const VoxelFrame frame = pipeline.voxel_frame();
   const double unit = length(frame.axes[0]);
   std::int64_t at = 0;
@@ -66,7 +66,7 @@ inline void expect_shown(MeshPipeline& pipeline, const Lent<Float4>& to_place, c
     for (std::size_t i = 0; i < all.points.size(); ++i) {
       if (all.order[i] != order) continue;
       ASSERT_EQ(order_of(counts, at), order);
-      const Float4 p = place[std::size_t(at)], d = direction[std::size_t(at)];
+      const Float4 p = position[std::size_t(at)], d = direction[std::size_t(at)];
       EXPECT_LT(length(frame.to_world({p.x, p.y, p.z}) - all.points[i]), 1e-9);
       EXPECT_FLOAT_EQ(float(p.w * unit), all.size[i]);
       const Vec3d turned = (frame.to_world({d.x, d.y, d.z}) - frame.origin) / unit;

@@ -8,7 +8,7 @@
 
 #include "compute/embedding/build_brick_octree.hpp"
 #include "compute/embedding/build_closest_point_grid.hpp"
-#include "compute/embedding/build_source_octree.hpp"
+#include "compute/embedding/build_thesis_octree.hpp"
 #include "compute/raycast/render.hpp"
 #include "tests/compute/meshes.hpp"
 #include "tests/compute/on_devices.hpp"
@@ -177,14 +177,14 @@ void WideDomainsKeepPrecision(Executor<Backend>& exec) {
   }
 }
 
-/// The source's octree knows one plane per cell: no holes, and within a cell of the surface.
+/// The thesis octree knows one plane per cell: no holes, and within a cell of the surface.
 template <class Backend>
-void SourceOctreeLeavesNoHoles(Executor<Backend>& exec) {
+void ThesisOctreeLeavesNoHoles(Executor<Backend>& exec) {
   for (const int n : {12, 60}) {  // triangles larger and smaller than cells
     const Mesh mesh = torus({31.9, 32.3, 32.1}, 18, 6.5, n);
     exec.arena().rewind(0);
     const MeshView view = upload(exec, mesh);
-    const SourceOctree tree = build_source_octree(exec, view, std::uint32_t(mesh.triangles.size()), 3, 2.0, false);
+    const ThesisOctree tree = build_thesis_octree(exec, view, std::uint32_t(mesh.triangles.size()), 3, 2.0, false);
     const std::vector<Ray> rays = rays_at(8, 56, 64, 2000, 9);
     const std::vector<Hit> hits = cast_all(exec, tree.view(), view, rays);
     std::size_t seen = 0, close = 0, wrong = 0;
@@ -255,13 +255,13 @@ void OctreesShowWhatTheGridShows(Executor<Backend>& exec) {
     const auto triangles = std::uint32_t(mesh.triangles.size());
     const ClosestPointGrid grid = build_closest_point_grid(exec, view, triangles, Int3(16), 4, 3.0f);
     const BrickOctree brick = build_brick_octree(exec, view, triangles, 3, 3.0);
-    const SourceOctree source = build_source_octree(exec, view, triangles, 3, 3.0, false);
+    const ThesisOctree source = build_thesis_octree(exec, view, triangles, 3, 3.0, false);
     const Vec3d middle(32.0);
     const auto expected = plain_picture(exec, GridTarget{grid.view(), {}}, view, middle);
     ASSERT_GT(share_off(expected, std::vector<std::uint8_t>(expected.size(), 255), 10), 0.15);
     EXPECT_LT(share_off(expected, plain_picture(exec, BandTarget<BrickOctreeView>{brick.view()}, view, middle), 2),
               0.001);
-    EXPECT_LT(share_off(expected, plain_picture(exec, BandTarget<SourceOctreeView>{source.view()}, view, middle), 20),
+    EXPECT_LT(share_off(expected, plain_picture(exec, BandTarget<ThesisOctreeView>{source.view()}, view, middle), 20),
               0.1);
   }
 }
@@ -269,7 +269,7 @@ void OctreesShowWhatTheGridShows(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(OctreeCast, BrickOctreeFindsTheFirstTriangle)
 NACRE_DEVICE_TEST(OctreeCast, BricksWithManyTriangles)
 NACRE_DEVICE_TEST(OctreeCast, WideDomainsKeepPrecision)
-NACRE_DEVICE_TEST(OctreeCast, SourceOctreeLeavesNoHoles)
+NACRE_DEVICE_TEST(OctreeCast, ThesisOctreeLeavesNoHoles)
 NACRE_DEVICE_TEST(OctreeCast, OctreesShowWhatTheGridShows)
 
 }  // namespace nacre::test

@@ -66,7 +66,7 @@ TEST(TriangleTree, FindsWhatAllTrianglesFind) {
       const Triangle& t = s.triangles[hit->triangle];
       const Vec3d by_weights =
           s.points[t.a] * hit->weights.x + s.points[t.b] * hit->weights.y + s.points[t.c] * hit->weights.z;
-      EXPECT_LT(length(by_weights - hit->place), 1e-9);
+      EXPECT_LT(length(by_weights - hit->position), 1e-9);
     }
     EXPECT_GT(hits, count < 10 ? 5 : 100) << count;
   }

@@ -75,22 +75,22 @@ void TeamRun::resume(int k) {
   running_ = -1;
 }
 
-void TeamRun::stop(State state, const void* place) {
+void TeamRun::stop(State state, const void* position) {
   Lane& lane = lane_[running_];
   lane.state = state;
-  lane.place = place;
+  lane.position = position;
   char* const meeting = &met_[state == State::at_vote ? 1 + running_ / warp : 0][lane.phase++ % 4];
   release(meeting);
   lane.fiber.pause();
   acquire(meeting);
 }
 
-void TeamRun::wait(const void* place) { stop(State::at_barrier, place); }
+void TeamRun::wait(const void* position) { stop(State::at_barrier, position); }
 
-unsigned TeamRun::vote(const void* place, bool mine) {
+unsigned TeamRun::vote(const void* position, bool mine) {
   Lane& lane = lane_[running_];
   lane.mine = mine;
-  stop(State::at_vote, place);
+  stop(State::at_vote, position);
   return lane.votes;
 }
 
@@ -99,7 +99,7 @@ bool TeamRun::count_votes(int first) {
   unsigned votes = 0;
   for (int k = first; k < first + warp; ++k) {
     if (lane_[k].state != State::at_vote) return false;
-    if (lane_[k].place != lane_[first].place) broken("lanes of a warp vote at different places", kernel_);
+    if (lane_[k].position != lane_[first].position) broken("lanes of a warp vote at different places", kernel_);
     votes |= unsigned(lane_[k].mine) << (k - first);
   }
   for (int k = first; k < first + warp; ++k) {
@@ -123,20 +123,20 @@ bool TeamRun::pass_barrier() {
                " at a vote, " + std::to_string(done) + " have ended",
            kernel_);
   for (Lane& l : lane_) {
-    if (l.place != lane_[0].place) broken("lanes wait at different barriers", kernel_);
+    if (l.position != lane_[0].position) broken("lanes wait at different barriers", kernel_);
     l.state = State::ready;
   }
   return true;
 }
 
-void barrier(const void* place) {
+void barrier(const void* position) {
   if (!running_team) broken("a barrier outside of a team");
-  running_team->wait(place);
+  running_team->wait(position);
 }
 
-unsigned ballot(const void* place, bool mine) {
+unsigned ballot(const void* position, bool mine) {
   if (!running_team) broken("a vote outside of a team");
-  return running_team->vote(place, mine);
+  return running_team->vote(position, mine);
 }
 
 }  // namespace emulated

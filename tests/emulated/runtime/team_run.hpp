@@ -18,9 +18,9 @@ class TeamRun {
   /// Runs `lane` in all lanes, with `thread_index` set.
   void run(const std::function<void()>& lane, const char* kernel, std::mt19937& random);
 
-  /// Called by the lane that runs. `place`: where in the code.
-  void wait(const void* place);
-  unsigned vote(const void* place, bool mine);
+  /// Called by the lane that runs. `position`: where in the code.
+  void wait(const void* position);
+  unsigned vote(const void* position, bool mine);
 
   /// The one whose lane runs; null outside of a team.
   static TeamRun* current();
@@ -30,7 +30,7 @@ class TeamRun {
   struct Lane {
     Fiber fiber;
     State state = State::ready;
-    const void* place = nullptr;
+    const void* position = nullptr;
     bool mine = false;
     unsigned votes = 0, phase = 0;
   };
@@ -38,7 +38,7 @@ class TeamRun {
   static void lane_entry();
   static void shuffle(std::array<int, lanes>& order, std::mt19937& random);
   void resume(int k);
-  void stop(State state, const void* place);
+  void stop(State state, const void* position);
   bool count_votes(int first);
   bool pass_barrier();
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 #include "tests/engine/gl/offscreen.hpp"
 #include "tests/engine/render/flow_scene.hpp"
 
@@ -76,7 +76,7 @@ TEST_F(Boxes, OfTheBrickOctreeAreItsNodesAndBricks) {
   expect_tree();
 }
 
-TEST_F(Boxes, OfTheSourcesOctreeAreItsNodes) {
+TEST_F(Boxes, OfTheThesisOctreeAreItsNodes) {
   open("cell");
   expect_boxes(7, 2);
   expect_tree();

@@ -167,7 +167,7 @@ TEST_F(Render, OctreesLookAsRaysSeeThem) {
   }
 }
 
-TEST_F(Render, TheSourcesOctreeLooksAsRaysSeeIt) {
+TEST_F(Render, TheThesisOctreeLooksAsRaysSeeIt) {
   test::FlowScene scene("sphere", 24, 64, 4, "cell");
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
   const TwoPictures two(scene, camera, heights(scene));

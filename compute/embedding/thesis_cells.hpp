@@ -1,4 +1,5 @@
-// Nacre: the band's cells and their closest points as the source finds them: sub-grid by sub-grid (sec. 6.1.1, Alg. 6.1).
+// Nacre: the band's cells and their closest points as the dissertation finds them: sub-grid by sub-grid (sec. 6.1.1,
+// Alg. 6.1).
 #pragma once
 
 #include <algorithm>
@@ -11,12 +12,12 @@
 #include "compute/embedding/band.hpp"
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/closest_point_grid.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 
-/// How the domain is cut up while the source's octree is built. The result does not depend on it.
-struct SourceSubgrids {
+/// How the domain is cut up while the thesis octree is built. The result does not depend on it.
+struct ThesisSubgrids {
   int edge = 0;                  ///< cells per axis, a power of two from 8 to 256; 0: what memory and speed ask for
   std::uint64_t list_limit = 0;  ///< a sub-grid with more entries in its triangle lists is cut in eight; 0: by memory
 
@@ -24,12 +25,12 @@ struct SourceSubgrids {
   /// Of 2^5 to 2^7, which take the same time on a CPU (15M cells at 1024^3: 6.3, 6.4, 6.6 s), the middle; 2^8 is slower
   /// wherever triangles are small, since its lists leave the cache.
   static constexpr int fast_bits = 6;
-  /// What the source counts per cell of a sub-grid, if all are in the band: code, closest point, vector, counter.
+  /// What the dissertation counts per cell of a sub-grid, if all are in the band: code, closest point, vector, counter.
   static constexpr std::uint64_t bytes_per_cell = 8 + 12 + 12 + 4;
 };
 
 /// Cells of the band in Morton order. The arrays are permanent in the arena.
-struct SourceCells {
+struct ThesisCells {
   std::uint64_t count = 0, touched_count = 0;
   Array<std::uint64_t> code;
   Array<CellPoint> point;
@@ -91,7 +92,7 @@ struct Subgrid {
 };
 
 /// Counts triangles per cell of a sub-grid, or, with `list`, writes them: at the cell's start plus its running count. A
-/// triangle counts where its closest point lies within the radius; the source's listing leaves that test out.
+/// triangle counts where its closest point lies within the radius; the dissertation's listing leaves that test out.
 struct ListTriangles {
   MeshView mesh;
   const std::uint32_t* triangle;
@@ -224,20 +225,20 @@ struct IsTouched {
 
 /// Log2 of the sub-grids' edge: the wish, or the fast one; smaller where memory or the domain is.
 inline int subgrid_bits(const Arena& arena, int levels, int edge) {
-  int bits = SourceSubgrids::fast_bits;
+  int bits = ThesisSubgrids::fast_bits;
   if (edge) {
-    bits = SourceSubgrids::least_bits;
-    while (bits < SourceSubgrids::most_bits && 1 << bits < edge) ++bits;
+    bits = ThesisSubgrids::least_bits;
+    while (bits < ThesisSubgrids::most_bits && 1 << bits < edge) ++bits;
   }
   bits = std::min(bits, levels + 3);
-  while (bits > SourceSubgrids::least_bits && SourceSubgrids::bytes_per_cell << 3 * bits > arena.free_bytes() / 8)
+  while (bits > ThesisSubgrids::least_bits && ThesisSubgrids::bytes_per_cell << 3 * bits > arena.free_bytes() / 8)
     --bits;
   return bits;
 }
 
-/// The sub-grids of 2^bits cells per axis near triangles, in Morton order. The source goes over all sub-grids, which at
-/// 4096^3 would write 825 GB of counters; those that no triangle comes near are not even looked at here. `triangle`
-/// becomes the list that their ranges are in, temporary.
+/// The sub-grids of 2^bits cells per axis near triangles, in Morton order. The dissertation goes over all sub-grids,
+/// which at 4096^3 would write 825 GB of counters; those that no triangle comes near are not even looked at here.
+/// `triangle` becomes the list that their ranges are in, temporary.
 template <class Backend>
 std::vector<Subgrid> subgrids_near(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
                                    double radius, int bits, Array<std::uint32_t>& triangle) {
@@ -303,11 +304,11 @@ class SubgridBuilder {
   }
 
   /// Everything that was added.
-  SourceCells finish() {
+  ThesisCells finish() {
     Arena& arena = exec_.arena();
     if (total_ == 0)
       throw Error("no cell lies near the surface", "no triangle is inside of the grid's domain", "give a surface");
-    SourceCells cells;
+    ThesisCells cells;
     cells.count = total_;
     cells.point = point_;
     cells.code = arena.permanent<std::uint64_t>(total_);
@@ -375,12 +376,13 @@ class SubgridBuilder {
 }  // namespace detail
 
 /// All cells of a domain of 8 << levels cells per axis that lie within `radius` cells of one of `triangles` triangles
-/// (points in cells), with their closest points. Follows Alg. 6.1: sub-grids that fit into memory; per sub-grid counts of
-/// near triangles, an exclusive scan, lists, the closest point over each cell's list. Sub-grids come in Morton order and
-/// so do the cells within each, so that the keys need no sorting. Throws Error when the arrays do not fit, or no cell is in the band.
+/// (points in cells), with their closest points. Follows Alg. 6.1: sub-grids that fit into memory; per sub-grid counts
+/// of near triangles, an exclusive scan, lists, the closest point over each cell's list. Sub-grids come in Morton order
+/// and so do the cells within each, so that the keys need no sorting. Throws Error when the arrays do not fit, or no
+/// cell is in the band.
 template <class Backend>
-SourceCells find_source_cells(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
-                              double radius, const SourceSubgrids& subgrids = {}) {
+ThesisCells find_thesis_cells(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
+                              double radius, const ThesisSubgrids& subgrids = {}) {
   Arena::Scope scope(exec.arena());
   const int bits = detail::subgrid_bits(exec.arena(), levels, subgrids.edge);
   Array<std::uint32_t> triangle;

@@ -1,5 +1,5 @@
 // Nacre: Morton codes.
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
-// Nacre: the source's octree on the CPU, its nodes against the source's queues, and its look-ups.
+// Nacre: the thesis octree on the CPU, its nodes against the dissertation's queues, and its look-ups.
 #include <optional>
 #include <set>
 
 #include "compute/device/executor_cpu.hpp"
 #include "compute/embedding/build_brick_octree.hpp"
-#include "tests/compute/embedding/source_octree_body.hpp"
+#include "tests/compute/embedding/thesis_octree_body.hpp"
 
 namespace nacre::test {
 namespace {
@@ -23,13 +23,13 @@ class StreamingOctree {
   }
 
   /// The nodes, lowest first, numbered through.
-  std::vector<SourceNode> finish() {
+  std::vector<ThesisNode> finish() {
     skip_to(std::uint64_t(1) << 3 * queue_.size());
-    std::vector<SourceNode> all;
+    std::vector<ThesisNode> all;
     std::uint32_t below = 0;
     for (std::size_t height = 0; height < node_.size(); ++height) {
       const auto first = std::uint32_t(all.size());
-      for (SourceNode n : node_[height]) {
+      for (ThesisNode n : node_[height]) {
         for (std::uint32_t& c : n.child)
           if (c != none) c += below;
         all.push_back(n);
@@ -48,7 +48,7 @@ class StreamingOctree {
     if (queue.size() < 8) return;
     std::uint32_t parent = none;
     if (std::any_of(queue.begin(), queue.end(), [](std::uint32_t c) { return c != none; })) {
-      SourceNode n;
+      ThesisNode n;
       std::copy(queue.begin(), queue.end(), n.child);
       parent = std::uint32_t(node_[height].size());
       node_[height].push_back(n);
@@ -72,37 +72,37 @@ class StreamingOctree {
   }
 
   std::vector<std::vector<std::uint32_t>> queue_;
-  std::vector<std::vector<SourceNode>> node_;
+  std::vector<std::vector<ThesisNode>> node_;
   std::uint64_t next_ = 0;
 };
 
-std::vector<SourceNode> streamed(const std::vector<std::uint64_t>& codes, int levels) {
+std::vector<ThesisNode> streamed(const std::vector<std::uint64_t>& codes, int levels) {
   StreamingOctree stream(levels + 3);
   for (std::size_t i = 0; i < codes.size(); ++i) stream.add(codes[i], std::uint32_t(i));
-  const std::vector<SourceNode> nodes = stream.finish();
+  const std::vector<ThesisNode> nodes = stream.finish();
   EXPECT_LE(stream.empty_keys, 14 * (codes.size() + 1) * std::size_t(levels + 3));  // 7 per level up, and down again
   return nodes;
 }
 
-class SourceOctreeTest : public ::testing::Test {
+class ThesisOctreeTest : public ::testing::Test {
  protected:
-  SourceOctreeTest() : device(make_cpu_device(2)), exec(*device) {}
+  ThesisOctreeTest() : device(make_cpu_device(2)), exec(*device) {}
   std::unique_ptr<Device> device;
   Executor<Cpu> exec;
 };
 
 /// The nodes that the device makes of these cells.
-SourceOctree nodes_over(Executor<Cpu>& exec, const std::vector<std::uint64_t>& codes, int levels) {
-  SourceOctree tree;
+ThesisOctree nodes_over(Executor<Cpu>& exec, const std::vector<std::uint64_t>& codes, int levels) {
+  ThesisOctree tree;
   tree.levels = levels;
   tree.cells = codes.size();
   tree.code = exec.arena().permanent_copy<std::uint64_t>(codes);
-  detail::build_source_nodes(exec, tree);
+  detail::build_thesis_nodes(exec, tree);
   return tree;
 }
 
-TEST_F(SourceOctreeTest, NodesByHand) {
-  const SourceOctree tree = nodes_over(exec, {0, 1, 9}, 0);
+TEST_F(ThesisOctreeTest, NodesByHand) {
+  const ThesisOctree tree = nodes_over(exec, {0, 1, 9}, 0);
   const std::vector<std::uint32_t> expected{0,    1,    none, none, none, none, none, none,   // cells 0x0, 0x1
                                             none, 2,    none, none, none, none, none, none,   // cell 0x9
                                             0,    1,    none, none, none, none, none, none,   //
@@ -111,7 +111,7 @@ TEST_F(SourceOctreeTest, NodesByHand) {
   EXPECT_EQ(tree.view().root, 3u);
 }
 
-TEST_F(SourceOctreeTest, NodesAreThoseOfTheQueues) {
+TEST_F(ThesisOctreeTest, NodesAreThoseOfTheQueues) {
   Random random(51);
   for (const int levels : {0, 1, 3, 9, 17}) {
     const std::uint64_t last = (std::uint64_t(1) << 3 * (levels + 3)) - 1;
@@ -121,19 +121,19 @@ TEST_F(SourceOctreeTest, NodesAreThoseOfTheQueues) {
       for (std::uint64_t j = 0; j < 12 && c + j <= last; j += 1 + k % 3) codes.insert(c + j);
     }
     const std::vector<std::uint64_t> sorted(codes.begin(), codes.end());
-    const SourceOctree tree = nodes_over(exec, sorted, levels);
+    const ThesisOctree tree = nodes_over(exec, sorted, levels);
     EXPECT_EQ(children(tree.node.download()), children(streamed(sorted, levels))) << levels;
     exec.arena().rewind(0);
   }
-  const HostSourceOctree tree(source_octree_of(exec, torus({63, 65, 62}, 40, 12, 20), 4));
+  const HostThesisOctree tree(thesis_octree_of(exec, torus({63, 65, 62}, 40, 12, 20), 4));
   EXPECT_EQ(children(tree.node), children(streamed(tree.code, 4)));
 }
 
-TEST_F(SourceOctreeTest, FindsItsCellsAndNoOthers) {
-  const HostSourceOctree tree(source_octree_of(exec, torus({31, 33, 30}, 17, 6, 16), 3));
+TEST_F(ThesisOctreeTest, FindsItsCellsAndNoOthers) {
+  const HostThesisOctree tree(thesis_octree_of(exec, torus({31, 33, 30}, 17, 6, 16), 3));
   ASSERT_TRUE(std::adjacent_find(tree.code.begin(), tree.code.end(), std::greater_equal<>()) == tree.code.end());
   const std::set<std::uint64_t> stored(tree.code.begin(), tree.code.end());
-  SourceOctreeView::Cursor cursor(tree.view);
+  ThesisOctreeView::Cursor cursor(tree.view);
   std::size_t found = 0;
   for (int z = -2; z < 66; ++z)
     for (int y = -2; y < 66; ++y)
@@ -150,11 +150,11 @@ TEST_F(SourceOctreeTest, FindsItsCellsAndNoOthers) {
     EXPECT_EQ(cursor.find(far), no_cell);
 }
 
-TEST_F(SourceOctreeTest, NeighbourIndexAgreesWithWalks) {
+TEST_F(ThesisOctreeTest, NeighbourIndexAgreesWithWalks) {
   Mesh mesh = soup(60, 2, 62, 14, 61);
   mesh.add(sheet({-3, -3, 1.2}, {70, 0, 0}, {0, 70, 3}, 1));  // along the edge of the domain
-  const HostSourceOctree tree(source_octree_of(exec, mesh, 3, true, 1.7));
-  SourceOctreeView plain = tree.view;
+  const HostThesisOctree tree(thesis_octree_of(exec, mesh, 3, true, 1.7));
+  ThesisOctreeView plain = tree.view;
   plain.neighbour = nullptr;
   ASSERT_EQ(tree.neighbour.size(), 6 * tree.code.size());
   for (std::size_t c = 0; c < tree.code.size(); ++c)
@@ -164,7 +164,7 @@ TEST_F(SourceOctreeTest, NeighbourIndexAgreesWithWalks) {
       ASSERT_EQ(tree.neighbour[6 * c + k], plain.locate(beside));
     }
   Random random(62);
-  SourceOctreeView::Cursor walking(plain), stepping(tree.view);
+  ThesisOctreeView::Cursor walking(plain), stepping(tree.view);
   Int3 at(32, 32, 2);
   std::size_t found = 0, partly = 0;
   for (int k = 0; k < 200'000; ++k) {
@@ -187,14 +187,14 @@ TEST_F(SourceOctreeTest, NeighbourIndexAgreesWithWalks) {
   EXPECT_GT(partly, 10'000u);
 }
 
-TEST_F(SourceOctreeTest, InTheFarCornerOfTheLargestDomain) {
+TEST_F(ThesisOctreeTest, InTheFarCornerOfTheLargestDomain) {
   const double far = (1 << 20) - 12;
   Mesh mesh;
   for (const Vec3d& corner : {Vec3d(4.3, 5.1, 6.2), Vec3d(far + 0.3, far + 0.2, far + 1.1)})
     mesh.add(Corners{corner, corner + Vec3d(3, 0.5, 0), corner + Vec3d(0, 2, 2.5)});
-  const HostSourceOctree tree(source_octree_of(exec, mesh, 17, true));
+  const HostThesisOctree tree(thesis_octree_of(exec, mesh, 17, true));
   const BruteForce brute(mesh.points, mesh.triangles);
-  SourceFaults faults;
+  ThesisFaults faults;
   const int high = 1 << 20;
   for (const int low : {0, high - 24})
     for (int z = low; z < low + 24; ++z)
@@ -205,24 +205,24 @@ TEST_F(SourceOctreeTest, InTheFarCornerOfTheLargestDomain) {
   EXPECT_EQ(faults.missing + faults.extra + faults.wrong_point + faults.wrong_triangle + faults.wrong_touch, 0u);
 }
 
-TEST_F(SourceOctreeTest, OneThreadAndManyGiveTheSame) {
+TEST_F(ThesisOctreeTest, OneThreadAndManyGiveTheSame) {
   Mesh mesh = soup(300, 6, 58, 3, 31);
   mesh.add(sphere({32.5, 31.5, 30.5}, 14, 16));
   mesh.add(Mesh(mesh));  // ties everywhere: the lower triangle
   const auto n = std::uint32_t(mesh.triangles.size() / 2);
-  std::optional<HostSourceOctree> trees[2];
+  std::optional<HostThesisOctree> trees[2];
   for (const int k : {0, 1}) {
     const auto other = make_cpu_device(k ? 4 : 1);
     Executor<Cpu> on(*other);
-    trees[k].emplace(source_octree_of(on, mesh, 3, true));
+    trees[k].emplace(thesis_octree_of(on, mesh, 3, true));
   }
   expect_same(*trees[0], *trees[1], "threads");
   for (const CellPoint& p : trees[0]->point) ASSERT_LT(p.triangle, n);
 }
 
-TEST_F(SourceOctreeTest, BytesPerCell) {
-  const SourceOctree tree = source_octree_of(exec, torus({63, 65, 62}, 40, 15, 60), 4, true);
-  const HostSourceOctree host(tree);
+TEST_F(ThesisOctreeTest, BytesPerCell) {
+  const ThesisOctree tree = thesis_octree_of(exec, torus({63, 65, 62}, 40, 15, 60), 4, true);
+  const HostThesisOctree host(tree);
   std::size_t touched = 0;
   for (CellIndex c = 0; c < tree.cells; ++c) touched += host.view.touches(c);
   EXPECT_EQ(touched, tree.touched_cells);
@@ -236,27 +236,27 @@ TEST_F(SourceOctreeTest, BytesPerCell) {
   EXPECT_NEAR(double(tree.cells), 4 * pi * pi * 40 * 15 * 2 * source_radius, 0.01 * double(tree.cells));
 }
 
-TEST_F(SourceOctreeTest, BadWishesAreErrors) {
+TEST_F(ThesisOctreeTest, BadWishesAreErrors) {
   const Mesh mesh = sphere({15, 15, 15}, 8, 6);
-  EXPECT_THROW(source_octree_of(exec, mesh, 18), Error);
-  EXPECT_THROW(source_octree_of(exec, mesh, -1), Error);
+  EXPECT_THROW(thesis_octree_of(exec, mesh, 18), Error);
+  EXPECT_THROW(thesis_octree_of(exec, mesh, -1), Error);
   for (const double radius : {0.0, -1.0, 1001.0, std::nan("")})
-    EXPECT_THROW(source_octree_of(exec, mesh, 2, false, radius), Error);
-  EXPECT_THROW(source_octree_of(exec, sphere({500, 500, 500}, 8, 6), 2), Error);        // nothing in the domain
-  EXPECT_THROW(source_octree_of(exec, mesh, 2, false, source_radius, {64, 1}), Error);  // not even one cell's list fits
+    EXPECT_THROW(thesis_octree_of(exec, mesh, 2, false, radius), Error);
+  EXPECT_THROW(thesis_octree_of(exec, sphere({500, 500, 500}, 8, 6), 2), Error);        // nothing in the domain
+  EXPECT_THROW(thesis_octree_of(exec, mesh, 2, false, source_radius, {64, 1}), Error);  // not even one cell's list fits
 }
 
-TEST_F(SourceOctreeTest, LittleMemoryMeansSmallerSubgridsThenAnError) {
+TEST_F(ThesisOctreeTest, LittleMemoryMeansSmallerSubgridsThenAnError) {
   const Mesh mesh = torus({63, 65, 62}, 40, 12, 20);
   Arena& arena = exec.arena();
-  const HostSourceOctree whole(source_octree_of(exec, mesh, 4));
+  const HostThesisOctree whole(thesis_octree_of(exec, mesh, 4));
   arena.rewind(0);
   std::size_t errors = 0, trees = 0;
   for (const std::size_t mib : {1, 2, 4, 8, 12, 16, 24}) {
     Arena::Scope scope(arena);
     arena.temporary<std::uint8_t>(arena.free_bytes() - (mib << 20) - 4096);
     try {
-      expect_same(whole, HostSourceOctree(source_octree_of(exec, mesh, 4)), std::to_string(mib) + " MiB");
+      expect_same(whole, HostThesisOctree(thesis_octree_of(exec, mesh, 4)), std::to_string(mib) + " MiB");
       ++trees;
     } catch (const Error& e) {
       EXPECT_NE(std::string(e.what()).find("memory"), std::string::npos) << e.what();
@@ -272,13 +272,13 @@ TEST_F(SourceOctreeTest, LittleMemoryMeansSmallerSubgridsThenAnError) {
 
 /// Adds up what the brick octree says about each cell that the other one knows.
 struct CompareCells {
-  SourceOctreeView source;
+  ThesisOctreeView source;
   float slack;
   std::uint32_t* count;  // compared, not found, of another point, of another touch
-  NACRE_HD void operator()(CellIndex cell, const Int3& place, BrickOctreeView::Cursor& cursor,
+  NACRE_HD void operator()(CellIndex cell, const Int3& position, BrickOctreeView::Cursor& cursor,
                            const BrickOctreeView& bricks) const {
-    SourceOctreeView::Cursor walk(source);
-    const CellIndex other = walk.find(place);
+    ThesisOctreeView::Cursor walk(source);
+    const CellIndex other = walk.find(position);
     atomic_add(count, 1u);
     if (other == no_cell) {
       atomic_add(count + 1, 1u);
@@ -289,19 +289,19 @@ struct CompareCells {
     if (std::fabs(length(a) - length(b)) > slack ||
         (length(a - b) > slack && bricks.point[cell].triangle == source.point[other].triangle))
       atomic_add(count + 2, 1u);
-    if ((cursor.find_surface(place) != no_cell) != source.touches(other)) atomic_add(count + 3, 1u);
+    if ((cursor.find_surface(position) != no_cell) != source.touches(other)) atomic_add(count + 3, 1u);
   }
 };
 
 struct CompareWithBricks {
   BrickOctreeView bricks;
   CompareCells compare;
-  NACRE_HD void operator()(CellIndex cell, const Int3& place, BrickOctreeView::Cursor& cursor) const {
-    compare(cell, place, cursor, bricks);
+  NACRE_HD void operator()(CellIndex cell, const Int3& position, BrickOctreeView::Cursor& cursor) const {
+    compare(cell, position, cursor, bricks);
   }
 };
 
-TEST_F(SourceOctreeTest, SameCellsAsBricks) {
+TEST_F(ThesisOctreeTest, SameCellsAsBricks) {
   Mesh folded = sheet({20, 20, 60.1}, {80, 0, 0}, {0, 80, 0}, 8);
   folded.add(sheet({100, 20, 60.1}, {-80, 0, 1.4}, {0, 80, 0}, 8));
   const std::vector<Mesh> meshes{torus({63, 65, 62}, 40, 12, 20), folded, box({21, 21, 21}, {90, 80, 70}, 2),
@@ -310,7 +310,7 @@ TEST_F(SourceOctreeTest, SameCellsAsBricks) {
     for (const double radius : {2.5, 5.0}) {
       const MeshView mesh = upload(exec, meshes[m]);
       const auto triangles = std::uint32_t(meshes[m].triangles.size());
-      const SourceOctree source = build_source_octree(exec, mesh, triangles, 4, radius, false);
+      const ThesisOctree source = build_thesis_octree(exec, mesh, triangles, 4, radius, false);
       const BrickOctree bricks = build_brick_octree(exec, mesh, triangles, 4, radius);
       EXPECT_EQ(source.cells, bricks.cells) << m;
       EXPECT_EQ(source.touched_cells, bricks.surface_cells) << m;

@@ -1,4 +1,4 @@
-// Nacre: the source's closest-point sparse octree, bottom-up (sec. 6.1.3): the yardstick for the brick octree.
+// Nacre: the dissertation's closest-point sparse octree, bottom-up (sec. 6.1.3): the yardstick for the brick octree.
 #pragma once
 
 #include <cmath>
@@ -7,26 +7,26 @@
 #include <vector>
 
 #include "compute/device/executor.hpp"
-#include "compute/embedding/source_cells.hpp"
-#include "compute/embedding/source_octree.hpp"
+#include "compute/embedding/thesis_cells.hpp"
+#include "compute/embedding/thesis_octree.hpp"
 
 namespace nacre {
 
-/// The source's octree and who owns its arrays. Per cell it takes 20 bytes, about 7 of nodes, 1/8 of flags, and with the
+/// The thesis octree and who owns its arrays. Per cell it takes 20 bytes, about 7 of nodes, 1/8 of flags, and with the
 /// neighbour index 24 more.
-struct SourceOctree {
+struct ThesisOctree {
   int levels = 0;
   double radius = 0;
   std::uint64_t cells = 0, touched_cells = 0;  ///< in the band; those that a triangle touches
   Array<std::uint64_t> code;
   Array<CellPoint> point;
   Array<std::uint32_t> touched;
-  Array<SourceNode> node;
+  Array<ThesisNode> node;
   std::vector<std::uint32_t> height_start;  ///< on the host: first node of each height, and how many there are
   Array<std::uint32_t> neighbour;
 
-  SourceOctreeView view() const {
-    SourceOctreeView view;
+  ThesisOctreeView view() const {
+    ThesisOctreeView view;
     view.levels = levels;
     view.radius = float(radius);
     view.quantum = CellPoint::quantum(radius);
@@ -61,7 +61,7 @@ struct AddToNode {
   std::uint32_t first;  // number of the thing with index 0
   const std::uint64_t* code;
   const std::uint32_t* number;  // exclusive scan of the heads
-  SourceNode* node;             // of this height
+  ThesisNode* node;             // of this height
   std::uint64_t* node_code;
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t at = (i + 1 < count ? number[i + 1] : nodes) - 1;
@@ -71,26 +71,26 @@ struct AddToNode {
 };
 
 struct FindCellNeighbours {
-  SourceOctreeView tree;
+  ThesisOctreeView tree;
   std::uint32_t* neighbour;
   NACRE_HD void operator()(std::int64_t i) const {
-    const Int3 place = morton_cell(tree.code[i]);
+    const Int3 position = morton_cell(tree.code[i]);
     for (int k = 0; k < 6; ++k) {
-      Int3 beside = place;
+      Int3 beside = position;
       beside[k / 2] += k % 2 ? 1 : -1;
       neighbour[6 * i + k] = tree.locate(beside);
     }
   }
 };
 
-/// Puts nodes over the cells, height by height. The source streams the keys through one queue of eight per level on the
-/// CPU; a queue that fills up is a node. All queues of a level at once are what a flag and a scan over the keys give, and
-/// the same nodes come out in the same order. What is empty does not appear, whatever its size.
+/// Puts nodes over the cells, height by height. The dissertation streams the keys through one queue of eight per level
+/// on the CPU; a queue that fills up is a node. All queues of a level at once are what a flag and a scan over the keys
+/// give, and the same nodes come out in the same order. What is empty does not appear, whatever its size.
 template <class Backend>
-void build_source_nodes(Executor<Backend>& exec, SourceOctree& tree) {
+void build_thesis_nodes(Executor<Backend>& exec, ThesisOctree& tree) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  tree.node = arena.permanent<SourceNode>(0);
+  tree.node = arena.permanent<ThesisNode>(0);
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(tree.cells);
   Array<std::uint64_t> code = tree.code;
   std::uint64_t total = 0;
@@ -103,7 +103,7 @@ void build_source_nodes(Executor<Backend>& exec, SourceOctree& tree) {
       throw Error("the grid is too fine for `octree` source", "over 2^32 nodes",
                   "lower `resolution`, or use `octree` brick");
     arena.resize_last(tree.node, total + nodes);
-    arena.device().fill(tree.node.data() + total, 0xff, nodes * sizeof(SourceNode));
+    arena.device().fill(tree.node.data() + total, 0xff, nodes * sizeof(ThesisNode));
     Array<std::uint64_t> node_code = arena.temporary<std::uint64_t>(nodes);
     exec.for_each(
         count, AddToNode{count, nodes, first, code.data(), number.data(), tree.node.data() + total, node_code.data()});
@@ -117,21 +117,22 @@ void build_source_nodes(Executor<Backend>& exec, SourceOctree& tree) {
 
 }  // namespace detail
 
-/// Builds the source's octree around `triangles` triangles (points in cells) in a domain of 8 << levels cells per axis,
-/// 0 <= levels <= 17: every cell whose centre lies within `radius` cells of a triangle, as in `find_source_cells`, under
-/// nodes built from the bottom. With `neighbour_index`, each cell gets the numbers of its six neighbours, by a walk each
-/// (sec. 6.1.4); all 26 would take 104 bytes per cell instead of 24, to save a step or two of those across edges and
-/// corners. Arrays are permanent in the executor's arena. Throws Error when they do not fit, no cell is in the band, or cells pass 2^32.
+/// Builds the thesis octree around `triangles` triangles (points in cells) in a domain of 8 << levels cells per axis,
+/// 0 <= levels <= 17: every cell whose centre lies within `radius` cells of a triangle, as in `find_source_cells`,
+/// under nodes built from the bottom. With `neighbour_index`, each cell gets the numbers of its six neighbours, by a
+/// walk each (sec. 6.1.4); all 26 would take 104 bytes per cell instead of 24, to save a step or two of those across
+/// edges and corners. Arrays are permanent in the executor's arena. Throws Error when they do not fit, no cell is in
+/// the band, or cells pass 2^32.
 template <class Backend>
-SourceOctree build_source_octree(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
-                                 double radius, bool neighbour_index, const SourceSubgrids& subgrids = {}) {
+ThesisOctree build_thesis_octree(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
+                                 double radius, bool neighbour_index, const ThesisSubgrids& subgrids = {}) {
   if (levels < 0 || levels > 17)
     throw Error("the octree cannot have this resolution", "2^" + std::to_string(levels + 3) + " cells per axis",
                 "use 8 to 1048576");
   if (!(radius > 0 && radius <= 1000))
     throw Error("the band cannot have this radius", std::to_string(radius) + " cells", "use one above 0, up to 1000");
-  const SourceCells cells = find_source_cells(exec, mesh, triangles, levels, radius, subgrids);
-  SourceOctree tree;
+  const ThesisCells cells = find_thesis_cells(exec, mesh, triangles, levels, radius, subgrids);
+  ThesisOctree tree;
   tree.levels = levels;
   tree.radius = radius;
   tree.cells = cells.count;
@@ -139,7 +140,7 @@ SourceOctree build_source_octree(Executor<Backend>& exec, const MeshView& mesh, 
   tree.code = cells.code;
   tree.point = cells.point;
   tree.touched = cells.touched;
-  detail::build_source_nodes(exec, tree);
+  detail::build_thesis_nodes(exec, tree);
   if (neighbour_index) {
     Array<std::uint32_t> neighbour = exec.arena().template permanent<std::uint32_t>(6 * tree.cells);
     exec.for_each(std::int64_t(tree.cells), detail::FindCellNeighbours{tree.view(), neighbour.data()});

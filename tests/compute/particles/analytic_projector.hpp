@@ -1,4 +1,4 @@
-// Nacre: interfaces with formulas, as the ground that particles are brought back to.
+// Nacre: interfaces with formulas, as projectors.
 #pragma once
 
 #include <cmath>
@@ -8,10 +8,10 @@
 
 namespace nacre::test {
 
-/// A surface with a formula as the solver's ground; `Surface` as in analytic_surfaces.hpp. Beyond `rim` from the z axis
-/// the interface does not exist.
+/// A surface with a formula as the solver's projector; `Surface` as in analytic_surfaces.hpp. Beyond `rim` from the z
+/// axis the interface does not exist.
 template <class Surface>
-struct AnalyticGround {
+struct AnalyticProjector {
   Surface surface;
   float rim = 1e9f;
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {

@@ -1,4 +1,4 @@
-// Nacre: test bodies for signed distances whose creases lie near the interface.
+// Nacre: test bodies for signed distances whose ridges lie near the interface.
 #pragma once
 
 #include "tests/compute/field/field_cases.hpp"
@@ -6,7 +6,7 @@
 namespace nacre::test {
 
 /// A body by its distance, in units of the smallest spacing around the volume's middle, and points of its surface.
-struct CreasedBody {
+struct RidgedBody {
   PlaceFunction distance;
   std::vector<Vec3d> points;
 };
@@ -17,37 +17,37 @@ struct Turned {
 };
 
 /// A wall between two planes.
-inline CreasedBody wall(double width) {
+inline RidgedBody wall(double width) {
   const auto [n, s, t] = Turned();
-  CreasedBody body{[=, n = n](const Vec3d& p) { return width / 2 - std::fabs(dot(p, n)); }, {}};
+  RidgedBody body{[=, n = n](const Vec3d& p) { return width / 2 - std::fabs(dot(p, n)); }, {}};
   for (int i = -25; i <= 25; ++i)
     for (int j = -25; j <= 25; ++j)
       for (const double side : {-0.5, 0.5}) body.points.push_back(s * (0.31 * i) + t * (0.31 * j) + n * (width * side));
   return body;
 }
 
-inline CreasedBody shell(double radius, double width) {
-  CreasedBody body{[=](const Vec3d& p) { return width / 2 - std::fabs(length(p) - radius); }, {}};
+inline RidgedBody shell(double radius, double width) {
+  RidgedBody body{[=](const Vec3d& p) { return width / 2 - std::fabs(length(p) - radius); }, {}};
   for (const Vec3d& d : even_directions(3000))
     for (const double side : {-0.5, 0.5}) body.points.push_back(d * (radius + width * side));
   return body;
 }
 
-inline CreasedBody rod(double radius) {
+inline RidgedBody rod(double radius) {
   const auto [n, s, t] = Turned();
-  CreasedBody body{[=, n = n](const Vec3d& p) { return radius - length(p - n * dot(p, n)); }, {}};
+  RidgedBody body{[=, n = n](const Vec3d& p) { return radius - length(p - n * dot(p, n)); }, {}};
   for (int k = 0; k < 4000; ++k)
     body.points.push_back(n * (0.002 * k - 4) + (s * std::cos(0.7 * k) + t * std::sin(0.7 * k)) * radius);
   return body;
 }
 
-inline CreasedBody two_balls(double radius, double gap) {
-  const Vec3d way = normalized(Vec3d(7.2, 1.3, 2.1)) * (radius + gap / 2);
-  const auto a = ball(way, radius), b = ball(way * -1.0, radius);
-  CreasedBody body{[=](const Vec3d& p) { return std::max(a(p), b(p)); }, {}};
+inline RidgedBody two_balls(double radius, double gap) {
+  const Vec3d displacement = normalized(Vec3d(7.2, 1.3, 2.1)) * (radius + gap / 2);
+  const auto a = ball(displacement, radius), b = ball(displacement * -1.0, radius);
+  RidgedBody body{[=](const Vec3d& p) { return std::max(a(p), b(p)); }, {}};
   for (const Vec3d& d : even_directions(4000))
     for (const double side : {-1.0, 1.0})
-      if (const Vec3d p = way * side + d * radius; length(p) < 9) body.points.push_back(p);
+      if (const Vec3d p = displacement * side + d * radius; length(p) < 9) body.points.push_back(p);
   return body;
 }
 
@@ -65,7 +65,7 @@ inline MeshVolume volume_of(const PlaceFunction& distance, const Vec3d& spacing,
 
 struct InterfaceOffset {
   double most = 0, mean = 0;
-  std::int64_t creased = 0;
+  std::int64_t on_ridge = 0;
 };
 
 /// How far from the points of a surface its interface is read, in smallest spacings. With `as_is` the values stay as
@@ -78,7 +78,7 @@ InterfaceOffset interface_offset(Executor<Backend>& exec, const MeshVolume& volu
   MaterialBricks b = lay_out_bricks(exec, volume.dims, spacing, CubicKernel::catmull_rom, std::span(volume.material));
   InterfaceOffset offset;
   const float slope = as_is ? 0 : distance_slope(volume.dims, Vec3f(spacing), volume.values[0], volume.levels[0]);
-  offset.creased = fill_scalar(exec, b, volume.values[0], volume.levels, 1, slope);
+  offset.on_ridge = fill_scalar(exec, b, volume.values[0], volume.levels, 1, slope);
   EXPECT_EQ(stray_voxels(exec, b), 0u);
   std::vector<Vec3f> from;
   for (const Vec3d& p : points) from.push_back(Vec3f(p - volume.origin + spacing * (volume_padding + 0.5)));
@@ -93,9 +93,9 @@ InterfaceOffset interface_offset(Executor<Backend>& exec, const MeshVolume& volu
   return offset;
 }
 
-/// Reads the body as it stands and with its creases taken out, and says by how much that helps.
+/// Reads the body as it stands and with its ridges taken out, and says by how much that helps.
 template <class Backend>
-void check_body(Executor<Backend>& exec, const char* what, const CreasedBody& body, double most,
+void check_body(Executor<Backend>& exec, const char* what, const RidgedBody& body, double most,
                 const Vec3d& spacing = {1, 1, 1}) {
   SCOPED_TRACE(what);
   const MeshVolume volume = volume_of(body.distance, spacing);
@@ -103,7 +103,7 @@ void check_body(Executor<Backend>& exec, const char* what, const CreasedBody& bo
   const InterfaceOffset after = interface_offset(exec, volume, body.points);
   std::printf("%s: %.3f at most, %.4f on average; as it stands %.3f, %.4f\n", what, after.most, after.mean, before.most,
               before.mean);
-  EXPECT_GT(after.creased, 0);
+  EXPECT_GT(after.on_ridge, 0);
   EXPECT_LE(after.most, most);
   EXPECT_LE(after.most, 0.6 * before.most);
   EXPECT_LE(after.mean, 0.6 * before.mean);
@@ -131,7 +131,7 @@ void VoxelsOfOtherShapes(Executor<Backend>& exec) {
 /// A gap is what a wall is on the other side; a file may count in any unit.
 template <class Backend>
 void EitherSideAndAnyUnit(Executor<Backend>& exec) {
-  const CreasedBody body = shell(10.2, 1);
+  const RidgedBody body = shell(10.2, 1);
   const auto offset = [&](const PlaceFunction& f) {
     return interface_offset(exec, volume_of(f, {1, 1, 1}), body.points);
   };
@@ -141,23 +141,23 @@ void EitherSideAndAnyUnit(Executor<Backend>& exec) {
   const InterfaceOffset cut = offset([&](const Vec3d& p) { return std::clamp(body.distance(p), -3.2, 3.2); });
   for (const InterfaceOffset& other : {gap, metres}) {
     EXPECT_NEAR(other.most, plain.most, 0.003);
-    EXPECT_NEAR(double(other.creased), double(plain.creased), 0.01 * double(plain.creased));
+    EXPECT_NEAR(double(other.on_ridge), double(plain.on_ridge), 0.01 * double(plain.on_ridge));
   }
   EXPECT_LE(cut.most, 0.03);
 }
 
-/// What a crease's removal adds grows fast: another level would be moved.
+/// What a ridge's removal adds grows fast: another level would be moved.
 template <class Backend>
 void SeveralLevelsStay(Executor<Backend>& exec) {
   const MeshVolume volume = volume_of(wall(1).distance, {1, 1, 1}, {-2, 0});
   const std::vector<Vec3d> points = wall(1).points;
   const InterfaceOffset offset = interface_offset(exec, volume, points, {1, 2});
-  EXPECT_EQ(offset.creased, 0);
+  EXPECT_EQ(offset.on_ridge, 0);
   EXPECT_EQ(offset.most, interface_offset(exec, volume, points, {1, 2}, true).most);
 }
 
 template <class Backend>
-void WhatHasNoSuchCreaseStays(Executor<Backend>& exec) {
+void WhatHasNoSuchRidgeStays(Executor<Backend>& exec) {
   const auto round = [](const Vec3d& p) { return 9.1 - length(p); };
   const auto soft = [](const Vec3d& p) { return std::tanh((9.1 - length(p)) / 2.5); };
   const auto scanned = [](const Vec3d& p) {
@@ -168,7 +168,7 @@ void WhatHasNoSuchCreaseStays(Executor<Backend>& exec) {
     std::vector<Vec3d> points;
     for (const Vec3d& d : even_directions(500)) points.push_back(d * 9.1);
     const InterfaceOffset offset = interface_offset(exec, volume, points);
-    EXPECT_EQ(offset.creased, 0);
+    EXPECT_EQ(offset.on_ridge, 0);
     EXPECT_EQ(offset.most, interface_offset(exec, volume, points, {0, 1}, true).most);
   }
 }
@@ -188,11 +188,11 @@ void SlopesOfDistances(Executor<Backend>&) {
   EXPECT_EQ(slope([](const Vec3d& p) { return length(p) < 9 ? 1.0 : -1.0; }, {1, 1, 1}), 0);
 }
 
-NACRE_DEVICE_TEST(DistanceCreases, SheetsThatFaceEachOther)
-NACRE_DEVICE_TEST(DistanceCreases, VoxelsOfOtherShapes)
-NACRE_DEVICE_TEST(DistanceCreases, EitherSideAndAnyUnit)
-NACRE_DEVICE_TEST(DistanceCreases, SeveralLevelsStay)
-NACRE_DEVICE_TEST(DistanceCreases, WhatHasNoSuchCreaseStays)
-NACRE_DEVICE_TEST(DistanceCreases, SlopesOfDistances)
+NACRE_DEVICE_TEST(DistanceRidges, SheetsThatFaceEachOther)
+NACRE_DEVICE_TEST(DistanceRidges, VoxelsOfOtherShapes)
+NACRE_DEVICE_TEST(DistanceRidges, EitherSideAndAnyUnit)
+NACRE_DEVICE_TEST(DistanceRidges, SeveralLevelsStay)
+NACRE_DEVICE_TEST(DistanceRidges, WhatHasNoSuchRidgeStays)
+NACRE_DEVICE_TEST(DistanceRidges, SlopesOfDistances)
 
 }  // namespace nacre::test

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compute/device/backend.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 

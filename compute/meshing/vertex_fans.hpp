@@ -8,20 +8,20 @@
 #include <span>
 #include <vector>
 
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 
 using MaterialPair = std::array<std::uint16_t, 2>;
 
-/// Count of one material's facets, or umbrellas.
+/// Count of one material's facets, or vertex fans.
 struct MaterialCount {
   std::uint16_t material;
   int count;
 };
 
-/// Counts facets or umbrellas by material. Made to be used again, so that it allocates but once.
-class UmbrellaCounter {
+/// Counts facets or vertex fans by material. Made to be used again, so that it allocates but once.
+class VertexFanCounter {
  public:
   /// Facets per material among those with the given materials; the materials ascend.
   template <class Uses, class MaterialsOf>
@@ -39,9 +39,9 @@ class UmbrellaCounter {
     MaterialPair materials;
   };
 
-  /// Umbrellas per material: sets of a material's facets that hang together by edges at the vertex; the materials
+  /// Vertex fans per material: sets of a material's facets that hang together by edges at the vertex; the materials
   /// ascend.
-  const std::vector<MaterialCount>& umbrellas(std::span<const Facet> facets) {
+  const std::vector<MaterialCount>& vertex_fans(std::span<const Facet> facets) {
     counts_.clear();
     for (const Facet& f : facets)
       for (const std::uint16_t m : f.materials) add(m);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "compute/device/executor.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 namespace detail {
@@ -35,9 +35,9 @@ struct DistanceSamples {
   NACRE_HD float largest() const { return max(spacing.x, max(spacing.y, spacing.z)); }
   NACRE_HD float at(const Int3& v, const LevelSide& side) const { return (value[number(v)] - side.level) * side.scale; }
 
-  /// Gradient of the distance at voxel `v`, from those of its neighbours that lie on the same side of a crease: in the octant
-  /// that falls most. Of second order where that is nearer to the slope of a distance. False at the volume's faces and where
-  /// the neighbours are no such octant.
+  /// Gradient of the distance at voxel `v`, from those of its neighbours that lie on the same side of a ridge: in the
+  /// octant that falls most. Of second order where that is nearer to the slope of a distance. False at the volume's
+  /// faces and where the neighbours are no such octant.
   NACRE_HD bool gradient(const Int3& v, const LevelSide& side, Vec3f& g) const {
     if (!inside(v - Int3(1)) || !inside(v + Int3(1))) return false;
     Int3 down;
@@ -81,20 +81,20 @@ struct FacingSheet {
   bool found = false;
 };
 
-/// Looks for a crease near each voxel, and how strongly the distance bends there: 1 / width of what lies between the two
+/// Looks for a ridge near each voxel, and how strongly the distance bends there: 1 / width of what lies between the two
 /// sheets, positive between insides, negative between outsides. `unknown` where none is found.
-struct MeasureCrease {
+struct MeasureRidge {
   static constexpr float unknown = 1e30f;
   static constexpr float band = 3;                 ///< voxels from the interface: no stencil there reaches farther
-  static constexpr float wide = 4, wide_from = 3;  ///< voxels: creases farther apart than half of it do no harm
+  static constexpr float wide = 4, wide_from = 3;  ///< voxels: ridges farther apart than half of it do no harm
   static constexpr float opposed_from = 0.7f, opposed = 0.9f;  ///< a wide wedge's are left alone
 
   DistanceSamples samples;
   float level;
-  float* crease;  ///< out
+  float* ridge;  ///< out
 
   NACRE_HD void operator()(std::int64_t i) const {
-    crease[i] = unknown;
+    ridge[i] = unknown;
     if (std::fabs(samples.value[i] - level) >= band * samples.largest() * samples.slope) return;
     const Int3 v = samples.voxel(i);
     float strongest = unknown;
@@ -102,7 +102,7 @@ struct MeasureCrease {
       const float k = sign * strength(v, {level, sign / samples.slope});
       if (std::fabs(k) < unknown && (strongest == unknown || std::fabs(k) > std::fabs(strongest))) strongest = k;
     }
-    crease[i] = strongest;
+    ridge[i] = strongest;
   }
 
  private:
@@ -120,8 +120,8 @@ struct MeasureCrease {
     return near * flat / max(sheet.width, 2 * u);  // the other sheet is no nearer than its own
   }
 
-  /// Goes from `v` along `direction` and takes what voxels beyond a crease say about the sheet that is nearest to them,
-  /// those the most from which the way to `v` runs across it. `n`: own normal, `u`: own distance.
+  /// Goes from `v` along `direction` and takes what voxels beyond a ridge say about the sheet that is nearest to them,
+  /// those the most from which the line to `v` runs across it. `n`: own normal, `u`: own distance.
   NACRE_HD FacingSheet look(const Int3& v, float u, const Vec3f& n, const Vec3f& direction, float size,
                             const LevelSide& side) const {
     const Vec3f spacing = samples.spacing;
@@ -129,9 +129,9 @@ struct MeasureCrease {
     float weights = 0, width = 0, opposed = 0;
     Vec3f towards;
     for (int k = steps; k > 0; --k) {
-      const Vec3f way = direction * (0.5f * float(k) * size);
+      const Vec3f displacement = direction * (0.5f * float(k) * size);
       Int3 step;
-      for (int axis = 0; axis < 3; ++axis) step[axis] = int(std::floor(way[axis] / spacing[axis] + 0.5f));
+      for (int axis = 0; axis < 3; ++axis) step[axis] = int(std::floor(displacement[axis] / spacing[axis] + 0.5f));
       const Int3 other = v + step;
       if (!samples.inside(other)) continue;
       const Vec3f d = Vec3f(step) * spacing;
@@ -152,45 +152,45 @@ struct MeasureCrease {
   }
 };
 
-/// Takes the distance's crease out: f - f^2 / width is the product of the distances from both sheets over their sum, which
-/// is as smooth as they are, has the same zeros, and the same slope there.
-struct SmoothCrease {
+/// Takes the distance's ridge out: f - f^2 / width is the product of the distances from both sheets over their sum,
+/// which is as smooth as they are, has the same zeros, and the same slope there.
+struct SmoothRidge {
   static constexpr float farthest = 2.5f;  ///< voxels: what is added grows no more
 
   DistanceSamples samples;
   float level;
-  const float* crease;
+  const float* ridge;
   float* value;  ///< in and out
 
   NACRE_HD void operator()(std::int64_t i) const {
     const float f = (value[i] - level) / samples.slope, voxel = samples.largest();
-    if (f == 0 || std::fabs(f) >= MeasureCrease::band * voxel) return;
-    const float k = around(samples.voxel(i), crease[i]);
+    if (f == 0 || std::fabs(f) >= MeasureRidge::band * voxel) return;
+    const float k = around(samples.voxel(i), ridge[i]);
     const float most = farthest * voxel, bend = min(k * f, 0.5f);  // no more: the voxel stays on its side
     value[i] -= bend * f * min(1.0f, most * most / (f * f)) * samples.slope;
   }
 
  private:
-  /// The mean of what a voxel and its six neighbours know: one that lies on a crease itself knows nothing, at the rim of a
-  /// crease few do, and what a single one measures is rough.
+  /// The mean of what a voxel and its six neighbours know: one that lies on a ridge itself knows nothing, at the rim of
+  /// a ridge few do, and what a single one measures is rough.
   NACRE_HD float around(const Int3& v, float own) const {
-    const bool knows = own != MeasureCrease::unknown;
+    const bool knows = own != MeasureRidge::unknown;
     float sum = knows ? own : 0, known = knows ? 1 : 0;
     for (int k = 0; k < 6; ++k) {
       Int3 other = v;
       other[k / 2] += k % 2 ? 1 : -1;
       if (!samples.inside(other)) continue;
-      const float c = crease[samples.number(other)];
-      if (c != MeasureCrease::unknown) sum += c, ++known;
+      const float c = ridge[samples.number(other)];
+      if (c != MeasureRidge::unknown) sum += c, ++known;
     }
     return known == 0 ? 0 : sum / (knows ? known : max(known, 3.0f));
   }
 };
 
-struct IsCreased {
-  const float* crease;
+struct IsOnRidge {
+  const float* ridge;
   NACRE_HD std::int64_t operator()(std::int64_t i) const {
-    return crease[i] != MeasureCrease::unknown && crease[i] != 0 ? 1 : 0;
+    return ridge[i] != MeasureRidge::unknown && ridge[i] != 0 ? 1 : 0;
   }
 };
 
@@ -218,7 +218,7 @@ inline std::vector<Int3> level_crossings(const Int3& dims, std::span<const float
   return crossings;
 }
 
-/// Slope at a voxel by the larger one of the two differences along each axis, which does not reach across a crease.
+/// Slope at a voxel by the larger one of the two differences along each axis, which does not reach across a ridge.
 inline float steepest_slope(const DistanceSamples& samples, const Int3& v) {
   Vec3f steepest;
   for (int k = 0; k < 6; ++k) {
@@ -232,7 +232,8 @@ inline float steepest_slope(const DistanceSamples& samples, const Int3& v) {
   return length(steepest);
 }
 
-/// Slopes at a voxel and over the next two voxels downhill, on either side of the level; false where there is no gradient.
+/// Slopes at a voxel and over the next two voxels downhill, on either side of the level; false where there is no
+/// gradient.
 inline bool slopes_downhill(const DistanceSamples& samples, const Int3& v, float level, float& here, float& downhill) {
   for (const float sign : {1.0f, -1.0f}) {
     const LevelSide side{level, sign / samples.slope};
@@ -253,8 +254,8 @@ inline bool slopes_downhill(const DistanceSamples& samples, const Int3& v, float
 
 /// Slope of a scalar volume that is a signed distance, of either sign and in any unit, near a level: per smallest
 /// spacing. 0 if it is none: if the values beside it do not grow alike there and over two voxels (within a fifth, in
-/// four fifths of the voxels), as those of scanners do not, nor distances that were made soft. `spacing` per axis, in units
-/// of the smallest.
+/// four fifths of the voxels), as those of scanners do not, nor distances that were made soft. `spacing` per axis, in
+/// units of the smallest.
 inline float distance_slope(const Int3& dims, const Vec3f& spacing, std::span<const float> values, float level) {
   const std::vector<Int3> crossings = detail::level_crossings(dims, values, level);
   if (crossings.empty()) return 0;
@@ -271,7 +272,7 @@ inline float distance_slope(const Int3& dims, const Vec3f& spacing, std::span<co
     downhill.push_back(b);
   }
   const std::size_t measured = here.size();
-  if (2 * measured < crossings.size()) return 0;  // the others are at the volume's faces, or on a crease
+  if (2 * measured < crossings.size()) return 0;  // the others are at the volume's faces, or on a ridge
   slopes = here;
   const float usual = detail::median(slopes);
   std::size_t alike = 0;
@@ -280,18 +281,18 @@ inline float distance_slope(const Int3& dims, const Vec3f& spacing, std::span<co
   return double(alike) >= 0.8 * double(measured) ? usual * samples.slope : 0;
 }
 
-/// Makes `value`, a signed distance on the device with this `slope`, readable between voxels where two parts of a surface
-/// face each other (method 14). Returns in how many voxels such a part is seen.
+/// Makes `value`, a signed distance on the device with this `slope`, readable between voxels where two parts of a
+/// surface face each other (method 14). Returns in how many voxels such a part is seen.
 template <class Backend>
-std::int64_t smooth_creases(Executor<Backend>& exec, const Int3& dims, const Vec3f& spacing, Array<float>& value,
-                            float level, float slope) {
+std::int64_t smooth_ridges(Executor<Backend>& exec, const Int3& dims, const Vec3f& spacing, Array<float>& value,
+                           float level, float slope) {
   Arena::Scope scope(exec.arena());
-  Array<float> crease = exec.arena().template temporary<float>(value.size());
+  Array<float> ridge = exec.arena().template temporary<float>(value.size());
   const detail::DistanceSamples samples{value.data(), dims, spacing, slope};
   const auto n = std::int64_t(value.size());
-  exec.for_each(n, detail::MeasureCrease{samples, level, crease.data()});
-  exec.for_each(n, detail::SmoothCrease{samples, level, crease.data(), value.data()});
-  return exec.reduce(n, std::int64_t(0), detail::IsCreased{crease.data()}, Add{});
+  exec.for_each(n, detail::MeasureRidge{samples, level, ridge.data()});
+  exec.for_each(n, detail::SmoothRidge{samples, level, ridge.data(), value.data()});
+  return exec.reduce(n, std::int64_t(0), detail::IsOnRidge{ridge.data()}, Add{});
 }
 
 }  // namespace nacre

@@ -1,12 +1,12 @@
 // Nacre: WENO4 interpolation in one dimension.
-#include "compute/grid/weno4.hpp"
+#include "compute/math/weno4.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "compute/grid/lanes.hpp"
+#include "compute/math/lanes.hpp"
 
 namespace nacre {
 namespace {

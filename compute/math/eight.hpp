@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "compute/device/backend.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 #if !defined(__CUDACC__) && defined(__AVX__)
 #include <immintrin.h>
@@ -70,15 +70,15 @@ NACRE_HD_INLINE Eight at_corners(float a, float x, float y, float z) {
 }
 
 /// The displacements from a point to the corners of a cube.
-struct EightWays {
+struct EightDisplacements {
   Vec3f middle;
   float half;
 };
-NACRE_HD_INLINE EightWays ways_to_corners(const Vec3f& middle, float half) { return {middle, half}; }
-NACRE_HD_INLINE Eight dot(const EightWays& w, const Vec3f& n) {
+NACRE_HD_INLINE EightDisplacements displacements_to_corners(const Vec3f& middle, float half) { return {middle, half}; }
+NACRE_HD_INLINE Eight dot(const EightDisplacements& w, const Vec3f& n) {
   return at_corners(dot(w.middle, n), n.x * w.half, n.y * w.half, n.z * w.half);
 }
-NACRE_HD_INLINE Eight squared(const EightWays& w) {
+NACRE_HD_INLINE Eight squared(const EightDisplacements& w) {
   const Vec3f s = w.middle * (2 * w.half);
   return at_corners(dot(w.middle, w.middle) + 3 * w.half * w.half, s.x, s.y, s.z);
 }
@@ -119,15 +119,15 @@ NACRE_HD_INLINE EightDoubles at_corners(double a, double x, double y, double z) 
 }
 
 /// The displacements from a point to the corners of a cube.
-struct EightWays {
+struct EightDisplacements {
   Eight x, y, z;
 };
-NACRE_HD_INLINE EightWays ways_to_corners(const Vec3f& middle, float half) {
+NACRE_HD_INLINE EightDisplacements displacements_to_corners(const Vec3f& middle, float half) {
   return {Eight{-1, 1, -1, 1, -1, 1, -1, 1} * half + middle.x, Eight{-1, -1, 1, 1, -1, -1, 1, 1} * half + middle.y,
           Eight{-1, -1, -1, -1, 1, 1, 1, 1} * half + middle.z};
 }
-NACRE_HD_INLINE Eight dot(const EightWays& w, const Vec3f& n) { return w.x * n.x + w.y * n.y + w.z * n.z; }
-NACRE_HD_INLINE Eight squared(const EightWays& w) { return w.x * w.x + w.y * w.y + w.z * w.z; }
+NACRE_HD_INLINE Eight dot(const EightDisplacements& w, const Vec3f& n) { return w.x * n.x + w.y * n.y + w.z * n.z; }
+NACRE_HD_INLINE Eight squared(const EightDisplacements& w) { return w.x * w.x + w.y * w.y + w.z * w.z; }
 
 #endif
 

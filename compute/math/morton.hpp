@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "compute/device/backend.hpp"
-#include "compute/grid/vec.hpp"
+#include "compute/math/vec.hpp"
 
 namespace nacre {
 

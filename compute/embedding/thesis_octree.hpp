@@ -1,22 +1,24 @@
-// Nacre: the source's sparse octree as kernels see it (sec. 6.1.3-6.1.4): leaves are single cells, look-ups walk from the root.
+// Nacre: the dissertation's sparse octree as kernels see it (sec. 6.1.3-6.1.4): leaves are single cells, look-ups walk
+// from the root.
 #pragma once
 
 #include <cstdint>
 
 #include "compute/embedding/band.hpp"
-#include "compute/grid/morton.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 
 /// An inner node: 32 bytes. Octants are numbered as in a Morton code, x lowest.
-struct SourceNode {
+struct ThesisNode {
   std::uint32_t child[8];  ///< numbers of nodes, or, in the lowest nodes, of cells; `none`
 };
 
 /// Band cells in Morton order under an octree whose leaves they are. The domain has 8 << levels cells per axis, up to
 /// 2^20. Every cell within `radius` of the surface is stored, knows its exact closest point, and counts as a surface
-/// cell, as in the source: particles start in all of them, and values are deposited on all. Fewer than 2^32 - 1 cells.
-struct SourceOctreeView {
+/// cell, as in the dissertation: particles start in all of them, and values are deposited on all. Fewer than 2^32 - 1
+/// cells.
+struct ThesisOctreeView {
   static constexpr int group = 512;  ///< cells that one team works on
 
   int levels = 0;
@@ -25,7 +27,7 @@ struct SourceOctreeView {
   CellIndex cells = 0, surface_cells = 0;
   const std::uint64_t* code = nullptr;       ///< per cell: Morton code, ascending
   const CellPoint* point = nullptr;          ///< per cell
-  const SourceNode* node = nullptr;          ///< the lowest ones first, those of a height in Morton order
+  const ThesisNode* node = nullptr;          ///< the lowest ones first, those of a height in Morton order
   const std::uint32_t* neighbour = nullptr;  ///< 6 per cell: -x, +x, -y, +y, -z, +z; `none`. Null: no index
   const std::uint32_t* touched = nullptr;    ///< a bit per cell: a triangle touches it
 
@@ -54,16 +56,16 @@ struct SourceOctreeView {
 
 /// Finds cells by a walk each. With the neighbour index it remembers the cell that it found last, and cells beside that
 /// one take a step or three instead; where a step would lead over a cell that is not stored, it walks.
-class SourceOctreeView::Cursor {
+class ThesisOctreeView::Cursor {
  public:
-  NACRE_HD_INLINE explicit Cursor(const SourceOctreeView& tree) : tree_(tree) {}
-  NACRE_HD_INLINE Cursor(const SourceOctreeView& tree, const Int3& place, std::uint32_t cell)
-      : tree_(tree), place_(place), cell_(cell) {}
+  NACRE_HD_INLINE explicit Cursor(const ThesisOctreeView& tree) : tree_(tree) {}
+  NACRE_HD_INLINE Cursor(const ThesisOctreeView& tree, const Int3& position, std::uint32_t cell)
+      : tree_(tree), position_(position), cell_(cell) {}
 
-  NACRE_HD_INLINE CellIndex find(const Int3& place) {
-    return wide(tree_.neighbour ? move(place) : tree_.locate(place));
+  NACRE_HD_INLINE CellIndex find(const Int3& position) {
+    return wide(tree_.neighbour ? move(position) : tree_.locate(position));
   }
-  NACRE_HD_INLINE CellIndex find_surface(const Int3& place) { return find(place); }
+  NACRE_HD_INLINE CellIndex find_surface(const Int3& position) { return find(position); }
   NACRE_HD_INLINE unsigned eight_surface(const Int3& first, CellIndex at[8]) { return eight(first, at); }
 
   template <class Visit>
@@ -77,8 +79,8 @@ class SourceOctreeView::Cursor {
   NACRE_HD unsigned eight(const Int3& first, CellIndex at[8]) {
     unsigned there = 0;
     for (int k = 0; k < 8; ++k) {
-      const Int3 place = first + Int3(k & 1, k >> 1 & 1, k >> 2);
-      at[k] = k == 0 || !tree_.neighbour ? find(place) : wide(beside(place, k, there, at));
+      const Int3 position = first + Int3(k & 1, k >> 1 & 1, k >> 2);
+      at[k] = k == 0 || !tree_.neighbour ? find(position) : wide(beside(position, k, there, at));
       there |= unsigned(at[k] != no_cell) << k;
     }
     return there;
@@ -88,56 +90,57 @@ class SourceOctreeView::Cursor {
   NACRE_HD_INLINE static CellIndex wide(std::uint32_t cell) { return cell == none ? no_cell : CellIndex(cell); }
 
   /// Cell k of the eight: a step from one that has been found, if there is one.
-  NACRE_HD_INLINE std::uint32_t beside(const Int3& place, int k, unsigned there, const CellIndex at[8]) const {
+  NACRE_HD_INLINE std::uint32_t beside(const Int3& position, int k, unsigned there, const CellIndex at[8]) const {
     for (int axis = 0; axis < 3; ++axis) {
       const int from = k & ~(1 << axis);
       if (from != k && there >> from & 1) return tree_.neighbour[6 * at[from] + 2 * axis + 1];
     }
-    return tree_.locate(place);
+    return tree_.locate(position);
   }
 
-  NACRE_HD std::uint32_t move(const Int3& place) {
-    const std::uint32_t to = step(place);
+  NACRE_HD std::uint32_t move(const Int3& position) {
+    const std::uint32_t to = step(position);
     if (to != none) {
-      place_ = place;
+      position_ = position;
       cell_ = to;
     }
     return to;
   }
 
-  NACRE_HD std::uint32_t step(const Int3& place) const {
-    Int3 d = place - place_;
+  NACRE_HD std::uint32_t step(const Int3& position) const {
+    Int3 d = position - position_;
     if (cell_ == none || unsigned(d.x + 1) > 2 || unsigned(d.y + 1) > 2 || unsigned(d.z + 1) > 2)
-      return tree_.locate(place);
+      return tree_.locate(position);
     std::uint32_t at = cell_;
     for (int axis = 0; axis < 3; ++axis) {
       if (d[axis] == 0) continue;
       at = tree_.neighbour[6 * std::size_t(at) + 2 * axis + (d[axis] > 0)];
       d[axis] = 0;
-      if (at == none) return d == Int3{} ? none : tree_.locate(place);
+      if (at == none) return d == Int3{} ? none : tree_.locate(position);
     }
     return at;
   }
 
-  const SourceOctreeView& tree_;
-  Int3 place_{};
+  const ThesisOctreeView& tree_;
+  Int3 position_{};
   std::uint32_t cell_ = none;
 };
 
 template <class Body>
-NACRE_HD void SourceOctreeView::each_cell(Team& team, std::int64_t item, const Body& body) const {
+NACRE_HD void ThesisOctreeView::each_cell(Team& team, std::int64_t item, const Body& body) const {
   const CellIndex first = CellIndex(item) * group, rest = cells - first;
   team.each(rest < CellIndex(group) ? int(rest) : group, [&](int k) {
     const CellIndex cell = first + CellIndex(k);
-    const Int3 place = morton_cell(code[cell]);
-    Cursor cursor(*this, place, std::uint32_t(cell));
-    body(cell, place, cursor);
+    const Int3 position = morton_cell(code[cell]);
+    Cursor cursor(*this, position, std::uint32_t(cell));
+    body(cell, position, cursor);
   });
 }
 
 template <class Body>
-NACRE_HD void SourceOctreeView::each_surface_cell(Team& team, std::int64_t item, const Body& body) const {
-  each_cell(team, item, [&](CellIndex cell, const Int3& place, Cursor& cursor) { body(cell, cell, place, cursor); });
+NACRE_HD void ThesisOctreeView::each_surface_cell(Team& team, std::int64_t item, const Body& body) const {
+  each_cell(team, item,
+            [&](CellIndex cell, const Int3& position, Cursor& cursor) { body(cell, cell, position, cursor); });
 }
 
 }  // namespace nacre
