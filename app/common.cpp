@@ -78,7 +78,7 @@ std::string is_gpu_number(const std::string& word) {
 
 }  // namespace
 
-void add_common_options(CLI::App& command, CommonOptions& options, const CommonWords& words) {
+void add_common_options(CLI::App& command, CommonOptions& options, const CommonOptionTexts& texts) {
   command.add_option("--device", options.device, "auto, cpu, cuda, or cuda:N for the GPU number N")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}) | CLI::Validator(is_gpu_number, "cuda:N"));
   command
@@ -87,8 +87,8 @@ void add_common_options(CLI::App& command, CommonOptions& options, const CommonW
           [&options](int threads) { options.threads = std::min(threads, tbb::info::default_concurrency()); },
           "worker threads, at most one per processor (0: all)")
       ->check(CLI::Range(0, 4096));
-  command.add_option(words.report_names, options.report, words.report_help);
-  command.add_option("--session", options.session, words.session_help);
+  command.add_option(texts.report_names, options.report, texts.report_help);
+  command.add_option("--session", options.session, texts.session_help);
   command.add_option("--set", options.set,
                      "KNOB=VALUE: set any knob by name; `nacre --knobs` lists them")
       ->expected(1)  // and no more: a FILE may follow
@@ -129,7 +129,7 @@ KnobOptions::KnobOptions(CLI::App& command, const std::string& command_name) {
 }
 
 void KnobOptions::apply(Settings& settings, const std::vector<std::string>& set) const {
-  checked_words([&] {
+  with_usage_errors([&] {
     for (const auto& [name, value] : values_)
       if (!value->empty()) set_knob(settings, name, *value);
     for (const std::string& pair : set) {

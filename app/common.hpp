@@ -36,7 +36,7 @@ class UsageError : public std::runtime_error {
 
 /// What `action` returns; an Error that it throws becomes a UsageError.
 template <class Action>
-auto checked_words(const Action& action) {
+auto with_usage_errors(const Action& action) {
   try {
     return action();
   } catch (const Error& error) {
@@ -45,11 +45,11 @@ auto checked_words(const Action& action) {
 }
 
 /// Option names and help texts, where a command has its own.
-struct CommonWords {
+struct CommonOptionTexts {
   std::string report_names = "--report", report_help = "write a JSON report to this file";
   std::string session_help = "take inputs, knobs and camera from a session file";
 };
-void add_common_options(CLI::App& command, CommonOptions& options, const CommonWords& words = {});
+void add_common_options(CLI::App& command, CommonOptions& options, const CommonOptionTexts& texts = {});
 /// For commands whose inputs and knobs make a session.
 void add_save_session(CLI::App& command, CommonOptions& options);
 

@@ -26,22 +26,22 @@ namespace {
 
 struct FlowOptions {
   CommonOptions common;
-  InputWords input;
+  InputOptions input;
   std::string image, frames, video, out;
 };
 
 /// Finds unknown names and outputs that cannot be written before the work begins.
-void check_words(const FlowOptions& options, const Settings& settings) {
-  checked_words([&] {
+void check_options(const FlowOptions& options, const Settings& settings) {
+  with_usage_errors([&] {
     colormap(settings.colormap);
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
-    if (!settings.time.empty()) time_words(settings);
-    if (!settings.color_range.empty()) color_words(settings);
+    if (!settings.time.empty()) parse_time_range(settings);
+    if (!settings.color_range.empty()) parse_color_range(settings);
   });
-  check_picture_words(settings);
+  check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty() || !options.frames.empty(),
                      !options.video.empty());
-  if (!options.video.empty()) checked_words([&] { check_video_name(options.video); });
+  if (!options.video.empty()) with_usage_errors([&] { check_video_name(options.video); });
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", ".vtp");
   check_output(options.common.report, "--report", "");
@@ -55,13 +55,13 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   StageTimers::Scope scope(timers, "read");
   SurfaceSeries series = session.sample.empty()
                              ? open_surface(session.inputs)
-                             : checked_words([&] { return make_sample(session.sample, session.detail); });
-  FlowNews news;
-  news.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
-  news.chosen = [&](const VectorChoice& choice) {
+                             : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
+  FlowLog log;
+  log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
+  log.chosen = [&](const VectorChoice& choice) {
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
-  return make_flow_input(std::move(series), session.settings, news, &interrupt_flag());
+  return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
 }
 
 /// Draws frames of one run.
@@ -220,9 +220,9 @@ void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const F
 }
 
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
-  const Session session = asked_session(options.common, options.input, knob_options, "flow");
+  const Session session = requested_session(options.common, options.input, knob_options, "flow");
   const Settings& settings = session.settings;
-  check_words(options, settings);
+  check_options(options, settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);

@@ -113,7 +113,7 @@ void print(const FileInfo& info) {
 }
 
 /// The files of the command line, else those of the session.
-std::vector<std::string> asked_files(const InfoOptions& options) {
+std::vector<std::string> requested_files(const InfoOptions& options) {
   std::vector<std::string> files = options.files;
   if (files.empty() && !options.common.session.empty())
     for (const std::filesystem::path& file : read_session(options.common.session).inputs)
@@ -130,7 +130,7 @@ void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
   limit_threads(options.common.threads);
   StageTimers timers;
   nlohmann::json files = nlohmann::json::array();
-  for (const std::string& file : asked_files(options)) {
+  for (const std::string& file : requested_files(options)) {
     FileInfo info;
     {
       StageTimers::Scope scope(timers, "read");

@@ -22,22 +22,22 @@ namespace {
 
 Session make_session(const MeshOptions& options, const KnobOptions& knobs) {
   const auto preset = [&](Settings& settings) {
-    if (options.preset == "source") apply_source_preset(settings);
+    if (options.preset == "source") apply_thesis_preset(settings);
   };
-  Session session = asked_session(options.common, options.input, knobs, "mesh", preset);
+  Session session = requested_session(options.common, options.input, knobs, "mesh", preset);
   if (options.preset == "source" && !knobs.given("kernel", options.common.set))
-    apply_source_kernel(session.settings, is_cut_at_isovalues(session));
+    apply_thesis_kernel(session.settings, is_cut_at_isovalues(session));
   return session;
 }
 
-void check_words(const MeshOptions& options, const Session& session) {
+void check_options(const MeshOptions& options, const Session& session) {
   const Settings& settings = session.settings;
-  checked_words([&] {
+  with_usage_errors([&] {
     if (!session.sample.empty() && !is_phantom(session.sample)) make_phantom(session.sample);  // throws the list
-    parse_material_words(settings.materials);
+    parse_material_settings(settings.materials);
   });
   check_particle_sizes(settings.mesh);
-  check_picture_words(settings);
+  check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty(), false);
   check_mesh_outputs(options);
 }
@@ -48,7 +48,7 @@ MeshVolume read_input(const MeshOptions& options, const Session& session, StageT
   const auto say_warning = [&](const std::string& warning) { warn(options.common, warning); };
   const auto read = [&] { return read_mesh_volumes(session, &interrupt_flag(), say_warning); };
   const bool sample = !session.sample.empty();
-  const std::vector<Volume> volumes = sample ? checked_words(read) : read();
+  const std::vector<Volume> volumes = sample ? with_usage_errors(read) : read();
   if (interrupt_flag()) throw Interrupted();
   return make_materials(volumes, sample, session.settings.materials, input, say_warning);
 }
@@ -123,7 +123,7 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
 void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   const double started = now();
   const Session session = make_session(options, knob_options);
-  check_words(options, session);
+  check_options(options, session);
   const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<MeshPipeline> pipeline = make_mesh_pipeline(*device);
   pipeline->watch(&interrupt_flag());
@@ -160,7 +160,7 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run) {
   auto options = std::make_shared<MeshOptions>();
   add_input_options(*command, options->input, "a label or scalar volume, or one indicator volume per material",
                     "voxels along the sample's longest side (0: its own)");
-  command->add_option("--preset", options->preset, "source: the constants of the dissertation")
+  command->add_option("--preset", options->preset, "source: the constants of the thesis")
       ->check(CLI::IsMember({"source"}));
   command->add_option("--out", options->out,
                       "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu, .msh (and the surface)");

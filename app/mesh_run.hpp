@@ -15,7 +15,7 @@ namespace nacre {
 
 struct MeshOptions {
   CommonOptions common;
-  InputWords input;
+  InputOptions input;
   std::string preset, out, particles_out, image;
   bool per_material = false, surface_only = false, keep_on_interrupt = false, cut_away = false;
 };

@@ -22,8 +22,8 @@ std::array<float, 3> parse_color(const std::string& text) {
   return {float(rgb >> 16 & 255) / 255, float(rgb >> 8 & 255) / 255, float(rgb & 255) / 255};
 }
 
-void check_picture_words(const Settings& settings) {
-  checked_words([&] {
+void check_picture_options(const Settings& settings) {
+  with_usage_errors([&] {
     if (!is_camera_file(settings.camera))
       fit_camera(settings.camera, Vec3d(0), Vec3d(1), settings.width, settings.height);
   });
@@ -31,7 +31,7 @@ void check_picture_words(const Settings& settings) {
 }
 
 void check_picture_size(int width, int height, bool png, bool video) {
-  checked_words([&] {
+  with_usage_errors([&] {
     if (png) check_png_size(width, height);
     if (video) check_video_size(width, height);
   });

@@ -14,7 +14,7 @@ namespace nacre {
 std::array<float, 3> parse_color(const std::string& text);
 
 /// Throws UsageError where `camera` or `background` has no valid value; a camera file is not opened.
-void check_picture_words(const Settings& settings);
+void check_picture_options(const Settings& settings);
 
 /// Throws UsageError where a picture as PNG (also a frame in a folder) or a video of that size cannot be written.
 void check_picture_size(int width, int height, bool png, bool video);

@@ -8,7 +8,7 @@
 
 namespace nacre {
 
-void apply_source_preset(Settings& settings) {
+void apply_thesis_preset(Settings& settings) {
   MeshParameters& m = settings.mesh;
   m.theta = 0.75;
   m.iterations = 50;
@@ -21,12 +21,12 @@ void apply_source_preset(Settings& settings) {
   m.by_density = false;
 }
 
-void apply_source_kernel(Settings& settings, bool cut_at_isovalues) {
+void apply_thesis_kernel(Settings& settings, bool cut_at_isovalues) {
   settings.mesh.kernel = cut_at_isovalues ? "b-spline" : "catmull-rom";
 }
 
 bool is_cut_at_isovalues(const Session& session) {
-  const MaterialWords& materials = session.settings.materials;
+  const MaterialSettings& materials = session.settings.materials;
   if (!materials.isovalue.empty()) return true;
   if (materials.labels || !materials.threshold.empty()) return false;
   const std::vector<PhantomInfo> all = phantoms();

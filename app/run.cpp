@@ -7,30 +7,30 @@
 
 namespace nacre {
 
-void add_input_options(CLI::App& command, InputWords& words, const std::string& file_help,
+void add_input_options(CLI::App& command, InputOptions& input, const std::string& file_help,
                        const std::string& detail_help) {
-  command.add_option("FILE", words.files, file_help);
-  command.add_option("--sample", words.sample, "a built-in data set; `nacre sample` lists them");
-  command.add_option("--detail", words.detail, detail_help)->check(CLI::Range(0, 1 << 20));
-  command.add_option("--size", words.size, "size of the picture in pixels, WxH");
+  command.add_option("FILE", input.files, file_help);
+  command.add_option("--sample", input.sample, "a built-in data set; `nacre sample` lists them");
+  command.add_option("--detail", input.detail, detail_help)->check(CLI::Range(0, 1 << 20));
+  command.add_option("--size", input.size, "size of the picture in pixels, WxH");
 }
 
-Session asked_session(const CommonOptions& options, const InputWords& words, const KnobOptions& knobs,
-                      std::string_view command, const std::function<void(Settings&)>& preset) {
+Session requested_session(const CommonOptions& options, const InputOptions& input, const KnobOptions& knobs,
+                          std::string_view command, const std::function<void(Settings&)>& preset) {
   Session session;
   if (!options.session.empty()) session = read_session(options.session);
   session.events.clear();  // what is asked for is the state at the start
   session.duration = 0;
-  if (!words.files.empty() || !words.sample.empty()) {
-    session.inputs.assign(words.files.begin(), words.files.end());
-    session.sample = words.sample;
-    session.detail = words.detail;
+  if (!input.files.empty() || !input.sample.empty()) {
+    session.inputs.assign(input.files.begin(), input.files.end());
+    session.sample = input.sample;
+    session.detail = input.detail;
   }
   if (preset) preset(session.settings);
   knobs.apply(session.settings, options.set);
   if (knobs.given("camera", options.set)) session.camera.reset();
-  if (!words.size.empty()) {
-    const auto [width, height] = checked_words([&] { return parse_pair(words.size, 'x', "--size"); });
+  if (!input.size.empty()) {
+    const auto [width, height] = with_usage_errors([&] { return parse_pair(input.size, 'x', "--size"); });
     knobs.apply(session.settings, {fmt::format("width={}", width), fmt::format("height={}", height)});
   }
   if (session.inputs.empty() && session.sample.empty())

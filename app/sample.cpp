@@ -18,7 +18,7 @@ namespace {
 
 using Files = std::vector<std::string>;
 
-struct SampleWords {
+struct SampleOptions {
   CommonOptions common;
   std::string name, out;
   int detail = 0;
@@ -43,75 +43,76 @@ void list_samples() {
 }
 
 /// For a check before the work begins. An unknown name is reported later, with the list of names.
-void check_surface_output(const SampleWords& words) {
+void check_surface_output(const SampleOptions& options) {
   const std::vector<SampleInfo> all = samples();
-  if (std::none_of(all.begin(), all.end(), [&](const SampleInfo& s) { return s.name == words.name; })) return;
+  if (std::none_of(all.begin(), all.end(), [&](const SampleInfo& s) { return s.name == options.name; })) return;
   Files formats = surface_writer_extensions();
   formats.push_back(".pvd");
-  if (std::find(formats.begin(), formats.end(), lower_extension(words.out)) == formats.end())
-    throw UsageError(fmt::format("cannot write {}; use one of {}", words.out, fmt::join(formats, " ")));
-  check_output(words.out, "--out", "");
+  if (std::find(formats.begin(), formats.end(), lower_extension(options.out)) == formats.end())
+    throw UsageError(fmt::format("cannot write {}; use one of {}", options.out, fmt::join(formats, " ")));
+  check_output(options.out, "--out", "");
 }
 
 /// Returns the files, that of the series last.
-Files write_surface_sample(const SampleWords& words) {
-  check_surface_output(words);
-  const SurfaceSeries series = checked_words([&] { return make_sample(words.name, words.detail); });
+Files write_surface_sample(const SampleOptions& options) {
+  check_surface_output(options);
+  const SurfaceSeries series = with_usage_errors([&] { return make_sample(options.name, options.detail); });
   Files files;
-  if (lower_extension(words.out) == ".pvd")
-    for (const std::filesystem::path& file : write_series(words.out, series)) files.push_back(file.string());
+  if (lower_extension(options.out) == ".pvd")
+    for (const std::filesystem::path& file : write_series(options.out, series)) files.push_back(file.string());
   else
-    write_surface(words.out, series.load(0), series.times[0]), files.push_back(words.out);
+    write_surface(options.out, series.load(0), series.times[0]), files.push_back(options.out);
   return files;
 }
 
 /// The sample that was asked for: by its name, else that of the session.
-SampleWords asked_sample(SampleWords words) {
-  if (!words.name.empty() || words.common.session.empty()) return words;
-  const Session session = read_session(words.common.session);
-  if (session.sample.empty()) throw UsageError(words.common.session + " has no sample; its input is a file");
-  words.name = session.sample;
-  if (words.detail == 0) words.detail = session.detail;
-  return words;
+SampleOptions requested_sample(SampleOptions options) {
+  if (!options.name.empty() || options.common.session.empty()) return options;
+  const Session session = read_session(options.common.session);
+  if (session.sample.empty()) throw UsageError(options.common.session + " has no sample; its input is a file");
+  options.name = session.sample;
+  if (options.detail == 0) options.detail = session.detail;
+  return options;
 }
 
-Files write_sample(const SampleWords& words) {
-  if (!is_phantom(words.name)) return write_surface_sample(words);
-  check_output(words.out, "--out", ".nrrd");
-  write_nrrd(words.out, checked_words([&] { return make_phantom(words.name, words.detail, &interrupt_flag()); }));
-  return {words.out};
+Files write_sample(const SampleOptions& options) {
+  if (!is_phantom(options.name)) return write_surface_sample(options);
+  check_output(options.out, "--out", ".nrrd");
+  write_nrrd(options.out,
+             with_usage_errors([&] { return make_phantom(options.name, options.detail, &interrupt_flag()); }));
+  return {options.out};
 }
 
-void report_on(const SampleWords& words, const StageTimers& timers, const Files& files) {
-  if (words.common.report.empty()) return;
-  nlohmann::json report = report_frame("sample", *make_cpu_device(words.common.threads), timers, 0);
-  if (words.name.empty())
+void report_on(const SampleOptions& options, const StageTimers& timers, const Files& files) {
+  if (options.common.report.empty()) return;
+  nlohmann::json report = report_frame("sample", *make_cpu_device(options.common.threads), timers, 0);
+  if (options.name.empty())
     report["samples"] = samples_json();
   else
-    report["input"] = {{"sample", words.name}, {"detail", words.detail}};
-  write_report(words.common, std::move(report), files);
+    report["input"] = {{"sample", options.name}, {"detail", options.detail}};
+  write_report(options.common, std::move(report), files);
 }
 
 /// Knobs have no effect here (samples use no random numbers), but they are checked: all commands take the same options.
-void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
+void run_sample(const SampleOptions& given, const KnobOptions& knob_options) {
   Settings settings;
   knob_options.apply(settings, given.common.set);
   check_output(given.common.report, "--report", "");
   limit_threads(given.common.threads);
-  const SampleWords words = asked_sample(given);
-  if (words.name.empty() != words.out.empty())
-    throw UsageError(words.name.empty() ? "name a sample; `nacre sample` lists them" : "add --out FILE");
+  const SampleOptions options = requested_sample(given);
+  if (options.name.empty() != options.out.empty())
+    throw UsageError(options.name.empty() ? "name a sample; `nacre sample` lists them" : "add --out FILE");
   StageTimers timers;
   Files files;
-  if (words.name.empty()) {
+  if (options.name.empty()) {
     list_samples();
   } else {
     StageTimers::Scope scope(timers, "write");
-    files = write_sample(words);
+    files = write_sample(options);
   }
-  report_on(words, timers, files);
+  report_on(options, timers, files);
   if (files.size() > 1)
-    fmt::print("{} ({} steps)\n", words.out, files.size() - 1);
+    fmt::print("{} ({} steps)\n", options.out, files.size() - 1);
   else
     print_outputs(files);
 }
@@ -120,18 +121,19 @@ void run_sample(const SampleWords& given, const KnobOptions& knob_options) {
 
 void add_sample_command(CLI::App& program, std::function<void()>& run) {
   CLI::App* command = program.add_subcommand("sample", "list the built-in data sets, or write one to a file");
-  auto words = std::make_shared<SampleWords>();
-  command->add_option("NAME", words->name, "sample to write");
-  command->add_option("--out", words->out,
+  auto options = std::make_shared<SampleOptions>();
+  command->add_option("NAME", options->name, "sample to write");
+  command->add_option("--out", options->out,
                       "a surface: .pvd (all time steps), or .vtp .ply .obj .stl .off (the first); a volume: .nrrd");
   command
-      ->add_option("--detail", words->detail, "triangle edges, or voxels, along the longest side (0: the sample's own)")
+      ->add_option("--detail", options->detail,
+                   "triangle edges, or voxels, along the longest side (0: the sample's own)")
       ->check(CLI::Range(0, 1 << 20));
-  add_common_options(*command, words->common,
+  add_common_options(*command, options->common,
                      {"--report", "write a JSON report to this file", "write the sample of a session file"});
   auto knob_options = std::make_shared<KnobOptions>(*command, "sample");
   command->callback(
-      [&run, words, knob_options] { run = [words, knob_options] { run_sample(*words, *knob_options); }; });
+      [&run, options, knob_options] { run = [options, knob_options] { run_sample(*options, *knob_options); }; });
 }
 
 }  // namespace nacre

@@ -29,7 +29,7 @@ namespace {
 
 struct ViewOptions {
   CommonOptions common;
-  InputWords input;
+  InputOptions input;
   std::string script, image, record, save_recording, out, preset;
   int frames = 0;
   bool offscreen = false, live = false;
@@ -43,22 +43,22 @@ constexpr int welcome_detail = 128;  // reads in a moment
 /// The preset is for volumes: its constants are those of meshing.
 void apply_preset_kernel(const CommonOptions& common, const KnobOptions& knobs, Session& session) {
   if (!is_mesh_input(session)) throw UsageError("--preset source is for volumes: it sets the constants of meshing");
-  if (!knobs.given("kernel", common.set)) apply_source_kernel(session.settings, is_cut_at_isovalues(session));
+  if (!knobs.given("kernel", common.set)) apply_thesis_kernel(session.settings, is_cut_at_isovalues(session));
 }
 
 /// A session is the state that it begins with; a script is played.
 Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
   CommonOptions common = options.common;
   if (!options.script.empty()) common.session = options.script;
-  InputWords words = options.input;
+  InputOptions words = options.input;
   if (words.files.empty() && words.sample.empty() && common.session.empty()) {
     words.sample = welcome_sample;
     if (words.detail == 0) words.detail = welcome_detail;
   }
   const bool own_resolution = !common.session.empty() || knobs.given("resolution", common.set);
-  Session session = asked_session(common, words, knobs, "view", [&](Settings& settings) {
+  Session session = requested_session(common, words, knobs, "view", [&](Settings& settings) {
     if (!own_resolution) settings.flow.resolution = view_defaults().flow.resolution;
-    if (options.preset == "source") apply_source_preset(settings);
+    if (options.preset == "source") apply_thesis_preset(settings);
   });
   if (options.preset == "source") apply_preset_kernel(options.common, knobs, session);
   if (options.script.empty()) return session;
@@ -71,7 +71,7 @@ Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
   return session;
 }
 
-void check_view_words(const ViewOptions& options) {
+void check_view_options(const ViewOptions& options) {
   const bool does = options.frames > 0 || !options.image.empty() || !options.script.empty() ||
                     !options.record.empty() || !options.save_recording.empty() || !options.out.empty();
   if (options.offscreen && !does)
@@ -93,16 +93,16 @@ void check_names(const Session& session) {
   const auto names = [](const auto& known, const std::string& name) {
     return std::any_of(known.begin(), known.end(), [&](const auto& each) { return each.name == name; });
   };
-  checked_words([&] {
+  with_usage_errors([&] {
     colormap(session.settings.colormap);
     if (session.settings.vectors.starts_with('@')) choose_vectors({}, session.settings.vectors);
-    if (!session.settings.time.empty()) time_words(session.settings);
-    if (!session.settings.color_range.empty()) color_words(session.settings);
+    if (!session.settings.time.empty()) parse_time_range(session.settings);
+    if (!session.settings.color_range.empty()) parse_color_range(session.settings);
     if (!session.sample.empty() && !names(samples(), session.sample) && !names(phantoms(), session.sample))
       throw Error(fmt::format("no sample '{}'", session.sample), "", "`nacre sample` lists them");
   });
   check_particle_sizes(session.settings.mesh);
-  check_picture_words(session.settings);
+  check_picture_options(session.settings);
 }
 
 /// Unknown names are found before the work begins, also in the events of a script.
@@ -120,7 +120,7 @@ void check_all_names(Session session) {
 }
 
 /// Offscreen, the panel is drawn only for those who ask for it; a script says for itself whether it shows it.
-bool begins_with_panel(const ViewOptions& options, const KnobOptions& knobs, const Look& look) {
+bool begins_with_panel(const ViewOptions& options, const KnobOptions& knobs, const ViewSettings& look) {
   if (knobs.given("panel", options.common.set)) return look.panel;
   return !options.script.empty() ? look.panel : !options.offscreen;
 }
@@ -141,7 +141,7 @@ void check_view_outputs(const ViewOptions& options, const Session& session) {
   const Settings& settings = session.settings;
   const bool folder = is_frame_folder(options.record), video = !options.record.empty() && !folder;
   check_picture_size(settings.width, settings.height, folder || !options.image.empty(), video);
-  checked_words([&] {
+  with_usage_errors([&] {
     if (video) check_video_name(options.record);
     if (!options.out.empty()) require_format(result_formats(session), options.out);
   });
@@ -208,7 +208,7 @@ std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerR
 }
 
 void run_view(const ViewOptions& options, const KnobOptions& knobs) {
-  check_view_words(options);
+  check_view_options(options);
   ViewerOptions viewer;
   viewer.session = view_session(options, knobs);
   const Settings& settings = viewer.session.settings;
@@ -223,7 +223,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   };
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
-  viewer.session.settings.look.panel = begins_with_panel(options, knobs, settings.look);
+  viewer.session.settings.view.panel = begins_with_panel(options, knobs, settings.view);
   const bool flow = !is_mesh_input(viewer.session);  // a mesh is done when it is done
   const bool by_steps = options.offscreen && options.script.empty() && options.frames == 0 && flow;
   viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
@@ -282,7 +282,7 @@ void add_view_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--save-recording", options->save_recording,
                       "record what is done, and when, to a session file for --script");
   command->add_option("--image", options->image, "write the last frame as PNG");
-  command->add_option("--preset", options->preset, "source: the constants of the dissertation, for volumes")
+  command->add_option("--preset", options->preset, "source: the constants of the thesis, for volumes")
       ->check(CLI::IsMember({"source"}));
   command->add_option("--out", options->out, "write the result at the end, as nacre flow and nacre mesh do");
   command

@@ -29,14 +29,14 @@ struct BenchOptions {
 };
 
 /// Knobs that differ from their defaults, by name.
-using TurnedKnobs = std::map<std::string, std::string>;
+using ChangedKnobs = std::map<std::string, std::string>;
 
-bool asked_for(const BenchOptions& options, const std::string& name) {
+bool is_requested(const BenchOptions& options, const std::string& name) {
   return options.tables.empty() ||
          std::find(options.tables.begin(), options.tables.end(), name) != options.tables.end();
 }
 
-void check_words(const BenchOptions& options) {
+void check_options(const BenchOptions& options) {
   for (const std::string& name : options.tables) {
     const auto& parts = bench_parts();
     if (std::any_of(parts.begin(), parts.end(), [&](const BenchPart& part) { return part.name == name; })) continue;
@@ -57,11 +57,11 @@ void check_outputs(const BenchOptions& options) {
 }
 
 /// Of the session, --seed and --set. Input and camera of a session have no meaning here.
-TurnedKnobs turned_knobs(const BenchOptions& options, const KnobOptions& knob_options) {
+ChangedKnobs changed_knobs(const BenchOptions& options, const KnobOptions& knob_options) {
   Settings usual, settings;
   if (!options.common.session.empty()) settings = read_session(options.common.session).settings;
   knob_options.apply(settings, options.common.set);
-  TurnedKnobs turned;
+  ChangedKnobs turned;
   const std::vector<Knob> before = knobs(usual), after = knobs(settings);
   for (std::size_t k = 0; k < after.size(); ++k)
     if (after[k].text() != before[k].text()) turned[after[k].name] = after[k].text();
@@ -70,7 +70,7 @@ TurnedKnobs turned_knobs(const BenchOptions& options, const KnobOptions& knob_op
 
 std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))); }
 
-json make_report(const BenchOptions& options, const Device& device, const TurnedKnobs& turned) {
+json make_report(const BenchOptions& options, const Device& device, const ChangedKnobs& turned) {
   json report = report_frame("bench", device, StageTimers(), 0);
   report.erase("stages");  // every table has its own
   report["small"] = options.scale() != BenchScale::whole;
@@ -81,7 +81,7 @@ json make_report(const BenchOptions& options, const Device& device, const Turned
   return report;
 }
 
-void print_head(const BenchOptions& options, const Device& device, const TurnedKnobs& turned) {
+void print_head(const BenchOptions& options, const Device& device, const ChangedKnobs& turned) {
   std::string words = options.tiny ? ", --tiny" : options.small ? ", --small" : "";
   for (const auto& [name, value] : turned) words += fmt::format(", {} {}", name, value);
   fmt::print("nacre {} on {} ({}), {} thread{}, {}{}\n\n", version, device.name(), device.backend(), device.threads(),
@@ -122,7 +122,7 @@ void measure(const BenchOptions& options, Bench& bench, json& report) {
   };
   try {
     for (const BenchPart& part : bench_parts()) {
-      if (!asked_for(options, part.name)) continue;
+      if (!is_requested(options, part.name)) continue;
       part.run(bench);
       bench.end();
     }
@@ -159,8 +159,8 @@ json read_last(const BenchOptions& options) {
 }
 
 void run_bench(const BenchOptions& options, const KnobOptions& knob_options) {
-  check_words(options);
-  const TurnedKnobs turned = turned_knobs(options, knob_options);
+  check_options(options);
+  const ChangedKnobs turned = changed_knobs(options, knob_options);
   check_outputs(options);
   const json last = read_last(options);
   const std::unique_ptr<Device> device = open_device(options.common);
@@ -179,14 +179,14 @@ void run_bench(const BenchOptions& options, const KnobOptions& knob_options) {
 }  // namespace
 
 void add_bench_command(CLI::App& program, std::function<void()>& run) {
-  CLI::App* command = program.add_subcommand("bench", "the tables of the dissertation, measured on this machine");
+  CLI::App* command = program.add_subcommand("bench", "the tables of the thesis, measured on this machine");
   auto options = std::make_shared<BenchOptions>();
   command->add_option("TABLE", options->tables,
                       "3.1 3.2 3.3 3.4 4.1 4.2 4.3 5.1 6.1 6.2 gathering arena grid-octree methods (all)");
   command->add_flag("--small", options->small, "smaller data: two minutes on two cores");
   command->add_flag("--tiny", options->tiny, "for tests: smaller still, figures mean nothing")->group("");  // not shown
   command->add_option("--plots", options->plots,
-                      "write the dissertation's plots (SVG) and pictures (PNG) into a folder");
+                      "write the thesis's plots (SVG) and pictures (PNG) into a folder");
   command->add_option("--against", options->against,
                       "JSON of an earlier run: fail if a ratio between methods has lost 30% or is missing");
   add_common_options(*command, options->common,

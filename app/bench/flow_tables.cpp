@@ -36,7 +36,7 @@ FlowJob octree_job(const Bench& bench, const std::string& sample, int resolution
   job.sample = sample;
   job.detail = bench.small ? small_flow_detail : 0;
   job.method = EmbeddingKind::octree;
-  job.octree = OctreeKind::cell;
+  job.octree = OctreeKind::thesis;
   job.radius = source_radius;
   job.resolution = resolution;
   job.neighbour_index = index;
@@ -144,8 +144,8 @@ void bench_neighbour_index(Bench& bench) {
       add_growing(table, row, before, "voxels", "growth of voxels", double(w.embedding.cells));
       table.add(row, "sparseness, %", sparseness(w.embedding, resolution));
       table.add(row, "build, s", w.embed);
-      const SourceFigure *source_without = find_source_figure("6.1", row.name, "UFLIC step, s"),
-                         *source_with = find_source_figure("6.2", row.name, "UFLIC step, s");
+      const ThesisFigure *source_without = find_thesis_figure("6.1", row.name, "UFLIC step, s"),
+                         *source_with = find_thesis_figure("6.2", row.name, "UFLIC step, s");
       table.add(row, "step, without / with index", ratio(o.step, w.step), Better::higher,
                 source_with ? ratio(source_without->value, source_with->value) : std::nullopt);
     });

@@ -38,8 +38,8 @@ MeshParameters MeshRuns::parameters(const MeshJob& job, bool own_settings) const
   Settings settings;
   MeshParameters& mesh = settings.mesh;
   if (!own_settings) {
-    apply_source_preset(settings);
-    apply_source_kernel(settings, volume_->kind == MeshVolume::Kind::scalar);
+    apply_thesis_preset(settings);
+    apply_thesis_kernel(settings, volume_->kind == MeshVolume::Kind::scalar);
     mesh.iterations = bench_iterations;
     mesh.stagnation = 0;
   }

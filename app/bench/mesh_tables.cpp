@@ -87,8 +87,8 @@ std::array<MeshRun, 3> run_solvers(Bench& bench, const MeshJob& job, int particl
 /// The thesis's figures per particle: its seconds over its final counts (Table 4.2 over Table 4.1).
 void add_source_costs(BenchRow& row) {
   const auto cost = [&](const char* solver) {
-    const SourceFigure* seconds = find_source_figure("4.2", row.name, fmt::format("{}: s", solver));
-    const SourceFigure* particles = find_source_figure("4.1", row.name, fmt::format("{}: particles", solver));
+    const ThesisFigure* seconds = find_thesis_figure("4.2", row.name, fmt::format("{}: s", solver));
+    const ThesisFigure* particles = find_thesis_figure("4.1", row.name, fmt::format("{}: particles", solver));
     return ratio(seconds->value, particles->value);
   };
   for (BenchValue& value : row.values) {
@@ -219,7 +219,7 @@ void bench_material_stages(Bench& bench) {
       table.add(row, "serial particles / extract", ratio(runs[0].seconds, runs[2].extract), Better::higher);
       for (std::size_t k = 0; k < solvers.size(); ++k)  // for figure 4.5; the thesis's are those of Table 4.2
         table.add(row, fmt::format("particles, {}, s", solvers[k].name), runs[k].seconds, Better::neither,
-                  find_source_figure("4.2", c.row, fmt::format("{}: s", solvers[k].name))->value);
+                  find_thesis_figure("4.2", c.row, fmt::format("{}: s", solvers[k].name))->value);
     });
 }
 

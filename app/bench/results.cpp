@@ -39,7 +39,7 @@ std::optional<double> BenchRow::ours(const std::string& quantity) const {
 void BenchTable::leave_out(std::string row, std::string input, std::string why) {
   rows.push_back({std::move(row), std::move(input), {}, std::move(why)});
   BenchRow& added = rows.back();
-  for (const SourceFigure& figure : source_figures())
+  for (const ThesisFigure& figure : thesis_figures())
     if (figure.table == name && figure.row == added.name)
       added.values.push_back(
           {std::string(figure.quantity), figure.value, {}, Better::neither, std::string(figure.note)});
@@ -49,7 +49,7 @@ void BenchTable::add(BenchRow& row, std::string quantity, std::optional<double> 
                      std::optional<double> source) const {
   BenchValue value{std::move(quantity), source, ours, better, {}};
   if (!source) {
-    if (const SourceFigure* figure = find_source_figure(name, row.name, value.quantity)) {
+    if (const ThesisFigure* figure = find_thesis_figure(name, row.name, value.quantity)) {
       value.source = figure->value;
       value.note = figure->note;
     }

@@ -89,7 +89,7 @@ std::array<FlowJob, 3> three_methods(const Bench& bench, const std::string& samp
   grid.resolution = resolution;
   FlowJob brick = grid, source = grid;
   brick.method = source.method = EmbeddingKind::octree;
-  source.octree = OctreeKind::cell;
+  source.octree = OctreeKind::thesis;
   return {grid, brick, source};
 }
 

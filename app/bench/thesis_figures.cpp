@@ -5,7 +5,7 @@
 namespace nacre {
 namespace {
 
-constexpr SourceFigure figures[]{
+constexpr ThesisFigure figures[]{
     {"3.1", "heart", "serial: mean ratio", 0.92114},
     {"3.1", "heart", "serial: smallest ratio", 0.249245},
     {"3.1", "heart", "red-black: mean ratio", 0.92079},
@@ -267,10 +267,10 @@ constexpr SourceFigure figures[]{
 
 }  // namespace
 
-std::span<const SourceFigure> source_figures() { return figures; }
+std::span<const ThesisFigure> thesis_figures() { return figures; }
 
-const SourceFigure* find_source_figure(std::string_view table, std::string_view row, std::string_view quantity) {
-  for (const SourceFigure& figure : figures)
+const ThesisFigure* find_thesis_figure(std::string_view table, std::string_view row, std::string_view quantity) {
+  for (const ThesisFigure& figure : figures)
     if (figure.table == table && figure.row == row && figure.quantity == quantity) return &figure;
   return nullptr;
 }

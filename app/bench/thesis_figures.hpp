@@ -8,16 +8,16 @@
 namespace nacre {
 
 /// One figure of a table, under the names that the bench gives its rows and quantities. Times are in seconds.
-struct SourceFigure {
+struct ThesisFigure {
   std::string_view table, row, quantity;
   double value = 0;
   std::string_view note = {};  ///< what is wrong with it as it is printed
 };
 
 /// All figures, table by table.
-std::span<const SourceFigure> source_figures();
+std::span<const ThesisFigure> thesis_figures();
 
 /// The figure of that name; nullptr where the thesis has none.
-const SourceFigure* find_source_figure(std::string_view table, std::string_view row, std::string_view quantity);
+const ThesisFigure* find_thesis_figure(std::string_view table, std::string_view row, std::string_view quantity);
 
 }  // namespace nacre

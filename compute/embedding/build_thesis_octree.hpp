@@ -1,4 +1,4 @@
-// Nacre: the dissertation's closest-point sparse octree, bottom-up (sec. 6.1.3): the yardstick for the brick octree.
+// Nacre: the thesis's closest-point sparse octree, bottom-up (sec. 6.1.3): the yardstick for the brick octree.
 #pragma once
 
 #include <cmath>
@@ -83,7 +83,7 @@ struct FindCellNeighbours {
   }
 };
 
-/// Puts nodes over the cells, height by height. The dissertation streams the keys through one queue of eight per level
+/// Puts nodes over the cells, height by height. The thesis streams the keys through one queue of eight per level
 /// on the CPU; a queue that fills up is a node. All queues of a level at once are what a flag and a scan over the keys
 /// give, and the same nodes come out in the same order. What is empty does not appear, whatever its size.
 template <class Backend>

@@ -1,4 +1,4 @@
-// Nacre: the band's cells and their closest points as the dissertation finds them: sub-grid by sub-grid (sec. 6.1.1,
+// Nacre: the band's cells and their closest points as the thesis finds them: sub-grid by sub-grid (sec. 6.1.1,
 // Alg. 6.1).
 #pragma once
 
@@ -25,7 +25,7 @@ struct ThesisSubgrids {
   /// Of 2^5 to 2^7, which take the same time on a CPU (15M cells at 1024^3: 6.3, 6.4, 6.6 s), the middle; 2^8 is slower
   /// wherever triangles are small, since its lists leave the cache.
   static constexpr int fast_bits = 6;
-  /// What the dissertation counts per cell of a sub-grid, if all are in the band: code, closest point, vector, counter.
+  /// What the thesis counts per cell of a sub-grid, if all are in the band: code, closest point, vector, counter.
   static constexpr std::uint64_t bytes_per_cell = 8 + 12 + 12 + 4;
 };
 
@@ -92,7 +92,7 @@ struct Subgrid {
 };
 
 /// Counts triangles per cell of a sub-grid, or, with `list`, writes them: at the cell's start plus its running count. A
-/// triangle counts where its closest point lies within the radius; the dissertation's listing leaves that test out.
+/// triangle counts where its closest point lies within the radius; the thesis's listing leaves that test out.
 struct ListTriangles {
   MeshView mesh;
   const std::uint32_t* triangle;
@@ -236,7 +236,7 @@ inline int subgrid_bits(const Arena& arena, int levels, int edge) {
   return bits;
 }
 
-/// The sub-grids of 2^bits cells per axis near triangles, in Morton order. The dissertation goes over all sub-grids,
+/// The sub-grids of 2^bits cells per axis near triangles, in Morton order. The thesis goes over all sub-grids,
 /// which at 4096^3 would write 825 GB of counters; those that no triangle comes near are not even looked at here.
 /// `triangle` becomes the list that their ranges are in, temporary.
 template <class Backend>

@@ -1,4 +1,4 @@
-// Nacre: the dissertation's sparse octree as kernels see it (sec. 6.1.3-6.1.4): leaves are single cells, look-ups walk
+// Nacre: the thesis's sparse octree as kernels see it (sec. 6.1.3-6.1.4): leaves are single cells, look-ups walk
 // from the root.
 #pragma once
 
@@ -16,7 +16,7 @@ struct ThesisNode {
 
 /// Band cells in Morton order under an octree whose leaves they are. The domain has 8 << levels cells per axis, up to
 /// 2^20. Every cell within `radius` of the surface is stored, knows its exact closest point, and counts as a surface
-/// cell, as in the dissertation: particles start in all of them, and values are deposited on all. Fewer than 2^32 - 1
+/// cell, as in the thesis: particles start in all of them, and values are deposited on all. Fewer than 2^32 - 1
 /// cells.
 struct ThesisOctreeView {
   static constexpr int group = 512;  ///< cells that one team works on

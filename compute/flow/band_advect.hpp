@@ -16,7 +16,7 @@ struct ReleaseBandParticles {
   const float* carried;          ///< per surface cell, 0..1
   std::uint64_t* sums[max_ttl];  ///< buffers of the coming steps
   int ttl;
-  bool from_centres;  ///< start at the cells' centres, as the dissertation does, not at their closest points
+  bool from_centres;  ///< start at the cells' centres, as the thesis does, not at their closest points
 
   static constexpr float tolerance = 0.3f;      // cells that the estimates of a piece may differ by
   static constexpr float longest = 12;          // cells of a piece

@@ -46,7 +46,7 @@ struct BinGrid {
 /// Shortest edge for particles of size up to `largest` that move by up to `step` of it in their turn. Neighbours reach
 /// support * min(h_i, h_j) from a trial position, and a neighbour may have left its bin by a step, too, earlier in the
 /// same iteration: (sqrt 3 + 2 step) h. With steps of up to h/2 that is the (1 + sqrt 3) h that holds then; with
-/// the dissertation's own step of h it is (2 + sqrt 3) h.
+/// the thesis's own step of h it is (2 + sqrt 3) h.
 inline float bin_edge(float largest, float step) { return (support + 2 * step) * largest; }
 
 /// Bins between `low` and `high`; the edge grows until there are at most `most` of them, which keeps everything right.

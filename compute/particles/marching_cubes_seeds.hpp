@@ -101,7 +101,7 @@ struct FindCubeVertices {
 
 /// Vertices of marching cubes on all interfaces of two materials, in temporary memory of the caller's scope: every
 /// component of voxels has some, however thin. As a source of seeds each stands for the area that it is the only one
-/// on, so that there are as many seeds as the sizing field asks for, not as many as vertices; the dissertation leaves
+/// on, so that there are as many seeds as the sizing field asks for, not as many as vertices; the thesis leaves
 /// that to the control of the population.
 class MarchingCubesSeeds {
  public:

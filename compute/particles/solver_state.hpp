@@ -12,7 +12,7 @@ namespace nacre {
 /// Sec. 3.1.2.2. Damping is the lambda of Levenberg and Marquardt: per particle, for the whole run.
 struct SolverParameters {
   PopulationRule population;
-  float step = 0.5f;           ///< longest step of a particle, in h; the dissertation allows 1
+  float step = 0.5f;           ///< longest step of a particle, in h; the thesis allows 1
   float reach = 0.5f;          ///< a trial position must be this close to its junction, in h
   float first_damping = 0.1f;  ///< of a new particle
   float least_damping = 1e-4f;

@@ -22,7 +22,7 @@ namespace nacre {
 enum class EmbeddingKind { grid, octree };
 
 /// An octree of bricks of 8^3 cells that are found by bit masks, or one whose leaves are cells, as in sec. 6.1.
-enum class OctreeKind { brick, cell };
+enum class OctreeKind { brick, thesis };
 
 /// Settings of a flow run. Ranges and help texts are in the knob table (engine/scene/settings/knobs.hpp).
 struct FlowParameters {

@@ -39,7 +39,7 @@ struct MeshParameters {
   double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)
   double add_below = 0.65;             ///< split particles with less than this share of the ideal energy
   double delete_above = 1.75;          ///< delete particles with more
-  bool by_density = true;      ///< serial, redblack: control by the estimated density; false: the dissertation's rule
+  bool by_density = true;      ///< serial, redblack: control by the estimated density; false: the thesis's rule
   int control_every = 10;      ///< iterations between two controls of the population
   int smooth = 2;              ///< rounds of moving particles within the triangles around them
   int mend = 12;               ///< rounds of mending bad triangles after the first triangulation, at most

@@ -26,7 +26,7 @@ struct GridCamera {
 };
 
 /// What is drawn and how, whatever the rays traverse.
-struct Look {
+struct Shading {
   MeshView mesh{};
   const float* shown = nullptr;     ///< per surface cell, 0..1; null: plain surface
   const float* scalar = nullptr;    ///< per point of the mesh, to colour by; null: gray
@@ -64,31 +64,31 @@ struct BandTarget {
 };
 
 template <class Target>
-struct Scene : Look {
+struct Scene : Shading {
   Target target;
 };
 
 NACRE_HD inline Vec3f to_linear(const Vec3f& c) { return {c.x * c.x, c.y * c.y, c.z * c.z}; }  // gamma 2, near sRGB
 
 /// Colour of a point of the surface in linear light. `value` is that of the texture, if there is one.
-NACRE_HD inline Vec3f shade(const Look& look, const Ray& ray, const Hit& hit, float value) {
+NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const Hit& hit, float value) {
   Vec3f base(0.62f, 0.62f, 0.62f);
-  if (look.scalar) {
-    const Triangle t = look.mesh.triangles[hit.triangle];
+  if (shading.scalar) {
+    const Triangle t = shading.mesh.triangles[hit.triangle];
     const float s =
-        look.scalar[t.a] * hit.weights.x + look.scalar[t.b] * hit.weights.y + look.scalar[t.c] * hit.weights.z;
-    const float x = (s - look.low) / (look.high - look.low);
+        shading.scalar[t.a] * hit.weights.x + shading.scalar[t.b] * hit.weights.y + shading.scalar[t.c] * hit.weights.z;
+    const float x = (s - shading.low) / (shading.high - shading.low);
     const float at = (x > 0 ? x < 1 ? x : 1 : 0) * 255.0f;
     const int k = at < 254 ? int(at) : 254;
-    const Float4 a = look.colours[k], b = look.colours[k + 1];
+    const Float4 a = shading.colours[k], b = shading.colours[k + 1];
     const float f = at - float(k);
     base = {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.z + (b.z - a.z) * f};
   }
-  const Vec3f n = look.mesh.normal(hit.triangle, hit.weights);
+  const Vec3f n = shading.mesh.normal(hit.triangle, hit.weights);
   const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
-  const float diffuse = dot(n, look.light) * facing;
-  float brightness = look.ambient + (1 - look.ambient) * (diffuse > 0 ? diffuse : 0);
-  if (look.shown) brightness *= 0.04f + 1.52f * value;
+  const float diffuse = dot(n, shading.light) * facing;
+  float brightness = shading.ambient + (1 - shading.ambient) * (diffuse > 0 ? diffuse : 0);
+  if (shading.shown) brightness *= 0.04f + 1.52f * value;
   return base * brightness;
 }
 
@@ -103,7 +103,7 @@ struct RenderPixel {
 
   NACRE_HD void operator()(std::int64_t i) const {
     const int px = int(i % width), py = int(i / width);
-    const Look& look = scene;
+    const Shading& shading = scene;
     Vec3f sum{};
     float alpha = 0;
     for (int k = 0; k < samples * samples; ++k) {
@@ -111,13 +111,13 @@ struct RenderPixel {
       const double y = 1 - (py + (k / samples + 0.5) / samples) / height * 2;
       const Ray ray = camera.ray(x, y, reach);
       Hit hit;
-      if (!scene.target.find(look.mesh, ray, hit)) {
-        sum += look.background;
-        alpha += look.background_alpha;
+      if (!scene.target.find(shading.mesh, ray, hit)) {
+        sum += shading.background;
+        alpha += shading.background_alpha;
         continue;
       }
-      const float value = look.shown ? scene.target.texture(look.shown, ray, hit) : 0;
-      sum += shade(look, ray, hit, value);
+      const float value = shading.shown ? scene.target.texture(shading.shown, ray, hit) : 0;
+      sum += shade(shading, ray, hit, value);
       alpha += 1;
     }
     const float n = 1.0f / float(samples * samples);

@@ -27,8 +27,8 @@ class Window : public Context {
 
   bool should_close() const;
   void keep_open();  ///< although the user wanted it to close
-  /// Takes what the user has done. Waits for that, at most `patience` seconds; while there is nothing to draw on, at most
-  /// a tenth of a second, where the window is merely minimised only if `idles`.
+  /// Takes what the user has done. Waits for that, at most `patience` seconds; while there is nothing to draw on, at
+  /// most a tenth of a second, where the window is merely minimised only if `idles`.
   void poll(bool idles, double patience = 0);
   bool is_minimised() const;
   /// Has the user done anything that no frame has seen, or has the window to be drawn anew?

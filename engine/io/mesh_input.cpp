@@ -54,9 +54,9 @@ std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atom
   return volumes;
 }
 
-MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialWords& words,
+MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialSettings& settings,
                           MeshInput& described, const WarningSink& warn) {
-  MaterialOptions options = parse_material_words(words);
+  MaterialOptions options = parse_material_settings(settings);
   const bool scalar_sample = sample && !volume_statistics(volumes.front()).integral;
   if (scalar_sample && options.mode == MaterialOptions::Mode::automatic && !options.threshold)
     options.isovalues = {phantom_isovalue};

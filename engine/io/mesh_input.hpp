@@ -41,7 +41,7 @@ std::vector<Volume> read_mesh_volumes(const SessionInput& input, const std::atom
 /// Decides which part of the volumes is which material. `sample`: they are a phantom, which is cut at its intended
 /// value unless the input options say otherwise. Fills `described`. Throws Error as `make_mesh_volume` does, and for
 /// options without meaning.
-MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialWords& words,
+MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const MaterialSettings& settings,
                           MeshInput& described, const WarningSink& warn = {});
 
 /// The knob `max_cell` (voxels) in the unit of fill_with_tetrahedra.

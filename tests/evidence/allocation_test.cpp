@@ -58,7 +58,7 @@ TEST_P(StepsAllocateNothing, OfTheFlow) {
   EXPECT_LT(fine, 20) << "sixteen times the cells";
 }
 
-INSTANTIATE_TEST_SUITE_P(On, StepsAllocateNothing, testing::Values("grid", "brick", "cell"));
+INSTANTIATE_TEST_SUITE_P(On, StepsAllocateNothing, testing::Values("grid", "brick", "thesis"));
 
 TEST(IterationsAllocateNothing, OfTheParticles) {
   for (const char* solver : {"tree", "redblack"}) {

@@ -14,7 +14,7 @@ namespace {
 FlowParameters parameters_at(int resolution, int ttl, const std::string& embedding) {
   FlowParameters parameters;
   test::choose_embedding(parameters, embedding);
-  parameters.resolution = embedding == "cell" ? resolution / 2 : resolution;  // the yardstick is slow
+  parameters.resolution = embedding == "thesis" ? resolution / 2 : resolution;  // the yardstick is slow
   parameters.ttl = ttl;
   return parameters;
 }
@@ -208,7 +208,7 @@ TEST(FlowGrid, RefineDoesNotChangeWhereTheSurfaceIs) {
     EXPECT_NEAR(double(count), double(cells[4]), 0.02 * double(cells[4])) << refine;
 }
 
-INSTANTIATE_TEST_SUITE_P(On, FlowEvidence, testing::Values("grid", "brick", "cell"),
+INSTANTIATE_TEST_SUITE_P(On, FlowEvidence, testing::Values("grid", "brick", "thesis"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace

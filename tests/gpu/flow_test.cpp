@@ -18,7 +18,8 @@ struct Frames {
   std::vector<std::uint8_t> picture;
 };
 
-/// Flow around the axis of a torus `scale` times as large, its speed swinging with time; `embedding`: grid, brick, cell.
+/// Flow around the axis of a torus `scale` times as large, its speed swinging with time; `embedding`: grid, brick,
+/// cell.
 Frames run(Device& device, double scale, const std::string& embedding) {
   const Shape shape = torus(120, 48, scale);
   FlowParameters parameters;
@@ -96,7 +97,7 @@ TEST_P(FlowAgreement, CudaRepeatsItselfToTheBit) {
   EXPECT_EQ(a.picture, b.picture);
 }
 
-INSTANTIATE_TEST_SUITE_P(On, FlowAgreement, testing::Values("grid", "brick", "cell"),
+INSTANTIATE_TEST_SUITE_P(On, FlowAgreement, testing::Values("grid", "brick", "thesis"),
                          [](const auto& test) { return std::string(test.param); });
 
 TEST(CudaDevice, TooLittleMemoryIsAnErrorThatNamesAResolution) {

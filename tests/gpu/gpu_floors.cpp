@@ -1,5 +1,6 @@
 // Nacre: how long a tree and the energies of many particles take, as one JSON object.
-// Usage: gpu_floors [cpu|cuda] [PARTICLES] [RUNS]. Status: 0 done, 1 failed or the energies are wrong, 77 no CUDA device.
+// Usage: gpu_floors [cpu|cuda] [PARTICLES] [RUNS]. Status: 0 done, 1 failed or the energies are wrong, 77 no CUDA
+// device.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

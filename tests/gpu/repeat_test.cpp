@@ -94,7 +94,7 @@ std::vector<float> flow_frames(Device& device, const std::string& embedding, con
 TEST(RepeatOnCuda, StepsOfTheFlowAreTheSameAsGraphs) {
   if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
   const auto gpu = make_cuda_device(arena_limit);
-  for (const char* embedding : {"grid", "brick", "cell"}) {
+  for (const char* embedding : {"grid", "brick", "thesis"}) {
     const std::vector<float> graphs = flow_frames(*gpu, embedding, "strict");
     EXPECT_GT(graphs.size(), 10000u);
     EXPECT_EQ(graphs, flow_frames(*gpu, embedding, "0")) << embedding;

@@ -18,7 +18,7 @@ auto of_start(const Settings& s) {
 
 auto of_steps(const FlowParameters& p) { return std::tie(p.sharpen, p.jitter, p.equalise, p.streaks, p.contrast); }
 
-auto of_arrows(const Look& l) { return std::tie(l.arrows, l.arrow_count); }
+auto of_arrows(const ViewSettings& l) { return std::tie(l.arrows, l.arrow_count); }
 
 }  // namespace
 
@@ -29,10 +29,10 @@ void FlowRerun::add(const FlowRerun& other) {
 FlowRerun flow_rerun(const Settings& before, const Settings& after) {
   using enum FlowStage;
   FlowRerun rerun;
-  if (before.crease != after.crease) rerun.add({surface, embed, start});
+  if (before.crease_angle != after.crease_angle) rerun.add({surface, embed, start});
   if (before.vectors != after.vectors) rerun.add({vectors, start});
   if (before.color != after.color) rerun.add(colours);
-  if (of_arrows(before.look) != of_arrows(after.look)) rerun.add(arrows);
+  if (of_arrows(before.view) != of_arrows(after.view)) rerun.add(arrows);
   if (of_embedding(before.flow) != of_embedding(after.flow)) rerun.add({embed, start});
   if (of_start(before) != of_start(after)) rerun.add(start);
   if (of_steps(before.flow) != of_steps(after.flow)) rerun.add(step);

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <utility>
 
-#include "app/viewer/scene/captions.hpp"
 #include "app/parameter_names.hpp"
+#include "app/viewer/scene/captions.hpp"
 #include "compute/device/error.hpp"
 #include "engine/picture/colormap.hpp"
 
@@ -152,7 +152,7 @@ bool FlowScene::advance_and_wait(const std::atomic<bool>& stop, double patience)
 /// Where boxes are wanted, they are written once for an embedding. True while they are on their way.
 bool FlowScene::ask_boxes() {
   Texture* const texture = written();
-  if (!texture || !settings_.look.boxes || texture->boxes.count() == 0) return false;
+  if (!texture || !settings_.view.boxes || texture->boxes.count() == 0) return false;
   if (!texture->codes) {
     const std::size_t bytes = texture->boxes.count() * sizeof(std::uint64_t);
     texture->codes = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RG32UI);
@@ -278,9 +278,9 @@ void FlowScene::draw(const View& view) {
   view_ = view;
   if (!surface_) return;
   surface_pass_.draw(view, surface_, colours_, shown_ ? &shown_->values.texture() : nullptr);
-  if (settings_.look.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
-  if (settings_.look.arrows) draw_arrows(view);
-  if (settings_.look.boxes && shown_ && shown_->boxed) draw_boxes(view);
+  if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
+  if (settings_.view.arrows) draw_arrows(view);
+  if (settings_.view.boxes && shown_ && shown_->boxed) draw_boxes(view);
   if (shown_) shown_->values.drawn();
 }
 
@@ -306,7 +306,7 @@ void FlowScene::move_arrows() {
   std::vector<Arrow> arrows;
   const double speed = std::max(results_.data.statistics.percentile_98, 1e-300), spacing = arrow_spacing();
   for (std::size_t k = 0; k < arrows_.places.size() && vectors_ && results_.tree; ++k) {
-    const SurfacePlace& place = arrows_.places[k];
+    const SurfacePoint& place = arrows_.places[k];
     const Triangle& t = results_.tree->triangles()[place.triangle];
     Vec3d point{};
     Vec3f vector{};
@@ -324,7 +324,7 @@ void FlowScene::move_arrows() {
 
 void FlowScene::draw_arrows(const View& view) {
   ArrowStyle look;
-  look.scale = float(settings_.look.arrow_length);
+  look.scale = float(settings_.view.arrow_length);
   look.width = float(0.3 * arrow_spacing());
   look.mapped = results_.data.color == "none";  // dark where they would vanish in the surface's colours
   arrow_pass_.draw(view, surface_.placement(), look);

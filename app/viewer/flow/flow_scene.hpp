@@ -89,7 +89,7 @@ class FlowScene : public Scene {
   void take(FlowWritten& told) { written_ = std::move(told.failure); }
   void take(FlowInterrupted& told);
   void take(FlowFailed& told) { failure_ = std::move(told.what); }
-  bool wants_step() const { return settings_.look.play || stale_; }
+  bool wants_step() const { return settings_.view.play || stale_; }
   bool begin_step(bool wait);
   bool ask_boxes();
   /// That of the newest embedding; null: there is none.

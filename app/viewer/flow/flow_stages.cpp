@@ -49,11 +49,11 @@ void FlowWorker::read() {
   {
     StageTimers::Scope scope(pipeline_->timers(), "read");
     if (vectors_) {
-      vectors_->set_surface(prepare(vectors_->series().load(0), settings_.crease));
+      vectors_->set_surface(prepare(vectors_->series().load(0), settings_.crease_angle));
     } else {
       SurfaceSeries series =
           input_.sample.empty() ? open_surface(input_.inputs) : make_sample(input_.sample, input_.detail);
-      FlowNews news;
+      FlowLog news;
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
       news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
       news.read = [&](const Surface& first) { tell(offer_of(first)); };
@@ -75,7 +75,7 @@ void FlowWorker::choose() {
       const VectorChoice choice = choose_vectors(vectors_->series().load(0), settings_.vectors);
       vectors_->set_vectors(choice.name);
       reason = choice.reason;
-      FlowNews news;
+      FlowLog news;
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
       warn_of_vectors(*vectors_, news);
     } else {
@@ -102,9 +102,9 @@ void FlowWorker::tell_data(std::string reason, std::vector<std::string> warnings
 void FlowWorker::place_arrows() {
   FlowArrows told;
   const PreparedSurface& surface = vectors_->surface();
-  if (settings_.look.arrows)
-    told.places = spread_places(surface.points, surface.triangles, settings_.look.arrow_count, settings_.flow.seed);
-  for (const SurfacePlace& place : told.places) {
+  if (settings_.view.arrows)
+    told.places = spread_points(surface.points, surface.triangles, settings_.view.arrow_count, settings_.flow.seed);
+  for (const SurfacePoint& place : told.places) {
     Vec3f normal{};
     for (int k = 0; k < 3; ++k)
       normal += surface.corner_normals[3 * place.triangle + std::size_t(k)] * place.weights[k];

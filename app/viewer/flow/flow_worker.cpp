@@ -38,7 +38,7 @@ FlowWorker::FlowWorker(const Session& session, std::unique_ptr<Device> device, b
       low_priority_(low_priority),
       due_{FlowStage::surface, FlowStage::embed, FlowStage::start},
       wanted_(session.settings) {
-  if (wanted_.look.arrows) due_.add(FlowStage::arrows);
+  if (wanted_.view.arrows) due_.add(FlowStage::arrows);
   pipeline_->watch(&interrupt_);
   thread_ = std::thread([this] { run(); });
 }

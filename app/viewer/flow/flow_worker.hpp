@@ -39,7 +39,7 @@ struct SurfaceRead {
 
 /// Where arrows stand; none: they are off.
 struct FlowArrows {
-  std::vector<SurfacePlace> places;
+  std::vector<SurfacePoint> places;
   std::vector<Vec3f> normals;
 };
 

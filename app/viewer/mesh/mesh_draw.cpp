@@ -43,8 +43,8 @@ void MeshScene::update_material_styles() {
         material_styles_[std::size_t(found - labels.begin())].opacity = opacity;
     }
   };
-  apply(settings_.look.ghosts, ghost_opacity, "ghosts");
-  apply(settings_.look.hidden, 0, "hidden");
+  apply(settings_.view.ghosts, ghost_opacity, "ghosts");
+  apply(settings_.view.hidden, 0, "hidden");
   material_pass_.set_styles(material_styles_);
   update_edges();
   update_worst();
@@ -77,9 +77,9 @@ void MeshScene::update_edges() {
 
 void MeshScene::update_worst() {
   worst_ = Buffer();
-  if (!results_.measures || settings_.look.worst <= 0) return;
+  if (!results_.measures || settings_.view.worst <= 0) return;
   std::vector<Segment> outlines;
-  int left = settings_.look.worst;
+  int left = settings_.view.worst;
   for (const WorstTriangle& worst : results_.measures->worst) {
     if (opacity_of(material_styles_, drawing_.materials[worst.triangle]) <= 0) continue;
     if (left-- == 0) break;
@@ -93,8 +93,8 @@ void MeshScene::update_worst() {
 
 /// The knob's; before there is anything else to see, the middle of the volume.
 std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
-  const int axis = slice_axis(settings_.look);
-  if (axis >= 0) return VolumePlane{axis, settings_.look.slice_at};
+  const int axis = slice_axis(settings_.view);
+  if (axis >= 0) return VolumePlane{axis, settings_.view.slice_at};
   if (!complete()) return VolumePlane{2, 0.5};
   return {};
 }
@@ -103,8 +103,8 @@ std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
 /// them.
 void MeshScene::update_slice() {
   if (!results_.volume) return;
-  const int axis = slice_axis(settings_.look);
-  if (axis < 0 || settings_.look.slice_field == "volume") {
+  const int axis = slice_axis(settings_.view);
+  if (axis < 0 || settings_.view.slice_field == "volume") {
     worker_.drop_slice();
     slice_of_field_ = false;
     if (const std::optional<VolumePlane> plane = shown_plane())
@@ -113,19 +113,19 @@ void MeshScene::update_slice() {
       slice_pass_.set_image({}, false);
     return;
   }
-  const MeshField field = field_of(settings_.look.slice_field);
-  if (!slice_of_field_) show_volume_slice(axis, settings_.look.slice_at);
-  request_ = {request_.number + 1, axis, settings_.look.slice_at, field};
+  const MeshField field = field_of(settings_.view.slice_field);
+  if (!slice_of_field_) show_volume_slice(axis, settings_.view.slice_at);
+  request_ = {request_.number + 1, axis, settings_.view.slice_at, field};
   worker_.ask_slice(request_);
 }
 
 /// The knob's where that means something, else nearly all of the values.
 std::array<double, 2> MeshScene::volume_range() {
   const ValueSpread& spread = results_.volume->spread;
-  if (!settings_.look.slice_range.empty()) try {
-      const auto [low, high] = parse_pair(settings_.look.slice_range, ':', "slice_range");
+  if (!settings_.view.slice_range.empty()) try {
+      const auto [low, high] = parse_pair(settings_.view.slice_range, ':', "slice_range");
       if (low < high) return {low, high};
-      warn_once(fmt::format("slice_range {} holds nothing", settings_.look.slice_range));
+      warn_once(fmt::format("slice_range {} holds nothing", settings_.view.slice_range));
     } catch (const Error& error) {
       warn_once(error.what());
     }
@@ -134,7 +134,7 @@ std::array<double, 2> MeshScene::volume_range() {
 
 /// Values of a volume are gray, as scanners show them; fields have the colours that were chosen.
 const Colormap& MeshScene::slice_map() const {
-  return colormap(settings_.look.slice_field == "volume" ? "gray" : settings_.colormap);
+  return colormap(settings_.view.slice_field == "volume" ? "gray" : settings_.colormap);
 }
 
 void MeshScene::show_volume_slice(int axis, double at) {
@@ -177,20 +177,20 @@ std::array<double, 2> MeshScene::size_range() const {
 }
 
 bool MeshScene::particles_drawn() const {
-  return settings_.look.particles && counts_.total() > 0 && !triangles_drawn();
+  return settings_.view.particles && counts_.total() > 0 && !triangles_drawn();
 }
 
 void MeshScene::draw(const View& frame) {
   View view = frame, whole = frame;
   whole.clip.reset();
   view.light =
-      turned_light(mesh_light(view.camera), view.camera, settings_.look.light_azimuth, settings_.look.light_height);
+      turned_light(mesh_light(view.camera), view.camera, settings_.view.light_azimuth, settings_.view.light_height);
   const bool begun = complete();
   if (shown_plane()) slice_pass_.draw(view);
   if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
   if (particles_drawn()) draw_particles(view);
   if (triangles_drawn()) draw_triangles(view);
-  if (settings_.look.boxes && boxes_ && box_count_ > 0) {
+  if (settings_.view.boxes && boxes_ && box_count_ > 0) {
     box_pass_.draw_corners(view, voxels_, boxes_->shown(), {sizeof(ShownBox), 0, sizeof(Vec3f)}, 0,
                            std::size_t(box_count_), {0.1f, 0.25f, 0.5f, 0.25f});
     boxes_->drawn();
@@ -199,7 +199,7 @@ void MeshScene::draw(const View& frame) {
 
 /// Surfaces, curves and points apart: curves have lower energies, and no normal to lie across.
 void MeshScene::draw_particles(const View& view) const {
-  const bool by_energy = settings_.look.particle_color == "energy";
+  const bool by_energy = settings_.view.particle_color == "energy";
   const double ideal = settings_.mesh.ideal_energy > 0 ? settings_.mesh.ideal_energy : hexagonal_energy;
   const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const auto range = [&](double energy) {
@@ -221,8 +221,8 @@ void MeshScene::draw_particles(const View& view) const {
 void MeshScene::draw_triangles(const View& view) const {
   const Placement world(1.0), model = surface_.placement();
   material_pass_.draw(view, surface_, world);
-  if (settings_.look.edges) edge_pass_.draw(view, surface_, world, {0, 0, 0, 0.5f});
-  if (settings_.look.curves) segment_pass_.draw(view, model, curves_, {{0.08f, 0.08f, 0.1f, 1}, 2, false});
+  if (settings_.view.edges) edge_pass_.draw(view, surface_, world, {0, 0, 0, 0.5f});
+  if (settings_.view.curves) segment_pass_.draw(view, model, curves_, {{0.08f, 0.08f, 0.1f, 1}, 2, false});
   std::array<float, 4> faint = worst_colour;
   faint[3] = 0.35f;
   segment_pass_.draw(view, model, worst_, {faint, 2.5f, true});
@@ -233,8 +233,8 @@ std::uint64_t MeshScene::overlay_version() const {
   const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", settings_.legend, energies[0], energies[1], particles_drawn(),
-                  settings_.look.particle_color, sizes[0], sizes[1], slice_axis(settings_.look), slice_values_,
-                  slice_range_[0], slice_range_[1], settings_.colormap + settings_.look.slice_field);
+                  settings_.view.particle_color, sizes[0], sizes[1], slice_axis(settings_.view), slice_values_,
+                  slice_range_[0], slice_range_[1], settings_.colormap + settings_.view.slice_field);
   return std::hash<std::string>()(key);
 }
 
@@ -245,11 +245,11 @@ Image MeshScene::overlay(int width, int height) {
   if (!has_legend()) return image;
   const Colormap& map = colormap(settings_.colormap);
   if (particles_drawn()) {
-    const bool by_energy = settings_.look.particle_color == "energy";
+    const bool by_energy = settings_.view.particle_color == "energy";
     const std::array<double, 2> range = by_energy ? energy_range(settings_.mesh) : size_range();
     draw_legend(image, map, range[0], range[1], by_energy ? "energy / ideal" : "size, voxels");
   } else {
-    draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], settings_.look.slice_field);
+    draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], settings_.view.slice_field);
   }
   return image;
 }

@@ -46,7 +46,7 @@ void describe_voxel(ProbeResult& probed, const ViewedVolume& volume, std::size_t
 /// The nearest triangle that is not hidden or cut away.
 std::optional<TriangleHit> MeshScene::first_seen(const Vec3d& from, const Vec3d& along) const {
   if (!triangles_drawn()) return {};
-  const std::optional<ClipPlane> clip = clip_plane(settings_.look, corners_);
+  const std::optional<ClipPlane> clip = clip_plane(settings_.view, corners_);
   constexpr int most_layers = 100;
   double near = 0;
   for (int layer = 0; layer < most_layers; ++layer) {

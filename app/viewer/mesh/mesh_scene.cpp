@@ -105,7 +105,7 @@ void MeshScene::lend(bool wait) {
   if (!memory.particles.position) return;
   memory.particles.direction = static_cast<Float4*>(direction_->begin_write(wait));
   if (!memory.particles.direction) return place_->cancel_write();
-  if (settings_.look.boxes) {
+  if (settings_.view.boxes) {
     const std::size_t bytes = std::size_t(box_capacity_) * sizeof(ShownBox);
     if (!boxes_) boxes_ = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_R32F);
     memory.boxes = static_cast<ShownBox*>(boxes_->begin_write(wait));

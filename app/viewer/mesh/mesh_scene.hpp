@@ -96,8 +96,8 @@ class MeshScene : public Scene {
   void draw_particles(const View& view) const;
   void draw_triangles(const View& view) const;
   bool particles_drawn() const;
-  bool slice_has_legend() const { return slice_axis(settings_.look) >= 0 && slice_values_; }
-  bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.look.triangles; }
+  bool slice_has_legend() const { return slice_axis(settings_.view) >= 0 && slice_values_; }
+  bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles; }
   std::array<double, 2> size_range() const;
   std::optional<TriangleHit> first_seen(const Vec3d& from, const Vec3d& along) const;
   void describe_hit(ProbeResult& probed, const TriangleHit& hit) const;

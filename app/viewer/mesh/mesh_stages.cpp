@@ -33,7 +33,7 @@ void MeshWorker::read() {
 
 void MeshWorker::choose_materials() {
   note_progress({"materials", 0, 0, 0, 0});
-  MaterialWords words;
+  MaterialSettings words;
   {
     std::scoped_lock lock(mutex_);
     words = wanted_.materials;
@@ -53,7 +53,7 @@ void MeshWorker::choose_materials() {
 }
 
 /// Who sits before a live view sees something first, and moves the iso-value then; a replay is told exactly.
-MeshVolume MeshWorker::materials_of(MaterialWords words, MeshInput& input) {
+MeshVolume MeshWorker::materials_of(MaterialSettings words, MeshInput& input) {
   const bool sample = !input_.sample.empty();
   std::string proposal;
   try {

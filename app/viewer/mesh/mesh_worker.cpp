@@ -16,7 +16,7 @@
 namespace nacre {
 namespace {
 
-auto words(const MaterialWords& w) {
+auto words(const MaterialSettings& w) {
   return std::tie(w.labels, w.isovalue, w.threshold, w.materials, w.merge, w.min_component);
 }
 

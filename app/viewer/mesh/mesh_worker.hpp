@@ -162,7 +162,7 @@ class MeshWorker : public Worker<MeshEvent> {
   std::optional<std::string> failure_of(const std::function<void()>& work);
   void read();
   void choose_materials();
-  MeshVolume materials_of(MaterialWords words, MeshInput& input);
+  MeshVolume materials_of(MaterialSettings words, MeshInput& input);
   void build_fields();
   void relax();
   void triangulate();

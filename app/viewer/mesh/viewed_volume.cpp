@@ -153,7 +153,9 @@ SlicePlane slice_plane(const MeshInput& input, int axis, double at) {
   return plane;
 }
 
-int slice_axis(const Look& look) { return look.slice == "x" ? 0 : look.slice == "y" ? 1 : look.slice == "z" ? 2 : -1; }
+int slice_axis(const ViewSettings& look) {
+  return look.slice == "x" ? 0 : look.slice == "y" ? 1 : look.slice == "z" ? 2 : -1;
+}
 
 Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colormap& map, double low, double high) {
   Image image(plane.width, plane.height);

@@ -65,7 +65,7 @@ struct SlicePlane {
 SlicePlane slice_plane(const MeshInput& input, int axis, double at);
 
 /// What the look asks for: 0..2; -1: none.
-int slice_axis(const Look& look);
+int slice_axis(const ViewSettings& look);
 
 /// A pixel per voxel: materials in their colours, or the values of a scalar volume by the map, which runs from `low` to
 /// `high`. Row 0 is at the corner.

@@ -75,7 +75,7 @@ void FlowPanel::result_tab(Session& session) {
 void FlowPanel::show_time(Session& session) {
   Settings& settings = session.settings;
   const FlowSpan& span = results_.span;
-  ImGui::Checkbox("play", &settings.look.play);
+  ImGui::Checkbox("play", &settings.view.play);
   ImGui::SameLine();
   text(fmt::format("time {}   step {}", time_text(results_.time), results_.steps));
   if (!(results_.data.time.high > results_.data.time.low)) return text("steady: one time only");

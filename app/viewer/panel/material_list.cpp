@@ -38,7 +38,7 @@ struct Sight {
     ghosts.erase(label);
     if (seen == Seen::ghost) ghosts.insert(label);
   }
-  void store(Look& look) const {
+  void store(ViewSettings& look) const {
     look.hidden = fmt::format("{}", fmt::join(hidden, ","));
     look.ghosts = fmt::format("{}", fmt::join(ghosts, ","));
   }
@@ -162,7 +162,7 @@ std::vector<std::size_t> MaterialList::found(const MeshInput& input) const {
   return all;
 }
 
-void MaterialList::draw(const MeshResults& results, Look& look) {
+void MaterialList::draw(const MeshResults& results, ViewSettings& look) {
   const MeshInput& input = results.volume->input;
   const std::string title = fmt::format("materials: {}###materials", grouped((long long)input.labels.size() - 1));
   if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;

@@ -149,7 +149,7 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
 
 void Ui::view_menu(Session& session, UiRequests& requests) {
   if (!ImGui::BeginMenu("View")) return;
-  Look& look = session.settings.look;
+  ViewSettings& look = session.settings.view;
   if (ImGui::MenuItem("Fit", "f")) requests.fit = true;
   for (const NamedView& v : views)
     if (ImGui::MenuItem(v.name, std::string(1, v.key).c_str())) requests.look_from = v.view;
@@ -183,8 +183,8 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests&
   ImGui::EndMainMenuBar();
 }
 
-/// Closes the topmost of what is open: menus and popups, the dialog, errors and help; a field that is being edited drops
-/// what was typed by itself. False: nothing is open.
+/// Closes the topmost of what is open: menus and popups, the dialog, errors and help; a field that is being edited
+/// drops what was typed by itself. False: nothing is open.
 bool Ui::close_topmost() {
   const int popups = ImGui::GetCurrentContext()->OpenPopupStack.Size;
   if (dialog_.is_open() && popups <= 1) {
@@ -229,7 +229,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
   else if (ImGui::IsMousePosValid() && !io.WantCaptureMouse)
     typed_ = false;
   if (io.WantTextInput || dialog_.is_open() || typed_) return;
-  Look& look = session.settings.look;
+  ViewSettings& look = session.settings.view;
   for (const ImWchar key : io.InputQueueCharacters) {
     for (const NamedView& v : views)
       if (ImWchar(v.key) == key) requests.look_from = v.view;

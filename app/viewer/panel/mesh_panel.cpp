@@ -102,7 +102,7 @@ void look_at(const SurfaceMesh& mesh, std::uint32_t triangle, std::optional<Came
 
 void worst_list(const MeshResults& results, Session& session) {
   if (!ImGui::CollapsingHeader("worst triangles", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  ImGui::SliderInt("highlight", &session.settings.look.worst, 0, 100);
+  ImGui::SliderInt("highlight", &session.settings.view.worst, 0, 100);
   const std::size_t listed = std::min<std::size_t>(results.measures->worst.size(), 20);
   for (std::size_t k = 0; k < listed; ++k) {
     const WorstTriangle& worst = results.measures->worst[k];
@@ -112,7 +112,7 @@ void worst_list(const MeshResults& results, Session& session) {
                                          material_name(input, pair[1]), k);
     if (!ImGui::Selectable(line.c_str())) continue;
     look_at(*results.mesh, worst.triangle, session.camera);
-    int& highlighted = session.settings.look.worst;  // or it could not be told from its neighbours, nor seen inside
+    int& highlighted = session.settings.view.worst;  // or it could not be told from its neighbours, nor seen inside
     highlighted = std::max(highlighted, int(k) + 1);
   }
 }
@@ -135,7 +135,7 @@ void MeshPanel::result_tab(Session& session) {
   if (!results_.volume) return;
   const bool measured = results_.measures && results_.mesh;
   if (!measured) particle_figures(results_);
-  materials_.draw(results_, session.settings.look);
+  materials_.draw(results_, session.settings.view);
   if (!measured) return;
   quality_figures(*results_.measures);
   worst_list(results_, session);

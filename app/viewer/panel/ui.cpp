@@ -113,7 +113,7 @@ void look_tab(Session& session, ScenePanel& panel) {
 
 }  // namespace
 
-FreeArea Ui::free_area(const Look& look, int width, int height) const {
+FreeArea Ui::free_area(const ViewSettings& look, int width, int height) const {
   if (!look.panel) return {0, 0, width, height};
   const Layout l = layout(width);
   const int left = int(l.panel), above = int(l.menu), below = int(l.status);
@@ -140,7 +140,7 @@ void Ui::knob_tab(Session& session) {
 
 /// The session's tab is shown, whoever chose it; a click on another changes the session.
 void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
-  std::string& tab = session.settings.look.tab;
+  std::string& tab = session.settings.view.tab;
   const bool told = tab != drawn_tab_;
   const auto item = [&](const char* name, const auto& content) {
     if (!ImGui::BeginTabItem(name, nullptr, told && tab == name ? ImGuiTabItemFlags_SetSelected : 0)) return;
@@ -273,8 +273,8 @@ void Ui::error_window(const FreeArea& area) {
 UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   UiRequests requests;
   use_keys(session, scene, facts, requests);
-  const FreeArea area = free_area(session.settings.look, facts.width, facts.height);
-  if (session.settings.look.panel) {
+  const FreeArea area = free_area(session.settings.view, facts.width, facts.height);
+  if (session.settings.view.panel) {
     menus(session, scene, facts, requests);
     panel(session, scene, facts);
     status(scene, facts, requests);

@@ -48,7 +48,7 @@ class Ui {
   UiRequests draw(Session& session, Scene& scene, const UiFacts& facts);
 
   /// Where the picture is to be, in a window of this size. As wide as the panel allows; never empty.
-  FreeArea free_area(const Look& look, int width, int height) const;
+  FreeArea free_area(const ViewSettings& look, int width, int height) const;
 
   /// A line at the bottom for some seconds: something was saved.
   void show_note(const std::string& line);

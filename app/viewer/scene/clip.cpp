@@ -5,7 +5,7 @@
 
 namespace nacre {
 
-std::optional<ClipPlane> clip_plane(const Look& look, std::span<const Vec3d> corners) {
+std::optional<ClipPlane> clip_plane(const ViewSettings& look, std::span<const Vec3d> corners) {
   const int axis = look.clip == "x" ? 0 : look.clip == "y" ? 1 : look.clip == "z" ? 2 : -1;
   if (axis < 0 || corners.empty()) return {};
   double low = corners.front()[axis], high = low;

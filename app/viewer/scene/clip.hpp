@@ -10,6 +10,6 @@
 namespace nacre {
 
 /// Across the axis `look.clip`, at share `look.clip_at` of the box around `corners` (world); none where that says so.
-std::optional<ClipPlane> clip_plane(const Look& look, std::span<const Vec3d> corners);
+std::optional<ClipPlane> clip_plane(const ViewSettings& look, std::span<const Vec3d> corners);
 
 }  // namespace nacre

@@ -15,7 +15,7 @@ double diameter_of(std::span<const Vec3d> points) {
 
 View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height) {
   const Settings& settings = session.settings;
-  const Look& look = settings.look;
+  const ViewSettings& look = settings.view;
   View view;
   view.camera = orbit(session.camera.value_or(Camera()), turned);
   view.width = width;

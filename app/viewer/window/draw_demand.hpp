@@ -19,8 +19,8 @@ class DrawDemand {
   };
 
   /// Is a frame to be drawn at `now` (seconds)? `touched`: the user has done something, or the window has been damaged.
-  /// `animates`: something on it changes with time. While it computes and nobody touches it, drawing takes a tenth of the
-  /// time at most.
+  /// `animates`: something on it changes with time. While it computes and nobody touches it, drawing takes a tenth of
+  /// the time at most.
   bool due(double now, const Shown& shown, bool touched, bool animates) {
     if (touched || shown.pixels != shown_.pixels) {
       settling_ = frames_to_settle;

@@ -30,7 +30,7 @@ ImGuiLayer::~ImGuiLayer() {
 }
 
 /// Colours and lettering; made anew where they have changed.
-void ImGuiLayer::dress(const Look& look) {
+void ImGuiLayer::dress(const ViewSettings& look) {
   const float scale = (window_ ? window_->scale() : 1) * float(look.text_size);
   const float size = std::round(14 * scale);
   if (look.theme == theme_ && size == size_) return;
@@ -83,7 +83,7 @@ void ImGuiLayer::take_input() {
   chords_ = input.chords;
 }
 
-void ImGuiLayer::begin(int width, int height, double seconds, const Look& look) {
+void ImGuiLayer::begin(int width, int height, double seconds, const ViewSettings& look) {
   ImGui_ImplOpenGL3_NewFrame();
   dress(look);
   ImGuiIO& io = ImGui::GetIO();

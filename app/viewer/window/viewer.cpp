@@ -284,8 +284,8 @@ class Viewer {
   }
 
   void draw(int width, int height, double seconds) {
-    imgui_->begin(width, height, seconds, session_.settings.look);
-    const FreeArea area = ui_.free_area(session_.settings.look, width, height);
+    imgui_->begin(width, height, seconds, session_.settings.view);
+    const FreeArea area = ui_.free_area(session_.settings.view, width, height);
     area_ = area;
     framing_.keep(session_, scene(), area, options_.first_camera);
     draw_scene(*frame_, area, background_of(session_.settings));
@@ -306,7 +306,7 @@ class Viewer {
   void move_by_hand(Camera& camera, const FreeArea& area) {
     const Camera seen = orbit(camera, turned_);
     Camera moved = seen;
-    move_camera(moved, session_.settings.look.turning, area, diameter_of(scene().seen()),
+    move_camera(moved, session_.settings.view.turning, area, diameter_of(scene().seen()),
                 [this](const Vec3d& from, const Vec3d& along) -> std::optional<Vec3d> {
                   const std::optional<ProbeResult> met = scene().probe(from, along);
                   return met ? std::optional(met->position) : std::nullopt;

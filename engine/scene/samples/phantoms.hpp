@@ -27,7 +27,7 @@ bool is_phantom(const std::string& name);
 
 /// Makes a phantom: uint8 labels or float values, with voxel (0, 0, 0) at the world's origin, x to the left, y to the
 /// back, z up, spacing 1 at its own detail. The same bytes on any number of threads. `detail` is the number of voxels
-/// along its longest side (0: its own, which is that of the dissertation's data); the shapes keep their size in the
+/// along its longest side (0: its own, which is that of the thesis's data); the shapes keep their size in the
 /// world, so that fewer voxels lose thin parts. Throws Error for an unknown name (with the known ones) or a detail
 /// outside of 16..1024, Interrupted soon after `*stop` is set.
 Volume make_phantom(const std::string& name, int detail = 0, const std::atomic<bool>* stop = nullptr);

@@ -9,7 +9,7 @@ namespace {
 constexpr double largest_int = std::numeric_limits<int>::max();
 
 std::vector<Knob> material_knobs(Settings& s) {
-  MaterialWords& m = s.materials;
+  MaterialSettings& m = s.materials;
   const std::string group = "materials";
   return {
       {.name = "labels",
@@ -167,7 +167,7 @@ std::vector<Knob> particle_knobs(Settings& s) {
       {.name = "by_density",
        .group = group,
        .help =
-           "serial and redblack solvers: control the population by estimated density, not by the dissertation's rule",
+           "serial and redblack solvers: control the population by estimated density, not by the thesis's rule",
        .value = &m.by_density},
       {.name = "smooth",
        .group = group,

@@ -23,26 +23,26 @@ std::pair<double, double> parse_pair(const std::string& text, char separator, co
   throw Error(fmt::format("{} takes A{}B, not '{}'", option, separator, text));
 }
 
-Range time_words(const Settings& settings) {
+Range parse_time_range(const Settings& settings) {
   const auto [low, high] = parse_pair(settings.time, ':', "--time");
   if (high < low) throw Error("--time ends before it starts");
   return {low, high};
 }
 
-Range color_words(const Settings& settings) {
+Range parse_color_range(const Settings& settings) {
   const auto [low, high] = parse_pair(settings.color_range, ':', "--color-range");
   if (!(low < high)) throw Error("--color-range " + settings.color_range + " is empty", "", "write LOW:HIGH");
   return {low, high};
 }
 
 Range color_range(const Settings& settings, const Range& of_data) {
-  return settings.color_range.empty() ? of_data : color_words(settings);
+  return settings.color_range.empty() ? of_data : parse_color_range(settings);
 }
 
 FlowSpan flow_span(const Settings& settings, const Range& of_data) {
   Range all = of_data;
   if (!settings.time.empty()) {
-    all = time_words(settings);
+    all = parse_time_range(settings);
     if (all.low > of_data.high || all.high < of_data.low)
       throw Error(fmt::format("--time {} is outside of the data", settings.time), "",
                   fmt::format("use {:g}:{:g}", of_data.low, of_data.high));

@@ -16,11 +16,11 @@ struct Range {
 std::pair<double, double> parse_pair(const std::string& text, char separator, const std::string& option);
 
 /// The knob `time`, which is not empty. Throws Error where it is no range or ends before it starts.
-Range time_words(const Settings& settings);
+Range parse_time_range(const Settings& settings);
 /// The knob `color_range`, which is not empty. Throws Error where it is no range or holds nothing.
-Range color_words(const Settings& settings);
+Range parse_color_range(const Settings& settings);
 
-/// What the colour map spans: what the knob `color_range` says, else `of_data`. Throws Error as `color_words` does.
+/// What the colour map spans: what the knob `color_range` says, else `of_data`. Throws Error like `parse_color_range`.
 Range color_range(const Settings& settings, const Range& of_data);
 
 /// What a run goes over.

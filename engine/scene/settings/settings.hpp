@@ -9,7 +9,7 @@
 namespace nacre {
 
 /// What becomes a material of a volume, as text; engine/scene/volume/material_options.hpp parses it.
-struct MaterialWords {
+struct MaterialSettings {
   bool labels = false;    ///< the values are labels, whatever they look like
   std::string isovalue;   ///< V[,V...]
   std::string threshold;  ///< LO:HI
@@ -19,7 +19,7 @@ struct MaterialWords {
 };
 
 /// What the viewer draws, and how. Nothing here changes a result.
-struct Look {
+struct ViewSettings {
   bool play = true;                         ///< flow: time goes on
   bool edges = false;                       ///< of triangles
   bool arrows = false;                      ///< flow: vectors as arrows
@@ -51,14 +51,14 @@ struct Look {
 struct Settings {
   FlowParameters flow;
   MeshParameters mesh;
-  MaterialWords materials;
-  Look look;
+  MaterialSettings materials;
+  ViewSettings view;
   double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
-  std::string vectors;  ///< array name or @field; empty: chosen
-  double crease = 40;   ///< degrees
-  std::string time;     ///< LO:HI of the data; empty: all of it
-  double begin_at = 0;  ///< share of that time at which the first frame is
+  std::string vectors;       ///< array name or @field; empty: chosen
+  double crease_angle = 40;  ///< degrees
+  std::string time;          ///< LO:HI of the data; empty: all of it
+  double begin_at = 0;       ///< share of that time at which the first frame is
   std::string color = "speed";
   std::string colormap = "sea";
   std::string color_range;         ///< LO:HI; empty: of the data

@@ -6,7 +6,7 @@ namespace {
 
 constexpr const char* group = "view";
 
-std::vector<Knob> drawing_knobs(Look& l) {
+std::vector<Knob> drawing_knobs(ViewSettings& l) {
   return {
       {.name = "play", .group = group, .help = "flow: let time run", .value = &l.play},
       {.name = "edges", .group = group, .help = "draw the edges of the triangles", .value = &l.edges},
@@ -46,7 +46,7 @@ std::vector<Knob> drawing_knobs(Look& l) {
   };
 }
 
-std::vector<Knob> plane_knobs(Look& l) {
+std::vector<Knob> plane_knobs(ViewSettings& l) {
   return {
       {.name = "clip",
        .group = group,
@@ -86,7 +86,7 @@ std::vector<Knob> plane_knobs(Look& l) {
   };
 }
 
-std::vector<Knob> light_and_window_knobs(Look& l) {
+std::vector<Knob> light_and_window_knobs(ViewSettings& l) {
   return {
       {.name = "light_azimuth",
        .group = group,
@@ -133,7 +133,7 @@ std::vector<Knob> light_and_window_knobs(Look& l) {
 std::vector<Knob> view_knobs(Settings& settings) {
   std::vector<Knob> table;
   for (const auto part : {drawing_knobs, plane_knobs, light_and_window_knobs})
-    for (Knob& knob : part(settings.look)) table.push_back(std::move(knob));
+    for (Knob& knob : part(settings.view)) table.push_back(std::move(knob));
   return table;
 }
 

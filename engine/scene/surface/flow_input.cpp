@@ -8,30 +8,30 @@
 
 namespace nacre {
 
-VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowNews& news,
+VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowLog& log,
                               const std::atomic<bool>* stop) {
-  for (const std::string& warning : series.warnings) news.warn(warning);
+  for (const std::string& warning : series.warnings) log.warn(warning);
   const Surface first = series.load(0);
-  if (news.read) news.read(first);
+  if (log.read) log.read(first);
   std::vector<std::string> warnings;
-  PreparedSurface surface = prepare(first, settings.crease, &warnings);
-  for (const std::string& warning : warnings) news.warn(warning);
+  PreparedSurface surface = prepare(first, settings.crease_angle, &warnings);
+  for (const std::string& warning : warnings) log.warn(warning);
   const VectorChoice choice = choose_vectors(first, settings.vectors);
-  news.chosen(choice);
+  log.chosen(choice);
   VectorsInTime vectors(std::move(series), std::move(surface), choice.name, settings.color, stop);
-  warn_of_vectors(vectors, news);
+  warn_of_vectors(vectors, log);
   return vectors;
 }
 
-void warn_of_vectors(const VectorsInTime& vectors, const FlowNews& news) {
+void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log) {
   const VectorStatistics& s = vectors.statistics();
   if (s.percentile_98 <= 0)
-    news.warn("the vectors are zero everywhere: the texture will remain noise");
+    log.warn("the vectors are zero everywhere: the texture will remain noise");
   else if (s.normal_share > 0.5)
-    news.warn(fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown", vectors.array(),
-                          100 * s.normal_share));
+    log.warn(fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown", vectors.array(),
+                         100 * s.normal_share));
   if (s.zero_share > 0.5)
-    news.warn(fmt::format("{} is zero at {:.0f}% of the points", vectors.array(), 100 * s.zero_share));
+    log.warn(fmt::format("{} is zero at {:.0f}% of the points", vectors.array(), 100 * s.zero_share));
 }
 
 FlowVectors flow_vectors(VectorsInTime& input, double start, double end) {

@@ -13,7 +13,7 @@
 namespace nacre {
 
 /// Receives what a user should know, in the order in which it is found; full sentences.
-struct FlowNews {
+struct FlowLog {
   std::function<void(const std::string& sentence)> warn;
   std::function<void(const VectorChoice& choice)> chosen;  ///< which vectors, and why
   std::function<void(const Surface& first)> read = {};     ///< the first step, before a choice is made; may be empty
@@ -21,11 +21,11 @@ struct FlowNews {
 
 /// Prepares the surface of `series`, chooses vectors and looks at all steps. Throws Error where there is nothing to
 /// show, Interrupted when `stop` is set.
-VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowNews& news,
+VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowLog& log,
                               const std::atomic<bool>* stop = nullptr);
 
 /// Warns where the vectors show little: all zero, mostly normal to the surface, zero in many places.
-void warn_of_vectors(const VectorsInTime& vectors, const FlowNews& news);
+void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log);
 
 /// The vectors of `input` between two times of the data, as the flow pipeline takes them; `input` must outlive them.
 /// Where nothing moves, the reference speed is 1.

@@ -45,7 +45,7 @@ class Kept {
 };
 
 struct Dart {
-  SurfacePlace place;
+  SurfacePoint place;
   Vec3d point;
 };
 
@@ -74,12 +74,12 @@ double surface_area(std::span<const Vec3d> points, std::span<const Triangle> tri
   return area;
 }
 
-std::vector<SurfacePlace> spread_places(std::span<const Vec3d> points, std::span<const Triangle> triangles, int count,
+std::vector<SurfacePoint> spread_points(std::span<const Vec3d> points, std::span<const Triangle> triangles, int count,
                                         std::uint32_t seed) {
   std::vector<double> area_before{0};  // each triangle; at the end all of it
   for (const Triangle& t : triangles) area_before.push_back(area_before.back() + area_of(points, t));
   const double area = area_before.back();
-  std::vector<SurfacePlace> places;
+  std::vector<SurfacePoint> places;
   if (count < 1 || !(area > 0)) return places;
   const auto wanted = std::size_t(count);
   std::vector<Dart> darts = throw_darts(points, triangles, area_before, wanted * (wanted < 10000 ? 12 : 4), seed);

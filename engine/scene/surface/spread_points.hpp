@@ -10,14 +10,14 @@
 namespace nacre {
 
 /// A point of a triangle.
-struct SurfacePlace {
+struct SurfacePoint {
   std::uint32_t triangle = 0;
   Vec3f weights;  ///< of its corners
 };
 
 /// At most `count` places, none nearer to another than the room allows (blue noise by darts); the same for one seed.
 /// None where the triangles have no area.
-std::vector<SurfacePlace> spread_places(std::span<const Vec3d> points, std::span<const Triangle> triangles, int count,
+std::vector<SurfacePoint> spread_points(std::span<const Vec3d> points, std::span<const Triangle> triangles, int count,
                                         std::uint32_t seed);
 
 /// Of all triangles; the points' unit, squared.

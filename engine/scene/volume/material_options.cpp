@@ -43,31 +43,31 @@ std::pair<T, T> parse_pair(std::string_view text, const std::string& option, con
 
 }  // namespace
 
-MaterialOptions parse_material_words(const MaterialWords& words) {
-  if (int(words.labels) + int(!words.isovalue.empty()) + int(!words.threshold.empty()) > 1)
+MaterialOptions parse_material_settings(const MaterialSettings& settings) {
+  if (int(settings.labels) + int(!settings.isovalue.empty()) + int(!settings.threshold.empty()) > 1)
     throw Error("--labels, --isovalue and --threshold exclude each other", "", "give one of them");
-  const bool scalar = !words.isovalue.empty() || !words.threshold.empty();
-  if (scalar && (!words.materials.empty() || !words.merge.empty()))
+  const bool scalar = !settings.isovalue.empty() || !settings.threshold.empty();
+  if (scalar && (!settings.materials.empty() || !settings.merge.empty()))
     throw Error("--materials and --merge apply to labels", "--isovalue and --threshold cut a scalar volume");
   MaterialOptions options;
-  if (words.labels) options.mode = MaterialOptions::Mode::labels;
-  if (!words.isovalue.empty()) {
+  if (settings.labels) options.mode = MaterialOptions::Mode::labels;
+  if (!settings.isovalue.empty()) {
     options.mode = MaterialOptions::Mode::isovalue;
-    for (const std::string_view part : split(words.isovalue, ','))
-      options.isovalues.push_back(parse<double>(part, "--isovalue", words.isovalue, "V[,V...]"));
+    for (const std::string_view part : split(settings.isovalue, ','))
+      options.isovalues.push_back(parse<double>(part, "--isovalue", settings.isovalue, "V[,V...]"));
   }
-  if (!words.threshold.empty()) {
-    options.threshold = parse_pair<double>(words.threshold, "--threshold", words.threshold, "LO:HI");
+  if (!settings.threshold.empty()) {
+    options.threshold = parse_pair<double>(settings.threshold, "--threshold", settings.threshold, "LO:HI");
     if (options.threshold->first > options.threshold->second)
-      throw Error(fmt::format("--threshold {} ends before it starts", words.threshold));
+      throw Error(fmt::format("--threshold {} ends before it starts", settings.threshold));
   }
-  if (!words.materials.empty())
-    for (const std::string_view part : split(words.materials, ','))
-      options.materials.push_back(parse<std::int64_t>(part, "--materials", words.materials, "L[,L...]"));
-  if (!words.merge.empty())
-    for (const std::string_view part : split(words.merge, ','))
-      options.merge.push_back(parse_pair<std::int64_t>(part, "--merge", words.merge, "A:B[,A:B...]"));
-  options.min_component = words.min_component;
+  if (!settings.materials.empty())
+    for (const std::string_view part : split(settings.materials, ','))
+      options.materials.push_back(parse<std::int64_t>(part, "--materials", settings.materials, "L[,L...]"));
+  if (!settings.merge.empty())
+    for (const std::string_view part : split(settings.merge, ','))
+      options.merge.push_back(parse_pair<std::int64_t>(part, "--merge", settings.merge, "A:B[,A:B...]"));
+  options.min_component = settings.min_component;
   return options;
 }
 

@@ -7,6 +7,6 @@
 namespace nacre {
 
 /// Throws Error for values that cannot be parsed, or for options that contradict each other.
-MaterialOptions parse_material_words(const MaterialWords& words);
+MaterialOptions parse_material_settings(const MaterialSettings& settings);
 
 }  // namespace nacre

@@ -111,7 +111,7 @@ TEST_F(FlowInView, OffersTheArraysOfTheData) {
 
 TEST_F(FlowInView, StandsStillWhereItDoesNotPlay) {
   Session session = small_session();
-  session.settings.look.play = false;
+  session.settings.view.play = false;
   open(session);
   advance();  // one step, for without it there is no texture
   EXPECT_EQ(scene_->steps(), 1);
@@ -148,7 +148,7 @@ TEST_F(FlowInView, WhatWasShownStaysWhileAnotherIsMade) {
 
 TEST_F(FlowInView, ColoursChangeWithoutAStep) {
   Session session = small_session();
-  session.settings.look.play = false;
+  session.settings.view.play = false;
   open(session);
   advance();
   const Image plain = picture();
@@ -185,7 +185,7 @@ TEST_F(FlowInView, ProbesWhatARayMeets) {
   for (const char* name : {"position: ", "triangle: ", "velocity: ", "magnitude: ", "speed: ", "time: "})
     EXPECT_NE(all.find(name), std::string::npos) << name << all;
   EXPECT_FALSE(scene_->probe(middle - Vec3d(0, 50, 0), {0, -1, 0}));
-  change([](Settings& s) { s.look.play = false; });
+  change([](Settings& s) { s.view.play = false; });
   while (std::chrono::steady_clock::now() - start < std::chrono::seconds(20) &&
          probed->lines.back().rfind("texture: ", 0) != 0) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -217,7 +217,7 @@ TEST_F(FlowInView, ThesisOctreesAreDrawnToo) {
   open(session);
   advance();
   const Image brick = picture();
-  change([](Settings& s) { s.flow.octree = OctreeKind::cell; });
+  change([](Settings& s) { s.flow.octree = OctreeKind::thesis; });
   advance();
   EXPECT_EQ(scene_->steps(), 1);
   EXPECT_TRUE(scene_->warnings().empty());
@@ -229,21 +229,21 @@ TEST_F(FlowInView, ThesisOctreesAreDrawnToo) {
 
 TEST_F(FlowInView, BoxesAreWrittenOnceAndNotCopied) {
   Session session = small_session();
-  session.settings.look.play = false;
+  session.settings.view.play = false;
   open(session);
   for (const EmbeddingKind method : {EmbeddingKind::grid, EmbeddingKind::octree}) {
     SCOPED_TRACE(method == EmbeddingKind::grid ? "grid" : "octree");
-    change([&](Settings& s) { s.flow.method = method, s.look.boxes = false; });
+    change([&](Settings& s) { s.flow.method = method, s.view.boxes = false; });
     advance();
     const Image plain = picture();
-    change([](Settings& s) { s.look.boxes = true; });
+    change([](Settings& s) { s.view.boxes = true; });
     advance();
     EXPECT_EQ(scene_->steps(), 1);  // it stands still all the same
     const Image boxed = picture();
     EXPECT_NE(boxed.pixels, plain.pixels);
     advance();
     EXPECT_EQ(picture().pixels, boxed.pixels);
-    change([](Settings& s) { s.look.boxes = false; });
+    change([](Settings& s) { s.view.boxes = false; });
     advance();
     EXPECT_EQ(picture().pixels, plain.pixels);
   }
@@ -252,9 +252,9 @@ TEST_F(FlowInView, BoxesAreWrittenOnceAndNotCopied) {
 
 TEST_F(FlowInView, BoxesBelongToTheEmbeddingThatIsShown) {
   Session session = small_session();
-  session.settings.look.boxes = true;
+  session.settings.view.boxes = true;
   open(session);
-  for (const OctreeKind octree : {OctreeKind::brick, OctreeKind::cell, OctreeKind::brick})
+  for (const OctreeKind octree : {OctreeKind::brick, OctreeKind::thesis, OctreeKind::brick})
     for (const int resolution : {48, 32, 64}) {
       change([&](Settings& s) {
         s.flow.method = EmbeddingKind::octree, s.flow.octree = octree, s.flow.resolution = resolution;
@@ -263,9 +263,9 @@ TEST_F(FlowInView, BoxesBelongToTheEmbeddingThatIsShown) {
       advance();
       EXPECT_EQ(scene_->steps(), 1);
       const Image boxed = picture();
-      change([](Settings& s) { s.look.boxes = false; });
+      change([](Settings& s) { s.view.boxes = false; });
       EXPECT_NE(picture().pixels, boxed.pixels) << int(octree) << " " << resolution;
-      change([](Settings& s) { s.look.boxes = true; });
+      change([](Settings& s) { s.view.boxes = true; });
     }
   EXPECT_EQ(scene_->copied_bytes(), 0u);
 }
@@ -294,7 +294,7 @@ TEST_F(FlowInView, PanelShowsFiguresAndChangesNothingByItself) {
     for (int k = 0; k < 3; ++k) {  // sizes are known from the second one on
       frame.bind();
       frame.clear({1, 1, 1, 1});
-      imgui.begin(420, 420, 0.1, session_.settings.look);
+      imgui.begin(420, 420, 0.1, session_.settings.view);
       panel.result_tab(session_);
       imgui.end();
     }
@@ -340,8 +340,8 @@ TEST_F(FlowInView, TimesAreThoseOfTheDataFromTheFirst) {
 TEST_F(FlowInView, WhatCanBeTickedInALightPopupIsSeen) {
   ImGuiLayer imgui(nullptr);
   for (const char* theme : {"light", "dark"}) {
-    session_.settings.look.theme = theme;
-    imgui.begin(100, 100, 0.1, session_.settings.look);
+    session_.settings.view.theme = theme;
+    imgui.begin(100, 100, 0.1, session_.settings.view);
     const ImVec4* colours = ImGui::GetStyle().Colors;
     const ImVec4 box = colours[ImGuiCol_FrameBg];
     for (const ImGuiCol behind : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) {

@@ -84,7 +84,7 @@ class MeshPanelTest : public testing::Test {
       for (int x = 4; x < width; x += 8) {
         if (!frame(float(x), float(y), false)) continue;
         click(float(x), float(y));
-        const Look& look = session_.settings.look;
+        const ViewSettings& look = session_.settings.view;
         hidden_.insert(look.hidden);
         ghosts_.insert(look.ghosts);
         if (*session_.camera != *before.camera) {
@@ -110,8 +110,8 @@ TEST_F(MeshPanelTest, MaterialsAreHiddenGhostedAndShownAlone) {
   EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7", "4,7"}));  // "only" hides the other one
   EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4", "7", "4,7"}));
   hidden_.clear(), ghosts_.clear();
-  session_.settings.look.hidden = "4";
-  session_.settings.look.ghosts = "7";
+  session_.settings.view.hidden = "4";
+  session_.settings.view.ghosts = "7";
   click_everything();
   EXPECT_EQ(hidden_, (std::set<std::string>{"4", "", "4,7", "7"}));  // show, hide the other, only the first
   EXPECT_EQ(ghosts_, (std::set<std::string>{"7", "", "4,7"}));

@@ -119,9 +119,9 @@ TEST_F(MeshInView, ChangesInTheMiddleAreTakenOver) {
     for (int i = 0; i < 3 * k; ++i) advance();
     change([&](Settings& s) {
       (k % 3 == 0 ? s.mesh.theta : k % 3 == 1 ? s.mesh.epsilon : s.mesh.max_size) *= k % 2 ? 0.9 : 1.1;
-      s.look.boxes = k % 2 == 0;
-      s.look.slice = k % 4 == 0 ? "none" : "y";
-      s.look.slice_field = k % 3 == 0 ? "distance" : "size";
+      s.view.boxes = k % 2 == 0;
+      s.view.slice = k % 4 == 0 ? "none" : "y";
+      s.view.slice_field = k % 3 == 0 ? "distance" : "size";
     });
     advance();
     drawn();
@@ -164,15 +164,15 @@ TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
   const double size = std::stod(line(*probed, "wanted size"));  // voxels
   EXPECT_GE(size, 0.999 * session_.settings.mesh.min_size);
   EXPECT_LE(size, 1.001 * session_.settings.mesh.max_size);
-  change([](Settings& s) { s.look.hidden = "1"; });
+  change([](Settings& s) { s.view.hidden = "1"; });
   const std::optional<ProbeResult> behind = scene_->probe(from, along);
   ASSERT_TRUE(behind);
   EXPECT_EQ(line(*behind, "between"), "1 and 2");
-  change([](Settings& s) { s.look.clip = "x", s.look.clip_at = 0.9; });
+  change([](Settings& s) { s.view.clip = "x", s.view.clip_at = 0.9; });
   const std::optional<ProbeResult> beyond = scene_->probe(from, along);
   ASSERT_TRUE(beyond);
   EXPECT_EQ(line(*beyond, "between"), "outside and 2");
-  change([](Settings& s) { s.look.slice = "x", s.look.slice_at = 0.1; });
+  change([](Settings& s) { s.view.slice = "x", s.view.slice_at = 0.1; });
   advance();
   const std::optional<ProbeResult> slice = scene_->probe(from, along);
   ASSERT_TRUE(slice);
@@ -195,7 +195,7 @@ TEST_F(MeshInView, AProbeTellsTheProbabilityOfWhatIsThere) {
   }
   open(true);
   advance();
-  change([](Settings& s) { s.look.slice = "z"; });
+  change([](Settings& s) { s.view.slice = "z"; });
   const std::optional<ProbeResult> left = scene_->probe({2, 4, 100}, {0, 0, -1}),
                                    right = scene_->probe({9, 4, 100}, {0, 0, -1});
   ASSERT_TRUE(left && right);
@@ -216,10 +216,10 @@ TEST_F(MeshInView, WhatIsSeenIsTheVolumeUntilThereAreParticles) {
   EXPECT_EQ(scene_->seen(), scene_->corners());
   EXPECT_TRUE(scene_->has_legend()) << "of the particles";
   const std::uint64_t before = scene_->seen_version();
-  change([](Settings& s) { s.look.slice = "x", s.mesh.iterations = 20; });
+  change([](Settings& s) { s.view.slice = "x", s.mesh.iterations = 20; });
   EXPECT_NE(scene_->seen_version(), before);
   EXPECT_GT(scene_->seen().back().x, scene_->corners().back().x);
-  change([](Settings& s) { s.look.slice = "none"; });
+  change([](Settings& s) { s.view.slice = "none"; });
   EXPECT_TRUE(settles());
   EXPECT_FALSE(scene_->has_legend()) << "triangles have none";
 }

@@ -60,7 +60,7 @@ class UiTest : public ImGuiFrames {
     return found && found->Active;
   }
 
-  const std::string& tab() const { return session_.settings.look.tab; }
+  const std::string& tab() const { return session_.settings.view.tab; }
 
   StillScene scene_{{-1, -1, -1}, {1, 1, 1}};
   EmptyPanel panel_;
@@ -77,7 +77,7 @@ TEST_F(UiTest, AFailureDoesNotMoveTheTabs) {
   for (; y < height && tab() != "knobs"; y += 4) click(70, y);
   ASSERT_EQ(tab(), "knobs");
   y -= 4;
-  session_.settings.look.tab = "data";
+  session_.settings.view.tab = "data";
   frame();
   frame();
   scene_.what_failed = "a volume that cannot be read (it is shorter than its header says); give the whole file";
@@ -120,7 +120,7 @@ TEST_F(UiTest, ItAsksBeforeItQuits) {
 }
 
 TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
-  session_.settings.look.tab = "knobs";
+  session_.settings.view.tab = "knobs";
   for (int k = 0; k < 3; ++k) frame();
   float y = 20;
   const auto over_field = [&] { return ImGui::GetMouseCursor() == ImGuiMouseCursor_TextInput; };
@@ -130,14 +130,14 @@ TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
   type("t");
   press(enter_key);  // the field is left
   frame();
-  const std::string theme = session_.settings.look.theme;
+  const std::string theme = session_.settings.view.theme;
   type("t");
-  EXPECT_EQ(session_.settings.look.theme, theme);
+  EXPECT_EQ(session_.settings.view.theme, theme);
   move(600, 300);  // over the view
   frame();
   frame();
   type("t");
-  EXPECT_NE(session_.settings.look.theme, theme);
+  EXPECT_NE(session_.settings.view.theme, theme);
 }
 
 }  // namespace

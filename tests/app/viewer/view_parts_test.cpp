@@ -105,8 +105,8 @@ TEST(Undo, CamerasStayUnlessTheInputChanges) {
 TEST(Undo, WhatTheWindowDoesItselfIsNoChange) {
   Frames frames(with_ttl(4));
   frames.now.settings.width = 300;
-  frames.now.settings.look.play = false;
-  frames.now.settings.look.tab = "knobs";
+  frames.now.settings.view.play = false;
+  frames.now.settings.view.tab = "knobs";
   frames.next();
   EXPECT_FALSE(frames.undo.can_undo());
 }

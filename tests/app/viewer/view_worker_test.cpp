@@ -149,12 +149,12 @@ TEST(FlowWorker, VectorsAreChosenAgainOnTheSameEmbedding) {
 
 TEST(FlowWorker, CreasesMakeTheSurfaceAnew) {
   WorkerRun run;
-  run.change([](Settings& s) { s.crease = 1; });
+  run.change([](Settings& s) { s.crease_angle = 1; });
   EXPECT_EQ(run.surfaces, 2);
   EXPECT_EQ(run.calls("embed"), 2);
   EXPECT_EQ(run.starts, 2);
   run.step();
-  WorkerRun fresh(false, [](Settings& s) { s.crease = 1; });
+  WorkerRun fresh(false, [](Settings& s) { s.crease_angle = 1; });
   fresh.step();
   EXPECT_EQ(run.memory, fresh.memory);
 }
@@ -179,9 +179,9 @@ TEST(FlowWorker, AChoiceThatFailsLeavesWhatThereWas) {
 TEST(FlowWorker, ArrowsArePlacedWhereTheyAreOn) {
   WorkerRun run;
   EXPECT_EQ(run.arrows, 0);
-  run.change([](Settings& s) { s.look.arrows = true, s.look.arrow_count = 50; });
+  run.change([](Settings& s) { s.view.arrows = true, s.view.arrow_count = 50; });
   EXPECT_EQ(run.places, 50u);
-  run.change([](Settings& s) { s.look.arrows = false; });
+  run.change([](Settings& s) { s.view.arrows = false; });
   EXPECT_EQ(run.places, 0u);
   EXPECT_EQ(run.starts, 1);
 }
@@ -225,7 +225,7 @@ TEST(FlowWorker, CancelEndsALongStageAndResumeBeginsItAgain) {
   EXPECT_EQ(run.failure, "");
   EXPECT_EQ(run.embeddings, 1);
   EXPECT_EQ(run.memory, shown);
-  run.change([](Settings& s) { s.look.edges = true; });  // concerns nothing that was cancelled
+  run.change([](Settings& s) { s.view.edges = true; });  // concerns nothing that was cancelled
   EXPECT_TRUE(run.worker->cancelled());
   run.change([](Settings& s) { s.flow.resolution = 64; });
   EXPECT_FALSE(run.worker->cancelled());

@@ -1,4 +1,4 @@
-// Nacre: the thesis octree on the CPU, its nodes against the dissertation's queues, and its look-ups.
+// Nacre: the thesis octree on the CPU, its nodes against the thesis's queues, and its look-ups.
 #include <optional>
 #include <set>
 

@@ -43,7 +43,7 @@ TEST(CotangentEnergy, TheIdealIsAHexagonalLatticeWithSpacingH) {
   EXPECT_NEAR(2 * energy(1 / std::sqrt(3.0)), row_energy, 1e-4);
   EXPECT_NEAR(test::lattice_spacing(hexagonal_energy), 1, 1e-3);
   EXPECT_NEAR(test::lattice_spacing(row_energy, true), 1, 1e-3);
-  // The dissertation's figure is six distances, and as an energy asks for 2.3 times the particles.
+  // The thesis's figure is six distances, and as an energy asks for 2.3 times the particles.
   EXPECT_NEAR(6 / std::sqrt(3.0), 3.462, 3e-3);
   EXPECT_NEAR(test::lattice_spacing(3.462), 0.657, 1e-3);
 }

@@ -21,7 +21,7 @@ void CountsSettleFromAnyStart(Executor<Backend>& exec) {
   }
 }
 
-/// The dissertation's own constants: control after every iteration, 0.75 and 1.35 of the ideal, the original random
+/// The thesis's own constants: control after every iteration, 0.75 and 1.35 of the ideal, the original random
 /// rule.
 template <class Backend>
 void TheOriginalRuleSettlesToo(Executor<Backend>& exec) {

@@ -36,7 +36,7 @@ TEST(Redblack, AgreesWithTheSerialSolver) {
   EXPECT_NEAR(double(count[1]), double(count[0]), 0.02 * double(count[0]));
 }
 
-TEST(Redblack, AStepOfHNeedsLargerBinsAndWorks) {  // the dissertation's own limit
+TEST(Redblack, AStepOfHNeedsLargerBinsAndWorks) {  // the thesis's own limit
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
   SolverParameters parameters;

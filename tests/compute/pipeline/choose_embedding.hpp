@@ -8,11 +8,11 @@
 
 namespace nacre::test {
 
-/// `name`: grid, brick (the octree of bricks) or cell (the octree whose leaves are cells).
+/// `name`: grid, brick (the octree of bricks) or thesis (the octree whose leaves are cells).
 inline void choose_embedding(FlowParameters& parameters, std::string_view name) {
-  if (name != "grid" && name != "brick" && name != "cell") throw std::invalid_argument("no such embedding");
+  if (name != "grid" && name != "brick" && name != "thesis") throw std::invalid_argument("no such embedding");
   parameters.method = name == "grid" ? EmbeddingKind::grid : EmbeddingKind::octree;
-  parameters.octree = name == "cell" ? OctreeKind::cell : OctreeKind::brick;
+  parameters.octree = name == "thesis" ? OctreeKind::thesis : OctreeKind::brick;
 }
 
 }  // namespace nacre::test

@@ -81,7 +81,7 @@ TEST_P(FlowDoor, TheBackgroundIsOpaqueUnlessAskedToBeTransparent) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(By, FlowDoor, ::testing::Values("grid", "brick", "cell"),
+INSTANTIATE_TEST_SUITE_P(By, FlowDoor, ::testing::Values("grid", "brick", "thesis"),
                          [](const auto& test) { return std::string(test.param); });
 
 }  // namespace

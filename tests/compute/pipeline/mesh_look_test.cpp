@@ -155,8 +155,8 @@ class MeshShow : public ::testing::TestWithParam<std::string> {
     const std::int64_t n = pipeline_->show_boxes(boxes_.data(), capacity);
     ASSERT_GT(n, 0);
     ASSERT_LE(n, capacity);
-    const std::vector<Float4> position = position_.look();
-    const std::vector<ShownBox> boxes = boxes_.look();
+    const std::vector<Float4> position = position_.view();
+    const std::vector<ShownBox> boxes = boxes_.view();
     std::vector<int> inside(std::size_t(n), 0);
     for (std::int64_t i = 0; i < counts.total(); ++i) {
       const Float4 p = position[std::size_t(i)];

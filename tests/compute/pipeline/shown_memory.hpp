@@ -58,7 +58,7 @@ inline void expect_shown(MeshPipeline& pipeline, const Lent<Float4>& to_position
   const ShownCounts counts = pipeline.show_particles(shown_memory(to_position, to_direction));
   const MeshParticles all = pipeline.particles();
   ASSERT_EQ(counts.total(), std::int64_t(all.points.size()));
-  const std::vector<Float4> position = to_position.look(), direction = to_direction.look();
+  const std::vector<Float4> position = to_position.view(), direction = to_direction.view();
   const VoxelFrame frame = pipeline.voxel_frame();
   const double unit = length(frame.axes[0]);
   std::int64_t at = 0;

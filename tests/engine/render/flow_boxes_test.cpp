@@ -77,7 +77,7 @@ TEST_F(Boxes, OfTheBrickOctreeAreItsNodesAndBricks) {
 }
 
 TEST_F(Boxes, OfTheThesisOctreeAreItsNodes) {
-  open("cell");
+  open("thesis");
   expect_boxes(7, 2);
   expect_tree();
 }

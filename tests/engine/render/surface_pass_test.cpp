@@ -168,7 +168,7 @@ TEST_F(Render, OctreesLookAsRaysSeeThem) {
 }
 
 TEST_F(Render, TheThesisOctreeLooksAsRaysSeeIt) {
-  test::FlowScene scene("sphere", 24, 64, 4, "cell");
+  test::FlowScene scene("sphere", 24, 64, 4, "thesis");
   const Camera camera = fit_camera("iso", scene.surface.points, TwoPictures::width, TwoPictures::height);
   const TwoPictures two(scene, camera, heights(scene));
   two.keep("source_octree");

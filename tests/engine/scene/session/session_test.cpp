@@ -80,8 +80,8 @@ Session full_session() {
   session.settings.flow.contrast = 1.0 / 3;
   session.settings.flow.seed = 4294967295u;
   session.settings.vectors = "wall \"shear\"";
-  session.settings.look.hidden = "1,2";
-  session.settings.look.panel = false;
+  session.settings.view.hidden = "1,2";
+  session.settings.view.panel = false;
   SessionEvent opens;
   opens.time = 0.1 + 0.2;
   opens.input = SessionInput{{}, "torus", 64};
@@ -196,7 +196,7 @@ TEST_F(SessionFile, NamesWithDashesAreTheTables) {
 
 TEST_F(SessionFile, OldNamesOfKnobsAreRead) {
   const Session session = read(R"({"knobs": {"crease": 30}, "events": [{"time": 1, "knobs": {"crease": 50}}]})");
-  EXPECT_EQ(session.settings.crease, 30);
+  EXPECT_EQ(session.settings.crease_angle, 30);
   EXPECT_EQ(session.events[0].knobs, (std::map<std::string, std::string>{{"crease_angle", "50"}}));
   const json written = json::parse(session_text(session));
   EXPECT_EQ(written["knobs"]["crease_angle"], 30);

@@ -33,9 +33,9 @@ TEST(KnobTable, EveryRowIsWhole) {
 TEST(KnobTable, OldNamesSetTheSameKnob) {
   Settings settings;
   set_knob(settings, "crease", "25");
-  EXPECT_EQ(settings.crease, 25);
+  EXPECT_EQ(settings.crease_angle, 25);
   set_knob(settings, "crease-angle", "35");
-  EXPECT_EQ(settings.crease, 35);
+  EXPECT_EQ(settings.crease_angle, 35);
   try {
     set_knob(settings, "crase", "25");
     ADD_FAILURE() << "there is no such knob";
@@ -43,7 +43,7 @@ TEST(KnobTable, OldNamesSetTheSameKnob) {
     EXPECT_NE(std::string(error.what()).find("did you mean crease_angle"), std::string::npos) << error.what();
   }
   set_knobs(settings, {{"crease", 45}});
-  EXPECT_EQ(settings.crease, 45);
+  EXPECT_EQ(settings.crease_angle, 45);
   EXPECT_EQ(knob_values(settings).at("crease_angle"), 45);
   EXPECT_FALSE(knob_values(settings).contains("crease"));
 }
@@ -53,7 +53,7 @@ TEST(KnobTable, ChoicesOfEnumerationsHaveNames) {
   set_knob(settings, "method", "octree");
   set_knob(settings, "octree", "source");
   EXPECT_EQ(settings.flow.method, EmbeddingKind::octree);
-  EXPECT_EQ(settings.flow.octree, OctreeKind::cell);
+  EXPECT_EQ(settings.flow.octree, OctreeKind::thesis);
   EXPECT_EQ(knob_values(settings).at("octree"), "source");
   EXPECT_THROW(set_knob(settings, "method", "sieve"), Error);
   EXPECT_EQ(settings.flow.method, EmbeddingKind::octree) << "a wrong value changes nothing";

@@ -11,7 +11,7 @@
 namespace nacre {
 namespace {
 
-Vec3d point_at(const Surface& s, const SurfacePlace& place) {
+Vec3d point_at(const Surface& s, const SurfacePoint& place) {
   const Triangle& t = s.triangles[place.triangle];
   return s.points[t.a] * double(place.weights.x) + s.points[t.b] * double(place.weights.y) +
          s.points[t.c] * double(place.weights.z);
@@ -20,7 +20,7 @@ Vec3d point_at(const Surface& s, const SurfacePlace& place) {
 TEST(SpreadPlaces, KeepTheirDistance) {
   const Surface sphere = make_sample("sphere", 24).load(0);
   const int count = 400;
-  const auto places = spread_places(sphere.points, sphere.triangles, count, 1);
+  const auto places = spread_points(sphere.points, sphere.triangles, count, 1);
   ASSERT_EQ(places.size(), std::size_t(count));
   const double room = std::sqrt(surface_area(sphere.points, sphere.triangles) / count);
   double nearest = 1e300;
@@ -41,9 +41,9 @@ TEST(SpreadPlaces, CountByAreaNotByTriangles) {
     triangles.push_back({n, n + 1, n + 2});
     triangles.push_back({n + 2, n + 1, n + 3});
   }
-  const auto places = spread_places(points, triangles, 500, 3);
+  const auto places = spread_points(points, triangles, 500, 3);
   ASSERT_EQ(places.size(), 500u);
-  const auto large = std::count_if(places.begin(), places.end(), [](const SurfacePlace& p) { return p.triangle == 0; });
+  const auto large = std::count_if(places.begin(), places.end(), [](const SurfacePoint& p) { return p.triangle == 0; });
   EXPECT_NEAR(double(large), 500 * 2 / 3.0, 25);
 }
 
@@ -51,7 +51,7 @@ TEST(SpreadPlaces, OneSeedOneResult) {
   const Surface torus = make_sample("torus", 24).load(0);
   const auto at = [&](std::uint32_t seed) {
     std::vector<std::uint32_t> triangles;
-    for (const SurfacePlace& p : spread_places(torus.points, torus.triangles, 100, seed))
+    for (const SurfacePoint& p : spread_points(torus.points, torus.triangles, 100, seed))
       triangles.push_back(p.triangle);
     return triangles;
   };
@@ -61,8 +61,8 @@ TEST(SpreadPlaces, OneSeedOneResult) {
 
 TEST(SpreadPlaces, NothingToStandOn) {
   const std::vector<Vec3d> points{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-  EXPECT_TRUE(spread_places(points, std::vector<Triangle>{{0, 1, 2}}, 10, 1).empty());
-  EXPECT_TRUE(spread_places({}, {}, 10, 1).empty());
+  EXPECT_TRUE(spread_points(points, std::vector<Triangle>{{0, 1, 2}}, 10, 1).empty());
+  EXPECT_TRUE(spread_points({}, {}, 10, 1).empty());
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace cub {
 
 struct DeviceReduce {
-  /// In tiles, so that what is merged is not merged in the order of the elements. CUB launches one kernel for one tile, two
-  /// for more: graphs differ in shape.
+  /// In tiles, so that what is merged is not merged in the order of the elements. CUB launches one kernel for one tile,
+  /// two for more: graphs differ in shape.
   template <class In, class T, class Count, class Merge>
   static cudaError_t Reduce(void* scratch, std::size_t& bytes, In in, T* out, Count n, Merge merge, T identity,
                             cudaStream_t stream) {
