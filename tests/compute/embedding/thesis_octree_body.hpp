@@ -9,7 +9,7 @@
 #include "tests/compute/on_devices.hpp"
 #include "tests/compute/reference.hpp"
 
-namespace nacre::test::source_octree_bodies {
+namespace nacre::test::thesis_octree_bodies {
 
 /// A source octree on the host; `view` points into the copies.
 struct HostThesisOctree {
@@ -231,4 +231,4 @@ NACRE_DEVICE_TEST(ThesisOctree, Slivers)
 NACRE_DEVICE_TEST(ThesisOctree, EveryCellIsVisitedOnce)
 NACRE_DEVICE_TEST(ThesisOctree, SubgridsDoNotShow)
 
-}  // namespace nacre::test::source_octree_bodies
+}  // namespace nacre::test::thesis_octree_bodies

@@ -9,6 +9,8 @@
 namespace nacre::test {
 namespace {
 
+using namespace thesis_octree_bodies;
+
 /// The streaming construction as the source has it (sec. 6.1.3): keys go into the lowest queue, which is a node once it
 /// holds eight, and whose parent then goes into the queue above. A run of empty keys that fills whole queues goes into
 /// the queue above at once.

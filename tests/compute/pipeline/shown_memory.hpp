@@ -27,7 +27,7 @@ class Lent {
 
   T* data() const { return data_; }
   std::int64_t size() const { return std::int64_t(bytes_ / sizeof(T)); }
-  std::vector<T> look() const {
+  std::vector<T> view() const {
     std::vector<T> host(bytes_ / sizeof(T));
     device_.copy_to_host(host.data(), data_, bytes_);
     return host;
