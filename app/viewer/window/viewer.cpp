@@ -203,7 +203,8 @@ class Viewer {
     if (advanced && draws) add_to_video();
     if (requests_.screenshot) pictures.push_back(*requests_.screenshot);
     for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
-    recording_.note(time, changed ? &told_ : nullptr, pictures);
+    const bool moved = session_.camera != told_.camera;  // by hand, or fitted, in this frame
+    recording_.note(time, changed || moved ? &session_ : nullptr, pictures);
     if (draws) note_times(begin, end);
     count_time(begin, advanced);
     obey(requests_);
