@@ -83,7 +83,7 @@ void* CudaDevice::allocate(std::size_t bytes) {
   if (cudaMalloc(&block, std::max<std::size_t>(bytes, 1)) != cudaSuccess) {
     cudaGetLastError();  // forgets the failure, or the next launch would be blamed for it
     throw Error("not enough memory on the GPU", std::to_string(bytes >> 20) + " MiB asked",
-                "lower the resolution or use --device cpu");
+                "lower the resolution or use `device` cpu");
   }
   count(bytes);
   return block;

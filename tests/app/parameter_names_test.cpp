@@ -35,7 +35,7 @@ TEST(ParameterNames, TheNumericsNameKnobsWithoutDashes) {
   for (const Knob& knob : knobs(settings)) known.insert(knob.name);
   const std::regex literal(R"("(?:[^"\\\n]|\\.)*")"), name("`([a-z0-9_]+)`"), dashes("--[a-z]");
   int named = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(NACRE_SOURCE_DIR "/compute")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_file("compute"))) {
     if (!entry.is_regular_file()) continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);) {

@@ -9,6 +9,8 @@
 namespace nacre::test {
 namespace {
 
+using namespace brick_octree_bodies;
+
 template <class T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;

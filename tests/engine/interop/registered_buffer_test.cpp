@@ -13,7 +13,7 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t count = 1 << 20;
+constexpr std::size_t ramp_count = 1 << 20;
 using Path = SharedBuffer::Path;
 
 /// Has a CUDA device and a context on the GPU that it is; the test is skipped, aloud, where there is none.
@@ -38,20 +38,20 @@ class InteropOnCuda : public testing::Test {
   void write(SharedBuffer& buffer, float first) {
     void* memory = buffer.begin_write(true);
     ASSERT_NE(memory, nullptr);
-    device_->copy_to_device(memory, ramp(first).data(), count * sizeof(float));
+    device_->copy_to_device(memory, ramp(first).data(), ramp_count * sizeof(float));
     buffer.end_write();
   }
 
   static std::vector<float> ramp(float first) {
-    std::vector<float> values(count);
+    std::vector<float> values(ramp_count);
     std::iota(values.begin(), values.end(), first);
     return values;
   }
 
   /// What a draw would read.
   static std::vector<float> seen(const SharedBuffer& buffer) {
-    std::vector<float> values(count);
-    glGetNamedBufferSubData(buffer.shown().id(), 0, GLsizeiptr(count * sizeof(float)), values.data());
+    std::vector<float> values(ramp_count);
+    glGetNamedBufferSubData(buffer.shown().id(), 0, GLsizeiptr(ramp_count * sizeof(float)), values.data());
     return values;
   }
 
@@ -61,9 +61,9 @@ class InteropOnCuda : public testing::Test {
 
 TEST_F(InteropOnCuda, WritesStraightIntoOpenGl) {
   if (!cuda_draws_here(*device_)) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
-  SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F);
+  SharedBuffer buffer(*device_, ramp_count * sizeof(float), GL_R32F);
   ASSERT_EQ(buffer.path(), Path::registered);
-  EXPECT_EQ(seen(buffer), std::vector<float>(count, 0.0f));
+  EXPECT_EQ(seen(buffer), std::vector<float>(ramp_count, 0.0f));
   for (int step = 0; step < 10; ++step) {
     write(buffer, float(100 * step));
     EXPECT_EQ(seen(buffer), ramp(float(100 * step))) << step;
@@ -75,9 +75,9 @@ TEST_F(InteropOnCuda, WritesStraightIntoOpenGl) {
 
 TEST_F(InteropOnCuda, AnInterruptedWriteIsNotShown) {
   if (!cuda_draws_here(*device_)) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
-  SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F, Path::registered);
+  SharedBuffer buffer(*device_, ramp_count * sizeof(float), GL_R32F, Path::registered);
   write(buffer, 3);
-  device_->fill(buffer.begin_write(true), 0x55, count * sizeof(float));
+  device_->fill(buffer.begin_write(true), 0x55, ramp_count * sizeof(float));
   buffer.cancel_write();
   EXPECT_EQ(seen(buffer), ramp(3));
   write(buffer, 6);
@@ -87,21 +87,21 @@ TEST_F(InteropOnCuda, AnInterruptedWriteIsNotShown) {
 TEST_F(InteropOnCuda, ABufferMayDieWhileItIsWritten) {
   if (!cuda_draws_here(*device_)) GTEST_SKIP() << context_->renderer() << " draws, CUDA computes elsewhere";
   {
-    SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F, Path::registered);
-    device_->fill(buffer.begin_write(true), 0x55, count * sizeof(float));
+    SharedBuffer buffer(*device_, ramp_count * sizeof(float), GL_R32F, Path::registered);
+    device_->fill(buffer.begin_write(true), 0x55, ramp_count * sizeof(float));
   }
   device_->synchronize();
-  SharedBuffer next(*device_, count * sizeof(float), GL_R32F, Path::registered);
+  SharedBuffer next(*device_, ramp_count * sizeof(float), GL_R32F, Path::registered);
   write(next, 1);
   EXPECT_EQ(seen(next), ramp(1));
 }
 
 TEST_F(InteropOnCuda, CopiesWhereAnotherDeviceDraws) {
-  SharedBuffer buffer(*device_, count * sizeof(float), GL_R32F, Path::copied);
+  SharedBuffer buffer(*device_, ramp_count * sizeof(float), GL_R32F, Path::copied);
   for (int step = 1; step <= 3; ++step) {
     write(buffer, float(step));
     EXPECT_EQ(seen(buffer), ramp(float(step)));
-    EXPECT_EQ(buffer.copied_bytes(), std::uint64_t(step) * count * sizeof(float));
+    EXPECT_EQ(buffer.copied_bytes(), std::uint64_t(step) * ramp_count * sizeof(float));
   }
   EXPECT_FALSE(buffer.remark().empty());
 }

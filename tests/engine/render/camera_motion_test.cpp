@@ -89,13 +89,13 @@ TEST(CameraMotion, DollyKeepsWhatIsUnderTheCursor) {
 
 TEST(CameraMotion, ADeeperTargetShowsTheSamePicture) {
   for (const Vec3d p : {Vec3d(0.3, 0.4, 0.5), Vec3d(-1, 0.2, -2)}) {
-    const Camera camera = front(), c = look_at_depth(camera, camera.target + p);
+    const Camera camera = front_camera(), c = look_at_depth(camera, camera.target + p);
     EXPECT_NEAR(dot(camera.target + p - c.target, c.forward()), 0, 1e-12);
     for (const Vec3d q : {p, Vec3d(1, 1, 1), Vec3d(0, -1, 0.2)})
       for (const std::size_t k : {0, 1})
         EXPECT_NEAR(place_of(c, camera.target + q, 1.5)[k], place_of(camera, camera.target + q, 1.5)[k], 1e-12);
   }
-  Camera flat = front();
+  Camera flat = front_camera();
   flat.orthographic = true;
   const Camera c = look_at_depth(flat, flat.target + Vec3d(0.3, 0.4, 0.5));
   EXPECT_EQ(c.height, flat.height);
@@ -105,9 +105,9 @@ TEST(CameraMotion, ADeeperTargetShowsTheSamePicture) {
 
 TEST(CameraMotion, ZoomingEndsNearTheSurfaceAndBeforeAllVanishes) {
   const double extent = 3;
-  const Vec3d surface = front().target + Vec3d(0.1, 0.2, 0.3);
+  const Vec3d surface = front_camera().target + Vec3d(0.1, 0.2, 0.3);
   for (const double factor : {0.5, 2.0}) {
-    Camera camera = front();
+    Camera camera = front_camera();
     for (int k = 0; k < 100; ++k) {
       camera = look_at_depth(camera, surface);
       camera = dolly(camera, limited_zoom(camera, factor, extent), 0, 0, 1.5);
@@ -115,7 +115,7 @@ TEST(CameraMotion, ZoomingEndsNearTheSurfaceAndBeforeAllVanishes) {
     }
     EXPECT_NEAR(camera.height, factor < 1 ? 1e-4 * extent : 10 * extent, 1e-9);
   }
-  Camera beyond = front();
+  Camera beyond = front_camera();
   beyond.height = 1000;
   EXPECT_EQ(limited_zoom(beyond, 2, extent), 1);
   EXPECT_EQ(limited_zoom(beyond, 0.5, extent), 0.5) << "it may come back";
