@@ -257,7 +257,7 @@ TEST_F(Scripts, ThatMeanNothingAreRefusedBeforeAnyFrame) {
   refused(script(nullptr), 1, {"nothing to play", "--session"});
   refused(script({{{"time", 1}, {"knobs", {{"tttl", 3}}}}}), 1, {"event 1", "no knob 'tttl'", "ttl"});
   refused(script({{{"time", 1}, {"knobs", {{"ttl", 99}}}}}), 1, {"event 1", "out of range"});
-  refused(script({{{"time", 1}, {"colour", "red"}}}), 1, {"event 1", "'colour' means nothing"});
+  refused(script({{{"time", 1}, {"colour", "red"}}}), 1, {"event 1", "'colour' is not valid"});
   refused(script({{{"time", 1}, {"knobs", {{"colormap", "rust"}}}}}), 2, {"the event at 1 s", "rust"});
   refused(script({{{"time", 1}, {"sample", "teapot"}}}), 2, {"the event at 1 s", "teapot"});
   refused(script({{{"time", 1}, {"knobs", {{"background", "blue"}}}}}), 2, {"the event at 1 s", "blue"});

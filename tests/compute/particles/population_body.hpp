@@ -88,7 +88,7 @@ void TooManyParticlesAreRefused(Executor<Backend>& exec) {
     run.control();
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("room for"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("at most"), std::string::npos) << error.what();
     EXPECT_FALSE(error.advice().empty());
   }
   const auto after = run.places();

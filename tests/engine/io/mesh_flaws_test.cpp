@@ -36,10 +36,10 @@ TEST(MeshFlaws, LostLabelsAreNamed) {
   t.materials[0] = {};  // the outside cannot be lost
   t.materials[2] = {};
   EXPECT_EQ(lost_labels(three, t), Labels{-7});
-  expect_one(mesh_flaws(three, t), {"label -7 has no surface", "lost", "--min-size"});
+  expect_one(mesh_flaws(three, t), {"label -7 was lost", "no surface", "--min-size"});
   t.materials[3] = {};
   EXPECT_EQ(lost_labels(three, t), (Labels{-7, 9}));
-  expect_one(mesh_flaws(three, t), {"2 labels have no surface", "(-7, 9)"});
+  expect_one(mesh_flaws(three, t), {"2 labels were lost", "have no surface", "(-7, 9)"});
 }
 
 TEST(MeshFlaws, ManyLostLabelsAreALineNotAPage) {

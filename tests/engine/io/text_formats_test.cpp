@@ -87,7 +87,7 @@ TEST_F(TextFormats, OffHeaders) {
 
 TEST_F(TextFormats, OffFailuresAreClear) {
   EXPECT_TRUE(contains(failure("lie.off", "OFF\n4000000000 1 0\n0 0 0\n"), "more than the file can hold"));
-  EXPECT_TRUE(contains(failure("four.off", "4OFF\n1 1 0\n"), "dimensions"));
+  EXPECT_TRUE(contains(failure("four.off", "4OFF\n1 1 0\n"), "three-dimensional"));
   EXPECT_TRUE(contains(failure("binary.off", "OFF BINARY\n"), "binary OFF"));
   EXPECT_TRUE(contains(failure("short.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "point 3 of 3"));
 }
