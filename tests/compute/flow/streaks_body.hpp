@@ -1,0 +1,251 @@
+// Nacre: test bodies for streaks along the present flow, on the grid and on the octree of bricks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "compute/embedding/build_brick_octree.hpp"
+#include "compute/embedding/build_closest_point_grid.hpp"
+#include "compute/embedding/build_refined_grid.hpp"
+#include "compute/flow/streaks.hpp"
+#include "tests/compute/meshes.hpp"
+#include "tests/compute/on_devices.hpp"
+
+namespace nacre::test {
+
+/// A mesh in texture cells, with a vector and a normal per triangle corner: neighbours may differ.
+struct FlowSheet {
+  Mesh mesh;
+  std::vector<Vec3f> vectors;  ///< one per point of the mesh
+  std::vector<Vec3f> normals;  ///< one per corner
+
+  /// Adds triangles that flow as one.
+  void add(const Mesh& part, const Vec3f& flow) {
+    mesh.add(part);
+    vectors.resize(mesh.points.size(), flow);
+    for (std::size_t t = normals.size() / 3; t < mesh.triangles.size(); ++t) {
+      const Corners c = mesh.corners(t);
+      normals.insert(normals.end(), 3, Vec3f(normalized(cross(c.b - c.a, c.c - c.a))));
+    }
+  }
+};
+
+/// Writes down where a surface cell is.
+struct NotePlace {
+  Int3* places;
+  NACRE_HD void operator()(CellIndex s, const Int3& place) const { places[s] = place; }
+};
+
+/// Gives cells their values by hand.
+struct SetValue {
+  const float* value;
+  StreakCell* cells;
+  NACRE_HD void operator()(CellIndex s, const Int3&) const { cells[s].value = value[s]; }
+};
+
+/// What was made of a texture, per surface cell.
+struct DrawnStreaks {
+  std::vector<Int3> place;
+  std::vector<StreakCell> cells;
+  std::vector<float> value, streaks;
+
+  std::size_t at(const Int3& p) const { return std::size_t(std::find(place.begin(), place.end(), p) - place.begin()); }
+};
+
+/// How a texture is drawn: what each cell's value is, whether it is high-passed, how far it is convolved.
+template <class Texture>
+struct StreakRecipe {
+  Texture value;  ///< value(Int3)
+  bool high_pass = false;
+  int reach = 6;
+};
+
+template <class Backend, class Streaks, class Texture>
+DrawnStreaks draw_on(Executor<Backend>& exec, const Streaks& on, std::int64_t n, const MeshView& mesh, double cell,
+                     const Vec3f* vectors, const StreakRecipe<Texture>& recipe) {
+  Arena& arena = exec.arena();
+  const Array<Int3> places = arena.permanent<Int3>(n);
+  for_each_streak_cell(exec, on, n, NotePlace{places.data()});
+  DrawnStreaks drawn;
+  drawn.place = places.download();
+  for (const Int3& p : drawn.place) drawn.value.push_back(recipe.value(p));
+  const Array<float> value = arena.permanent_copy<float>(drawn.value), streaks = arena.permanent<float>(n);
+  const Array<StreakCell> cells = arena.permanent<StreakCell>(n);
+  for_each_streak_cell(exec, on, n, MarkStreakCells<Streaks>{on, mesh, cell, vectors, 1e-6f, cells.data()});
+  if (recipe.high_pass)
+    for_each_streak_cell(exec, on, n, HighPass<Streaks>{on, value.data(), cells.data()});
+  else
+    for_each_streak_cell(exec, on, n, SetValue{value.data(), cells.data()});
+  for_each_streak_cell(exec, on, n, ConvolveAlongFlow<Streaks>{on, cells.data(), recipe.reach, streaks.data()});
+  drawn.cells = cells.download();
+  drawn.streaks = streaks.download();
+  return drawn;
+}
+
+template <class Backend, class Texture>
+DrawnStreaks draw_on_grid(Executor<Backend>& exec, const FlowSheet& sheet, const StreakRecipe<Texture>& recipe) {
+  constexpr int refine = 2;
+  const std::size_t mark = exec.arena().mark();
+  std::vector<Vec3d> points;
+  for (const Vec3d& p : sheet.mesh.points) points.push_back(p / double(refine));
+  Arena& arena = exec.arena();
+  const auto triangles = std::uint32_t(sheet.mesh.triangles.size());
+  const MeshView mesh{arena.permanent_copy<Vec3d>(points).data(),
+                      arena.permanent_copy<Triangle>(sheet.mesh.triangles).data(),
+                      arena.permanent_copy<Vec3f>(sheet.normals).data()};
+  const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
+  const ClosestPointGrid coarse = build_closest_point_grid(exec, mesh, triangles, Int3(8), 4, 4.47f);
+  const RefinedGrid fine = build_refined_grid(exec, mesh, triangles, coarse, refine);
+  DrawnStreaks drawn =
+      draw_on(exec, GridStreaks{fine.view(coarse.view())}, fine.surface_cells, mesh, 1.0 / refine, vectors, recipe);
+  arena.rewind(mark);
+  return drawn;
+}
+
+template <class Backend, class Texture>
+DrawnStreaks draw_on_bricks(Executor<Backend>& exec, const FlowSheet& sheet, const StreakRecipe<Texture>& recipe) {
+  const std::size_t mark = exec.arena().mark();
+  Arena& arena = exec.arena();
+  const MeshView mesh{arena.permanent_copy<Vec3d>(sheet.mesh.points).data(),
+                      arena.permanent_copy<Triangle>(sheet.mesh.triangles).data(),
+                      arena.permanent_copy<Vec3f>(sheet.normals).data()};
+  const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
+  const BrickOctree tree = build_brick_octree(exec, mesh, std::uint32_t(sheet.mesh.triangles.size()), 3, 3.6);
+  const BrickOctreeView view = tree.view();
+  DrawnStreaks drawn = draw_on(exec, BrickStreaks{view}, std::int64_t(view.surface_cells), mesh, 1.0, vectors, recipe);
+  arena.rewind(mark);
+  return drawn;
+}
+
+/// Runs `check(drawn)` on both embeddings.
+template <class Backend, class Texture, class Check>
+void on_both(Executor<Backend>& exec, const FlowSheet& sheet, const StreakRecipe<Texture>& recipe, const Check& check) {
+  {
+    SCOPED_TRACE("grid");
+    check(draw_on_grid(exec, sheet, recipe));
+  }
+  SCOPED_TRACE("bricks");
+  check(draw_on_bricks(exec, sheet, recipe));
+}
+
+inline constexpr int first_x = 16, last_x = 45, middle_y = 24, layer = 18;
+
+/// Cells first_x .. last_x by 16 .. 31 in one layer, the surface `height` above their centres.
+inline Mesh flat_part(int from, int to, double height = 0) {
+  return sheet({from + 0.01, 16.01, layer + 0.5 + height}, {to - from + 0.98, 0, 0}, {0, 15.98, 0}, 1);
+}
+
+/// 0 but for one cell.
+struct Impulse {
+  Int3 place;
+  float operator()(const Int3& p) const { return p == place ? 0.1f : 0.0f; }
+};
+
+template <class Backend>
+void CellsKnowFlowAndPlane(Executor<Backend>& exec) {
+  FlowSheet sheet;
+  sheet.add(flat_part(first_x, last_x, 0.3), {0.3f, 0.4f, 7});
+  on_both(exec, sheet, StreakRecipe{Impulse{}}, [&](const DrawnStreaks& drawn) {
+    ASSERT_EQ(drawn.cells.size(), 30u * 16u);
+    for (const StreakCell& cell : drawn.cells) {
+      EXPECT_LT(length(PackedDirection::unpack(cell.direction) - Vec3f(0.6f, 0.8f, 0)), 0.002f) << "in the surface";
+      EXPECT_EQ(PackedDirection::unpack(cell.normal), Vec3f(0, 0, 1));
+      EXPECT_NEAR(cell.plane, 0.3, 1e-5);
+    }
+  });
+}
+
+template <class Backend>
+void AnImpulseSpreadsEvenlyAlongItsLine(Executor<Backend>& exec) {
+  FlowSheet sheet;
+  sheet.add(flat_part(first_x, last_x), {2, 0, 0});
+  const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}};
+  on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
+    for (std::size_t s = 0; s < drawn.place.size(); ++s) {
+      const Int3 p = drawn.place[s];
+      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + (reached ? ConvolveAlongFlow<GridStreaks>::gain * share : 0), 1e-6)
+          << p.x << ' ' << p.y;
+    }
+  });
+}
+
+/// A mean of values that are all the same is that value, at the rim too; from the far side of a gap nothing comes.
+template <class Backend>
+void StreaksEndAtTheRim(Executor<Backend>& exec) {
+  FlowSheet sheet;
+  sheet.add(flat_part(first_x, 24), {1, 0, 0});
+  sheet.add(flat_part(36, last_x), {1, 0, 0});
+  const auto halves = [](const Int3& p) { return p.x <= 24 ? 0.05f : -0.05f; };
+  on_both(exec, sheet, StreakRecipe<decltype(halves)>{halves, false, 20}, [&](const DrawnStreaks& drawn) {
+    for (std::size_t s = 0; s < drawn.place.size(); ++s)
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + 4 * halves(drawn.place[s]), 1e-6) << drawn.place[s].x;
+  });
+}
+
+/// Both halves of a plane flow towards the line between them.
+template <class Backend>
+void StreaksEndWhereTheFlowTurnsBack(Executor<Backend>& exec) {
+  FlowSheet sheet;
+  sheet.add(flat_part(first_x, 30), {1, 0, 0});
+  sheet.add(flat_part(31, last_x), {-1, 0, 0});
+  const StreakRecipe<Impulse> recipe{{{29, middle_y, layer}}};
+  on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
+    for (int x = 20; x < 41; ++x) {
+      const int to_the_line = std::min(recipe.reach, 30 - x);
+      const bool reached = x <= 30 && 29 - x <= recipe.reach;
+      const float share = reached ? 0.1f / float(1 + recipe.reach + to_the_line) : 0;
+      EXPECT_NEAR(drawn.streaks[drawn.at({x, middle_y, layer})], 0.5f + 4 * share, 1e-6) << x;
+    }
+  });
+}
+
+/// The two sides of a roof flow up to its ridge: neither sees the other's values.
+template <class Backend>
+void StreaksEndAtACrease(Executor<Backend>& exec) {
+  const double rise = std::tan(pi / 6);
+  const Vec3d along{0, 15.98, 0}, up{16, 0, 16 * rise}, down{16, 0, -16 * rise}, eave{15.2, 16.01, 17.4};
+  FlowSheet roof;
+  roof.add(sheet(eave, up, along, 1), Vec3f(up));
+  roof.add(sheet(eave + up, down, along, 1), Vec3f(-down));
+  const float ridge = float(eave.x + up.x);
+  const auto sides = [=](const Int3& p) { return float(p.x) + 0.5f < ridge ? 0.1f : -0.1f; };
+  on_both(exec, roof, StreakRecipe<decltype(sides)>{sides, false, 8}, [&](const DrawnStreaks& drawn) {
+    for (std::size_t s = 0; s < drawn.place.size(); ++s) {
+      const Int3 p = drawn.place[s];
+      if (std::fabs(float(p.x) + 0.5f - ridge) < 2) continue;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + 4 * sides(p), 0.1) << p.x;
+    }
+  });
+}
+
+/// Where nothing flows each cell shows its own value, less most of the mean around.
+template <class Backend>
+void ACellWithoutFlowKeepsItsOwnValue(Executor<Backend>& exec) {
+  FlowSheet sheet;
+  sheet.add(flat_part(first_x, last_x), {0, 0, 0});
+  const auto value = [](const Int3& p) { return 0.5f + 0.02f * float((7 * p.x + 3 * p.y) % 5 - 2); };
+  on_both(exec, sheet, StreakRecipe<decltype(value)>{value, true}, [&](const DrawnStreaks& drawn) {
+    for (std::size_t s = 0; s < drawn.place.size(); ++s) {
+      const Int3 p = drawn.place[s];
+      EXPECT_EQ(drawn.cells[s].direction, 0u);
+      if (p.x == first_x || p.x == last_x || p.y == 16 || p.y == 31) continue;
+      float around = 2 * value(p);  // above and below lies what is extended from the cell itself
+      for (const Int3& step : {Int3(1, 0, 0), Int3(-1, 0, 0), Int3(0, 1, 0), Int3(0, -1, 0)}) around += value(p + step);
+      const float share = HighPass<GridStreaks>::share, gain = ConvolveAlongFlow<GridStreaks>::gain;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + gain * (value(p) - 0.5f - share * (around / 6 - 0.5f)), 1e-5);
+    }
+  });
+}
+
+NACRE_DEVICE_TEST(Streaks, CellsKnowFlowAndPlane)
+NACRE_DEVICE_TEST(Streaks, AnImpulseSpreadsEvenlyAlongItsLine)
+NACRE_DEVICE_TEST(Streaks, StreaksEndAtTheRim)
+NACRE_DEVICE_TEST(Streaks, StreaksEndWhereTheFlowTurnsBack)
+NACRE_DEVICE_TEST(Streaks, StreaksEndAtACrease)
+NACRE_DEVICE_TEST(Streaks, ACellWithoutFlowKeepsItsOwnValue)
+
+}  // namespace nacre::test
