@@ -52,8 +52,8 @@ TEST(ParameterNames, TheNumericsNameKnobsWithoutDashes) {
 }
 
 TEST(ParameterNames, TheProgramPrintsOptions) {
-  const Outcome run =
-      nacre({"flow", "--sample", "sphere", "--resolution", "1000000", "--device", "cpu", "--image", (std::filesystem::temp_directory_path() / "unused.png").string()});
+  const Outcome run = nacre({"flow", "--sample", "sphere", "--resolution", "1000000", "--device", "cpu", "--image",
+                             (std::filesystem::temp_directory_path() / "unused.png").string()});
   expect_failure(run, 1, {"--resolution 1000000 is too fine", "use --resolution"});
   EXPECT_FALSE(contains(run.err, "`")) << run.err;
 }

@@ -34,9 +34,9 @@ std::string name_of(const testing::TestParamInfo<LegibilityCase>& test) {
 
 void print(const char* what, const LegibilityCase& test, const Legibility& seen) {
   std::printf(
-      "%s on %s, %s, %d places: within 15 degrees %.1f%%, of the slowest tenth %.1f%%, half-width %.2f, "
+      "%s on %s, %s, %d positions: within 15 degrees %.1f%%, of the slowest tenth %.1f%%, half-width %.2f, "
       "half-length %.2f cells\n",
-      what, test.sample, test.embedding, seen.places, 100 * seen.within, 100 * seen.slowest_within, seen.width,
+      what, test.sample, test.embedding, seen.positions, 100 * seen.within, 100 * seen.slowest_within, seen.width,
       seen.length);
 }
 

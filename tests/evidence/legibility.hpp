@@ -114,22 +114,23 @@ inline double half_width(const FlowWindow& g, bool along) {
 }
 
 struct Legibility {
-  int places = 0;
-  double within = 0;             ///< share of the places where the texture runs within 15 degrees of the flow
+  int positions = 0;
+  double within = 0;             ///< share of the positions where the texture runs within 15 degrees of the flow
   double slowest_within = 0;     ///< the same among the slowest tenth of the surface
   double width = 0, length = 0;  ///< medians of a streak's half-width and half-length, in texture cells
 };
 
 /// Which of `n` entries are looked at.
-inline std::vector<std::size_t> chosen_places(std::size_t n, int count) {
-  std::vector<std::size_t> places;
-  for (int k = 0; k < count; ++k) places.push_back(std::size_t(double(uniform_random(1, k, 0)) * double(n)));
-  return places;
+inline std::vector<std::size_t> chosen_positions(std::size_t n, int count) {
+  std::vector<std::size_t> positions;
+  for (int k = 0; k < count; ++k) positions.push_back(std::size_t(double(uniform_random(1, k, 0)) * double(n)));
+  return positions;
 }
 
-/// Looks at `count` places, chosen at random, always the same ones of the same surface. `cell`: edge of a texture cell.
+/// Looks at `count` positions, chosen at random, always the same ones of the same surface. `cell`: edge of a texture
+/// cell.
 inline Legibility legibility(const FlowValues& values, double cell, int count = 2000) {
-  struct Place {
+  struct Sight {
     double angle, width, length, rank;
   };
   const std::size_t n = values.value.size();
@@ -138,8 +139,8 @@ inline Legibility legibility(const FlowValues& values, double cell, int count = 
   std::vector<float> sorted = speed;
   std::sort(sorted.begin(), sorted.end());
   const WindowCutter cutter(values, cell);
-  const std::vector<std::size_t> chosen = chosen_places(n, count);
-  std::vector<std::optional<Place>> seen(chosen.size());
+  const std::vector<std::size_t> chosen = chosen_positions(n, count);
+  std::vector<std::optional<Sight>> seen(chosen.size());
   tbb::parallel_for(std::size_t(0), chosen.size(), [&](std::size_t k) {
     const std::size_t i = chosen[k];
     if (speed[i] < 1e-6f * sorted.back()) return;
@@ -150,21 +151,21 @@ inline Legibility legibility(const FlowValues& values, double cell, int count = 
   Legibility all;
   std::vector<double> widths, lengths;
   int aligned = 0, slow = 0, slow_aligned = 0;
-  for (const auto& place : seen) {
-    if (!place) continue;
-    ++all.places;
-    const bool good = place->angle < 15, is_slow = place->rank < 0.1;
+  for (const auto& position : seen) {
+    if (!position) continue;
+    ++all.positions;
+    const bool good = position->angle < 15, is_slow = position->rank < 0.1;
     aligned += good;
     slow += is_slow;
     slow_aligned += good && is_slow;
-    widths.push_back(place->width);
-    lengths.push_back(place->length);
+    widths.push_back(position->width);
+    lengths.push_back(position->length);
   }
   const auto middle = [](std::vector<double>& v) {
     std::sort(v.begin(), v.end());
     return v.empty() ? 0 : v[v.size() / 2];
   };
-  all.within = double(aligned) / std::max(1, all.places);
+  all.within = double(aligned) / std::max(1, all.positions);
   all.slowest_within = double(slow_aligned) / std::max(1, slow);
   all.width = middle(widths);
   all.length = middle(lengths);

@@ -12,7 +12,7 @@ constexpr int side = 160;
 const double turned = 0.4;  // of the flow against the lattice, radians
 const Vec3d along(std::cos(turned), std::sin(turned), 0), across(-along.y, along.x, 0);
 
-/// A square plane of cells of width 1 in a steady flow, with the texture that `value` gives to places.
+/// A square plane of cells of width 1 in a steady flow, with the texture that `value` gives to positions.
 FlowValues plane(const std::function<double(const Vec3d&)>& value) {
   FlowValues plane(std::size_t(side) * side);
   for (int i = 0; i < side * side; ++i) {
@@ -28,7 +28,7 @@ double white(const Vec3d& p) { return uniform_random(5, std::uint32_t(p.y * side
 
 TEST(FlowMeasures, WhiteNoiseHasNoDirectionAndNoLength) {
   const Legibility seen = legibility(plane(white), 1);
-  EXPECT_GT(seen.places, 1000);
+  EXPECT_GT(seen.positions, 1000);
   EXPECT_NEAR(seen.width, 0.72, 0.03);
   EXPECT_NEAR(seen.length, 0.72, 0.03);
   EXPECT_NEAR(seen.within, 0.13, 0.06) << "15 degrees of 90, but for the lattice's own bias";

@@ -1,4 +1,4 @@
-// Nacre: points in bins, to find those nearest to a place.
+// Nacre: points in bins, to find those nearest to a position.
 #pragma once
 
 #include <algorithm>

@@ -10,7 +10,7 @@
 
 namespace nacre {
 
-/// White noise convolved along the velocities of `values`, which take the place of its texture.
+/// White noise convolved along the velocities of `values`, which replace its texture.
 class SurfaceLic {
  public:
   /// `cell`: edge of a texture cell, world units.

@@ -118,7 +118,7 @@ TEST_F(FlowInView, StandsStillWhereItDoesNotPlay) {
   EXPECT_TRUE(settles());
   advance();
   EXPECT_EQ(scene_->steps(), 1);
-  change([](Settings& s) { s.flow.contrast = 0.4; });  // can only be seen in another step
+  change([](Settings& s) { s.flow.contrast = 0.3; });  // can only be seen in another step
   EXPECT_FALSE(scene_->settled());
   advance();
   EXPECT_EQ(scene_->steps(), 2);

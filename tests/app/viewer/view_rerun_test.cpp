@@ -37,6 +37,7 @@ const std::map<std::string, FlowRerun>& expected() {
       {"sharpen", {step}},
       {"jitter", {step}},
       {"equalise", {step}},
+      {"streaks", {step}},
       {"contrast", {step}},
       {"color", {colours}},
       {"arrows", {arrows}},

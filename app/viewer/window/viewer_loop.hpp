@@ -1,0 +1,194 @@
+// Nacre: the loop of the viewer: its state, and the calls that make a frame.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "app/viewer/panel/ui.hpp"
+#include "app/viewer/scene/captions.hpp"
+#include "app/viewer/scene/framing.hpp"
+#include "app/viewer/scene/scene.hpp"
+#include "app/viewer/scene/scene_view.hpp"
+#include "app/viewer/scene/worker.hpp"
+#include "app/viewer/window/camera_control.hpp"
+#include "app/viewer/window/draw_demand.hpp"
+#include "app/viewer/window/event_log.hpp"
+#include "app/viewer/window/film.hpp"
+#include "app/viewer/window/imgui_layer.hpp"
+#include "app/viewer/window/kept_recording.hpp"
+#include "app/viewer/window/recent_files.hpp"
+#include "app/viewer/window/saving.hpp"
+#include "app/viewer/window/session_clock.hpp"
+#include "app/viewer/window/undo.hpp"
+#include "app/viewer/window/viewer.hpp"
+#include "compute/device/error.hpp"
+#include "engine/gl/framebuffer.hpp"
+#include "engine/gl/window.hpp"
+#include "engine/picture/png.hpp"
+#include "engine/system/output_file.hpp"
+
+namespace nacre {
+
+/// All that a user, a script or a file changes goes through one session. What differs from the last frame is found
+/// once a frame, told to the scene and to the recorder, and can be undone.
+class Viewer {
+ public:
+  explicit Viewer(const ViewerOptions& options);
+
+  ~Viewer() { drop_graphics(); }
+
+  ViewerResult run();
+
+ private:
+  void make_graphics();
+
+  /// An interruption ends a window as the user does, with all that is written then; without one it is the caller's.
+  template <class Work>
+  void interruptible(const Work& work) {
+    try {
+      if (*options_.stop) throw Interrupted();
+      work();
+    } catch (const Interrupted&) {
+      if (!window_) throw;
+      result_.interrupted = true;
+    }
+  }
+
+  void try_to_quit();
+
+  /// What would be lost, a sentence each. A file that is being written is waited for.
+  std::vector<std::string> reasons_to_stay() const;
+  void drop_graphics();
+
+  /// The graphics device was reset, and all that lay on it is gone. The session is not.
+  void begin_again();
+  void open();
+  Scene& scene() const { return *open_.scene; }
+
+  /// A GPU that has failed does not come back while the program runs. The session is as it was.
+  void leave_lost_device();
+  bool done() const;
+  void frame();
+
+  /// A window is drawn where it has changed; not so where frames are counted or filmed.
+  bool draws_on_demand() const { return window_ && options_.frames == 0 && !film_.on(); }
+
+  /// How long the loop waits for the user where nothing has to be drawn, seconds: what compute tells is looked after.
+  double patience() const {
+    if (!draws_on_demand()) return 0;
+    return !scene().settled() && !scene().halted() ? shortest_frame : 0.1;
+  }
+
+  DrawDemand::Shown what_is_shown(int width, int height) const;
+  bool needs_frame(double time, const DrawDemand::Shown& shown, bool changed);
+
+  /// False: the frame that waits for compute is still to come, and what is drawn until then is for the user alone.
+  bool advance_scene();
+
+  /// A video that cannot be written ends; what is seen in a window goes on.
+  void add_to_video();
+  void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background);
+  void draw(int width, int height, double seconds);
+
+  /// What the hand takes hold of is what is seen, as far as it has turned.
+  void move_by_hand(Camera& camera, const FreeArea& area);
+
+  /// From where it is seen now, as far as it has turned.
+  void fit_what_is_seen() {
+    session_.camera = orbit(*session_.camera, std::exchange(turned_, 0));
+    framing_.fit(session_, scene(), area_);
+  }
+
+  void take_picture(const Screenshot& picture);
+
+  /// And turns a camera that orbits: by as much in a second as in a second of a video.
+  void count_time(double frame_begin, bool advanced);
+
+  /// In a window an error is a line for the user, who goes on; without one it ends the program.
+  template <class Action>
+  void attempt(const Action& action) {
+    if (!window_) return action();
+    try {
+      action();
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const std::exception& error) {
+      show_error(error.what());
+    }
+  }
+
+  void show_error(const std::string& line);
+  void obey(const UiRequests& requests);
+  void tell_saved();
+  void obey_recording(const UiRequests& requests);
+
+  /// A session or a recording.
+  void save(const std::filesystem::path& file, const std::string& text);
+
+  /// Its state; where it is a recording, that is played.
+  void load_session(const std::filesystem::path& file);
+  std::array<int, 2> size() const {
+    if (window_) return window_->pixels();
+    return {session_.settings.width, session_.settings.height};
+  }
+
+  /// Per pixel. Software renderers pay for each: there, frames that somebody waits for have one.
+  int samples() const {
+    const bool software = result_.renderer.find("llvmpipe") != std::string::npos;
+    return session_.settings.samples > 1 && (waits() || !software) ? 4 : 1;
+  }
+
+  bool waits() const { return (options_.offscreen && !options_.live) || film_.on(); }
+
+  /// What has been changed since the last frame: by the user, the script, a file. True where anything has.
+  bool take_changes();
+  void note_last_changes() {
+    if (recording_.on() && session_change(told_, session_)) recording_.note_last(session_);
+  }
+
+  void write_recording() {
+    note_last_changes();
+    recording_.write();
+  }
+
+  void open_dropped();
+  void note_times(double begin, double end);
+  void finish();
+
+  const ViewerOptions& options_;
+  Session session_, told_;
+  std::optional<SessionPlayer> player_;
+  KeptRecording recording_;
+  Film film_;
+  Saving saving_;
+  SessionClock time_;
+  double started_, last_ = 0;  ///< on the machine's clock
+  double turned_ = 0;          ///< degrees, of a camera that orbits
+  double played_since_ = 0;    ///< on the session's clock
+  std::unique_ptr<Context> context_;
+  Window* window_ = nullptr;  ///< the context, where it is one
+  std::optional<ImGuiLayer> imgui_;
+  std::optional<Captions> captions_;
+  std::optional<Framebuffer> frame_;
+  OpenScene open_;
+  Ui ui_;
+  Undo undo_;
+  RecentFiles recent_;
+  UiRequests requests_;
+  Framing framing_;
+  FreeArea area_;
+  FrameClock clock_;
+  DrawDemand demand_;
+  bool quit_ = false, spare_ = false;
+  bool redraw_ = false;         ///< the window has something to tell
+  bool unsaved_ = false;        ///< the user has changed what a result depends on
+  bool scripted_ = false;       ///< changes are those of a recording
+  bool settled_knobs_ = false;  ///< the next change is the data's
+  int counted_ = 0;
+  EventLog event_log_;
+  std::vector<std::filesystem::path> dropped_;
+  ViewerResult result_;
+};
+
+}  // namespace nacre

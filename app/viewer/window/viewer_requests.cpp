@@ -1,0 +1,149 @@
+// Nacre: what the user asks of the viewer: to open, save, record, take a picture, quit.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/viewer/window/viewer_loop.hpp"
+
+namespace nacre {
+
+void Viewer::try_to_quit() {
+  std::vector<std::string> reasons = reasons_to_stay();
+  if (reasons.empty() || ui_.asks_quit())
+    quit_ = true;
+  else
+    ui_.ask_quit(std::move(reasons));
+}
+
+std::vector<std::string> Viewer::reasons_to_stay() const {
+  std::vector<std::string> reasons;
+  const SceneProgress progress = scene().progress();
+  if (!progress.stage.empty()) reasons.push_back(fmt::format("The computation ({}) has not finished.", progress.stage));
+  if (film_.from_menu()) reasons.push_back("A video is being recorded.");
+  if (recording_.on() && !recording_.has_file()) reasons.push_back("Your actions are being recorded.");
+  if (unsaved_ && !recording_.has_file())
+    reasons.push_back("You have changed parameters and saved neither session nor result.");
+  return reasons;
+}
+
+void Viewer::open() {
+  if (const std::string lost = saving_.drop(); !lost.empty()) show_error(lost);
+  open_.reset();
+  captions_->forget();
+  event_log_.forget();
+  framing_.forget();
+  // A number of frames is for headless runs to compare with: these do not begin again after the last time.
+  const SceneOptions options{spare_ ? options_.open_spare_device : options_.open_device, options_.frames == 0, waits(),
+                             !waits(), options_.stop};
+  for (const auto& file : session_.inputs)
+    if (window_) recent_.add(file);
+  open_ = open_scene(session_, options);
+}
+
+void Viewer::leave_lost_device() {
+  const std::string why = scene().lost_device();
+  if (why.empty() || spare_ || !window_) return;
+  spare_ = true;
+  show_error(fmt::format("{} stopped working ({}); the processor computes from now on", scene().device().name(), why));
+  open();
+}
+
+void Viewer::take_picture(const Screenshot& picture) {
+  Image image;
+  if (picture.panel) {
+    image = frame_->read();
+  } else {
+    Framebuffer large(frame_->width() * picture.scale, frame_->height() * picture.scale, 4);
+    draw_scene(large, {0, 0, large.width(), large.height()},
+               picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings));
+    image = large.read();
+  }
+  write_png(picture.file, image);
+  result_.pictures.push_back(picture.file);
+}
+
+void Viewer::show_error(const std::string& line) {
+  redraw_ = true;
+  ui_.show_error(line);
+  event_log_.add_error(line);
+}
+
+void Viewer::obey(const UiRequests& requests) {
+  if (requests.quit) try_to_quit();
+  if (requests.undo) undo_.undo(session_);
+  if (requests.redo) undo_.redo(session_);
+  if (requests.cancel) scene().cancel();
+  if (requests.resume) scene().resume();
+  if (session_.camera && requests.fit) fit_what_is_seen();
+  if (session_.camera && !requests.look_from.empty()) framing_.look_from(requests.look_from, session_, scene(), area_);
+  if (requests.load_session) attempt([&] { load_session(*requests.load_session); });
+  if (requests.save_session) attempt([&] { save(*requests.save_session, session_text(session_)); });
+  if (requests.save_result) attempt([&] { saving_.begin(scene(), *requests.save_result); });
+  obey_recording(requests);
+}
+
+void Viewer::tell_saved() {
+  const std::optional<Saving::Outcome> saved = saving_.poll(scene());
+  if (!saved) return;
+  redraw_ = true;
+  if (saved->failure.empty()) unsaved_ = false;
+  if (saved->failure.empty())
+    ui_.show_note("saved " + saved->file.string());
+  else
+    show_error(saved->file.string() + " was not saved: " + saved->failure);
+}
+
+void Viewer::obey_recording(const UiRequests& requests) {
+  if (requests.record) recording_.begin(session_, session_.settings.fps, time_.seconds());
+  if (requests.save_recording && recording_.on())
+    attempt([&] {
+      note_last_changes();
+      save(*requests.save_recording, session_text(recording_.recording()));
+      recording_.end();
+    });
+  if (requests.film)
+    attempt([&] {
+      film_.begin(*requests.film, session_.settings.fps, options_.stop);
+      time_.set_fps(session_.settings.fps);
+      scene().set_lockstep(true);
+    });
+  if (requests.end_film && film_.from_menu()) {
+    attempt([&] {
+      film_.finish();
+      ui_.show_note(fmt::format("saved {} ({})", film_.file().string(), film_.length()));
+    });
+    scene().set_lockstep(waits());
+  }
+}
+
+void Viewer::save(const std::filesystem::path& file, const std::string& text) {
+  OutputFile out(file);
+  out.write(text);
+  out.commit();
+  unsaved_ = false;
+  ui_.show_note("saved " + file.string());
+}
+
+void Viewer::load_session(const std::filesystem::path& file) {
+  Session loaded = read_session(file);
+  options_.check(loaded);
+  player_.emplace(loaded);
+  played_since_ = time_.seconds();
+  scripted_ = !loaded.events.empty();
+  loaded.events.clear();
+  loaded.duration = 0;
+  if (!loaded.camera) framing_.forget();
+  session_ = std::move(loaded);
+  recent_.add(file);
+}
+
+void Viewer::open_dropped() {
+  if (dropped_.size() == 1 && dropped_[0].extension() == ".json") {
+    const std::vector<std::filesystem::path> file = std::exchange(dropped_, {});
+    return attempt([&] { load_session(file[0]); });
+  }
+  static_cast<SessionInput&>(session_) = {std::exchange(dropped_, {}), "", 0};
+  session_.camera.reset();
+}
+
+}  // namespace nacre
