@@ -197,7 +197,9 @@ TEST_P(FlowArtefacts, StreaksMoveWithTheFlow) {
     const auto best = int(std::max_element(c.begin(), c.end()) - c.begin());
     std::printf("motion %s: best at %.2f of v dt, correlation %.3f, at rest %.3f, at twice %.3f\n", what.c_str(),
                 0.05 * best, c[best], c[0], c[40]);
-    if (what == "everywhere") EXPECT_NEAR(0.05 * best, 1, 0.101);
+    if (what == "everywhere") {
+      EXPECT_NEAR(0.05 * best, 1, 0.101);
+    }
     EXPECT_GT(c[best], 0.5) << what;
   }
 }

@@ -94,7 +94,7 @@ TEST_P(FlowEvidence, TextureStaysWhenTheCameraMoves) {
   FlowRun run("sphere", at_resolution(384));
   run.steps(4);
   RenderOptions options;
-  options.width = options.height = 384;
+  options.width = options.height = 768;  // four times the pixels that the texture has cells for
   options.camera = fit_camera("iso", {-1, -1, -1}, {1, 1, 1}, options.width, options.height);
   options.camera.orthographic = true;
   options.samples = 3;
