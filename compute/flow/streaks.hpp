@@ -161,7 +161,7 @@ struct HighPass {
   const float* value;  ///< 0..1
   StreakCell* cells;
 
-  static constexpr float share = 0.5f;
+  static constexpr float share = 0.35f;
 
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
     typename Streaks::Cursor cursor(streaks);
