@@ -5,7 +5,7 @@
 
 namespace nacre {
 
-/// The constants of the thesis (source notes), but for the kernel, which depends on the volume.
+/// The constants of the thesis (docs/method.md), but for the kernel, which depends on the volume.
 void apply_thesis_preset(Settings& settings);
 
 /// The kernel of the thesis: B-splines for volumes that are cut at iso-values, Catmull-Rom for labels and

@@ -1,5 +1,5 @@
-// Nacre: the figures of the thesis's tables (sec. 3.4, 4.3, 5.3, 6.3). Where a figure is misprinted (source notes),
-// the right one stands here and the note says so.
+// Nacre: the figures of the thesis's tables (sec. 3.4, 4.3, 5.3, 6.3). Where a figure is misprinted (docs/method.md,
+// Misprints), the right one stands here and the note says so.
 #include "app/bench/thesis_figures.hpp"
 
 namespace nacre {
