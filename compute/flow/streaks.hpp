@@ -152,7 +152,7 @@ struct MarkStreakCells {
   }
 };
 
-/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow, less most of the mean
+/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow, less half of the mean
 /// of those around. Without that they would be as wide as the lines that particles draw; less all of it they are
 /// thinner than a cell and lose their way.
 template <class Streaks>
@@ -161,7 +161,7 @@ struct HighPass {
   const float* value;  ///< 0..1
   StreakCell* cells;
 
-  static constexpr float share = 0.35f;
+  static constexpr float share = 0.5f;
 
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
     typename Streaks::Cursor cursor(streaks);
