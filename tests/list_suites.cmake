@@ -8,7 +8,7 @@ string(REGEX MATCHALL "\n[^ \n][^ \n]*\\." suites "\n${said}")  # tests are inde
 set(text)
 foreach(suite IN LISTS suites)
   string(REGEX REPLACE "^\n|\\.$" "" suite "${suite}")
-  set(properties TIMEOUT 600)
+  set(properties TIMEOUT 1800)
   if(PACED AND suite MATCHES "${PACED}")
     list(APPEND properties PROCESSORS 2)
   endif()
