@@ -53,8 +53,8 @@ Spectrum shares(const Spectrum& power) {
   return share;
 }
 
-/// A texture that is fed back to itself for long picks a distance between its streaks, like a fingerprint's ridges. Of
-/// few streaks the spectrum is rough: four textures are looked at after 20 steps, one at four times up to 200.
+/// A texture that is fed back to itself for long picks a distance between its streaks, like a fingerprint's ridges. The
+/// spectrum of few streaks is rough: four textures are looked at after 20 steps, one at four times up to 200.
 TEST_P(FlowArtefacts, NoFingerprintAfterManySteps) {
   Spectrum early{}, late{};
   for (const std::uint32_t seed : {4u, 3u, 2u, 1u}) {
@@ -92,7 +92,7 @@ double worst_alternation(const FlowValues& values, double cell) {
   std::map<Key, std::size_t> at;
   for (std::size_t i = 0; i < values.value.size(); ++i) at[key(position(i))] = i;
   struct Sum {
-    double alternating = 0, power = 0;
+    double alternating = 0;
     int runs = 0;
   };
   std::map<Key, Sum> region;
@@ -102,7 +102,7 @@ double worst_alternation(const FlowValues& values, double cell) {
     const Int3 start = position(i);
     for (int axis = 0; axis < 3; ++axis) {
       if (std::fabs(d[axis]) < 0.96) continue;
-      double sum = 0, alternating = 0, squares = 0;
+      double alternating = 0;
       int k = 0;
       for (; k < n; ++k) {
         Int3 c = start;
@@ -110,15 +110,12 @@ double worst_alternation(const FlowValues& values, double cell) {
         const auto found = at.find(key(c));
         if (found == at.end()) break;
         const double v = values.value[found->second];
-        sum += v;
-        squares += v * v;
         alternating += k & 1 ? -v : v;
       }
       if (k < n) continue;
       const auto down = [](int x) { return int(std::floor(x / 16.0)); };
       Sum& here = region[{down(start.x), down(start.y), down(start.z)}];
       here.alternating += alternating * alternating / n;
-      here.power += squares / n - sum / n * sum / n;
       ++here.runs;
     }
   }
