@@ -214,27 +214,6 @@ StatusLine::~StatusLine() {
   if (drawn_) fmt::print(stderr, "\r\033[K");
 }
 
-nlohmann::json stages_report(const StageTimers& timers) {
-  auto report = nlohmann::json::array();
-  for (const StageTimers::Stage& stage : timers.stages())
-    report.push_back(
-        {{"name", stage.name}, {"seconds", stage.seconds}, {"calls", stage.calls}, {"launches", stage.launches}});
-  return report;
-}
-
-nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
-                            std::size_t arena_bytes) {
-  nlohmann::json report;
-  report["nacre"] = version;
-  report["command"] = command;
-  report["device"] = {{"backend", device.backend()}, {"name", device.name()}, {"threads", device.threads()}};
-  report["stages"] = stages_report(timers);
-  std::unique_ptr<Device> host = device.backend() == "cpu" ? nullptr : make_cpu_device();
-  report["memory"] = {{"peak_bytes", host ? host->peak_bytes() : device.peak_bytes()},
-                      {"device_peak_bytes", arena_bytes}};
-  return report;
-}
-
 void check_output(const std::string& file, const std::string& option, std::string_view extension) {
   if (file.empty()) return;
   const std::filesystem::path path = file;

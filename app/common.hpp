@@ -1,4 +1,4 @@
-// Nacre: what all commands share: options, interruption, progress, the report's frame.
+// Nacre: what all commands share: options, interruption, progress, the files.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -14,11 +14,13 @@
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
 #include "compute/device/stage_timers.hpp"
+#include "engine/run/report.hpp"
 #include "engine/scene/settings/settings.hpp"
+#include "include/nacre/version.hpp"
 
 namespace nacre {
 
-inline constexpr const char* version = NACRE_VERSION;
+inline constexpr const char* version = NACRE_VERSION_STRING;
 
 /// Options that every command takes.
 struct CommonOptions {
@@ -109,12 +111,6 @@ class StatusLine {
   bool drawn_ = false;
 };
 
-/// "name", "seconds", "calls" and "launches" of each stage.
-nlohmann::json stages_report(const StageTimers& timers);
-
-/// "nacre", "command", "device", "stages", "memory".
-nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
-                            std::size_t arena_bytes);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
 /// For a check before the work begins. Throws UsageError where the name of `file` does not end in `extension`, the only

@@ -10,14 +10,14 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/picture/caption.hpp"
 #include "engine/picture/colormap.hpp"
-#include "engine/picture/legend.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/run/flow_painter.hpp"
+#include "engine/run/flow_report.hpp"
+#include "engine/run/report.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/session/session.hpp"
-#include "engine/scene/settings/knobs.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 
@@ -36,7 +36,7 @@ void check_options(const FlowOptions& options, const Settings& settings) {
     colormap(settings.colormap);
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
     if (!settings.time.empty()) parse_time_range(settings);
-    if (!settings.color_range.empty()) parse_color_range(settings);
+    check_color_range(settings);
   });
   check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty() || !options.frames.empty(),
@@ -64,89 +64,6 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
 }
 
-/// Draws frames of one run.
-class Painter {
- public:
-  Painter(FlowPipeline& pipeline, VectorsInTime& input, const Session& session, double frame_time)
-      : pipeline_(pipeline),
-        input_(input),
-        settings_(session.settings),
-        frame_time_(frame_time),
-        map_(colormap(settings_.colormap)),
-        camera_(read_camera(session, triangle_corners(input.surface()), settings_.legend && input.colored())) {
-    if (settings_.background == "transparent")
-      transparent_ = true;
-    else
-      background_ = parse_color(settings_.background);
-  }
-
-  Image paint(int frame) {
-    const Camera camera = orbit(camera_, settings_.orbit * frame);
-    RenderOptions options;
-    options.camera = camera;
-    options.width = settings_.width;
-    options.height = settings_.height;
-    options.samples = settings_.samples;
-    options.colours = map_.table;
-    options.background = background_;
-    options.transparent = transparent_;
-    std::vector<float> scalar;
-    const Range range = color_range(settings_, {input_.color_low(), input_.color_high()});
-    if (input_.colored()) {
-      scalar = input_.scalar(pipeline_.flow().time());
-      options.scalar = scalar;
-      options.low = range.low;
-      options.high = range.high;
-    }
-    Image image;
-    image.width = settings_.width;
-    image.height = settings_.height;
-    image.pixels = pipeline_.flow().render(options);
-    FlowCaption caption;
-    caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;
-    caption.low = range.low;
-    caption.high = range.high;
-    caption.title = settings_.color == "speed" ? input_.array() : settings_.color;
-    if (settings_.time_stamp && input_.end() > input_.start()) caption.time = pipeline_.flow().time();
-    caption.frame_time = frame_time_;
-    draw_caption(image, caption);
-    if (settings_.legend)
-      draw_orientation(image, Vec3f(camera.right()), Vec3f(cross(camera.right(), camera.forward())),
-                       Vec3f(camera.forward()));
-    return image;
-  }
-
- private:
-  FlowPipeline& pipeline_;
-  VectorsInTime& input_;
-  const Settings& settings_;
-  double frame_time_;
-  const Colormap& map_;
-  Camera camera_;
-  std::array<float, 3> background_{1, 1, 1};
-  bool transparent_ = false;
-};
-
-nlohmann::json median_min_max(std::vector<double> seconds) {
-  if (seconds.empty()) return {{"median", 0}, {"min", 0}, {"max", 0}};
-  std::sort(seconds.begin(), seconds.end());
-  return {{"median", seconds[seconds.size() / 2]}, {"min", seconds.front()}, {"max", seconds.back()}};
-}
-
-nlohmann::json embedding_report(const EmbeddingInfo& e) {
-  return {{"kind", e.kind},
-          {"dimensions", {e.dimensions.x, e.dimensions.y, e.dimensions.z}},
-          {"cells", e.cells},
-          {"surface_cells", e.surface_cells},
-          {"bytes", e.bytes},
-          {"dense_bytes", e.dense_bytes},
-          {"sparseness_percent", 100.0 * (1 - double(e.bytes) / std::max<double>(1, double(e.dense_bytes)))},
-          {"closest_point_dimensions",
-           {e.closest_point_dimensions.x, e.closest_point_dimensions.y, e.closest_point_dimensions.z}},
-          {"closest_point_cells", e.closest_point_cells},
-          {"cell_size", e.cell_size}};
-}
-
 /// Where every frame goes; null if it was not asked for.
 struct Films {
   std::unique_ptr<FrameSink> frames, video;
@@ -170,7 +87,8 @@ Films open_films(const FlowOptions& options, int fps, Progress& progress) {
 }
 
 /// Returns how long each took, seconds.
-std::vector<double> take_steps(FlowPipeline& pipeline, int steps, Painter& painter, Films& films, Progress& progress) {
+std::vector<double> take_steps(FlowPipeline& pipeline, int steps, FlowPainter& painter, Films& films,
+                               Progress& progress) {
   std::vector<double> seconds;
   for (int k = 0; k < steps; ++k) {
     const double before = now();
@@ -188,8 +106,8 @@ std::vector<double> take_steps(FlowPipeline& pipeline, int steps, Painter& paint
 }
 
 /// Returns the files.
-std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, int steps, Painter& painter,
-                                       Films& films) {
+std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, int steps,
+                                       FlowPainter& painter, Films& films) {
   std::vector<std::string> outputs;
   Image image;
   if (!options.image.empty()) image = painter.paint(std::max(0, steps - 1));
@@ -200,23 +118,6 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   if (!options.out.empty())
     write_flow_values(pipeline.flow(), options.out, pipeline.flow().time()), outputs.push_back(options.out);
   return outputs;
-}
-
-/// The report's own part.
-void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const FlowVectors& vectors,
-                     const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds) {
-  report["input"] = {{"name", input.series().name},
-                     {"vectors", input.array()},
-                     {"points", input.surface().points.size()},
-                     {"triangles", input.surface().triangles.size()},
-                     {"time", {vectors.start, vectors.end}},
-                     {"reference_speed", vectors.reference_speed},
-                     {"normal_share", input.statistics().normal_share},
-                     {"zero_share", input.statistics().zero_share}};
-  report["parameters"] = knob_values(settings);
-  report["embedding"] = embedding_report(embedding);
-  report["flow"] = {{"steps", seconds.size()}, {"seconds_per_step", median_min_max(seconds)}};
-  if (embedding.flow_bytes) report["flow"]["bytes"] = embedding.flow_bytes;
 }
 
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
@@ -233,7 +134,8 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   VectorsInTime input = read_input(options, session, pipeline->timers());
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
-  Painter painter(*pipeline, input, session, span.frame_time);  // complains about camera and colours before the work
+  FlowPainter painter(*pipeline, input, session,
+                      span.frame_time);  // complains about camera and colours before the work
 
   progress.update("embed", 0);
   pipeline->embed({surface.points, surface.triangles, surface.corner_normals});

@@ -122,7 +122,8 @@ std::vector<std::string> requested_files(const InfoOptions& options) {
   return files;
 }
 
-/// Knobs have no effect here, but they are checked: all commands take the same options.
+/// Knobs have no effect here but for the names and layers of labels; they are checked: all commands take the same
+/// options.
 void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
   Settings settings;
   knob_options.apply(settings, options.common.set);
@@ -134,7 +135,7 @@ void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
     FileInfo info;
     {
       StageTimers::Scope scope(timers, "read");
-      info = describe(file);
+      info = describe(file, {settings.materials.layer, settings.materials.names});
     }
     files.push_back(as_json(info));
     if (options.json)

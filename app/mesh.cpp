@@ -4,19 +4,14 @@
 #include "app/commands.hpp"
 #include "app/mesh_run.hpp"
 #include "app/picture_options.hpp"
-#include "app/presets.hpp"
 #include "compute/device/error.hpp"
-#include "compute/meshing/tetrahedra.hpp"
+#include "engine/run/presets.hpp"
+#include "engine/run/report.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/settings/knobs.hpp"
 #include "engine/scene/volume/material_options.hpp"
 
 namespace nacre {
-
-void check_particle_sizes(const MeshParameters& mesh) {
-  if (mesh.min_size > mesh.max_size)
-    throw UsageError(fmt::format("--min-size {:g} is larger than --max-size {:g}", mesh.min_size, mesh.max_size));
-}
 
 namespace {
 
@@ -36,17 +31,21 @@ void check_options(const MeshOptions& options, const Session& session) {
     if (!session.sample.empty() && !is_phantom(session.sample)) make_phantom(session.sample);  // throws the list
     parse_material_settings(settings.materials);
   });
-  check_particle_sizes(settings.mesh);
+  with_usage_errors([&] { check_particle_sizes(settings.mesh); });
   check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty(), false);
   check_mesh_outputs(options);
+  if (wants_cells(options) && settings.mesh.triangles == "stars")
+    throw UsageError("tetrahedra need `triangulation` to be delaunay; leave it so, or write a surface");
 }
 
 /// Reads the volumes and makes materials of them; `input` is told what the report wants to know.
 MeshVolume read_input(const MeshOptions& options, const Session& session, StageTimers& timers, MeshInput& input) {
   StageTimers::Scope scope(timers, "read");
   const auto say_warning = [&](const std::string& warning) { warn(options.common, warning); };
-  const auto read = [&] { return read_mesh_volumes(session, &interrupt_flag(), say_warning); };
+  const auto read = [&] {
+    return read_mesh_volumes(session, session.settings.materials, &interrupt_flag(), say_warning);
+  };
   const bool sample = !session.sample.empty();
   const std::vector<Volume> volumes = sample ? with_usage_errors(read) : read();
   if (interrupt_flag()) throw Interrupted();
@@ -67,29 +66,15 @@ void check_interrupt(bool kept) {
   if (!kept && interrupt_flag()) throw Interrupted();
 }
 
-/// Thin structures everywhere (the cortex of a head, between skull and white matter) need small particles everywhere. A
-/// user who did not expect that should know before the long part begins.
-void say_how_many(const MeshOptions& options, const MeshInfo& info, const MeshParameters& parameters) {
-  constexpr double many = 3e6;
-  if (parameters.particles > 0 || info.expected_particles < many) return;
-  say(options.common,
-      fmt::format(
-          "about {:.1f} million particles are needed, {:.2g} to {:.2g} voxels apart, since materials are thin; their "
-          "number falls with the square of --min-size (now {:.2g})",
-          info.expected_particles / 1e6, info.smallest_size, info.largest_size, parameters.min_size));
-}
-
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
                    const MeshVolume& volume, MeshPipeline& pipeline, Progress& bar) {
   MeshResult result;
   pipeline.load(volume);
   pipeline.build_fields();
   bar.clear();
-  if (const int crowded = pipeline.info().crowded_cells; crowded > 0)
-    warn(options.common, fmt::format("in {} cells of the embedding more than 8 materials or 64 junctions meet: "
-                                     "some junctions are left out; choose fewer materials with --merge or --materials",
-                                     crowded));
-  say_how_many(options, pipeline.info(), settings.mesh);
+  const FieldRemarks said = remarks_on_fields(pipeline.info(), settings.mesh);
+  for (const std::string& sentence : said.warnings) warn(options.common, sentence);
+  for (const std::string& sentence : said.remarks) say(options.common, sentence);
   try {
     pipeline.relax();
   } catch (const Interrupted&) {
@@ -102,20 +87,13 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   if (kept) pipeline.watch(nullptr);
   result.mesh = pipeline.triangulate();
   check_interrupt(kept);
-  {
-    bar.update("quality", 0.95);
-    StageTimers::Scope scope(pipeline.timers(), "quality");
-    result.topology = check_topology(result.mesh, volume.materials());
-    result.quality = surface_quality(result.mesh);
-  }
+  bar.update("quality", 0.95);
+  measure_triangles(result, volume.materials(), pipeline.timers());
   result.distance = pipeline.surface_distance(result.mesh);
   check_interrupt(kept);
   if (wants_cells(options)) {
     bar.update("tetrahedra", 0.97);
-    StageTimers::Scope scope(pipeline.timers(), "tetrahedra");
-    result.cells = fill_with_tetrahedra(result.mesh, longest_edge(settings.max_cell, input.spacing),
-                                        kept ? nullptr : &interrupt_flag());
-    result.cell_quality = cell_quality(*result.cells, volume.materials());
+    fill_result(result, settings.max_cell, input, pipeline.timers(), kept ? nullptr : &interrupt_flag());
   }
   return result;
 }
@@ -162,9 +140,12 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run) {
                     "voxels along the sample's longest side (0: its own)");
   command->add_option("--preset", options->preset, "source: the constants of the thesis")
       ->check(CLI::IsMember({"source"}));
-  command->add_option("--out", options->out,
-                      "surface: .vtp .ply .stl .obj .off; filled with tetrahedra: .vtu, .msh (and the surface)");
-  command->add_flag("--surface-only", options->surface_only, "write only the triangles to a .msh file, no tetrahedra");
+  command->add_option(
+      "--out", options->out,
+      "surface: .vtp .ply .stl .obj .off .glb; filled with tetrahedra: .vtu, and with the surface .msh .msh4 "
+      "(Gmsh) .inp (Abaqus) .mesh (MFEM) .feb (FEBio) .foam (OpenFOAM)");
+  command->add_flag("--surface-only", options->surface_only,
+                    "write only the triangles to a .msh, .msh4 or .inp file, no tetrahedra");
   command->add_flag("--per-material", options->per_material, "write one closed surface per material: NAME_LABEL.ext");
   command->add_option("--particles-out", options->particles_out, "write the particles as .vtp");
   command->add_option("--image", options->image, "write a picture of the triangles as PNG");

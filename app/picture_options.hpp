@@ -1,29 +1,14 @@
-// Nacre: options for pictures that several commands take: colour, size, camera.
+// Nacre: options for pictures that several commands take, checked before the work begins.
 #pragma once
 
-#include <array>
-#include <span>
-#include <string>
-
-#include "compute/raycast/camera.hpp"
-#include "engine/scene/session/session.hpp"
+#include "engine/run/picture_settings.hpp"
 
 namespace nacre {
-
-/// "#rrggbb" as 0..1. Throws UsageError.
-std::array<float, 3> parse_color(const std::string& text);
 
 /// Throws UsageError where `camera` or `background` has no valid value; a camera file is not opened.
 void check_picture_options(const Settings& settings);
 
 /// Throws UsageError where a picture as PNG (also a frame in a folder) or a video of that size cannot be written.
 void check_picture_size(int width, int height, bool png, bool video);
-
-/// The camera of the settings: a view that sees all `corners`, beside the legend where the picture has one; or what its
-/// JSON file says. Throws Error.
-Camera read_camera(const Settings& settings, std::span<const Vec3d> corners, bool legend);
-
-/// The session's own camera, else that of its settings. Throws Error.
-Camera read_camera(const Session& session, std::span<const Vec3d> corners, bool legend);
 
 }  // namespace nacre

@@ -8,11 +8,11 @@
 #include "app/commands.hpp"
 #include "app/mesh_run.hpp"
 #include "app/picture_options.hpp"
-#include "app/presets.hpp"
 #include "app/run.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/run/presets.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/settings/knobs.hpp"
@@ -44,6 +44,11 @@ constexpr int welcome_detail = 128;  // reads in a moment
 void apply_preset_kernel(const CommonOptions& common, const KnobOptions& knobs, Session& session) {
   if (!is_mesh_input(session)) throw UsageError("--preset source is for volumes: it sets the constants of meshing");
   if (!knobs.given("kernel", common.set)) apply_thesis_kernel(session.settings, is_cut_at_isovalues(session));
+}
+
+bool has_no_input(const ViewOptions& options) {
+  return options.input.files.empty() && options.input.sample.empty() && options.common.session.empty() &&
+         options.script.empty();
 }
 
 /// A session is the state that it begins with; a script is played.
@@ -97,11 +102,11 @@ void check_names(const Session& session) {
     colormap(session.settings.colormap);
     if (session.settings.vectors.starts_with('@')) choose_vectors({}, session.settings.vectors);
     if (!session.settings.time.empty()) parse_time_range(session.settings);
-    if (!session.settings.color_range.empty()) parse_color_range(session.settings);
+    check_color_range(session.settings);
     if (!session.sample.empty() && !names(samples(), session.sample) && !names(phantoms(), session.sample))
       throw Error(fmt::format("no sample '{}'", session.sample), "", "`nacre sample` lists them");
   });
-  check_particle_sizes(session.settings.mesh);
+  with_usage_errors([&] { check_particle_sizes(session.settings.mesh); });
   check_picture_options(session.settings);
 }
 
@@ -215,6 +220,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   check_all_names(viewer.session);
   check_view_outputs(options, viewer.session);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
+  viewer.welcome = !options.offscreen && has_no_input(options);
   viewer.open_device = [&] { return open_device(options.common); };
   viewer.open_spare_device = [&] {
     CommonOptions spare = options.common;

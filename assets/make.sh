@@ -21,5 +21,19 @@ gif -framerate 20 -i "$frames/flow/frame_%04d.png" "" 64 flow.gif
 "$nacre" mesh --sample torso --cut-away --image torso.png
 "$nacre" view --offscreen --sample torso --panel --set tab=result --set clip=y --set clip_at=0.48 --size 1200x760 \
   --image viewer.png
+pictures=../docs/pictures
+"$nacre" flow --sample train --detail 160 --resolution 384 --steps 4 --size 640x400 --colormap viridis \
+  --color-scale log --color-range 1%:99% --color-below '#d0d0d0' --color-above '#ff7f0e' --image "$pictures/colours.png"
+torus=(view --offscreen --sample torus --detail 48 --resolution 128 --panel)
+"$nacre" "${torus[@]}" --frames-count 2 --set tab=knobs --size 800x420 --image "$pictures/knobs.png"
+cat >"$frames/paused.json" <<'JSON'
+{"sample": "torus", "detail": 48, "knobs": {"resolution": 160, "width": 960, "height": 480},
+ "events": [{"time": 0.4, "knobs": {"play": false, "begin_at": 0.2}},
+            {"time": 0.44, "screenshot": {"file": "transport.png", "panel": true}}],
+ "duration": 0.5}
+JSON
+"$nacre" view --offscreen --script "$frames/paused.json" --record "$frames/paused"
+mv "$frames/transport.png" "$pictures"
+# docs/pictures/welcome.png is a screenshot of the window that `nacre view` opens at 960x640.
 "$nacre" view --offscreen --script mesh_demo.json --size 360x202 --record "$frames/tour.mp4"
 gif -i "$frames/tour.mp4" "fps=8," 96 tour.gif

@@ -9,6 +9,9 @@ out vec4 pixel;
 
 uniform bool coloured;
 uniform vec2 range;  // of the colour map
+uniform vec3 below;  // of values beyond it
+uniform vec3 above;
+uniform vec3 no_number;
 uniform sampler1D colours;
 
 #if defined(OCTREE)
@@ -22,8 +25,14 @@ void main() {
   vec3 base = vec3(0.62);
   if (coloured) {
     float x = (shade - range.x) / (range.y - range.x);
-    x = x > 0.0 ? min(x, 1.0) : 0.0;  // NaN is at the lower end
-    base = texture(colours, (x * 255.0 + 0.5) / 256.0).rgb;
+    if (!(x >= 0.0) && !(x < 0.0))
+      base = no_number;
+    else if (x < -1e-5)
+      base = below;
+    else if (x > 1.0 + 1e-5)
+      base = above;
+    else
+      base = texture(colours, (clamp(x, 0.0, 1.0) * 255.0 + 0.5) / 256.0).rgb;
   }
   float light_here = brightness(direction, seen);
 #ifdef TEXTURED

@@ -166,8 +166,8 @@ Image FlowRuns::picture(const FlowJob& job, int steps, int width, int height) {
   options.width = width;
   options.height = height;
   options.scalar = scalar;
-  options.low = all.color_low();
-  options.high = all.color_high();
+  options.low = all.color_spread().low;
+  options.high = all.color_spread().high;
   options.colours = colormap("sea").table;
   Image image(width, height);
   image.pixels = made->flow().render(options);

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "app/common.hpp"
-#include "app/presets.hpp"
 #include "compute/meshing/quality.hpp"
+#include "engine/run/presets.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/volume/materials.hpp"
 

@@ -83,12 +83,18 @@ class SurfaceCellCursor {
   NACRE_HD explicit SurfaceCellCursor(const RefinedGridView& texture) : texture_(texture) {}
 
   NACRE_HD std::uint32_t find(const Int3& cell) {
+    const std::uint32_t value = texel(cell);
+    return value == none ? none : value & ~RefinedGridView::extended;
+  }
+
+  /// What `texel` stores for the cell: with the bit `extended` where the surface does not pass through it.
+  NACRE_HD_INLINE std::uint32_t texel(const Int3& cell) {
     const Int3 outer = texture_.outer(cell);
     if (!(outer == outer_)) {
       outer_ = outer;
       block_ = texture_.block_of(outer);
     }
-    return block_ == none ? none : texture_.surface_cell_at(texture_.entry_in(block_, cell, outer));
+    return block_ == none ? none : texture_.texel[texture_.entry_in(block_, cell, outer)];
   }
 
  private:

@@ -51,6 +51,12 @@ NACRE_HD inline std::uint32_t junction_number(const Junction* table, std::uint32
   return low;
 }
 
+/// At a point of a junction: the gradients of the function of its first material less that of its second, third and
+/// fourth, per voxel.
+struct JunctionGradients {
+  Vec3f from_first[3];
+};
+
 /// A point on a junction and what holds there.
 struct JunctionPoint {
   Vec3f p;

@@ -31,35 +31,27 @@ struct FillBandNoise {
   }
 };
 
-/// Normalises deposits and extends the result: in each surface cell the mean of what was deposited around its closest
-/// point, sums and hits both weighted by a quadratic B-spline, so that the mean is exact. This filters the lines as the
-/// grid's antialiasing does; linear weights would smooth more between cells than at them, and leave beads.
+/// Normalises the thesis's deposits and extends the result: in each surface cell the mean of what was deposited around
+/// its closest point, sums and hits both weighted by a quadratic B-spline, so that the mean is exact. This filters the
+/// lines as antialiasing does; linear weights would smooth more between cells than at them, and leave beads.
 template <class View>
 struct NormaliseAndExtend {
   View view;
   const std::uint64_t* sums;
   const float* otherwise;  ///< the value of a cell around which nothing was deposited: nothing goes black
   float share;             ///< of the mean in the result; the rest is `otherwise`
-  bool sharp;              ///< a cell's own deposits count alone, where it has some (see Normalise)
   float* value;            ///< 0..1; may be `otherwise` itself
 
   NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor& cursor) const {
     float sum = 0, hits = 0;
-    if (sharp) {
-      sum = float(Deposit::value(sums[s]));
-      hits = float(Deposit::hits(sums[s]));
-    }
-    if (hits == 0) {
-      const SplineWeights weights(closest_point_of(position, view.point[cell], view.quantum));
-      cursor.each_surface_of_27(weights.first, [&](int k, CellIndex at) {
-        const std::uint64_t d = sums[at];
-        const float w = weights.w[0][k % 3] * weights.w[1][k / 3 % 3] * weights.w[2][k / 9];
-        sum += w * float(Deposit::value(d));
-        hits += w * float(Deposit::hits(d));
-      });
-    }
-    const float before = otherwise[s];
-    const float mean = hits > 1e-6f ? clamp01(sum / (65535.0f * hits)) : before;
+    const SplineWeights weights(closest_point_of(position, view.point[cell], view.quantum));
+    cursor.each_surface_of_27(weights.first, [&](int k, CellIndex at) {
+      const std::uint64_t d = sums[at];
+      const float w = weights.w[0][k % 3] * weights.w[1][k / 3 % 3] * weights.w[2][k / 9];
+      sum += w * float(Deposit::value(d));
+      hits += w * float(Deposit::weight(d));
+    });
+    const float before = otherwise[s], mean = hits > 1e-6f ? clamp01(sum / (65535.0f * hits)) : before;
     value[s] = before + (mean - before) * share;
   }
 };
@@ -119,28 +111,18 @@ struct NoLocalMoments {
   }
 };
 
-/// As Equalise on the grid: shown frame and detail of what the particles will carry, judged against local mean and
-/// deviation to the share `local`. `detail` may be `ahead` itself.
+/// `equalised` on a band. `detail` may be `value` itself.
 template <class View, class Local>
 struct EqualiseBand {
   View view;
-  const float* ahead;
+  const float* value;
   Local moments;
-  const TextureSpread* whole;  ///< of all of `value` and `ahead`
+  const TextureSpread* whole;
   float local;
   float* detail;
 
   NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& position, typename View::Cursor& cursor) const {
-    const Vec3f m = moments.at(view, position, cursor);
-    const TextureSpread all = *whole;
-    float shift = 0, spread = all.deviation;
-    if (m.x > 0) {
-      const float local_mean = m.y / m.x, variance = m.z / m.x - local_mean * local_mean;
-      const float local_deviation = std::sqrt(variance > 0 ? variance : 0), least = 0.25f * all.deviation;
-      shift = local * (local_mean - all.mean);
-      spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
-    }
-    detail[s] = (ahead[s] - all.ahead_mean - shift) / (spread * all.ratio);
+    detail[s] = equalised(value[s], moments.at(view, position, cursor), *whole, local);
   }
 };
 

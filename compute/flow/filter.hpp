@@ -41,36 +41,30 @@ struct AddMoments {
   }
 };
 
-/// Mean and deviation of a texture and of what is ahead of it, whose deviation is `ratio` times the texture's; above 0.
+/// Mean and deviation of a whole texture; the deviation is above 0.
 struct TextureSpread {
   float mean, deviation;
-  float ahead_mean, ratio;
 };
 
-/// ... from their moments, where these are: the host need not wait for them.
+/// ... from its moments, where these are: the host need not wait for them.
 struct SpreadOf {
-  const Moments *now, *next;
+  const Moments* moments;
   std::int64_t n;
   TextureSpread* spread;
   NACRE_HD void operator()(std::int64_t) const {
-    const auto deviation_of = [&](const Moments& m) {
-      const float d = m.deviation(n);
-      return d > 1e-4f ? d : 1e-4f;
-    };
-    const float deviation = deviation_of(*now);
-    *spread = {now->mean(n), deviation, next->mean(n), deviation_of(*next) / deviation};
+    const float deviation = moments->deviation(n);
+    *spread = {moments->mean(n), deviation > 1e-4f ? deviation : 1e-4f};
   }
 };
 
-/// Of `n` values each; lasts as long as the caller's scope in the arena.
+/// Of `n` values; lasts as long as the caller's scope in the arena.
 template <class Backend>
-const TextureSpread* measure_spread(Executor<Backend>& exec, std::int64_t n, const float* value, const float* ahead) {
+const TextureSpread* measure_spread(Executor<Backend>& exec, std::int64_t n, const float* value) {
   Arena& arena = exec.arena();
-  const Array<Moments> moments = arena.template temporary<Moments>(2);
+  const Array<Moments> moments = arena.template temporary<Moments>(1);
   const Array<TextureSpread> spread = arena.template temporary<TextureSpread>(1);
   exec.reduce_into(moments.data(), n, Moments{}, MomentsOf{value}, AddMoments{});
-  exec.reduce_into(moments.data() + 1, n, Moments{}, MomentsOf{ahead}, AddMoments{});
-  exec.for_each(1, SpreadOf{moments.data(), moments.data() + 1, n, spread.data()});
+  exec.for_each(1, SpreadOf{moments.data(), n, spread.data()});
   return spread.data();
 }
 
@@ -114,30 +108,34 @@ struct BlurMoments {
   }
 };
 
-/// How far a value is from the mean, in standard deviations; mean and deviation are the local ones to the share
-/// `local`, else those of the whole texture. Without it what a diverging flow stretches grows into blotches, step by
-/// step. Gives that of `ahead`.
+/// How far `value` is from the mean, in standard deviations; mean and deviation are the local ones (`around`: number,
+/// sum and sum of squares of the values around) to the share `local`, else those of the whole texture. Otherwise what a
+/// diverging flow stretches would grow into blotches, step by step.
+NACRE_HD_INLINE float equalised(float value, const Vec3f& around, const TextureSpread& whole, float local) {
+  float mean = whole.mean, deviation = whole.deviation;
+  if (around.x > 0) {
+    const float local_mean = around.y / around.x, variance = around.z / around.x - local_mean * local_mean;
+    const float local_deviation = std::sqrt(variance > 0 ? variance : 0);
+    const float least = 0.25f * whole.deviation;  // a plain region stays plain
+    mean += local * (local_mean - whole.mean);
+    deviation += local * ((local_deviation > least ? local_deviation : least) - whole.deviation);
+  }
+  return (value - mean) / deviation;
+}
+
+/// `equalised` on the grid.
 struct Equalise {
   RefinedGridView texture;
-  const float* ahead;
-  const Float4* moments;       ///< of `value`
-  const TextureSpread* whole;  ///< of the whole of `value` and `ahead`
+  const float* value;
+  const Float4* moments;  ///< of the values in each closest-point cell and around
+  const TextureSpread* whole;
   float local;
   float* detail;
   NACRE_HD void operator()(std::int64_t i) const {
     const Vec3f p = cell_centre(texture.cell(std::uint32_t(i))) * texture.inverse_refine;
-    const TextureSpread all = *whole;
-    float shift = 0, spread = all.deviation;
     Lanes around;
-    if (interpolate_linear(texture.grid, moments, p, around)) {
-      const Vec3f m = xyz(around);  // never empty: the cell's own value is in it
-      const float local_mean = m.y / m.x, variance = m.z / m.x - local_mean * local_mean;
-      const float local_deviation = std::sqrt(variance > 0 ? variance : 0);
-      const float least = 0.25f * all.deviation;  // a plain region stays plain
-      shift = local * (local_mean - all.mean);
-      spread += local * ((local_deviation > least ? local_deviation : least) - all.deviation);
-    }
-    detail[i] = (ahead[i] - all.ahead_mean - shift) / (spread * all.ratio);
+    const bool known = interpolate_linear(texture.grid, moments, p, around);
+    detail[i] = equalised(value[i], known ? xyz(around) : Vec3f{}, *whole, local);
   }
 };
 

@@ -1,12 +1,10 @@
-// Nacre: streaks for the eye: the moving texture, high-passed and convolved along the flow of the frame (Cabral &
-// Leedom 1993, Okada & Kao 1997). What particles carry is not touched by it, so the texture moves as before; its
+// Nacre: streaks for the eye: the moving texture convolved along the flow of the frame (Cabral & Leedom 1993, Okada &
+// Kao 1997). What particles carry is not touched by it, so the texture moves as before; its
 // direction is that of the present flow, also where the flow is slow and particles leave no lines.
 #pragma once
 
-#include "compute/embedding/band.hpp"
-#include "compute/embedding/brick_octree.hpp"
-#include "compute/embedding/refined_grid.hpp"
 #include "compute/flow/filter.hpp"
+#include "compute/flow/surface_cells.hpp"
 
 namespace nacre {
 
@@ -33,106 +31,11 @@ struct StreakCell {
   float value;
 };
 
-/// A surface cell that was found for a cell of space.
-struct NearSurfaceCell {
-  CellIndex cell = no_cell;
-  bool direct = false;  ///< it is that cell itself, not the one that holds its closest point
-};
-
-/// The closest point of a surface cell, from its centre, in texture cells, and the triangle that it lies on.
-struct SurfaceFoot {
-  Vec3f offset;
-  std::uint32_t triangle;
-};
-
-/// How streamlines find surface cells on the grid.
-struct GridStreaks {
-  RefinedGridView texture;
-
-  NACRE_HD_INLINE SurfaceFoot foot(CellIndex s, const Int3&) const {
-    const Float4 offset = texture.seed[s];
-    return {{offset.x, offset.y, offset.z}, texture.seed_triangle[s]};
-  }
-
-  class Cursor {
-   public:
-    NACRE_HD_INLINE explicit Cursor(const GridStreaks& streaks) : texture_(streaks.texture) {}
-    NACRE_HD_INLINE NearSurfaceCell find(const Int3& cell) {
-      const Int3 outer = texture_.outer(cell);
-      if (!(outer == outer_)) {
-        outer_ = outer;
-        block_ = texture_.block_of(outer);
-      }
-      if (block_ == none) return {};
-      const std::uint32_t value = texture_.texel[texture_.entry_in(block_, cell, outer)];
-      if (value == none) return {};
-      return {value & ~RefinedGridView::extended, !(value & RefinedGridView::extended)};
-    }
-
-   private:
-    const RefinedGridView& texture_;
-    Int3 outer_{-1, -1, -1};
-    std::uint32_t block_ = none;
-  };
-};
-
-/// The same on the octree of bricks.
-struct BrickStreaks {
-  BrickOctreeView view;
-
-  NACRE_HD_INLINE SurfaceFoot foot(CellIndex, const Int3& position) const {
-    const CellPoint point = view.point[BrickOctreeView::Cursor(view).find(position)];
-    return {point.offset(view.quantum), point.triangle};
-  }
-
-  class Cursor {
-   public:
-    NACRE_HD_INLINE explicit Cursor(const BrickStreaks& streaks) : view_(streaks.view), cursor_(view_) {}
-    NACRE_HD_INLINE NearSurfaceCell find(const Int3& cell) {
-      const CellIndex at = cursor_.find_surface(cell);
-      if (at != no_cell) return {at, true};
-      const CellIndex beside = cursor_.find(cell);
-      if (beside == no_cell) return {};
-      return {cursor_.find_surface(closest_point_of(cell, view_.point[beside], view_.quantum).cell()), false};
-    }
-
-   private:
-    const BrickOctreeView& view_;
-    BrickOctreeView::Cursor cursor_;
-  };
-};
-
-/// Runs `kernel(surface_cell, place)` on all surface cells, of the grid or of the octree.
-template <class Kernel>
-struct OnGridStreaks {
-  RefinedGridView texture;
-  Kernel kernel;
-  NACRE_HD void operator()(std::int64_t i) const { kernel(CellIndex(i), texture.cell(std::uint32_t(i))); }
-};
-
-template <class Kernel>
-struct OnBrickStreaks {
-  Kernel kernel;
-  NACRE_HD void operator()(CellIndex s, CellIndex, const Int3& position, BrickOctreeView::Cursor&) const {
-    kernel(s, position);
-  }
-};
-
-template <class Backend, class Kernel>
-void for_each_streak_cell(Executor<Backend>& exec, const GridStreaks& streaks, std::int64_t n, const Kernel& kernel) {
-  exec.for_each(n, OnGridStreaks<Kernel>{streaks.texture, kernel});
-}
-
-template <class Backend, class Kernel>
-void for_each_streak_cell(Executor<Backend>& exec, const BrickStreaks& streaks, std::int64_t, const Kernel& kernel) {
-  for_each_surface_cell(exec, streaks.view, OnBrickStreaks<Kernel>{kernel});
-}
-
 /// Fills in the flow and the surface of each surface cell, from the triangle of its closest point: exact where vectors
 /// kept on a coarser grid are blurred, and at creases.
-template <class Streaks>
+template <class Surface>
 struct MarkStreakCells {
-  Streaks streaks;
+  Surface surface;
   MeshView mesh;
   double cell;           ///< edge of a texture cell in units of the mesh's points
   const Vec3f* vectors;  ///< one per point of the mesh, at the time of the frame
@@ -140,7 +43,7 @@ struct MarkStreakCells {
   StreakCell* cells;
 
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
-    const SurfaceFoot foot = streaks.foot(s, position);
+    const SurfaceFoot foot = surface.foot(s, position);
     const Vec3f w(barycentric(mesh.corners(foot.triangle), (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * cell));
     const Triangle corner = mesh.triangles[foot.triangle];
     const Vec3f n = mesh.normal(foot.triangle, w);
@@ -152,44 +55,35 @@ struct MarkStreakCells {
   }
 };
 
-/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow, less half of the mean
-/// of those around. Without that they would be as wide as the lines that particles draw; less all of it they are
-/// thinner than a cell and lose their way.
-template <class Streaks>
-struct HighPass {
-  Streaks streaks;
+/// What streaks are made of: the mean of the values at a cell and one cell up and down the flow. It takes out what
+/// alternates from cell to cell, which would leave chequers.
+template <class Surface>
+struct SmoothAlongFlow {
+  Surface surface;
   const float* value;  ///< 0..1
   StreakCell* cells;
 
-  static constexpr float share = 0.5f;
-
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
-    typename Streaks::Cursor cursor(streaks);
-    const auto at = [&](const Int3& cell) {
-      const NearSurfaceCell found = cursor.find(cell);
-      return value[found.cell == no_cell ? s : found.cell] - 0.5f;
+    typename Surface::Cursor cursor(surface);
+    const auto at = [&](const Vec3f& p) {
+      const NearSurfaceCell found = cursor.find(position + floor_cell(p));
+      return value[found.cell == no_cell ? s : found.cell];
     };
-    const float own = value[s] - 0.5f;
-    float along = own, around = 0;
+    float mean = value[s];
     if (const std::uint32_t direction = cells[s].direction) {
       const Vec3f d = PackedDirection::unpack(direction);
       const Vec3f p = Vec3f(0.5f) + PackedDirection::unpack(cells[s].normal) * cells[s].plane;
-      along = 0.5f * own + 0.25f * (at(position + floor_cell(p + d)) + at(position + floor_cell(p - d)));
+      mean = 0.5f * mean + 0.25f * (at(p + d) + at(p - d));
     }
-    for (int k = 0; k < 6; ++k) {
-      Int3 next = position;
-      next[k / 2] += k & 1 ? 1 : -1;
-      around += at(next);
-    }
-    cells[s].value = along - share * (around / 6);
+    cells[s].value = mean - 0.5f;
   }
 };
 
 /// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
 /// to where the flow or the surface ends or turns back.
-template <class Streaks>
+template <class Surface>
 struct ConvolveAlongFlow {
-  Streaks streaks;
+  Surface surface;
   const StreakCell* cells;
   int reach;
   float* result;  ///< 0..1, around 1/2
@@ -205,14 +99,13 @@ struct ConvolveAlongFlow {
     float sum = own.value;
     if (own.direction == 0) return sum;
     int count = 1;
-    const int steps = (reach + 1) / 2;
     const Vec3f along = PackedDirection::unpack(own.direction);
     const Vec3f start = Vec3f(0.5f) + PackedDirection::unpack(own.normal) * own.plane;
     for (int side = -1; side <= 1; side += 2) {
-      typename Streaks::Cursor cursor(streaks);
+      typename Surface::Cursor cursor(surface);
       Vec3f p = start, d = along * float(side), before = d;
-      for (int i = 0; i < steps; ++i) {
-        p = p + d * 3.0f - before;  // two cells by Adams and Bashforth's second order: one direction a step
+      for (int i = 0; i < reach; ++i) {
+        p = p + d * 1.5f - before * 0.5f;  // a cell by Adams and Bashforth's second order: one direction a step
         const Vec3f low{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
         const NearSurfaceCell found = cursor.find(position + Int3(int(low.x), int(low.y), int(low.z)));
         if (found.cell == no_cell) break;

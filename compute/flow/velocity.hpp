@@ -9,18 +9,18 @@ namespace nacre {
 
 inline constexpr int max_ttl = 16;
 
-/// Displacement in cells per step at the beginnings of the coming steps: slot j at step j from now.
+/// Displacement in cells per step, at the beginning of a step and at its end.
 struct FlowField {
   ClosestPointGridView grid;
-  const Float4* slot[max_ttl + 1] = {};
-  bool steady = true;  ///< all slots are the same
+  const Float4* slot[2] = {};
+  bool steady = true;  ///< both are the same
 
-  /// At point `p` (cells) and time `u` (0..1) within step `j`. False out of the band.
-  NACRE_HD_INLINE bool velocity(const Vec3f& p, int j, float u, Vec3f& v) const {
+  /// At point `p` (cells) and time `u` (0..1) within the step. False out of the band.
+  NACRE_HD_INLINE bool velocity(const Vec3f& p, float u, Vec3f& v) const {
     LinearCells cells;
     if (!cells.find(grid, p)) return false;
-    Lanes result = cells.interpolate(slot[!steady && u >= 1 ? j + 1 : j]);
-    if (!steady && u > 0 && u < 1) result = result + (cells.interpolate(slot[j + 1]) - result) * u;
+    Lanes result = cells.interpolate(slot[!steady && u >= 1 ? 1 : 0]);
+    if (!steady && u > 0 && u < 1) result = result + (cells.interpolate(slot[1]) - result) * u;
     v = xyz(result);
     return true;
   }

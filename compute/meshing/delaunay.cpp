@@ -23,7 +23,7 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
-#include "compute/meshing/circumcentre.hpp"
+#include "compute/meshing/delaunay_order.hpp"
 
 namespace nacre {
 namespace {
@@ -47,16 +47,6 @@ constexpr bool may_thread = true;
 constexpr std::size_t few_points = 4096;  // locks cost more than they gain
 constexpr int lock_cells = 50;            // per axis
 constexpr std::size_t dear_removal = 50;  // taking a point out costs less than this many insertions on all threads
-
-void check_points(std::span<const Vec3d> points) {
-  const std::string what = "the particles cannot be triangulated";
-  if (points.size() >= std::size_t(std::numeric_limits<std::int32_t>::max()) / 8)
-    throw Error(what, "there are more than 268 million", "choose a larger `min_size`");
-  if (points.size() < 4)
-    throw Error(what, "there are fewer than four", "choose a smaller `max_size`, or more `particles`");
-  for (const Vec3d& p : points)
-    if (!is_finite(p)) throw Error(what, "one of them is not at a finite place");
-}
 
 CGAL::Bbox_3 box_of(std::span<const Vec3d> points) {
   Vec3d lower = points[0], upper = points[0];
@@ -161,25 +151,6 @@ class PlaceTable {
   std::vector<std::uint32_t> slots_;
 };
 
-using Cell = std::array<std::uint32_t, 4>;
-using Neighbours = std::array<std::int32_t, 4>;
-
-/// Corners ascending, then the last two swapped where the permutation is odd; neighbours along with them.
-void bring_into_order(Cell& cell, Neighbours& neighbours) {
-  const auto exchange = [&](int i, int j) {
-    std::swap(cell[i], cell[j]);
-    std::swap(neighbours[i], neighbours[j]);
-  };
-  bool odd = false;
-  for (int end = 3; end > 0; --end)
-    for (int i = 0; i < end; ++i)
-      if (cell[i] > cell[i + 1]) {
-        exchange(i, i + 1);
-        odd = !odd;
-      }
-  if (odd) exchange(2, 3);
-}
-
 /// Copies the finite cells as the triangulation happens to hold them.
 DelaunayCells copy_cells(const Triangulation& triangulation) {
   std::vector<Triangulation::Cell_handle> handles;
@@ -197,50 +168,7 @@ DelaunayCells copy_cells(const Triangulation& triangulation) {
       cells.vertices[i][k] = handles[i]->vertex(k)->info();
       cells.neighbours[i][k] = handles[i]->neighbor(k)->info();
     }
-    bring_into_order(cells.vertices[i], cells.neighbours[i]);
-  });
-  return cells;
-}
-
-/// Order of the cells by their sorted vertices: counted into buckets by the smallest, then sorted there.
-std::vector<std::int32_t> canonical_order(const std::vector<Cell>& vertices, std::size_t points) {
-  std::vector<std::uint32_t> begin(points + 1);
-  for (const Cell& cell : vertices) ++begin[cell[0] + 1];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<std::int32_t> order(vertices.size());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for (std::size_t i = 0; i < vertices.size(); ++i) order[next[vertices[i][0]]++] = std::int32_t(i);
-  const auto before = [&](std::int32_t i, std::int32_t j) {
-    const Cell &a = vertices[i], &b = vertices[j];
-    if (a[1] != b[1]) return a[1] < b[1];
-    const auto [a2, a3] = std::minmax(a[2], a[3]);
-    const auto [b2, b3] = std::minmax(b[2], b[3]);
-    return a2 != b2 ? a2 < b2 : a3 < b3;
-  };
-  tbb::parallel_for(std::size_t(0), points,
-                    [&](std::size_t p) { std::sort(order.begin() + begin[p], order.begin() + begin[p + 1], before); });
-  return order;
-}
-
-/// The same cells in canonical order, with their circumcentres.
-DelaunayCells sorted(const DelaunayCells& raw, std::span<const Vec3d> points, const std::atomic<bool>* stop) {
-  check_stop(stop);
-  const std::size_t count = raw.vertices.size();
-  const std::vector<std::int32_t> order = canonical_order(raw.vertices, points.size());
-  check_stop(stop);
-  std::vector<std::int32_t> rank(count);
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) { rank[order[i]] = std::int32_t(i); });
-  DelaunayCells cells;
-  cells.vertices.resize(count);
-  cells.neighbours.resize(count);
-  cells.circumcentres.resize(count);
-  tbb::parallel_for(std::size_t(0), count, [&](std::size_t i) {
-    const Cell& v = cells.vertices[i] = raw.vertices[order[i]];
-    for (int k = 0; k < 4; ++k) {
-      const std::int32_t neighbour = raw.neighbours[order[i]][k];
-      cells.neighbours[i][k] = neighbour < 0 ? -1 : rank[neighbour];
-    }
-    cells.circumcentres[i] = circumcentre(points[v[0]], points[v[1]], points[v[2]], points[v[3]]);
+    order_corners(cells.vertices[i], cells.neighbours[i]);
   });
   return cells;
 }
@@ -292,9 +220,7 @@ struct Delaunay::Held {
     triangulation.set_lock_data_structure(nullptr);
     for (std::size_t i = now.size(); i-- > 0;)
       vertices[i]->info() = std::uint32_t(i);  // the first of those that coincide
-    if (triangulation.dimension() < 3)
-      throw Error("the particles cannot be triangulated", "they all lie in one plane",
-                  "check that the volume holds a body with a thickness");
+    if (triangulation.dimension() < 3) refuse_flat_points();
   }
 };
 
@@ -302,14 +228,14 @@ Delaunay::Delaunay(int threads) : threads_(threads) {}
 Delaunay::~Delaunay() = default;
 
 DelaunayCells Delaunay::cells(std::span<const Vec3d> points, const std::atomic<bool>* stop) {
-  check_points(points);
+  check_delaunay_points(points);
   tbb::task_arena arena(threads_ > 0 ? threads_ : tbb::this_task_arena::max_concurrency());
   return arena.execute([&] {
     std::unique_ptr<Held> held = held_ ? std::move(held_) : std::make_unique<Held>();  // lost where this throws
     held->triangulate(points, may_thread && arena.max_concurrency() > 1, stop);
     const DelaunayCells raw = copy_cells(held->triangulation);
     held_ = std::move(held);
-    return sorted(raw, points, stop);
+    return in_canonical_order(raw, points, stop);
   });
 }
 

@@ -64,11 +64,11 @@ InterfaceFacets interface_facets(const DelaunayCells& cells, std::span<const std
   return facets;
 }
 
-SurfaceMesh extract_interfaces(std::span<const Vec3d> points, const DelaunayCells& cells,
-                               std::span<const std::uint16_t> label, std::vector<std::uint32_t>* point_of) {
-  InterfaceFacets facets = interface_facets(cells, label);
+SurfaceMesh mesh_of_triangles(std::span<const Vec3d> points, std::vector<Triangle> triangles,
+                              std::vector<std::array<std::uint16_t, 2>> materials,
+                              std::vector<std::uint32_t>* point_of) {
   std::vector<std::uint32_t> number(points.size(), 0);
-  for (const Triangle& t : facets.triangles)
+  for (const Triangle& t : triangles)
     for (int k = 0; k < 3; ++k) number[t[k]] = 1;
   SurfaceMesh mesh;
   if (point_of) point_of->clear();
@@ -78,13 +78,19 @@ SurfaceMesh extract_interfaces(std::span<const Vec3d> points, const DelaunayCell
     mesh.points.push_back(points[p]);
     if (point_of) point_of->push_back(std::uint32_t(p));
   }
-  mesh.triangles = std::move(facets.triangles);
-  mesh.materials = std::move(facets.materials);
+  mesh.triangles = std::move(triangles);
+  mesh.materials = std::move(materials);
   tbb::parallel_for(std::size_t(0), mesh.triangles.size(), [&](std::size_t i) {
     Triangle& t = mesh.triangles[i];
     t = {number[t.a], number[t.b], number[t.c]};
   });
   return mesh;
+}
+
+SurfaceMesh extract_interfaces(std::span<const Vec3d> points, const DelaunayCells& cells,
+                               std::span<const std::uint16_t> label, std::vector<std::uint32_t>* point_of) {
+  InterfaceFacets facets = interface_facets(cells, label);
+  return mesh_of_triangles(points, std::move(facets.triangles), std::move(facets.materials), point_of);
 }
 
 }  // namespace nacre

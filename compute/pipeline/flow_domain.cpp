@@ -84,10 +84,10 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
   const double reach = 0.8661 + 2.3 / parameters.refine;
   const double texels = std::min(sheet * 2.4 * reach, dense) * std::pow(parameters.refine, 3);
   const double surface = std::min(1.6 * area / (h * h), texels);
-  const double slots = parameters.ttl + 1;
+  constexpr double slots = 2;
   const double pairs = std::min(triangles, sheet * 2) * 60 / parameters.subcells + cells / 16 + edges / H;
   return dense / std::pow(parameters.subcells, 3) * 4 + cells * (16 + 4 + 4 + 4 + 32 + 16 * slots) + texels * (4 + 4) +
-         surface * (4 + 16 + 4 + 24 + 16 + 8 * parameters.ttl + 4 * 5) + pairs * 24 + triangles * 220 + 64e6;
+         surface * (4 + 16 + 4 + 24 + 16 + 8 * 3 + 4 * 5) + pairs * 24 + triangles * 220 + 64e6;
 }
 
 int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain) {
@@ -141,7 +141,8 @@ double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& paramet
   const double seeds = brick ? surface : cells;
   const double structure =
       brick ? bricks * 340 + lists * 4 : cells * (8 + 5 + (parameters.neighbour_index ? 24 : 0) + 24);
-  return cells * (12 + 4 * (ttl + 1)) + seeds * (8 * ttl + 12 + (brick ? 24 : 0)) + structure + triangles * 300 + 256e6;
+  return cells * (12 + 4 * (brick ? 2 : ttl + 1)) + seeds * (8 * (brick ? 3 : ttl) + 16 + (brick ? 20 : 0)) +
+         structure + triangles * 300 + 256e6;
 }
 
 namespace {

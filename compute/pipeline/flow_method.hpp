@@ -63,14 +63,16 @@ class FlowMethodOn : public FlowMethod {
     embedded_ = true;
   }
 
-  /// Gives the last run's arrays back. `texel` is the edge of a texture cell in cells of the domain.
-  void begin_flow(const FlowVectors& vectors, double texel) {
+  /// Gives the last run's arrays back. `texel` is the edge of a texture cell in cells of the domain; `sight` the number
+  /// of steps that a path sees ahead, 0: a lifetime.
+  void begin_flow(const FlowVectors& vectors, double texel, int sight) {
     require_embedded();
     started_ = false;
     vectors_ = vectors;
     seed_ = parameters_.seed;
     texel_ = texel;
     ttl_ = std::clamp(parameters_.ttl, 1, max_ttl);
+    sight_ = sight > 0 ? sight : ttl_;
     steady_ = !(vectors.end > vectors.start);
     exec_.arena().rewind(embedding_mark_);
     point_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
@@ -80,11 +82,17 @@ class FlowMethodOn : public FlowMethod {
     output_ = nullptr;
   }
 
-  /// Number of slots that hold displacements: those that a living particle can see.
-  int slots() const { return steady_ ? 1 : ttl_ + 1; }
-  int slot(int k) const { return steady_ ? 0 : (k - first_) % (ttl_ + 1); }
-  /// Which of the ttl buffers of sums belongs to step `k`.
-  int ring(int k) const { return (k - first_) % ttl_; }
+  /// Number of slots that hold displacements: those that a path can see.
+  int slots() const { return steady_ ? 1 : sight_ + 1; }
+  int slot(int k) const { return steady_ ? 0 : (k - first_) % (sight_ + 1); }
+
+  /// How displacements are rounded to whole cells in step `k`: -1/2..1/2 on each axis, spread evenly over few steps (an
+  /// additive recurrence), so that slow particles move as far as fast ones in the mean. It is the same everywhere, so
+  /// that a pattern keeps together.
+  static Vec3f rounding_of(int k) {
+    const auto spread = [k](double irrational) { return float(std::fmod(irrational * (k + 1), 1.0) - 0.5); };
+    return {spread(0.8191725133961645), spread(0.6710436067037893), spread(0.5497004779019703)};
+  }
 
   /// The slots that the first step sees, then the steps before the data's first.
   void warm_up() {
@@ -96,21 +104,21 @@ class FlowMethodOn : public FlowMethod {
   /// Embeds what comes into sight at step `k`.
   void look_ahead(int k) {
     if (steady_) return;
-    if (k > first_) fill(k + ttl_);
+    if (k > first_) fill(k + sight_);
     load_present(k);
   }
 
   /// Streaks of `value` along the flow of the frame, around 1/2, into `streaks`. `cell`: edge of a texture cell in
   /// cells of the domain.
-  template <class Streaks>
-  void draw_streaks(const Streaks& on, std::int64_t n, double cell, const float* value, StreakCell* cells,
+  template <class Surface>
+  void draw_streaks(const Surface& on, std::int64_t n, double cell, const float* value, StreakCell* cells,
                     float* streaks) {
     const float least = 1e-6f * float(vectors_.reference_speed);
     auto stage = exec_.stage("streaks");
-    for_each_streak_cell(exec_, on, n,
-                         MarkStreakCells<Streaks>{on, mesh_, cell, present_vectors_.data(), least, cells});
-    for_each_streak_cell(exec_, on, n, HighPass<Streaks>{on, value, cells});
-    for_each_streak_cell(exec_, on, n, ConvolveAlongFlow<Streaks>{on, cells, parameters_.streaks, streaks});
+    for_each_surface_cell_of(exec_, on, n,
+                             MarkStreakCells<Surface>{on, mesh_, cell, present_vectors_.data(), least, cells});
+    for_each_surface_cell_of(exec_, on, n, SmoothAlongFlow<Surface>{on, value, cells});
+    for_each_surface_cell_of(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks, streaks});
   }
 
   /// Time of the data at the beginning of step `k`; it stands still before the first step and after the last.
@@ -136,6 +144,9 @@ class FlowMethodOn : public FlowMethod {
       colours.upload(table);
       scene.scalar = scalar.data();
       scene.colours = colours.data();
+      scene.below = linear(options.below.value_or(options.colours.front()));
+      scene.above = linear(options.above.value_or(options.colours.back()));
+      scene.no_number = linear(options.no_number);
       scene.low = float(options.low);
       scene.high = options.high > options.low ? float(options.high) : std::nextafter(float(options.low), 1e30f);
     }
@@ -196,7 +207,7 @@ class FlowMethodOn : public FlowMethod {
   EmbeddingInfo info_;
   FlowVectors vectors_;
   bool embedded_ = false, started_ = false, steady_ = true;
-  int ttl_ = 4, step_ = 0, first_ = 0, launched_ = 0;
+  int ttl_ = 4, sight_ = 1, step_ = 0, first_ = 0, launched_ = 0;
   double texel_ = 1;  ///< edge of a texture cell in cells of the domain
   std::uint32_t triangles_ = 0;
   std::size_t embedding_mark_ = 0;

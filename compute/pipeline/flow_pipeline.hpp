@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,16 +34,16 @@ struct FlowParameters {
   int refine = 4;                ///< texture cells per closest-point cell and axis (R)
   int subcells = 4;              ///< closest-point cells per coarse cell and axis
   double radius = 0;       ///< band around the surface, in closest-point cells; 0: the least that the stencils need
-  int ttl = 4;             ///< steps that a particle lives
+  int ttl = 4;             ///< steps that a particle lives in the mean
   double step_cells = 8;   ///< texture cells that the 98th percentile speed moves in a step
   double speed_power = 1;  ///< displacement ~ speed^power: 1 true speeds, 0 all alike
   int steps = 20;          ///< steps from the first to the last time
   int warmup = -1;         ///< steps before the first, at the first time; -1: ttl
   double sharpen = 0.05;   ///< strength of the Laplacian between steps
-  double jitter = 0.55;    ///< share of fresh noise between steps
+  double jitter = 0.4;     ///< share of fresh noise between steps
   double equalise = 0.5;   ///< share of local contrast against that of the whole texture
-  int streaks = 16;        ///< cells that shown streaks are drawn along the flow, each way; 0: what particles leave
-  double contrast = 0.4;   ///< shown standard deviation
+  int streaks = 20;        ///< cells that shown streaks are drawn along the flow, each way; 0: what particles leave
+  double contrast = 0.55;  ///< shown standard deviation
   std::uint32_t seed = 1;
 };
 
@@ -130,8 +131,10 @@ struct RenderOptions {
   bool texture = true;
   std::span<const float> scalar;  ///< per point of the mesh; empty: gray
   double low = 0, high = 1;
-  std::span<const std::array<float, 3>> colours;  ///< 256, sRGB
-  std::array<float, 3> background{1, 1, 1};       ///< sRGB
+  std::span<const std::array<float, 3>> colours;     ///< 256, sRGB
+  std::optional<std::array<float, 3>> below, above;  ///< of values beyond the range, sRGB; none: the end of `colours`
+  std::array<float, 3> no_number{0.5f, 0.5f, 0.5f};  ///< where the scalar is NaN, sRGB
+  std::array<float, 3> background{1, 1, 1};          ///< sRGB
   bool transparent = false;
 };
 

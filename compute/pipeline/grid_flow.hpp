@@ -52,17 +52,17 @@ class GridFlow final : public FlowMethodOn<Backend> {
   }
 
   void start(const FlowVectors& vectors) override {
-    this->begin_flow(vectors, 1.0 / refine_);
+    this->begin_flow(vectors, 1.0 / refine_, 1);
     Arena& arena = exec_.arena();
     const std::size_t n = fine_.surface_cells;
     for (int j = 0; j < this->slots(); ++j) slots_[j] = arena.permanent<Float4>(coarse_.cells);
-    for (int j = 0; j < ttl_; ++j) {
-      sums_[j] = arena.permanent<std::uint64_t>(n);
-      sums_[j].fill_bytes(0);
+    for (Array<std::uint64_t>* words : {&crossed_, &arrived_[0], &arrived_[1]}) {
+      *words = arena.permanent<std::uint64_t>(n);
+      words->fill_bytes(0);
     }
     carried_ = arena.permanent<float>(n);
     value_ = arena.permanent<float>(n);
-    ahead_ = arena.permanent<float>(n);
+    streaks_ = arena.permanent<float>(n);
     detail_ = arena.permanent<float>(n);
     streak_cells_ = arena.permanent<StreakCell>(n);
     for (Array<Float4>& moments : moments_) {
@@ -70,7 +70,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
       moments.fill_bytes(0);  // blurring never writes the cells without a block
     }
     shown_ = arena.permanent<float>(n);
-    for (Array<float>* noise : {&carried_, &value_, &ahead_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
+    for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
     this->warm_up();
     show();
     ++launched_;
@@ -119,27 +119,29 @@ class GridFlow final : public FlowMethodOn<Backend> {
 
   /// What follows the look ahead; nothing in it waits for the device.
   void launch(int k) {
-    ReleaseParticles particles;
+    const Array<std::uint64_t>&arrived = arrived_[launched_ & 1], &ended = arrived_[~launched_ & 1];
+    const RefinedGridView texture = fine_.view(coarse_.view());
+    MoveParticles particles;
     particles.field.grid = coarse_.view();
     particles.field.steady = steady_;
-    for (int j = 0; j <= ttl_; ++j) particles.field.slot[j] = slots_[this->slot(k + j)].data();
-    particles.texture = fine_.view(coarse_.view());
+    for (int j = 0; j < 2; ++j) particles.field.slot[j] = slots_[this->slot(k + j)].data();
+    particles.texture = texture;
     particles.carried = carried_.data();
+    particles.arrived = arrived.data();
+    particles.crossed = crossed_.data();
+    particles.ended = ended.data();
     particles.ttl = ttl_;
-    for (int j = 0; j < ttl_; ++j) particles.sums[j] = sums_[this->ring(k + j)].data();
+    particles.rounding = this->rounding_of(launched_);
     {
       auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
       exec_.for_each(fine_.surface_cells, particles);
     }
-    Array<std::uint64_t>& done = sums_[this->ring(k)];
     {
       auto stage = exec_.stage("deposit");
-      normalise(done, value_, 1, value_);
-      exec_.fill(done, 0);
-      // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the
-      // mean of this frame and of what older particles have already left in the next one; else the texture lags the
-      // flow.
-      normalise(sums_[this->ring(k + 1)], value_, 0.5f, ahead_);
+      const Normalise<GridSurface> normalise{{texture}, ended.data(), crossed_.data(), carried_.data(), value_.data()};
+      for_each_surface_cell_of(exec_, GridSurface{texture}, fine_.surface_cells, normalise);
+      exec_.fill(crossed_, 0);
+      exec_.fill(arrived, 0);
     }
     show();
   }
@@ -150,19 +152,18 @@ class GridFlow final : public FlowMethodOn<Backend> {
     const std::int64_t n = fine_.surface_cells;
     const RefinedGridView texture = fine_.view(coarse_.view());
     Arena::Scope scope(exec_.arena());
-    const auto equalise = [&](const float* value, const float* ahead) {
-      const TextureSpread* whole = measure_spread(exec_, n, value, ahead);
+    const auto equalise = [&](const float* value) {
+      const TextureSpread* whole = measure_spread(exec_, n, value);
       const Float4* moments = gather_moments(texture, value);
-      exec_.for_each(n, Equalise{texture, ahead, moments, whole, float(parameters_.equalise), detail_.data()});
+      exec_.for_each(n, Equalise{texture, value, moments, whole, float(parameters_.equalise), detail_.data()});
     };
-    equalise(value_.data(), ahead_.data());
+    equalise(value_.data());
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
                                        seed_, std::uint32_t(launched_ + 1), carried_.data()});
-    // Nobody needs what is ahead any more: the frame for the eye takes its memory.
     if (parameters_.streaks > 0)
-      this->draw_streaks(GridStreaks{texture}, n, 1.0 / refine_, value_.data(), streak_cells_.data(), ahead_.data());
-    frame_ = parameters_.streaks > 0 ? ahead_.data() : value_.data();
-    equalise(frame_, frame_);
+      this->draw_streaks(GridSurface{texture}, n, 1.0 / refine_, value_.data(), streak_cells_.data(), streaks_.data());
+    frame_ = parameters_.streaks > 0 ? streaks_.data() : value_.data();
+    equalise(frame_);
     exec_.for_each(n, Show{detail_.data(), float(parameters_.contrast), shown_.data(), output_});
   }
 
@@ -178,17 +179,12 @@ class GridFlow final : public FlowMethodOn<Backend> {
     return from->data();
   }
 
-  void normalise(const Array<std::uint64_t>& sums, const Array<float>& otherwise, float share, Array<float>& value) {
-    exec_.for_each(fine_.surface_cells,
-                   Normalise{fine_.view(coarse_.view()), sums.data(), otherwise.data(), share, value.data()});
-  }
-
   int refine_ = 4;
   ClosestPointGrid coarse_;
   RefinedGrid fine_;
-  Array<Float4> slots_[max_ttl + 1];
-  Array<std::uint64_t> sums_[max_ttl];
-  Array<float> carried_, value_, ahead_, detail_, shown_;
+  Array<Float4> slots_[2];
+  Array<std::uint64_t> crossed_, arrived_[2];
+  Array<float> carried_, value_, streaks_, detail_, shown_;
   Array<StreakCell> streak_cells_;
   const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_[2];

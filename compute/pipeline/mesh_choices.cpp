@@ -19,6 +19,8 @@ constexpr std::array<Word<Solver>, 3> solvers{
     {{"tree", Solver::tree}, {"redblack", Solver::redblack}, {"serial", Solver::serial}}};
 constexpr std::array<Word<CubicKernel>, 2> kernels{
     {{"catmull-rom", CubicKernel::catmull_rom}, {"b-spline", CubicKernel::b_spline}}};
+constexpr std::array<Word<TriangleSource>, 2> triangle_sources{
+    {{"delaunay", TriangleSource::delaunay}, {"stars", TriangleSource::stars}}};
 enum class Seeds { automatic, embedding, marching_cubes };
 constexpr std::array<Word<Seeds>, 3> seed_words{
     {{"auto", Seeds::automatic}, {"embedding", Seeds::embedding}, {"marching-cubes", Seeds::marching_cubes}}};
@@ -46,6 +48,9 @@ std::string to_string(CubicKernel kernel) { return word_of<CubicKernel>(kernels,
 
 Solver solver_from_string(std::string_view word) { return choice_of<Solver>(solvers, "solver", word); }
 CubicKernel kernel_from_string(std::string_view word) { return choice_of<CubicKernel>(kernels, "kernel", word); }
+TriangleSource triangles_from_string(std::string_view word) {
+  return choice_of<TriangleSource>(triangle_sources, "triangulation", word);
+}
 
 SeedOrigin seeds_from_string(std::string_view word, Solver solver) {
   switch (choice_of<Seeds>(seed_words, "seeds", word)) {
@@ -58,6 +63,7 @@ SeedOrigin seeds_from_string(std::string_view word, Solver solver) {
 MeshChoices::MeshChoices(const MeshParameters& parameters)
     : solver(solver_from_string(parameters.solver)),
       kernel(kernel_from_string(parameters.kernel)),
-      seeds(seeds_from_string(parameters.seeds, solver)) {}
+      seeds(seeds_from_string(parameters.seeds, solver)),
+      triangles(triangles_from_string(parameters.triangles)) {}
 
 }  // namespace nacre

@@ -20,12 +20,19 @@ enum class Solver {
 /// Where the particles of surfaces begin; those of curves always begin in the embedding.
 enum class SeedOrigin { embedding, marching_cubes };
 
+/// What triangles are made of.
+enum class TriangleSource {
+  delaunay,  ///< facets between Delaunay cells of different materials
+  stars,     ///< each particle's neighbours on its surfaces
+};
+
 std::string to_string(Solver solver);
 std::string to_string(CubicKernel kernel);
 
 /// Each throws Error, with the words that there are, for any other word.
 Solver solver_from_string(std::string_view word);
 CubicKernel kernel_from_string(std::string_view word);
+TriangleSource triangles_from_string(std::string_view word);
 /// "auto" is the embedding for the tree solver and marching cubes for the others, as in ch. 4 and ch. 3.
 SeedOrigin seeds_from_string(std::string_view word, Solver solver);
 
@@ -34,6 +41,7 @@ struct MeshChoices {
   Solver solver;
   CubicKernel kernel;
   SeedOrigin seeds;
+  TriangleSource triangles;
 
   /// Throws Error where one of the words is unknown.
   explicit MeshChoices(const MeshParameters& parameters);

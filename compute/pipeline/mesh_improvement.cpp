@@ -6,6 +6,7 @@
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/interfaces.hpp"
+#include "compute/meshing/star_mesh.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 
 namespace nacre {
@@ -64,7 +65,7 @@ ImprovedMesh MeshImprovement::run() {
     again = improve(made);
   }
   particles_.upload(best_particles);
-  return {std::move(best->mesh), count_by_order(best_particles.interface, table_)};
+  return {std::move(best->mesh), count_by_order(best_particles.interface, table_), star_use_};
 }
 
 double MeshImprovement::fraction() const {
@@ -76,21 +77,53 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
   particles_.in_stage("triangulate", [&] {
     const HostParticles particles = particles_.download();
     const std::vector<Vec3d> points = world_positions(particles.position, frame_);
-    const DelaunayCells cells = delaunay_.cells(points, rule_.stop);
-    std::vector<std::uint16_t> label = particles_.material_at(cells.circumcentres);
-    const LabelRepair repair = repair_labels(points, cells, label, rule_.stop);
-    made.mesh = extract_interfaces(points, cells, label, &made.point_of);
+    if (!rule_.stars || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
     check_stop(rule_.stop);
     for (const std::uint32_t i : made.point_of) {
       made.order.push_back(table_.order[particles.interface[i]]);
       made.size.push_back(particles.position[i].w * float(frame_.unit));
     }
     lift_off_junctions(made.mesh, made.order);
-    made.touching = points_of_places(repair.places, made.point_of);
     made.fitness =
         made.touching.empty() ? fitness(made.mesh, made.order, worst_defects) : -double(made.touching.size());
   });
   return made;
+}
+
+/// False where the stars do not give a sound mesh.
+bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points,
+                                           Triangulated& made) {
+  std::vector<Junction> junction;
+  std::vector<Vec3f> place_on_rims;
+  std::vector<Junction> rims;
+  for (std::size_t i = 0; i < particles.count(); ++i) {
+    junction.push_back(table_.junctions[particles.interface[i]]);
+    if (junction.back().order() == 2) continue;
+    place_on_rims.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
+    rims.push_back(junction.back());
+  }
+  const std::vector<JunctionGradients> on_rims = particles_.junction_gradients(place_on_rims, rims);
+  std::vector<JunctionGradients> gradient(particles.count());
+  for (std::size_t i = 0, next = 0; i < particles.count(); ++i)
+    if (junction[i].order() < 2) gradient[i] = on_rims[next++];
+  StarMesh stars = mesh_from_stars({particles.position, particles.direction, junction, gradient});
+  check_stop(rule_.stop);
+  star_use_.last = stars.counts;
+  ++(stars.sound ? star_use_.meshes : star_use_.fallbacks);
+  if (!stars.sound) return false;
+  const auto& axes = frame_.axes;
+  if (dot(axes[0], cross(axes[1], axes[2])) < 0)  // the world is a mirror image
+    for (Triangle& t : stars.triangles) std::swap(t.b, t.c);
+  made.mesh = mesh_of_triangles(points, std::move(stars.triangles), std::move(stars.materials), &made.point_of);
+  return true;
+}
+
+void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triangulated& made) {
+  const DelaunayCells cells = delaunay_.cells(points, rule_.stop);
+  std::vector<std::uint16_t> label = particles_.material_at(cells.circumcentres);
+  LabelRepair repair = repair_labels(points, cells, label, rule_.stop);
+  made.mesh = extract_interfaces(points, cells, label, &made.point_of);
+  made.touching = points_of_places(std::move(repair.places), made.point_of);
 }
 
 /// Changes the particles before they are triangulated again; false where there is nothing to change.

@@ -20,6 +20,7 @@
 #include "compute/meshing/defects.hpp"
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/repair.hpp"
+#include "compute/meshing/star_counts.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 #include "compute/pipeline/movable_particles.hpp"
 #include "compute/pipeline/stage_progress.hpp"
@@ -30,6 +31,7 @@ namespace nacre {
 struct ImprovementRule {
   int smooth = 2;                           ///< rounds of smoothing all particles
   int mend = 12;                            ///< rounds of mending, at most; each attempt counts as one
+  bool stars = false;                       ///< triangles from the particles' stars, where these are sound
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
   const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
 };
@@ -38,6 +40,7 @@ struct ImprovementRule {
 struct ImprovedMesh {
   SurfaceMesh mesh;
   std::array<std::int64_t, 3> particles{};
+  StarUse stars;
 };
 
 /// Triangulates particles and changes them until the triangles get no better. First the clear defects are mended, then
@@ -65,6 +68,8 @@ class MeshImprovement {
   };
 
   Triangulated triangulate();
+  bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, Triangulated& made);
+  void triangulate_by_cells(std::span<const Vec3d> points, Triangulated& made);
   bool improve(Triangulated& made);
   bool begin_attempt(Triangulated& made, std::span<const std::uint8_t> bad);
   bool continue_attempt(Triangulated& made);
@@ -79,6 +84,7 @@ class MeshImprovement {
   ImprovementRule rule_;
   const TellStage& tell_;
   Delaunay delaunay_;
+  StarUse star_use_;
   int smoothed_ = 0, mended_ = 0;             ///< rounds so far
   std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began
   std::uint32_t tried_ = 0;                   ///< kinds of attempts so far

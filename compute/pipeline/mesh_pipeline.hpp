@@ -14,6 +14,7 @@
 #include "compute/device/stage_timers.hpp"
 #include "compute/math/lanes.hpp"
 #include "compute/math/vec.hpp"
+#include "compute/meshing/star_counts.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
@@ -39,12 +40,13 @@ struct MeshParameters {
   double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)
   double add_below = 0.65;             ///< split particles with less than this share of the ideal energy
   double delete_above = 1.75;          ///< delete particles with more
-  bool by_density = true;      ///< serial, redblack: control by the estimated density; false: the thesis's rule
-  int control_every = 10;      ///< iterations between two controls of the population
-  int smooth = 2;              ///< rounds of moving particles within the triangles around them
-  int mend = 12;               ///< rounds of mending bad triangles after the first triangulation, at most
-  std::string seeds = "auto";  ///< embedding, marching-cubes; auto: the former for tree, the latter for others
-  int particles = 0;           ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
+  bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the thesis's rule
+  int control_every = 10;              ///< iterations between two controls of the population
+  int smooth = 2;                      ///< rounds of moving particles within the triangles around them
+  int mend = 12;                       ///< rounds of mending bad triangles after the first triangulation, at most
+  std::string triangles = "delaunay";  ///< cells of the Delaunay triangulation, or stars, where these are sound
+  std::string seeds = "auto";          ///< embedding, marching-cubes; auto: the former for tree, the latter for others
+  int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
 };
 
@@ -92,6 +94,7 @@ struct MeshInfo {
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
+  StarUse stars;                    ///< of the improvement, where `triangles` is stars
   double final_energy = 0;          ///< mean on surfaces, measured alike for all solvers: by the tree, with theta 0
 };
 

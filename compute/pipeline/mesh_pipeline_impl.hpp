@@ -53,10 +53,12 @@ class MeshPipelineOf : public MeshPipeline {
       particles_.upload(*relaxed_);
     else
       relaxed_ = particles_.download();
-    const ImprovementRule rule{parameters.smooth, parameters.mend, exec_.device().threads(), stop_};
+    const bool stars = triangles_from_string(parameters.triangles) == TriangleSource::stars;
+    const ImprovementRule rule{parameters.smooth, parameters.mend, stars, exec_.device().threads(), stop_};
     ImprovedMesh made = MeshImprovement(particles_, fields_.table(), fields_.frame(), rule, tell_).run();
     info_.points_final = made.particles[0], info_.curves_final = made.particles[1];
     info_.surfaces_final = made.particles[2];
+    info_.stars = made.stars;
     info_.final = particles_.count();
     return std::move(made.mesh);
   }

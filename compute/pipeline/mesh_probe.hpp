@@ -73,6 +73,22 @@ struct DistanceAt {
   }
 };
 
+/// See JunctionGradients.
+struct JunctionGradientsAt {
+  MaterialBricksView field;
+  const Vec3f* point;
+  const Junction* junction;
+  JunctionGradients* gradients;
+  NACRE_HD void operator()(std::int64_t i) const {
+    gradients[i] = {};
+    if (!field.inside(point[i], 2.5f)) return;
+    const CubicStencil stencil(field, point[i]);
+    const Junction j = junction[i];
+    for (int k = 1; k < j.materials(); ++k)
+      gradients[i].from_first[k - 1] = stencil.difference(field, j.material(0), j.material(k)).gradient;
+  }
+};
+
 /// Distance of a point from the interface of a facet's two materials, in voxels; negative where it cannot be found.
 struct DistanceToInterface {
   MaterialBricksView field;
@@ -114,6 +130,22 @@ std::vector<std::uint16_t> material_at(Executor<Backend>& exec, const MeshFields
   exec.for_each(std::int64_t(points.size()),
                 detail::MaterialAt{fields.bricks().view(), position.data(), material.data()});
   return material.download();
+}
+
+/// The gradients at points of junctions, voxels.
+template <class Backend>
+std::vector<JunctionGradients> junction_gradients(Executor<Backend>& exec, const MeshFields<Backend>& fields,
+                                                  std::span<const Vec3f> points, std::span<const Junction> junctions) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  Array<Vec3f> position = arena.template temporary<Vec3f>(points.size());
+  position.upload(points);
+  Array<Junction> junction = arena.template temporary<Junction>(points.size());
+  junction.upload(junctions);
+  Array<JunctionGradients> gradients = arena.template temporary<JunctionGradients>(points.size());
+  exec.for_each(std::int64_t(points.size()), detail::JunctionGradientsAt{fields.bricks().view(), position.data(),
+                                                                         junction.data(), gradients.data()});
+  return gradients.download();
 }
 
 /// A field at each point, as MeshField says.

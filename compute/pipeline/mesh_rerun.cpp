@@ -19,7 +19,7 @@ auto of_relax(const MeshParameters& p) {
 
 auto of_tree(const MeshParameters& p) { return std::tie(p.theta, p.step, p.momentum); }
 
-auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.mend); }
+auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.mend, p.triangles); }
 
 }  // namespace
 

@@ -32,6 +32,9 @@ class MovableParticles {
                       const std::function<void(int)>& turned) = 0;
   /// The material at points of the world.
   virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;
+  /// How the materials of junctions change at points on these, voxels; zero where the fields end.
+  virtual std::vector<JunctionGradients> junction_gradients(std::span<const Vec3f> points,
+                                                            std::span<const Junction> junctions) = 0;
   /// Does `work` as a part of the stage of that name.
   virtual void in_stage(std::string_view name, const std::function<void()>& work) = 0;
 };

@@ -12,18 +12,18 @@
 #include "compute/flow/band_filter.hpp"
 #include "compute/flow/band_velocity.hpp"
 #include "compute/flow/sample_band.hpp"
+#include "compute/flow/thesis_advect.hpp"
 #include "compute/pipeline/flow_method.hpp"
 #include "compute/raycast/octree_cast.hpp"
 #include "compute/raycast/render.hpp"
 
 namespace nacre {
 
-/// The two-level octree and how flow runs on it: particles start on the surface, contrast is judged in each brick's
-/// surroundings.
+/// The two-level octree and how flow runs on it: as on the grid, contrast judged in each brick's surroundings.
 struct BrickBand {
   using Octree = BrickOctree;
   static constexpr const char* name = "brick octree";
-  static constexpr bool from_centres = false, local_contrast = true;
+  static constexpr bool as_thesis = false;
   static constexpr int smallest_box = 8;  ///< texture cells
   static std::uint64_t touched(const Octree& tree) { return tree.surface_cells; }
 
@@ -34,11 +34,12 @@ struct BrickBand {
   }
 };
 
-/// The thesis octree of cells and its flow: every cell of the band releases a particle from its centre.
+/// The thesis octree of cells and its flow, as the thesis has it: every cell of the band releases a particle from its
+/// centre, whose whole life is computed at once; the texture is shown without streaks.
 struct ThesisBand {
   using Octree = ThesisOctree;
   static constexpr const char* name = "source octree";
-  static constexpr bool from_centres = true, local_contrast = false;
+  static constexpr bool as_thesis = true;
   static constexpr int smallest_box = 2;
   static std::uint64_t touched(const Octree& tree) { return tree.touched_cells; }
 
@@ -123,20 +124,23 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   }
 
   void start(const FlowVectors& vectors) override {
-    this->begin_flow(vectors, 1.0);
+    this->begin_flow(vectors, 1.0, Band::as_thesis ? 0 : 1);
     Arena& arena = exec_.arena();
     const std::size_t mark = arena.mark();
     const View view = octree_.view();
     const std::size_t n = view.surface_cells;
     for (int j = 0; j < this->slots(); ++j) slots_[j] = arena.permanent<std::uint32_t>(view.cells);
-    for (int j = 0; j < ttl_; ++j) {
+    for (int j = 0; j < (Band::as_thesis ? ttl_ : 3); ++j) {
       sums_[j] = arena.permanent<std::uint64_t>(n);
       sums_[j].fill_bytes(0);
     }
     value_ = arena.permanent<float>(n);
     carried_ = arena.permanent<float>(n);
     shown_ = arena.permanent<float>(n);
-    if constexpr (Band::local_contrast) {
+    if constexpr (Band::as_thesis) {
+      ahead_ = arena.permanent<float>(n);
+      ahead_.fill_bytes(0);
+    } else {
       moments_ = arena.permanent<Float4>(view.items());
       streaks_ = arena.permanent<float>(n);
       streak_cells_ = arena.permanent<StreakCell>(n);
@@ -144,7 +148,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
     this->warm_up();
-    show(value_.data(), sums_[0]);
+    show();
     ++launched_;
     for (int k = first_; k < 0; ++k) advance(k);
     exec_.wait();
@@ -197,91 +201,114 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   /// What follows the look ahead; nothing in it waits for the device.
   void launch(int k) {
     const View view = octree_.view();
-    ReleaseBandParticles<View> particles;
-    particles.field.view = view;
-    particles.field.steady = steady_;
-    for (int j = 0; j <= ttl_; ++j) particles.field.slot[j] = slots_[this->slot(k + j)].data();
+    if constexpr (Band::as_thesis) {
+      release(k, view);
+    } else {
+      move(k, view);
+    }
+    show();
+  }
+
+  /// Advection as on the grid.
+  void move(int k, const View& view) {
+    Array<std::uint64_t>&crossed = sums_[0], &arrived = sums_[1 + (launched_ & 1)], &ended = sums_[2 - (launched_ & 1)];
+    MoveBrickParticles particles;
+    particles.path.field = field(k, view);
     particles.carried = carried_.data();
+    particles.arrived = arrived.data();
+    particles.crossed = crossed.data();
+    particles.ended = ended.data();
     particles.ttl = ttl_;
-    particles.from_centres = Band::from_centres;
-    for (int j = 0; j < ttl_; ++j) particles.sums[j] = sums_[this->ring(k + j)].data();
+    particles.rounding = this->rounding_of(launched_);
     {
       auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
       for_each_surface_cell(exec_, view, particles);
     }
-    Array<std::uint64_t>& done = sums_[this->ring(k)];
-    float* ahead = value_.data();
+    auto stage = exec_.stage("extend");
+    const BrickSurface surface{view};
+    for_each_surface_cell_of(
+        exec_, surface, std::int64_t(view.surface_cells),
+        Normalise<BrickSurface>{surface, ended.data(), crossed.data(), carried_.data(), value_.data()});
+    exec_.fill(crossed, 0);
+    exec_.fill(arrived, 0);
+  }
+
+  /// Advection as in the thesis: the deposits of step k are in buffer k modulo the lifetime.
+  void release(int k, const View& view) {
+    const auto of_step = [&](int step) -> Array<std::uint64_t>& { return sums_[(step - first_) % ttl_]; };
+    ReleaseParticles<View> particles;
+    particles.path.field = field(k, view);
+    particles.carried = carried_.data();
+    particles.ttl = ttl_;
+    for (int j = 0; j < ttl_; ++j) particles.sums[j] = of_step(k + j).data();
     {
-      auto stage = exec_.stage("extend");
-      extend(done, 1, value_.data());
-      // A frame shows the middle of its step, but the particles of the next step start at its end (see GridFlow). With
-      // one step to live, no deposits tell what that will be like.
-      if (ttl_ > 1) extend(sums_[this->ring(k + 1)], 0.5f, ahead = floats_in(done));
+      auto stage = exec_.stage("advect");
+      for_each_surface_cell(exec_, view, particles);
     }
-    show(ahead, done);
+    auto stage = exec_.stage("extend");
+    const auto extend = [&](const Array<std::uint64_t>& sums, float share, float* value) {
+      for_each_surface_cell(exec_, view, NormaliseAndExtend<View>{view, sums.data(), value_.data(), share, value});
+    };
+    extend(of_step(k), 1, value_.data());
+    exec_.fill(of_step(k), 0);
+    // A frame shows the middle of its step, but the particles of the next step start at its end. So they carry the mean
+    // of this frame and of what older particles have already left in the next one; else the texture lags the flow.
+    extend(of_step(k + 1), 0.5f, ahead_.data());
   }
 
-  void extend(const Array<std::uint64_t>& sums, float share, float* value) {
-    const View view = octree_.view();
-    for_each_surface_cell(
-        exec_, view, NormaliseAndExtend<View>{view, sums.data(), value_.data(), share, !Band::from_centres, value});
+  BandFlowField<View> field(int k, const View& view) const {
+    BandFlowField<View> field;
+    field.view = view;
+    field.steady = steady_;
+    for (int j = 0; j < (Band::as_thesis ? ttl_ : 1) + 1; ++j) field.slot[j] = slots_[this->slot(k + j)].data();
+    return field;
   }
 
-  /// Sums that were taken out hold floats, one per surface cell, until the next particles start.
-  static float* floats_in(Array<std::uint64_t>& sums) { return reinterpret_cast<float*>(sums.data()); }
-
-  /// Contrast for the eye, sharpening and jitter of `ahead` for the next step; `done` is cleared for its deposits.
-  void show(const float* ahead, Array<std::uint64_t>& done) {
+  /// Sharpening and jitter for the next step, streaks and contrast for the eye.
+  void show() {
     auto stage = exec_.stage("filter");
-    if constexpr (Band::local_contrast) {
-      exec_.for_each_team(octree_.view().items(), BrickMoments{octree_.view(), value_.data(), moments_.data()});
-      equalise(LocalBrickMoments{moments_.data()}, value_.data(), ahead, floats_in(done));
-    } else {
-      equalise(NoLocalMoments{}, value_.data(), ahead, floats_in(done));
-    }
-    const View view = octree_.view();
-    for_each_surface_cell(
-        exec_, view,
-        SharpenBand<View>{view, floats_in(done), float(parameters_.sharpen), float(parameters_.jitter), seed_,
-                          std::uint32_t(launched_ + 1), carried_.data()});
-    show_frame();
-    exec_.fill(done, 0);
-  }
-
-  template <class Local>
-  void equalise(const Local& local, const float* value, const float* ahead, float* detail) {
-    const View view = octree_.view();
-    const auto n = std::int64_t(view.surface_cells);
-    Arena::Scope scope(exec_.arena());
-    const TextureSpread* whole = measure_spread(exec_, n, value, ahead);
-    for_each_surface_cell(exec_, view,
-                          EqualiseBand<View, Local>{view, ahead, local, whole, float(parameters_.equalise), detail});
-  }
-
-  /// The frame for the eye: streaks, but on the thesis's octree, which shows what the thesis does.
-  void show_frame() {
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);
     Arena::Scope scope(exec_.arena());
     float* detail = exec_.arena().template temporary<float>(n).data();
-    if constexpr (Band::local_contrast) {
-      if (parameters_.streaks > 0)
-        this->draw_streaks(BrickStreaks{view}, n, 1.0, value_.data(), streak_cells_.data(), streaks_.data());
-      frame_ = parameters_.streaks > 0 ? streaks_.data() : value_.data();
-      exec_.for_each_team(view.items(), BrickMoments{view, frame_, moments_.data()});
-      equalise(LocalBrickMoments{moments_.data()}, frame_, frame_, detail);
-    } else {
-      frame_ = value_.data();
-      equalise(NoLocalMoments{}, frame_, frame_, detail);
+    equalise(Band::as_thesis ? ahead_.data() : value_.data(), detail);
+    for_each_surface_cell(exec_, view,
+                          SharpenBand<View>{view, detail, float(parameters_.sharpen), float(parameters_.jitter), seed_,
+                                            std::uint32_t(launched_ + 1), carried_.data()});
+    frame_ = value_.data();
+    if constexpr (!Band::as_thesis) {
+      if (parameters_.streaks > 0) {
+        this->draw_streaks(BrickSurface{view}, n, 1.0, value_.data(), streak_cells_.data(), streaks_.data());
+        frame_ = streaks_.data();
+      }
     }
+    equalise(frame_, detail);
     exec_.for_each(n, Show{detail, float(parameters_.contrast), shown_.data(), output_});
+  }
+
+  void equalise(const float* value, float* detail) {
+    const View view = octree_.view();
+    const auto n = std::int64_t(view.surface_cells);
+    Arena::Scope scope(exec_.arena());
+    const TextureSpread* whole = measure_spread(exec_, n, value);
+    const auto run = [&](const auto& local) {
+      using Local = std::remove_cvref_t<decltype(local)>;
+      for_each_surface_cell(exec_, view,
+                            EqualiseBand<View, Local>{view, value, local, whole, float(parameters_.equalise), detail});
+    };
+    if constexpr (Band::as_thesis) {
+      run(NoLocalMoments{});
+    } else {
+      exec_.for_each_team(view.items(), BrickMoments{view, value, moments_.data()});
+      run(LocalBrickMoments{moments_.data()});
+    }
   }
 
   typename Band::Octree octree_;
   int levels_ = 0;
   Array<std::uint32_t> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
-  Array<float> carried_, value_, shown_, streaks_;
+  Array<float> carried_, value_, ahead_, shown_, streaks_;
   Array<StreakCell> streak_cells_;
   const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_;

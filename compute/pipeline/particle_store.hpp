@@ -67,6 +67,10 @@ class ParticleStore : public MovableParticles {
   std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) override {
     return nacre::material_at(exec_, fields_, points);
   }
+  std::vector<JunctionGradients> junction_gradients(std::span<const Vec3f> points,
+                                                    std::span<const Junction> junctions) override {
+    return nacre::junction_gradients(exec_, fields_, points, junctions);
+  }
   void in_stage(std::string_view name, const std::function<void()>& work) override {
     auto stage = exec_.stage(name);
     work();

@@ -32,6 +32,8 @@ struct Shading {
   const float* scalar = nullptr;    ///< per point of the mesh, to colour by; null: gray
   const Float4* colours = nullptr;  ///< 256 entries, linear light
   float low = 0, high = 1;          ///< range of the scalar over the colour map
+  Vec3f below{}, above{};           ///< of values beyond that range, linear light
+  Vec3f no_number{};                ///< of NaN
   Vec3f light{};                    ///< unit, towards the light
   float ambient = 0.3f;
   Vec3f background{};  ///< linear light
@@ -70,6 +72,20 @@ struct Scene : Shading {
 
 NACRE_HD inline Vec3f to_linear(const Vec3f& c) { return {c.x * c.x, c.y * c.y, c.z * c.z}; }  // gamma 2, near sRGB
 
+/// Colour of a scalar in linear light.
+NACRE_HD inline Vec3f colour_of(const Shading& shading, float scalar) {
+  const float x = (scalar - shading.low) / (shading.high - shading.low);
+  constexpr float beyond = 1e-5f;  // rounding does not lead out of the range
+  if (!(x >= 0) && !(x < 0)) return shading.no_number;
+  if (x < -beyond) return shading.below;
+  if (x > 1 + beyond) return shading.above;
+  const float at = (x > 0 ? x < 1 ? x : 1 : 0) * 255.0f;
+  const int k = at < 254 ? int(at) : 254;
+  const Float4 a = shading.colours[k], b = shading.colours[k + 1];
+  const float f = at - float(k);
+  return {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.z + (b.z - a.z) * f};
+}
+
 /// Colour of a point of the surface in linear light. `value` is that of the texture, if there is one.
 NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const Hit& hit, float value) {
   Vec3f base(0.62f, 0.62f, 0.62f);
@@ -77,12 +93,7 @@ NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const Hit& h
     const Triangle t = shading.mesh.triangles[hit.triangle];
     const float s =
         shading.scalar[t.a] * hit.weights.x + shading.scalar[t.b] * hit.weights.y + shading.scalar[t.c] * hit.weights.z;
-    const float x = (s - shading.low) / (shading.high - shading.low);
-    const float at = (x > 0 ? x < 1 ? x : 1 : 0) * 255.0f;
-    const int k = at < 254 ? int(at) : 254;
-    const Float4 a = shading.colours[k], b = shading.colours[k + 1];
-    const float f = at - float(k);
-    base = {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.z + (b.z - a.z) * f};
+    base = colour_of(shading, s);
   }
   const Vec3f n = shading.mesh.normal(hit.triangle, hit.weights);
   const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides

@@ -1,4 +1,4 @@
-// Nacre: a tree of triangles for single rays on the host.
+// Nacre: a tree of triangles for single rays and closest points on the host.
 #include "compute/raycast/triangle_tree.hpp"
 
 #include <tbb/parallel_sort.h>
@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compute/embedding/triangle.hpp"
 #include "compute/math/morton.hpp"
 
 namespace nacre {
@@ -115,6 +116,54 @@ std::optional<TriangleHit> TriangleTree::first(const Vec3d& from, const Vec3d& a
     for (const Entry& child : children)
       if (child.at < far) open.push_back(child);
   }
+  return hit;
+}
+
+/// Squared, and a little less than it is: rounding must not hide a triangle that is exactly as near as another.
+double TriangleTree::distance_to_box(std::size_t node, const Vec3d& from) const {
+  const Box& box = boxes_[node];
+  if (box.low.x > box.high.x) return std::numeric_limits<double>::infinity();  // beyond the last triangle
+  const Vec3d off = from - min(max(from, box.low), box.high);
+  return dot(off, off) * (1 - 1e-12);
+}
+
+void TriangleTree::closest_in_leaf(std::size_t leaf, const Vec3d& from, double& nearest,
+                                   std::optional<TriangleHit>& hit) const {
+  const std::size_t end = std::min(order_.size(), (leaf + 1) * leaf_size);
+  for (std::size_t i = leaf * leaf_size; i < end; ++i) {
+    const Triangle& t = triangles_[order_[i]];
+    const Vec3d p = closest_point(Corners{points_[t.a], points_[t.b], points_[t.c]}, from), off = p - from;
+    const double squared = dot(off, off);
+    if (squared > nearest || (squared == nearest && hit && order_[i] >= hit->triangle)) continue;
+    nearest = squared;
+    hit = TriangleHit{order_[i], 0, p, {}};
+  }
+}
+
+std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from) const {
+  std::optional<TriangleHit> hit;
+  if (triangles_.empty()) return hit;
+  struct Entry {
+    std::size_t node;
+    double squared;
+  };
+  double nearest = std::numeric_limits<double>::infinity();
+  std::vector<Entry> open{{1, distance_to_box(1, from)}};
+  while (!open.empty()) {
+    const Entry entry = open.back();
+    open.pop_back();
+    if (entry.squared > nearest) continue;
+    if (entry.node >= leaves_) {
+      closest_in_leaf(entry.node - leaves_, from, nearest, hit);
+      continue;
+    }
+    Entry near{2 * entry.node, distance_to_box(2 * entry.node, from)};
+    Entry far{2 * entry.node + 1, distance_to_box(2 * entry.node + 1, from)};
+    if (far.squared < near.squared) std::swap(near, far);
+    if (far.squared <= nearest && std::isfinite(far.squared)) open.push_back(far);
+    if (near.squared <= nearest && std::isfinite(near.squared)) open.push_back(near);
+  }
+  if (hit) hit->distance = length(hit->position - from);
   return hit;
 }
 

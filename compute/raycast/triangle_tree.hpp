@@ -1,4 +1,4 @@
-// Nacre: a tree of triangles for single rays on the host: finds what is under the cursor.
+// Nacre: a tree of triangles for single rays and closest points on the host.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,10 @@ class TriangleTree {
   std::optional<TriangleHit> first(const Vec3d& from, const Vec3d& along, double near = 0,
                                    double far = std::numeric_limits<double>::infinity()) const;
 
+  /// The triangle nearest to `from` (of several the first), its point closest to `from` and the distance, exact up to
+  /// rounding; none where there are no triangles. `weights` is not filled.
+  std::optional<TriangleHit> closest(const Vec3d& from) const;
+
   std::span<const Vec3d> points() const { return points_; }
   std::span<const Triangle> triangles() const { return triangles_; }
 
@@ -40,6 +44,8 @@ class TriangleTree {
 
   void sort();
   void make_boxes();
+  double distance_to_box(std::size_t node, const Vec3d& from) const;
+  void closest_in_leaf(std::size_t leaf, const Vec3d& from, double& nearest, std::optional<TriangleHit>& hit) const;
   void hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& along, double near, double& far,
                 std::optional<TriangleHit>& hit) const;
 

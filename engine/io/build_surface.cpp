@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "compute/device/error.hpp"
 #include "engine/io/triangulate.hpp"
@@ -92,22 +93,24 @@ Triangulation triangulate_all(const RawMesh& mesh) {
   return result;
 }
 
-/// Sets values that are not numbers to 0 and reports how many items had one.
+/// Sets values that are not finite to 0, in arrays that can only colour to NaN, and reports how many items had one.
 void clean(RawArray& array, const std::string& name, std::vector<std::string>& warnings) {
+  const bool colours = array.components == 1;
   std::size_t bad_items = 0;
   for (std::size_t i = 0; i < array.items(); ++i) {
     bool bad = false;
     for (int c = 0; c < array.components; ++c) {
       float& value = array.values[i * array.components + c];
       if (std::isfinite(value)) continue;
-      value = 0;
+      value = colours ? std::numeric_limits<float>::quiet_NaN() : 0;
       bad = true;
     }
     bad_items += bad;
   }
   if (bad_items > 0)
-    warnings.push_back(fmt::format("{}: array '{}' is NaN or infinite at {} of {} places, set to 0.", name, array.name,
-                                   with_commas(bad_items), with_commas(array.items())));
+    warnings.push_back(fmt::format("{}: array '{}' is NaN or infinite at {} of {} places, {}.", name, array.name,
+                                   with_commas(bad_items), with_commas(array.items()),
+                                   colours ? "drawn in the colour of NaN" : "set to 0"));
 }
 
 /// Means over the adjacent triangles, weighted by area, of arrays on polygons.

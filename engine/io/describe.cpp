@@ -147,27 +147,26 @@ bool is_vtk_image(const std::string& bytes) {
 }
 
 /// Describes a volume, if the file contains one. Of a .vti all arrays are listed, even if none has one value per voxel.
-bool add_volume_file(FileInfo& info, const fs::path& path) {
+bool add_volume_file(FileInfo& info, const fs::path& path, const VolumeChoice& choice) {
   const VolumeFormat* format = find_volume_format(path);
   if (!format) return false;
   if (format_extension(path) != "vti") {
-    add_volume(info, read_volume(path), format->name);
+    add_volume(info, read_volume(path, choice), format->name);
     return true;
   }
   add_image(info, read_vtk_image(read_file(path), path));
   try {
-    add_volume(info, read_volume(path), format->name);
+    add_volume(info, read_volume(path, choice), format->name);
   } catch (const Error& error) {
     info.warnings.push_back(std::string(error.what()) + ".");
   }
   return true;
 }
 
-void add_content(FileInfo& info, const fs::path& path) {
-  if (add_volume_file(info, path)) return;
-  const bool collection = format_extension(path) == "pvd";
-  if (collection || goes_through_vtk(path)) {
-    info.format = collection ? "VTK XML" : "VTK";
+void add_content(FileInfo& info, const fs::path& path, const VolumeChoice& choice) {
+  if (add_volume_file(info, path, choice)) return;
+  if (is_file_list(path) || goes_through_vtk(path)) {
+    info.format = format_extension(path) == "pvd" ? "VTK XML" : is_file_list(path) ? "list of files" : "VTK";
     add_steps(info, find_steps(path));
     return;
   }
@@ -183,14 +182,14 @@ void add_content(FileInfo& info, const fs::path& path) {
 
 }  // namespace
 
-FileInfo describe(const fs::path& path) {
+FileInfo describe(const fs::path& path, const VolumeChoice& choice) {
   require_file(path);
   FileInfo info;
   info.path = path.string();
   std::error_code code;
   info.bytes = fs::file_size(path, code);
   try {
-    add_content(info, path);
+    add_content(info, path, choice);
   } catch (const std::bad_alloc&) {
     fail_reading(path, "it does not fit in memory", "open a smaller file");
   }

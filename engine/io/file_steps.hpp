@@ -23,13 +23,16 @@ struct FileSteps {
   std::shared_ptr<const void> keep_alive;  ///< keeps temporary files; may be null
 };
 
-/// Steps of one file: those that a .pvd lists, those that VTK finds in a file of its own formats, otherwise the file
-/// itself at time 0. Throws Error if a listed file is missing, or if VTK is needed and not built in.
+/// Steps of one file: those that a .pvd or .series lists, those that VTK finds in a file of its own formats, otherwise
+/// the file itself at time 0. Throws Error if a listed file is missing, or if VTK is needed and not built in.
 FileSteps find_steps(const std::filesystem::path& path);
 
 /// Several files of one series: at their own times if all have one and all differ, otherwise at 0, 1, 2, ... Throws
 /// Error if one of them is itself a series.
 FileSteps find_steps(const std::vector<std::filesystem::path>& paths);
+
+/// True for files that list others: .pvd, and .vtp.series and its like as ParaView writes them.
+bool is_file_list(const std::filesystem::path& path);
 
 /// True for files that only VTK reads.
 bool goes_through_vtk(const std::filesystem::path& path);

@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <limits>
-#include <set>
 
 #include "compute/device/error.hpp"
 #include "engine/io/chunks.hpp"
@@ -20,17 +19,6 @@ std::string quoted(const std::string& name) {
   std::string out = "\"";
   for (const char c : name) out += c == '"' || static_cast<unsigned char>(c) < 32 ? '_' : c;
   return out + '"';
-}
-
-/// A name as Gmsh accepts it, unique among all groups: readers such as meshio identify groups by their names.
-std::string group_name(const GmshMesh::Group& group, std::set<std::string>& taken) {
-  constexpr std::size_t most = 127;
-  std::string name = quoted(in_utf8(group.name, most));
-  for (int times = 1; !taken.insert(name).second; ++times) {
-    const std::string number = times == 1 ? fmt::format(" {}", group.tag) : fmt::format(" {}.{}", group.tag, times);
-    name = quoted(in_utf8(group.name, most - number.size()) + number);
-  }
-  return name;
 }
 
 void write_points(Chunks& out, std::span<const Vec3d> points) {
@@ -49,7 +37,7 @@ void write_groups(Chunks& out, const GmshMesh& mesh) {
   std::set<std::string> taken;
   for (const GmshMesh::Block& block : mesh.blocks)
     for (const GmshMesh::Group& group : block.groups)
-      out.print("{} {} {}\n", block.corners - 1, group.tag, group_name(group, taken));
+      out.print("{} {} {}\n", block.corners - 1, group.tag, gmsh_name(group.name, group.tag, taken));
   out.print("$EndPhysicalNames\n");
 }
 
@@ -85,6 +73,16 @@ void write_numbers(Chunks& out, const GmshMesh::Numbers& numbers, const GmshMesh
 }
 
 }  // namespace
+
+std::string gmsh_name(const std::string& given, std::int32_t tag, std::set<std::string>& taken) {
+  constexpr std::size_t most = 127;
+  std::string name = quoted(in_utf8(given, most));
+  for (int times = 1; !taken.insert(name).second; ++times) {
+    const std::string number = times == 1 ? fmt::format(" {}", tag) : fmt::format(" {}.{}", tag, times);
+    name = quoted(in_utf8(given, most - number.size()) + number);
+  }
+  return name;
+}
 
 std::size_t GmshMesh::cells() const {
   std::size_t sum = 0;

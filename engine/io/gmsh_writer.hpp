@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -38,6 +39,10 @@ struct GmshMesh {
 
   std::size_t cells() const;
 };
+
+/// A name in quotes as Gmsh accepts it, at most 127 bytes long, unique among those in `taken`, to which it is added:
+/// readers such as meshio identify groups by their names.
+std::string gmsh_name(const std::string& name, std::int32_t tag, std::set<std::string>& taken);
 
 /// Readable by Gmsh, meshio and other programs that know version 2.2. Throws Error if there are more than 2^31 - 1
 /// points or cells, or if the file cannot be written.

@@ -3,9 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
+#include <cstdint>
 #include <pugixml.hpp>
+#include <vector>
 
+#include "engine/io/byte_order.hpp"
+#include "engine/io/file_bytes.hpp"
 #include "engine/system/utf8.hpp"
 
 namespace nacre {
@@ -30,7 +35,110 @@ void keep(LabelNames& names, std::string_view number, std::string_view words) {
   if (!name.empty()) names.try_emplace(label, std::move(name));
 }
 
+/// Takes numbers and names from bytes; after the end, or after a length that cannot be, `good` is false.
+class TableBytes {
+ public:
+  explicit TableBytes(std::string_view bytes) : bytes_(bytes) {}
+
+  bool good = true;
+
+  std::int32_t number() {
+    const std::string_view four = take(4);
+    return good ? load_number<std::int32_t>(four.data(), std::endian::big) : 0;
+  }
+  std::string_view text() {
+    const std::int32_t length = number();
+    good = good && length >= 0;
+    const std::string_view text = take(good ? std::size_t(length) : 0);
+    return text.substr(0, text.find('\0'));
+  }
+
+ private:
+  std::string_view take(std::size_t size) {
+    good = good && size <= bytes_.size();
+    if (!good) return {};
+    const std::string_view taken = bytes_.substr(0, size);
+    bytes_.remove_prefix(size);
+    return taken;
+  }
+
+  std::string_view bytes_;
+};
+
+bool is_number(std::string_view word) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+std::vector<std::string_view> words_of_line(std::string_view line) {
+  constexpr std::string_view blank = " \t\r,;";
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(blank); at != line.npos;) {
+    const std::size_t end = std::min(line.find_first_of(blank, at), line.size());
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(blank, end);
+  }
+  return words;
+}
+
+/// What stands in quotes, otherwise everything between the number and the three or more numbers of a colour. Empty if
+/// there is no name.
+std::string_view name_in_line(std::string_view line, const std::vector<std::string_view>& words) {
+  const std::size_t quote = line.find('"'), last_quote = line.rfind('"');
+  if (quote != last_quote) return line.substr(quote + 1, last_quote - quote - 1);
+  std::size_t last = words.size();
+  while (last > 1 && is_number(words[last - 1])) --last;
+  if (words.size() - last < 3) last = words.size();
+  if (last < 2) return {};
+  const char* end = words[last - 1].data() + words[last - 1].size();
+  return {words[1].data(), std::size_t(end - words[1].data())};
+}
+
 }  // namespace
+
+LabelNames names_of_colour_table(std::string_view bytes) {
+  TableBytes table(bytes);
+  LabelNames names;
+  const std::int32_t head = table.number();
+  const bool numbered = head < 0;
+  if (numbered) {
+    if (head != -2) return {};
+    table.number();  // one more than the highest label
+  }
+  table.text();  // the file that it came from
+  const std::int32_t entries = numbered ? table.number() : head;
+  for (std::int32_t i = 0; i < entries && table.good; ++i) {
+    const std::int32_t label = numbered ? table.number() : i;
+    const std::string_view name = table.text();
+    for (int colour = 0; colour < 4; ++colour) table.number();
+    if (table.good) keep(names, std::to_string(label), name);
+  }
+  return table.good ? names : LabelNames{};
+}
+
+LabelNames read_label_names(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  LabelNames names;
+  std::size_t number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    at = end + 1;
+    ++number;
+    const std::vector<std::string_view> words = words_of_line(line);
+    if (words.empty() || words[0][0] == '#') continue;
+    const std::string_view name = name_in_line(line, words);
+    if (name.empty() || !is_number(words[0]))
+      fail_reading(path, fmt::format("line {} is not a number and a name: '{}'", number, in_utf8(line, 60)),
+                   "give a label file of ITK-SNAP, a colour table of FreeSurfer, or lines such as `5 liver`");
+    keep(names, words[0], name);
+  }
+  if (names.empty())
+    fail_reading(path, "it names no labels",
+                 "give a label file of ITK-SNAP, a colour table of FreeSurfer, or lines such as `5 liver`");
+  return names;
+}
 
 LabelNames names_of_label_table(std::string_view xml) {
   LabelNames names;
@@ -44,14 +152,29 @@ LabelNames names_of_label_table(std::string_view xml) {
   return names;
 }
 
-LabelNames names_of_segments(const std::function<std::optional<std::string>(const std::string& key)>& field) {
-  LabelNames names;
-  for (std::size_t segment = 0; segment < most_names; ++segment) {
-    const std::optional<std::string> name = field(fmt::format("Segment{}_Name", segment));
-    const std::optional<std::string> label = field(fmt::format("Segment{}_LabelValue", segment));
+std::vector<Segment> find_segments(const std::function<std::optional<std::string>(const std::string& key)>& field) {
+  std::vector<Segment> segments;
+  const auto whole = [](const std::optional<std::string>& text, std::int64_t& number) {
+    if (!text) return false;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
+    return error == std::errc() && end == text->data() + text->size();
+  };
+  for (std::size_t number = 0; number < most_names; ++number) {
+    const std::string key = fmt::format("Segment{}_", number);
+    const std::optional<std::string> name = field(key + "Name"), label = field(key + "LabelValue");
     if (!name && !label) break;
-    if (name && label) keep(names, *label, *name);
+    Segment segment{in_one_line(name.value_or("")), 0, 0};
+    if (!whole(label, segment.label)) continue;
+    whole(field(key + "Layer"), segment.layer);
+    segments.push_back(std::move(segment));
   }
+  return segments;
+}
+
+LabelNames names_of_segments(const std::vector<Segment>& segments, std::int64_t layer) {
+  LabelNames names;
+  for (const Segment& segment : segments)
+    if (segment.layer == layer && !segment.name.empty()) names.try_emplace(segment.label, segment.name);
   return names;
 }
 

@@ -6,14 +6,14 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <numeric>
-#include <set>
 #include <system_error>
 
 #include "compute/device/error.hpp"
 #include "engine/io/chunks.hpp"
 #include "engine/io/gmsh_writer.hpp"
+#include "engine/io/mesh_format_writers.hpp"
+#include "engine/io/mesh_parts.hpp"
 #include "engine/io/surface_writer.hpp"
 #include "engine/io/vtk_inline.hpp"
 #include "engine/io/vtp_writer.hpp"
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Labels = std::span<const std::int64_t>;
 using Names = std::vector<std::string>;
-using Pair = std::array<std::uint16_t, 2>;
+using Pair = MaterialPair;
 
 std::string checked_extension(const fs::path& file, const std::vector<std::string>& known) {
   const std::string extension = lower_extension(file);
@@ -66,26 +66,6 @@ CellNumbers cell_numbers(const std::string& name, Labels labels, std::function<s
   return {name, *lower, *upper, [=](std::uint64_t i) { return labels[of(i)]; }};
 }
 
-/// The name of every material, followed by its label if another material has the same name; "material_LABEL" if it has
-/// no name. Empty if no material has one.
-Names full_names(Labels labels, std::span<const std::string> given) {
-  const auto empty = [](const std::string& name) { return name.empty(); };
-  if (std::all_of(given.begin(), given.end(), empty)) return {};
-  Names names(labels.size());
-  for (std::size_t m = 0; m < labels.size(); ++m) {
-    const std::string name = m < given.size() ? given[m] : "";
-    const bool shared = !name.empty() && std::count(given.begin(), given.end(), name) > 1;
-    names[m] = name.empty() ? fmt::format("material_{}", labels[m])
-               : shared     ? fmt::format("{} {}", name, labels[m])
-                            : name;
-  }
-  return names;
-}
-
-std::string name_of(std::uint16_t material, Labels labels, const Names& names) {
-  return names.empty() ? fmt::format("material_{}", labels[material]) : names[material];
-}
-
 /// Names as field data: for each material an array of its name that contains its label. Arrays of strings would make
 /// meshio fail.
 std::string announce_names(Labels labels, const Names& names) {
@@ -104,20 +84,6 @@ std::array<CellNumbers, 2> side_numbers(const SurfaceMesh& mesh, Labels labels) 
                         [&mesh, k](std::uint64_t i) { return mesh.materials[i][k]; });
   };
   return {side(0), side(1)};
-}
-
-/// The pairs that occur, numbered from 1 in ascending order.
-std::map<Pair, std::int32_t> numbered_pairs(const SurfaceMesh& mesh) {
-  std::map<Pair, std::int32_t> pairs;
-  for (const Pair& pair : mesh.materials) pairs.emplace(pair, 0);
-  std::int32_t number = 0;
-  for (auto& entry : pairs) entry.second = ++number;
-  return pairs;
-}
-
-std::string pair_name(const Pair& pair, Labels labels, const Names& names = {}) {
-  if (names.empty()) return fmt::format("material_{}_{}", labels[pair[0]], labels[pair[1]]);
-  return names[pair[0]] + " - " + names[pair[1]];
 }
 
 void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
@@ -152,7 +118,7 @@ void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
   const Pair* last = nullptr;
   for (const std::uint32_t i : order) {
     const Pair& pair = mesh.materials[i];
-    if (!last || *last != pair) out.print("g {}\n", pair_name(pair, labels));
+    if (!last || *last != pair) out.print("g {}\n", interface_name(pair, labels, {}));
     last = &pair;
     const Triangle& t = mesh.triangles[i];
     out.print("f {} {} {}\n", std::uint64_t(t.a) + 1, std::uint64_t(t.b) + 1, std::uint64_t(t.c) + 1);
@@ -162,30 +128,29 @@ void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
 }
 
 /// Triangles, one physical group per pair of materials.
-GmshMesh::Block gmsh_triangles(const SurfaceMesh& mesh, Labels labels, const Names& names) {
+GmshMesh::Block gmsh_triangles(const MeshParts& mesh) {
   GmshMesh::Block block;
-  const std::map<Pair, std::int32_t> pairs = numbered_pairs(mesh);
   block.cells = mesh.triangles.size();
   block.corner = [&mesh](std::size_t i, int k) { return mesh.triangles[i][k]; };
-  block.group = [&mesh, pairs](std::size_t i) { return pairs.at(mesh.materials[i]); };
-  for (const auto& [pair, tag] : pairs) block.groups.push_back({tag, pair_name(pair, labels, names)});
+  block.group = [&mesh](std::size_t i) { return mesh.interfaces.at(mesh.materials[i]).tag; };
+  for (const auto& [pair, group] : mesh.interfaces) block.groups.push_back({group.tag, group.name});
   return block;
 }
 
-void write_msh(const fs::path& file, const SurfaceMesh& mesh, Labels labels, const Names& names) {
+void write_msh(const fs::path& file, const SurfaceMesh& mesh, const MeshParts& parts, Labels labels) {
   GmshMesh out;
   out.points = mesh.points;
-  out.blocks.push_back(gmsh_triangles(mesh, labels, names));
+  out.blocks.push_back(gmsh_triangles(parts));
   for (CellNumbers& side : side_numbers(mesh, labels))
     out.numbers.push_back({side.name, [of = side.of](std::size_t, std::size_t i) { return double(of(i)); }});
   write_gmsh(file, out);
 }
 
 /// The facets of one material, oriented so that their normals point out of it, with the points that they use.
-Surface surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
+SurfaceMesh surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
   constexpr std::uint32_t none = 0xffffffff;
   std::vector<std::uint32_t> number(mesh.points.size(), none);
-  Surface surface;
+  SurfaceMesh surface;
   const auto use = [&](std::uint32_t p) {
     if (number[p] == none) {
       number[p] = std::uint32_t(surface.points.size());
@@ -200,17 +165,37 @@ Surface surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
     else if (mesh.materials[i][0] == material)
       surface.triangles.push_back({use(t.a), use(t.c), use(t.b)});
   }
+  surface.materials.assign(surface.triangles.size(), {0, material});
   return surface;
 }
 
-void write_one_material(const fs::path& file, const Surface& surface, const std::string& name) {
-  if (checked_extension(file, surface_mesh_extensions()) != ".msh") return write_surface(file, surface);
-  GmshMesh::Block triangles;
-  triangles.cells = surface.triangles.size();
-  triangles.corner = [&](std::size_t i, int k) { return surface.triangles[i][k]; };
-  triangles.group = [](std::size_t) { return 1; };
-  triangles.groups = {{1, name}};
-  write_gmsh(file, {surface.points, {std::move(triangles)}, {}});
+using Writer = void (*)(const fs::path& file, const MeshParts& mesh);
+
+/// Formats that are written from parts; nothing where a format has no surfaces, or no tetrahedra.
+struct PartsFormat {
+  const char* extension;
+  Writer surface, tetrahedra;
+};
+constexpr std::array parts_formats{
+    PartsFormat{".msh4", write_gmsh4, write_gmsh4}, PartsFormat{".inp", write_abaqus, write_abaqus},
+    PartsFormat{".mesh", nullptr, write_mfem},      PartsFormat{".feb", nullptr, write_febio},
+    PartsFormat{".foam", nullptr, write_openfoam},  PartsFormat{".glb", write_gltf, nullptr},
+};
+
+const PartsFormat* parts_format(const std::string& extension) {
+  const auto found = std::find_if(parts_formats.begin(), parts_formats.end(),
+                                  [&](const PartsFormat& format) { return format.extension == extension; });
+  return found == parts_formats.end() ? nullptr : &*found;
+}
+
+/// One group, which has the name of the material whatever is around it.
+void write_one_material(const fs::path& file, SurfaceMesh&& surface, Labels labels, const std::string& name) {
+  const std::string extension = checked_extension(file, surface_mesh_extensions());
+  MeshParts parts = surface_parts(surface, labels, {});
+  parts.interfaces.begin()->second.name = name;
+  if (const PartsFormat* format = parts_format(extension)) return format->surface(file, parts);
+  if (extension == ".msh") return write_gmsh(file, {surface.points, {gmsh_triangles(parts)}, {}});
+  write_surface(file, {std::move(surface.points), std::move(surface.triangles), {}});
 }
 
 void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels, const Names& names) {
@@ -238,37 +223,41 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels,
   file.commit();
 }
 
-/// Physical groups are the labels themselves if all are positive, otherwise the materials' numbers.
-GmshMesh::Block gmsh_tetrahedra(const TetrahedralMesh& mesh, Labels labels, const Names& names) {
-  const std::set<std::uint16_t> present(mesh.material.begin(), mesh.material.end());
-  const bool usable = std::all_of(present.begin(), present.end(), [&](std::uint16_t m) {
-    return labels[m] > 0 && labels[m] <= std::numeric_limits<std::int32_t>::max();
-  });
-  const auto tag = [labels, usable](std::uint16_t m) { return usable ? std::int32_t(labels[m]) : std::int32_t(m); };
+/// Tetrahedra, one physical group per material.
+GmshMesh::Block gmsh_tetrahedra(const MeshParts& mesh) {
   GmshMesh::Block block;
   block.corners = 4;
   block.cells = mesh.cells.size();
   block.corner = [&mesh](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; };
-  block.group = [&mesh, tag](std::size_t i) { return tag(mesh.material[i]); };
-  for (const std::uint16_t m : present) block.groups.push_back({tag(m), name_of(m, labels, names)});
+  block.group = [&mesh](std::size_t i) { return mesh.volumes.at(mesh.material[i]).tag; };
+  for (const auto& [m, group] : mesh.volumes) block.groups.push_back({group.tag, group.name});
   return block;
 }
 
 /// The triangles between the materials, then the tetrahedra. Only groups tell what each belongs to: from a file with
 /// two kinds of cells, meshio 5.3 reads no numbers beside them, nor anything after them.
-void write_msh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface, Labels labels,
-               const Names& names) {
+void write_msh(const fs::path& file, const MeshParts& parts) {
   GmshMesh out;
-  out.points = mesh.points;
-  out.blocks = {gmsh_triangles(surface, labels, names), gmsh_tetrahedra(mesh, labels, names)};
+  out.points = parts.points;
+  out.blocks = {gmsh_triangles(parts), gmsh_tetrahedra(parts)};
   write_gmsh(file, out);
 }
 
 }  // namespace
 
-std::vector<std::string> surface_mesh_extensions() { return {".vtp", ".ply", ".msh", ".obj", ".off", ".stl"}; }
+std::vector<std::string> surface_mesh_extensions() {
+  std::vector<std::string> extensions = {".vtp", ".ply", ".msh", ".obj", ".off", ".stl"};
+  for (const PartsFormat& format : parts_formats)
+    if (format.surface) extensions.push_back(format.extension);
+  return extensions;
+}
 
-std::vector<std::string> tetrahedral_mesh_extensions() { return {".vtu", ".msh"}; }
+std::vector<std::string> tetrahedral_mesh_extensions() {
+  std::vector<std::string> extensions = {".vtu", ".msh"};
+  for (const PartsFormat& format : parts_formats)
+    if (format.tetrahedra) extensions.push_back(format.extension);
+  return extensions;
+}
 
 std::vector<std::string> mesh_extensions() {
   std::vector<std::string> all = surface_mesh_extensions();
@@ -286,7 +275,12 @@ void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels la
                      side_numbers(mesh, labels), announce_names(labels, full_names(labels, names)));
   if (extension == ".ply") return write_ply(file, mesh, labels);
   if (extension == ".obj") return write_obj(file, mesh, labels);
-  if (extension == ".msh") return write_msh(file, mesh, labels, full_names(labels, names));
+  const Names full = full_names(labels, names);
+  const PartsFormat* format = parts_format(extension);
+  if (format || extension == ".msh") {
+    const MeshParts parts = surface_parts(mesh, labels, full);
+    return format ? format->surface(file, parts) : write_msh(file, mesh, parts, labels);
+  }
   write_surface(file, {mesh.points, mesh.triangles, {}});
 }
 
@@ -298,10 +292,11 @@ std::vector<fs::path> write_material_surfaces(const fs::path& file, const Surfac
   std::vector<fs::path> written;
   try {
     for (std::size_t m = 1; m < labels.size(); ++m) {
-      const Surface surface = surface_of(mesh, std::uint16_t(m));
+      SurfaceMesh surface = surface_of(mesh, std::uint16_t(m));
       if (surface.triangles.empty()) continue;
       const std::string name = fmt::format("{}_{}{}", file.stem().string(), labels[m], file.extension().string());
-      write_one_material(file.parent_path() / name, surface, name_of(std::uint16_t(m), labels, full));
+      write_one_material(file.parent_path() / name, std::move(surface), labels,
+                         material_name(std::uint16_t(m), labels, full));
       written.push_back(file.parent_path() / name);
     }
   } catch (...) {
@@ -318,8 +313,11 @@ void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, c
   check(file, mesh, labels);
   check(file, surface, labels);
   if (surface.points.size() > mesh.points.size()) fail(file, "its surface has more points than it");
-  if (extension == ".vtu") return write_vtu(file, mesh, labels, full_names(labels, names));
-  write_msh(file, mesh, surface, labels, full_names(labels, names));
+  const Names full = full_names(labels, names);
+  if (extension == ".vtu") return write_vtu(file, mesh, labels, full);
+  const MeshParts parts = volume_parts(mesh, surface, labels, full);
+  const PartsFormat* format = parts_format(extension);
+  format ? format->tetrahedra(file, parts) : write_msh(file, parts);
 }
 
 }  // namespace nacre

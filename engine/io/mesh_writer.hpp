@@ -11,14 +11,15 @@
 
 namespace nacre {
 
-/// Writes `mesh`, in world coordinates, as .vtp, .ply (binary), .msh (Gmsh 2.2, binary), .obj, .off or .stl (binary).
-/// `labels` has the file's label of each material, that of the outside first; `names` has their names, where known.
-/// .vtp, .ply and .msh have `material_0` and `material_1` per triangle: the labels on its two sides, in the order of
-/// SurfaceMesh::materials, so that corners run counter-clockwise as seen from the side of `material_0`. .msh also has
-/// one physical group per pair of materials, named by their names ("outside - liver") or labels ("material_0_5"); .obj
-/// has one group per pair, named by the labels. .vtp has the names as field data: an array of each name that contains
-/// the label. .stl has 32-bit coordinates. Throws Error for other extensions, for an empty or broken mesh, and if
-/// writing fails.
+/// Writes `mesh`, in world coordinates, as .vtp, .ply (binary), .msh (Gmsh 2.2, binary), .obj, .off or .stl (binary),
+/// or as a format of mesh_format_writers.hpp that has surfaces (.msh4 .inp .glb), with its groups per pair of
+/// materials. `labels` has the file's label of each material, that of the outside first; `names` has their names, where
+/// known. .vtp, .ply and .msh have `material_0` and `material_1` per triangle: the labels on its two sides, in the
+/// order of SurfaceMesh::materials, so that corners run counter-clockwise as seen from the side of `material_0`. .msh
+/// also has one physical group per pair of materials, named by their names ("outside - liver") or labels
+/// ("material_0_5"); .obj has one group per pair, named by the labels. .vtp has the names as field data: an array of
+/// each name that contains the label. .stl has 32-bit coordinates. Throws Error for other extensions, for an empty or
+/// broken mesh, and if writing fails.
 void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh,
                         std::span<const std::int64_t> labels, std::span<const std::string> names = {});
 
@@ -30,11 +31,12 @@ std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem
                                                            std::span<const std::int64_t> labels,
                                                            std::span<const std::string> names = {});
 
-/// Writes `mesh` as .vtu, with the label of each cell as `material`, or as .msh (Gmsh 2.2, binary). `surface` is the
-/// mesh that was filled: its points are the first ones of `mesh`, its triangles the facets between materials. .msh also
-/// has these, before the tetrahedra: one physical group per pair of materials of the triangles, and one per material of
-/// the tetrahedra, whose number is the label if all labels are positive. Names as above, in .vtu as in .vtp. Throws
-/// Error for other extensions, for an empty or broken mesh, and if writing fails.
+/// Writes `mesh` as .vtu, with the label of each cell as `material`, as .msh (Gmsh 2.2, binary), or as a format of
+/// mesh_format_writers.hpp that has tetrahedra (.msh4 .inp .mesh .feb .foam). `surface` is the mesh that was filled:
+/// its points are the first ones of `mesh`, its triangles the facets between materials. .msh also has these, before the
+/// tetrahedra: one physical group per pair of materials of the triangles, and one per material of the tetrahedra, whose
+/// number is the label if all labels are positive. Names as above, in .vtu as in .vtp. Throws Error for other
+/// extensions, for an empty or broken mesh, and if writing fails.
 void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
                             std::span<const std::int64_t> labels, std::span<const std::string> names = {});
 

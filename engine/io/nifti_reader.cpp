@@ -2,7 +2,6 @@
 // turns NaN into 0.
 #include <fmt/format.h>
 #include <nifti/nifti2_io.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include "engine/io/byte_order.hpp"
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/label_names.hpp"
+#include "engine/io/packed_file.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
 
@@ -27,44 +27,6 @@ struct Free {
   void operator()(nifti_image* image) const { nifti_image_free(image); }
 };
 using Image = std::unique_ptr<nifti_image, Free>;
-
-/// A file, possibly packed with gzip, read from its beginning.
-class PackedFile {
- public:
-  explicit PackedFile(const fs::path& path) : path_(path), file_(gzopen(path.c_str(), "rb")) {
-    if (!file_) fail_reading(path, "access was denied", "check the file's permissions");
-    gzbuffer(file_, 1 << 18);
-  }
-  ~PackedFile() { gzclose(file_); }
-  PackedFile(const PackedFile&) = delete;
-  PackedFile& operator=(const PackedFile&) = delete;
-
-  /// Reads up to `size` bytes; returns how many there were.
-  std::size_t read(void* bytes, std::size_t size) {
-    std::size_t done = 0;
-    while (done < size) {
-      const unsigned part = unsigned(std::min<std::size_t>(size - done, 1u << 30));
-      const int got = gzread(file_, static_cast<char*>(bytes) + done, part);
-      if (got < 0) fail_reading(path_, "its gzip data are damaged");
-      if (got == 0) break;
-      done += std::size_t(got);
-    }
-    return done;
-  }
-
-  void skip(std::size_t size) {
-    std::array<char, 4096> bytes{};
-    while (size > 0) {
-      const std::size_t got = read(bytes.data(), std::min(size, bytes.size()));
-      if (got == 0) fail_reading(path_, "it ends before its values begin");
-      size -= got;
-    }
-  }
-
- private:
-  fs::path path_;
-  gzFile file_;
-};
 
 /// The file that contains the header: the .hdr beside an .img.
 fs::path header_path(const fs::path& path) {

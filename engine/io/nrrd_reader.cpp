@@ -8,16 +8,21 @@
 #include <mutex>
 #include <string>
 
+#include "engine/io/build_surface.hpp"
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/label_names.hpp"
 #include "engine/io/nrrd_header.hpp"
+#include "engine/io/nrrd_layers.hpp"
 #include "engine/io/volume_geometry.hpp"
+#include "engine/io/volume_reader.hpp"
 #include "engine/io/volume_readers.hpp"
 
 namespace nacre {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t most_layers = 65536;
 
 struct Delete {
   void operator()(Nrrd* nrrd) const { nrrdNuke(nrrd); }
@@ -83,10 +88,17 @@ std::string describe_axis(const Nrrd& nrrd, unsigned axis) {
   return fmt::format("axis {} ({}{} entries)", axis, kind, info.size);
 }
 
-/// The three axes of the volume. Others may have one entry. If four axes have no description, one with a single entry
+struct NrrdAxes {
+  std::array<unsigned, 3> spatial{};
+  std::optional<unsigned> layers;  ///< an axis with several entries that is not spatial
+};
+
+/// Other axes may have one entry, and one of them several. If four axes have no description, one with a single entry
 /// counts as time, or as the only component.
-std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
+NrrdAxes find_axes(const Nrrd& nrrd, const fs::path& path) {
+  const char* one = "extract one entry of that axis, for example with `unu slice`";
   std::vector<unsigned> axes;
+  NrrdAxes result;
   unsigned spatial = 0;
   for (unsigned a = 0; a < nrrd.dim; ++a) spatial += is_spatial(nrrd, a);
   for (unsigned a = 0; a < nrrd.dim; ++a) {
@@ -94,18 +106,30 @@ std::array<unsigned, 3> spatial_axes(const Nrrd& nrrd, const fs::path& path) {
     if (is_spatial(nrrd, a) && !(single && spatial > 3 && (a == 0 || a + 1 == nrrd.dim))) {
       axes.push_back(a);
     } else if (!single) {
-      fail_reading(path, describe_axis(nrrd, a) + " is not a spatial axis: one value per voxel is needed",
-                   "extract one entry of that axis, for example with `unu slice`");
+      if (result.layers)
+        fail_reading(path, describe_axis(nrrd, a) + " is not a spatial axis: one value per voxel is needed", one);
+      result.layers = a;
     } else {
       spatial -= is_spatial(nrrd, a);
     }
   }
   if (axes.size() > 3)
-    fail_reading(path,
-                 fmt::format("it has {} dimensions; {} is too many", axes.size(), describe_axis(nrrd, axes.back())),
-                 "extract one entry of that axis, for example with `unu slice`");
+    fail_reading(
+        path, fmt::format("it has {} dimensions; {} is too many", axes.size(), describe_axis(nrrd, axes.back())), one);
   if (axes.size() < 3) fail_reading(path, fmt::format("it has {} of the 3 spatial axes", axes.size()), "open a volume");
-  return {axes[0], axes[1], axes[2]};
+  result.spatial = {axes[0], axes[1], axes[2]};
+  return result;
+}
+
+/// Throws Error if one value per voxel can be had neither from all layers nor from the chosen one.
+void check_layers(const Nrrd& nrrd, const NrrdAxes& axes, bool segmented, int layer, const fs::path& path) {
+  const std::size_t layers = axes.layers ? nrrd.axis[*axes.layers].size : 1;
+  if (layer >= 0 && std::size_t(layer) >= layers)
+    fail_reading(path, fmt::format("it has no layer {}", layer),
+                 layers == 1 ? "it has only one: leave --layer out" : fmt::format("choose 0 to {}", layers - 1));
+  if (axes.layers && layer < 0 && !segmented)
+    fail_reading(path, describe_axis(nrrd, *axes.layers) + " is not a spatial axis: one value per voxel is needed",
+                 "choose one with --layer");
 }
 
 /// The signed spacing of an axis of a file without directions; 1 with a warning if it is not given.
@@ -139,20 +163,67 @@ void set_orientation(Volume& volume, const Nrrd& nrrd, const std::array<unsigned
   set_steps(volume, steps, path);
 }
 
-void copy_values(Volume& volume, const Nrrd& nrrd) {
+/// Where the value of a voxel of a layer is.
+class NrrdPlaces {
+ public:
+  NrrdPlaces(const Nrrd& nrrd, const NrrdAxes& axes) {
+    std::size_t step = 1;
+    for (unsigned a = 0; a < nrrd.dim; ++a) {
+      for (std::size_t i = 0; i < 3; ++i)
+        if (axes.spatial[i] == a) step_[i] = step, size_[i] = nrrd.axis[a].size;
+      if (axes.layers && *axes.layers == a) layer_step_ = step;
+      step *= nrrd.axis[a].size;
+    }
+  }
+  std::size_t operator()(std::size_t voxel, std::size_t layer) const {
+    const std::size_t i = voxel % size_[0], j = voxel / size_[0] % size_[1], k = voxel / size_[0] / size_[1];
+    return i * step_[0] + j * step_[1] + k * step_[2] + layer * layer_step_;
+  }
+
+ private:
+  std::array<std::size_t, 3> step_{}, size_{};
+  std::size_t layer_step_ = 0;
+};
+
+/// Those of one layer, or of the only one.
+template <class T>
+std::vector<T> copied_values(const Volume& volume, const T* from, const NrrdPlaces& place, std::size_t layer) {
+  std::vector<T> values(volume.voxels());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = from[place(i, layer)];
+  return values;
+}
+
+void set_values(Volume& volume, const Nrrd& nrrd, const NrrdAxes& axes, int layer,
+                const std::vector<Segment>& segments) {
   const bool real = nrrd.type == nrrdTypeFloat || nrrd.type == nrrdTypeDouble;
   const bool is_signed =
       nrrd.type == nrrdTypeChar || nrrd.type == nrrdTypeShort || nrrd.type == nrrdTypeInt || nrrd.type == nrrdTypeLLong;
+  const NrrdPlaces place(nrrd, axes);
   with_number_type(real, is_signed, int(nrrdElementSize(&nrrd)), [&](auto zero) {
-    std::vector<decltype(zero)> values(volume.voxels());
-    std::memcpy(values.data(), nrrd.data, values.size() * sizeof(zero));
-    volume.values = std::move(values);
+    using T = decltype(zero);
+    const T* from = static_cast<const T*>(nrrd.data);
+    if (!axes.layers) {
+      std::vector<T> values(volume.voxels());
+      std::memcpy(values.data(), from, values.size() * sizeof(T));
+      volume.values = std::move(values);
+    } else if (layer >= 0) {
+      volume.values = copied_values(volume, from, place, std::size_t(layer));
+    } else {
+      merge_layers(volume, std::int64_t(nrrd.axis[*axes.layers].size), segments,
+                   [&](std::size_t voxel, std::int64_t l) {
+                     const T value = from[place(voxel, std::size_t(l))];
+                     if constexpr (std::is_floating_point_v<T>)
+                       return std::abs(value) < T(1e15) ? std::int64_t(value) : std::int64_t(0);
+                     else
+                       return std::int64_t(value);
+                   });
+    }
   });
 }
 
 }  // namespace
 
-Volume read_nrrd(const fs::path& path) {
+Volume read_nrrd_layer(const fs::path& path, int layer) {
   static std::mutex one_at_a_time;  // teem has only one list of messages
   const std::lock_guard lock(one_at_a_time);
   const NrrdStorage storage = look_into_nrrd(path);
@@ -162,26 +233,33 @@ Volume read_nrrd(const fs::path& path) {
     fail_reading(path, "its values are blocks of bytes, not numbers", "convert it to a numeric type");
   if (header->spaceDim != 0 && header->spaceDim != 3 && header->spaceDim != 4)
     fail_reading(path, fmt::format("its space has {} dimensions", header->spaceDim), "open a volume");
-  const std::array<unsigned, 3> axes = spatial_axes(*header, path);
+  const NrrdAxes axes = find_axes(*header, path);
 
   Volume volume;
   const std::size_t bytes_per_voxel = nrrdElementSize(header.get());
   std::array<std::int64_t, 3> dims{};
-  for (int i = 0; i < 3; ++i) dims[i] = std::int64_t(std::min<std::size_t>(header->axis[axes[i]].size, INT64_MAX));
-  set_dims(volume, dims, bytes_per_voxel, path);
-  set_orientation(volume, *header, axes, path);
-  volume.label_names = names_of_segments([&](const std::string& key) -> std::optional<std::string> {
+  for (int i = 0; i < 3; ++i)
+    dims[i] = std::int64_t(std::min<std::size_t>(header->axis[axes.spatial[std::size_t(i)]].size, INT64_MAX));
+  const std::vector<Segment> segments = find_segments([&](const std::string& key) -> std::optional<std::string> {
     const std::unique_ptr<char, Delete> value(nrrdKeyValueGet(header.get(), key.c_str()));
     if (!value) return {};
     return value.get();
   });
-  check_stored(storage.bytes, volume.voxels() * bytes_per_voxel, ratio_of(encoding, bytes_per_voxel), path);
+  check_layers(*header, axes, !segments.empty(), layer, path);
+  const std::size_t layers = axes.layers ? header->axis[*axes.layers].size : 1;
+  if (layers > most_layers) fail_reading(path, fmt::format("it has {} layers", with_commas(layers)));
+  set_dims(volume, dims, bytes_per_voxel * layers, path);
+  set_orientation(volume, *header, axes.spatial, path);
+  volume.label_names = names_of_segments(segments, std::max(layer, 0));
+  const std::size_t numbers = volume.voxels() * layers;
+  check_stored(storage.bytes, numbers * bytes_per_voxel, ratio_of(encoding, bytes_per_voxel), path);
 
   const auto nrrd = load(path, false);
-  if (!nrrd->data || nrrdElementNumber(nrrd.get()) != volume.voxels())
-    fail_reading(path, "it changed while it was read");
-  copy_values(volume, *nrrd);
+  if (!nrrd->data || nrrdElementNumber(nrrd.get()) != numbers) fail_reading(path, "it changed while it was read");
+  set_values(volume, *nrrd, axes, layer, segments);
   return volume;
 }
+
+Volume read_nrrd(const fs::path& path) { return read_nrrd_layer(path, all_layers); }
 
 }  // namespace nacre

@@ -27,6 +27,7 @@ SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths) {
 std::vector<std::string> readable_extensions() {
   std::vector<std::string> extensions;
   for (const std::string& extension : own_extensions()) extensions.push_back("." + extension);
+  extensions.push_back(".series");
   if (!vtk_child_available()) return extensions;
   for (const char* other : {".vtk", ".vts", ".vtr", ".vtm", ".vtmb", ".pvts", ".pvtr", ".case", ".encas", ".ex2",
                             ".exo", ".e", ".g", ".foam"})

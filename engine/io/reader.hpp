@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/volume_reader.hpp"
 #include "engine/scene/surface/surface.hpp"
 #include "engine/scene/volume/volume.hpp"
 
@@ -53,14 +54,15 @@ struct FileInfo {
   std::vector<std::string> warnings;  ///< full sentences
 };
 
-/// Opens one file, a .pvd, or several files of one series in the given order (in the order of their own TimeValue if
-/// all have one). The first step is read at once, and two more to see whether the surface moves; the others are read on
-/// demand. A surface that moves keeps the points of its first step, with a warning. Throws Error if a file is missing,
-/// unreadable, not a surface, or has other points or triangles than the first step.
+/// Opens one file, a .pvd or .series, or several files of one series in the given order (in the order of their own
+/// TimeValue if all have one). The first step is read at once, and two more to see whether the surface moves; the
+/// others are read on demand. A surface that moves keeps the points of its first step, with a warning. Throws Error if
+/// a file is missing, unreadable, not a surface, or has other points or triangles than the first step.
 SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths);
 
-/// Describes the contents of a file, even if it is not a surface. Throws Error if it cannot be read.
-FileInfo describe(const std::filesystem::path& path);
+/// Describes the contents of a file, even if it is not a surface; `choice` for volumes. Throws Error if it cannot be
+/// read.
+FileInfo describe(const std::filesystem::path& path, const VolumeChoice& choice = {});
 
 /// Extensions that can be opened, lower case, with dot.
 std::vector<std::string> readable_extensions();

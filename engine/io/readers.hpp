@@ -14,6 +14,7 @@ RawMesh read_obj(std::string bytes, const std::filesystem::path& path);
 RawMesh read_ply(std::string bytes, const std::filesystem::path& path);
 RawMesh read_stl(std::string bytes, const std::filesystem::path& path);
 RawMesh read_off(std::string bytes, const std::filesystem::path& path);
+RawMesh read_gifti(std::string bytes, const std::filesystem::path& path);
 RawMesh read_vtk_xml(std::string bytes, const std::filesystem::path& path);
 
 }  // namespace nacre

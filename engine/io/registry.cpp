@@ -32,11 +32,9 @@ bool looks_like_obj(std::string_view head) {
 
 const std::vector<SurfaceFormat>& surface_formats() {
   static const std::vector<SurfaceFormat> formats = {
-      {"OBJ", {"obj"}, read_obj},
-      {"PLY", {"ply"}, read_ply},
-      {"STL", {"stl"}, read_stl},
-      {"OFF", {"off"}, read_off},
-      {"VTK XML", {"vtp", "vtu", "vti", "pvtp", "pvtu", "pvd"}, read_vtk_xml},
+      {"OBJ", {"obj"}, read_obj},     {"PLY", {"ply"}, read_ply},
+      {"STL", {"stl"}, read_stl},     {"OFF", {"off"}, read_off},
+      {"GIFTI", {"gii"}, read_gifti}, {"VTK XML", {"vtp", "vtu", "vti", "pvtp", "pvtu", "pvd"}, read_vtk_xml},
   };
   return formats;
 }
@@ -54,6 +52,7 @@ const SurfaceFormat* sniff_format(const std::string& bytes) {
   const std::string_view text = head.substr(first);
   const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n"));
   if (word == "ply") return find_format("ply");
+  if (head.find("<GIFTI") != head.npos) return find_format("gii");
   if (head.find("<VTKFile") != head.npos) return find_format("vtp");
   if (is_binary_stl(bytes)) return find_format("stl");
   if (word.size() <= 6 && word.ends_with("OFF")) return find_format("off");

@@ -10,6 +10,7 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/file_bytes.hpp"
+#include "engine/io/label_names.hpp"
 #include "engine/io/volume_readers.hpp"
 #include "engine/io/vtk_child.hpp"
 #include "engine/system/extension.hpp"
@@ -34,9 +35,10 @@ bool is_legacy_image(const fs::path& path) {
 
 const std::vector<VolumeFormat>& volume_formats() {
   static const std::vector<VolumeFormat> formats = {
-      {"NRRD", {"nrrd", "nhdr"}, false, false, read_nrrd},
+      {"NRRD", {"nrrd", "nhdr"}, false, false, read_nrrd, read_nrrd_layer},
       {"NIfTI", {"nii", "hdr", "img"}, true, false, read_nifti},
       {"INR", {"inr"}, true, false, read_inr},
+      {"FreeSurfer", {"mgz", "mgh"}, false, false, read_mgh},
       {"VTK image", {"vti"}, false, false, read_vti},
       {"MetaImage", {"mhd", "mha"}, false, false, read_metaimage},
       {"SLC", {"slc"}, false, true, read_vtk_volume},
@@ -60,15 +62,25 @@ const VolumeFormat* find_volume_format(const fs::path& path) {
 
 bool is_volume_file(const fs::path& path) { return find_volume_format(path) != nullptr; }
 
-Volume read_volume(const fs::path& path) {
+void add_label_names(Volume& volume, const fs::path& names) {
+  if (names.empty()) return;
+  LabelNames known = read_label_names(names);
+  known.merge(volume.label_names);
+  volume.label_names = std::move(known);
+}
+
+Volume read_volume(const fs::path& path, const VolumeChoice& choice) {
   require_file(path);
   const VolumeFormat* format = find_volume_format(path);
   if (!format)
     fail_reading(path, "its name is not that of a known volume format",
                  fmt::format("known are {}", fmt::join(volume_extensions(), " ")));
+  if (choice.layer != all_layers && !format->read_layer)
+    fail_reading(path, fmt::format("{} files have no layers", format->name), "leave --layer out");
   try {
-    Volume volume = format->read(path);
+    Volume volume = choice.layer == all_layers ? format->read(path) : format->read_layer(path, choice.layer);
     volume.name = path.filename().string();
+    add_label_names(volume, choice.names);
     return volume;
   } catch (const std::bad_alloc&) {
     fail_reading(path, "it does not fit in memory", "open a smaller volume");

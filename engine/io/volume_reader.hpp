@@ -16,6 +16,16 @@ struct VolumeFormat {
   bool gzip = false;
   bool through_vtk = false;  ///< read by the child process
   Volume (*read)(const std::filesystem::path& path) = nullptr;
+  Volume (*read_layer)(const std::filesystem::path& path, int layer) = nullptr;  ///< if the format has layers
+};
+
+/// The layer of a segmentation that means all of them: where they overlap, the later segment counts.
+inline constexpr int all_layers = -1;
+
+/// What a user says about a volume's file.
+struct VolumeChoice {
+  int layer = all_layers;       ///< of a segmentation whose segments overlap, or of another 4-D NRRD; from 0
+  std::filesystem::path names;  ///< a file as read_label_names reads it; its names go before those in the volume's file
 };
 
 /// All of these formats.
@@ -30,8 +40,12 @@ bool is_volume_file(const std::filesystem::path& path);
 
 /// Reads one volume. Throws Error if the file is missing, of unknown format, damaged, truncated, not a volume (2-D, or
 /// 4-D with more than one entry), without one value per voxel, sheared, with a spacing that is zero or not a number, or
-/// larger than memory; Interrupted if the child process was stopped by Ctrl-C.
-Volume read_volume(const std::filesystem::path& path);
+/// larger than memory; Interrupted if the child process was stopped by Ctrl-C. Error
+/// also if the file has no such layer, or the names cannot be read.
+Volume read_volume(const std::filesystem::path& path, const VolumeChoice& choice = {});
+
+/// Gives the labels of `volume` the names in this file, as `read_volume` does; nothing if `names` is empty.
+void add_label_names(Volume& volume, const std::filesystem::path& names);
 
 /// Extensions that can be opened, lower case, with dot.
 std::vector<std::string> volume_extensions();

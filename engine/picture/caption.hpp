@@ -6,12 +6,14 @@
 
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/image.hpp"
+#include "engine/picture/legend.hpp"
 
 namespace nacre {
 
 struct FlowCaption {
   const Colormap* map = nullptr;  ///< of the legend; null: none
   double low = 0, high = 1;       ///< at its ends
+  LegendScale scale;              ///< how it is read
   std::string title;              ///< above it
   std::optional<double> time;     ///< of the stamp; without it there is no stamp
   double frame_time = 0;          ///< of the data, from frame to frame

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "compute/device/error.hpp"
+#include "engine/picture/colormap_tables.hpp"
 #include "engine/picture/oklab.hpp"
 
 namespace nacre {
@@ -108,6 +109,18 @@ std::vector<Color> walk_both_arms(const std::vector<Anchor>& low, const std::vec
   return table;
 }
 
+std::vector<Color> from_digits(std::string_view digits) {
+  const auto digit = [](char c) { return c <= '9' ? c - '0' : c - 'a' + 10; };
+  std::vector<Color> table;
+  for (std::size_t k = 0; k + 6 <= digits.size(); k += 6) {
+    Color colour;
+    for (std::size_t c = 0; c < 3; ++c)
+      colour[c] = float(16 * digit(digits[k + 2 * c]) + digit(digits[k + 2 * c + 1])) / 255;
+    table.push_back(colour);
+  }
+  return table;
+}
+
 std::vector<Colormap> make_all() {
   const auto open = [](const std::vector<Anchor>& anchors) { return walk(Spline(anchors, false), false); };
   const auto closed = [](const std::vector<Anchor>& anchors) { return walk(Spline(anchors, true), true); };
@@ -121,6 +134,21 @@ std::vector<Colormap> make_all() {
                       {{.44f, .145f, 28}, {.70f, .10f, 32}, {.96f, 0, 32}})},
       {"gray", "gray", open({{.18f, 0, 0}, {1, 0, 0}})},
       {"phase", "cyclic", closed({{.92f, .03f, 90}, {.62f, .11f, 245}, {.35f, .05f, 300}, {.62f, .11f, 40}})},
+      {"viridis", "sequential", from_digits(viridis_table)},
+      {"cividis", "sequential", from_digits(cividis_table)},
+      {"turbo", "rainbow",
+       open({{.27f, .09f, 310},
+             {.46f, .175f, 275},
+             {.64f, .15f, 248},
+             {.78f, .115f, 205},
+             {.87f, .165f, 155},
+             {.91f, .18f, 118},
+             {.84f, .16f, 85},
+             {.70f, .165f, 55},
+             {.55f, .185f, 34},
+             {.38f, .13f, 28}})},
+      {"coolwarm", "diverging", coolwarm_colours(table_size)},
+      {"twilight", "cyclic", from_digits(twilight_table)},
   };
 }
 

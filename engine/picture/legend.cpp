@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 
 #include "engine/picture/lettering.hpp"
@@ -63,6 +64,11 @@ bool lay_out(const Image& image, const Ticks& ticks, Layout& out) {
   return true;
 }
 
+Rgba ink_of(const std::array<float, 3>& c) {
+  const auto byte = [](float v) { return std::uint8_t(rounded(255 * std::clamp(v, 0.f, 1.f))); };
+  return {byte(c[0]), byte(c[1]), byte(c[2])};
+}
+
 void draw_bar(Image& image, const Layout& at, const Colormap& map, const Ink& ink) {
   const Rgba frame{ink.letter.r, ink.letter.g, ink.letter.b, 200};
   fill_box(image, at.bar_x - at.line, at.bar_y - at.line, at.bar_width + 2 * at.line, at.bar_height + 2 * at.line,
@@ -70,16 +76,33 @@ void draw_bar(Image& image, const Layout& at, const Colormap& map, const Ink& in
   const float last = float(map.table.size() - 1);
   for (int row = 0; row < at.bar_height; ++row) {
     const float t = 1 - (float(row) + 0.5f) / float(at.bar_height);
-    const auto& c = map.table[std::size_t(rounded(t * last))];
-    const auto byte = [](float v) { return std::uint8_t(rounded(255 * std::clamp(v, 0.f, 1.f))); };
-    fill_box(image, at.bar_x, at.bar_y + row, at.bar_width, 1, {byte(c[0]), byte(c[1]), byte(c[2])});
+    fill_box(image, at.bar_x, at.bar_y + row, at.bar_width, 1, ink_of(map.table[std::size_t(rounded(t * last))]));
   }
 }
 
-void draw_ticks(Image& image, const Layout& at, const Ticks& ticks, double min, double max, const Ink& ink) {
+/// Boxes beyond the ends of the bar, and one below them for what is no number.
+void draw_beyond(Image& image, const Layout& at, const LegendScale& scale, const Ink& ink) {
+  const Rgba frame{ink.letter.r, ink.letter.g, ink.letter.b, 200};
+  const int high = rounded(0.7f * at.font), gap = std::max(2, rounded(0.2f * at.font));
+  const auto box = [&](int y, const std::array<float, 3>& colour) {
+    fill_box(image, at.bar_x - at.line, y - at.line, at.bar_width + 2 * at.line, high + 2 * at.line, frame);
+    fill_box(image, at.bar_x, y, at.bar_width, high, ink_of(colour));
+  };
+  if (scale.above) box(at.bar_y - gap - high, *scale.above);
+  int y = at.bar_y + at.bar_height + gap;
+  if (scale.below) box(y, *scale.below), y += high + gap;
+  if (!scale.no_number) return;
+  y += gap;
+  box(y, *scale.no_number);
+  draw_lettering(image, at.label_x, y + (high - text_cap_height(at.font)) / 2, "NaN", at.font, ink);
+}
+
+void draw_ticks(Image& image, const Layout& at, const Ticks& ticks, double min, double max, bool log, const Ink& ink) {
   const int cap = text_cap_height(at.font), length = rounded(0.3f * at.font);
   for (std::size_t i = 0; i < ticks.values.size(); ++i) {
-    const double t = max > min ? (ticks.values[i] - min) / (max - min) : 0.5;
+    const double share =
+        log ? std::log(ticks.values[i] / min) / std::log(max / min) : (ticks.values[i] - min) / (max - min);
+    const double t = max > min ? share : 0.5;
     const int y = at.bar_y + rounded(float((1 - t) * at.bar_height));
     fill_box(image, at.bar_x + at.bar_width + at.line, y - at.line / 2, length, at.line, ink.letter);
     draw_lettering(image, at.label_x, y - cap / 2, ticks.labels[i], at.font, ink);
@@ -87,9 +110,9 @@ void draw_ticks(Image& image, const Layout& at, const Ticks& ticks, double min, 
 }
 
 /// The title is above the bar, or ends at the right border if it is longer than the legend is wide.
-void draw_title(Image& image, const Layout& at, const std::string& title, int exponent, const Ink& ink) {
+void draw_title(Image& image, const Layout& at, const std::string& title, int exponent, bool box, const Ink& ink) {
   const int line_height = rounded(1.45f * at.font);
-  int y = at.bar_y - rounded(1.9f * at.font);
+  int y = at.bar_y - rounded((box ? 2.8f : 1.9f) * at.font);
   if (exponent != 0) {
     draw_lettering(image, at.bar_x, y, power_of_ten(exponent), at.font, ink);
     y -= line_height;
@@ -101,20 +124,23 @@ void draw_title(Image& image, const Layout& at, const std::string& title, int ex
 
 }  // namespace
 
-void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title) {
+void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title,
+                 const LegendScale& scale) {
   if (min > max) std::swap(min, max);
   if (map.table.empty()) return;
   const float font = lettering_size(image);
   if (font <= 0) return;
   const int count = std::clamp(int(float(image.height) / 2 / (3 * font)), 2, 8);
-  const Ticks ticks = nice_ticks(min, max, count);
+  const bool log = scale.log && min > 0;
+  const Ticks ticks = log ? log_ticks(min, max, count) : nice_ticks(min, max, count);
   Layout layout;
   if (!lay_out(image, ticks, layout)) return;
   const int left = image.width - image.width / 4;
   const Ink ink = ink_for(image, left, layout.bar_y - rounded(3 * font), image.width - left, layout.bar_height);
   draw_bar(image, layout, map, ink);
-  draw_ticks(image, layout, ticks, min, max, ink);
-  draw_title(image, layout, title, ticks.exponent, ink);
+  draw_beyond(image, layout, scale, ink);
+  draw_ticks(image, layout, ticks, min, max, log, ink);
+  draw_title(image, layout, title, ticks.exponent, scale.above.has_value(), ink);
 }
 
 KeptFree legend_room(int width, int height) {

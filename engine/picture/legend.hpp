@@ -1,6 +1,8 @@
 // Nacre: what is drawn over a picture: colour legend, time stamp, axes.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 
 #include "compute/math/vec.hpp"
@@ -11,11 +13,19 @@
 
 namespace nacre {
 
+/// How a legend is read, beyond the map and its ends.
+struct LegendScale {
+  bool log = false;                                  ///< equal ratios are equal distances
+  std::optional<std::array<float, 3>> below, above;  ///< of values beyond the ends, sRGB; none: those of the map
+  std::optional<std::array<float, 3>> no_number;     ///< where there is no number; none: that does not occur
+};
+
 /// A vertical colour bar at the right border with ticks at round numbers, and `title` above it. `min` and `max` are the
 /// values at the lower and upper end of the bar; numbers are left out if they are not finite. The size depends on the
 /// image; the legend is never wider than a quarter of it. If it would not be readable (in images below about 200
 /// pixels) it is left out.
-void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title);
+void draw_legend(Image& image, const Colormap& map, double min, double max, const std::string& title,
+                 const LegendScale& scale = {});
 
 /// The area in which draw_legend draws in an image of that size: the bar, numbers of six characters, and as much of a
 /// title as fits above these. Empty if the image is too small for a legend.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <utility>
 
 namespace nacre {
@@ -37,6 +38,25 @@ double nice_step(double range, int count) {
 }
 
 }  // namespace
+
+Ticks log_ticks(double min, double max, int count) {
+  Ticks ticks;
+  if (!(min > 0) || !(max > min) || !std::isfinite(max)) return nice_ticks(min, max, count);
+  const int first = int(std::floor(std::log10(min))), last = int(std::ceil(std::log10(max)));
+  const auto take = [&](std::initializer_list<int> factors, int stride) {
+    ticks.values.clear();
+    for (int e = first; e <= last; ++e)
+      for (const int factor : factors) {
+        const double value = factor * std::pow(10.0, e);
+        if (e % stride == 0 && value >= min * (1 - 1e-9) && value <= max * (1 + 1e-9)) ticks.values.push_back(value);
+      }
+  };
+  take({1, 2, 5}, 1);
+  for (int stride = 1; int(ticks.values.size()) > count + 1 && stride <= last - first; ++stride) take({1}, stride);
+  if (ticks.values.size() < 2) return nice_ticks(min, max, count);
+  for (const double value : ticks.values) ticks.labels.push_back(short_number(value, 3));
+  return ticks;
+}
 
 std::string fixed_number(double value, int decimals) {
   const std::string number = fmt::format("{:.{}f}", value, decimals);

@@ -17,6 +17,10 @@ struct Ticks {
 /// range is too narrow for single precision, there is one tick at its middle; if an end is not finite, there is none.
 Ticks nice_ticks(double min, double max, int count);
 
+/// Ticks of a logarithmic axis, 0 < min < max: at powers of ten, and at 2 and 5 times these where that is not too many;
+/// like `nice_ticks` where no power of ten is near.
+Ticks log_ticks(double min, double max, int count);
+
 /// The value with `decimals` digits after the point and a true minus sign.
 std::string fixed_number(double value, int decimals);
 

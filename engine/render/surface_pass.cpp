@@ -12,6 +12,19 @@ void SurfaceColours::set_map(std::span<const std::array<float, 3>> colours) {
   for (auto& colour : linear)
     for (float& c : colour) c *= c;  // gamma 2, as in pictures without OpenGL
   map_ = ColourTexture(linear);
+  below_ = linear.front();
+  above_ = linear.back();
+}
+
+void SurfaceColours::set_beyond(const std::array<float, 3>& below, const std::array<float, 3>& above,
+                                const std::array<float, 3>& no_number) {
+  const auto squared = [](std::array<float, 3> colour) {
+    for (float& c : colour) c *= c;
+    return colour;
+  };
+  below_ = squared(below);
+  above_ = squared(above);
+  no_number_ = squared(no_number);
 }
 
 void SurfaceColours::set_range(double low, double high) {
@@ -36,6 +49,9 @@ int SurfaceColours::bind(const Program& program, int unit) const {
   program.set("scalar", unit + 1);
   program.set("coloured", coloured_ ? 1 : 0);
   program.set("range", std::array<float, 2>{low_, high_});
+  program.set("below", below_);
+  program.set("above", above_);
+  program.set("no_number", no_number_);
   return unit + 2;
 }
 

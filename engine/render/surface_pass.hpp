@@ -21,6 +21,9 @@ class SurfaceColours {
   /// One number per point. They are input, not results: this is the only array that is uploaded as time advances.
   void set_scalar(std::span<const float> scalar, double low, double high);
   void set_range(double low, double high);  ///< of the colour map
+  /// Encoded colours of values beyond the range, and of NaN.
+  void set_beyond(const std::array<float, 3>& below, const std::array<float, 3>& above,
+                  const std::array<float, 3>& no_number);
   void clear_scalar() { coloured_ = false; }
 
   int bind(const Program& program, int unit) const;
@@ -31,6 +34,7 @@ class SurfaceColours {
   BufferTexture scalar_texture_;
   bool coloured_ = false;
   float low_ = 0, high_ = 1;
+  std::array<float, 3> below_{}, above_{}, no_number_{0.25f, 0.25f, 0.25f};  ///< as the shader sees them
 };
 
 /// How shown values are looked up.

@@ -73,7 +73,7 @@ TEST_F(OctreeWords, TheNeighbourIndexChangesNothingButTheTime) {
 }
 
 TEST_F(OctreeWords, MemoryPerCellIsWhatWasPromised) {
-  for (const int ttl : {1, 2}) {
+  for (const int ttl : {1, 8}) {  // the same: particles are handed over from step to step
     const Outcome run =
         nacre({"flow", "--sample", "delta-wing", "--method", "octree", "--resolution", "512", "--steps", "1", "--quiet",
                "--ttl", std::to_string(ttl), "--set", "warmup=0", "--report", path("r.json")});
@@ -81,8 +81,8 @@ TEST_F(OctreeWords, MemoryPerCellIsWhatWasPromised) {
     const json report = read_json("r.json");
     const double cells = report["embedding"]["cells"];
     EXPECT_LE(report["embedding"]["bytes"].get<double>() / cells, 24);
-    EXPECT_LE(report["flow"]["bytes"].get<double>() / cells, 14 + 8 * ttl);
-    EXPECT_GE(report["flow"]["bytes"].get<double>() / cells, 4 + 4 * ttl) << "the vectors alone take that";
+    EXPECT_LE(report["flow"]["bytes"].get<double>() / cells, 32);
+    EXPECT_GE(report["flow"]["bytes"].get<double>() / cells, 8) << "the vectors alone take that";
   }
 }
 

@@ -14,7 +14,7 @@ breach() {
 }
 
 folders=()
-for folder in app engine compute tests shaders third_party; do
+for folder in app api engine compute include examples python tests shaders third_party; do
   [[ -d $folder ]] && folders+=("$folder")
 done
 mapfile -t files < <(find "${folders[@]}" -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh' \

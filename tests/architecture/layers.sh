@@ -5,7 +5,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 
 # Top folders, and the folders of compute and of engine/scene, from the highest to the lowest: a file includes its own and
 # lower ones.
-top_order=(app engine compute)
+top_order=(app api engine compute include)
 compute_order=(pipeline raycast flow particles meshing embedding field math device)
 scene_order=(session samples volume surface settings)
 
@@ -15,6 +15,7 @@ engine_forbidden=(
   scene:io scene:picture
   picture:io picture:scene
   io:picture
+  system:run scene:run picture:run io:run gl:run interop:run render:run
   gl:scene gl:io gl:interop gl:render
   interop:scene interop:io interop:render
   render:scene render:io render:interop
@@ -66,7 +67,7 @@ complaint() {
 }
 
 # Each pair of folders is judged once: FILE:LINE:#include "PATH" becomes "FROM-FOLDER TO-FOLDER FILE PATH".
-pairs=$(grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' app engine compute \
+pairs=$(grep -rnsE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"' app api engine compute \
   --include='*.hpp' --include='*.cpp' --include='*.cu' --include='*.cuh' --include='*.in' |
   sed -E 's/^([^:]+):[0-9]+:[^"]*"([^"]+)".*/\1 \2/' |
   awk '{ from = $1; to = $2; sub("/[^/]*$", "", from); if (!sub("/[^/]*$", "", to)) to = "."; print from, to, $1, $2 }') ||
@@ -87,4 +88,10 @@ while read -r from to file path; do
     bad=1
   fi
 done <<<"$pairs"
+
+# What users include knows nothing but itself and the standard library.
+while IFS= read -r line; do
+  echo "$line: a public header includes what is not installed"
+  bad=1
+done < <(grep -rnsE '^[[:space:]]*#[[:space:]]*include[[:space:]]*("[^"]*/|<[a-z]+/)' include || true)
 exit $bad

@@ -66,6 +66,14 @@ good_tree
 plant app/lost.cpp '#include "engine/io/lost.hpp"'
 expect layers.sh 'does not exist'
 good_tree
+plant api/g.hpp '#include "engine/io/e.hpp"'
+expect_silence layers.sh
+plant engine/io/up.hpp '#include "api/g.hpp"'
+expect layers.sh 'engine/io/up.hpp: include "api/g.hpp" points upwards'
+good_tree
+plant include/nacre/h.hpp '#include "compute/math/b.hpp"'
+expect layers.sh 'a public header includes what is not installed'
+good_tree
 plant compute/other/new.hpp '#include "compute/device/a.hpp"'
 expect layers.sh 'without a place in its order'
 

@@ -22,12 +22,13 @@ main_runs
 #   comparison are one each. A projection by WENO4 is 2776 (84 lanes of 30, 256 to make places of offsets; 3400 where cells
 #   are packed, with what is interpolated at the result), a velocity 56 (120 between two times; on the octree 56 a time), a
 #   pair of particles 57, a material's function 190 (250 for the difference of two, 130 without gradient).
-#   How often: counted once with counters in the kernels. A particle of the grid takes 16 velocities in its life (ttl 4, as
-#   by default), half of them between two times, 4 projections and 15 cells of lines; of the octree 16 velocities and 15
-#   cells. A particle of `relax` has 108 pairs (heart) or 142 (torso) and one projection an iteration.
+#   How often: counted once with counters in the kernels, but for advection: there two velocities and four cells of lines
+#   stand for a path (the midpoint rule), and a projection for every tenth. A particle of `relax` has 108 pairs (heart) or
+#   142 (torso) and one projection an iteration.
 # - Instructions, all of them, are what valgrind counted in the stage's kernels (--tool=callgrind, one thread, built with
 #   NACRE_MARCH=haswell since it knows no AVX-512; flow of 256 cells, the small meshes of profile.sh). 0: not counted, where
-#   such runs are unlike the large ones (few cells for a triangle, few voxels far from all boundaries). Lines of the Delaunay
+#   such runs are unlike the large ones (few cells for a triangle, few voxels far from all boundaries). Of advection: the
+#   count of an older program by the ratio of both programs' times. Lines of the Delaunay
 #   triangulation are those of the 65 cells or so that an insertion looks at or makes.
 table() {
   cat <<'TABLE'
@@ -36,11 +37,11 @@ grid   read        24         points    220*points                            0 
 grid   embed       1          coarse    66*coarse,250*triangles               0   0     0     one by one
 grid   refine      1          cells     24*cells,48*surface,64*coarse         0   0     0     one by one
 grid   velocity    calls      coarse    36*coarse,84*triangles                0   0     190   one by one
-grid   advect      calls      surface   88*surface,100*coarse,4*cells         0   12500 14500 one by one
+grid   advect      calls      surface   80*surface,68*coarse,4*cells          0   750   2200  one by one
 grid   filter      calls      surface   64*surface,68*coarse,4*cells          0   60    935   one by one
 octree read        24         points    220*points                            0   0     2770  one by one
 octree velocity    calls      cells     16*cells,84*triangles                 0   0     300   one by one (divisions)
-octree advect      calls      surface   80*surface,20*cells,1*structure       0   1400  14000 one by one
+octree advect      calls      surface   72*surface,12*cells,1*structure       0   350   2900  one by one
 octree extend      calls      surface   56*surface,2*structure                0   0     2460  one by one
 octree filter      calls      surface   56*surface,12*cells,3*structure       0   0     2150  one by one
 octree render      1          pixels    4*pixels                              0   0     0     one by one

@@ -34,7 +34,7 @@ echo '"whole_additions_per_second": 1e10}'
 CEILINGS
 chmod +x "$work/ceilings"
 export NACRE_BENCH_SCALE=4
-check_rows bounds.sh "\| grid \| advect \| $number.* one by one \|" "\| octree \| advect \| $number.* one by one \|" \
+check_rows bounds.sh "\| grid \| filter \| $number.* one by one \|" "\| octree \| filter \| $number.* one by one \|" \
   "\| single \| relax \| $number.* vectors, one by one \|" "\| multi \| relax \| $number.* vectors, one by one \|" \
   -- "$work/ceilings"
 share=' *[0-9.]+%  '

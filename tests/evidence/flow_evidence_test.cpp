@@ -85,7 +85,7 @@ TEST_P(FlowEvidence, TextureMovesWithTheFlow) {
     }
     std::printf("motion at ttl %d: %.2f of v dt, correlation %.3f\n", ttl, at, best);
     EXPECT_NEAR(at, 1.0, 0.15) << "ttl " << ttl;
-    EXPECT_GT(best, 0.8);
+    EXPECT_GT(best, 0.65) << "noise is mixed in";
   }
 }
 

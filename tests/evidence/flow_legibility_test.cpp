@@ -54,10 +54,10 @@ TEST_P(FlowLegibility, StreaksFollowThePresentFlowAsWellAsAConvolution) {
   const Legibility lic = legibility(values, cell);
   print("streaks", GetParam(), ours);
   print("LIC", GetParam(), lic);
-  EXPECT_GE(ours.within, 0.96 * lic.within);
-  EXPECT_GE(ours.slowest_within, 0.75 * lic.slowest_within) << "of some 140 positions";
-  EXPECT_LE(ours.width, 1.4 * lic.width) << "one strength of the high-pass serves all data: some could be sharper";
-  EXPECT_GE(ours.length, 0.95 * lic.length);
+  EXPECT_GE(ours.within, 0.98 * lic.within);
+  EXPECT_GE(ours.slowest_within, 0.9 * lic.slowest_within) << "of some 140 positions";
+  EXPECT_LE(ours.width, 1.12 * lic.width);
+  EXPECT_GE(ours.length, lic.length);
 }
 
 class FlowLegibilityInPictures : public testing::TestWithParam<LegibilityCase> {};
@@ -84,7 +84,7 @@ TEST_P(FlowLegibilityInPictures, StreaksAreFineAndStrong) {
               GetParam().sample, GetParam().embedding, grey.across, grey.along, grey.contrast, coloured.contrast);
   EXPECT_GT(grey.across, 0);
   EXPECT_LE(grey.across, 0.8);
-  EXPECT_GE(grey.contrast, 0.2);
+  EXPECT_GE(grey.contrast, 0.25);
   EXPECT_GE(coloured.contrast, 0.2);
 }
 

@@ -48,7 +48,7 @@ std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
   if (!scalar_.empty())
     lines.push_back(fmt::format("{}: {:.4g}", results_.data.color, interpolate(scalar_, t, hit.weights)));
   lines.push_back("time: " + time_text(results_.time));
-  if (!shown_) return lines;
+  if (!shown_ || looks_back_) return lines;
   // The texture's value lies on the device of compute: the worker looks it up between its steps.
   const double near = shown_->info.cell_size;
   if (!asked_ || asked_step_ != taken_ || length(*asked_ - hit.position) > 0.5 * near) {

@@ -11,6 +11,7 @@
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/triangle_tree.hpp"
+#include "engine/run/shown_colours.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/vectors_in_time.hpp"
@@ -22,7 +23,9 @@ struct FlowData {
   std::string array, color;  ///< what is shown, and what colours it
   std::string reason;        ///< why this array
   VectorStatistics statistics;
-  Range time, colours;        ///< of the data
+  Range time;                 ///< of the data
+  ColourSpread colours;       ///< of what colours
+  std::vector<double> times;  ///< of the steps of the data
   std::vector<float> scalar;  ///< at the time that is shown; empty: not coloured
   std::shared_ptr<const std::vector<Vec3f>> vectors;
   std::vector<std::string> warnings;
@@ -39,7 +42,7 @@ struct FlowResults {
   FlowOffer offer;
   FlowData data;
   FlowSpan span;
-  Range range{0, 1};                       ///< of the colour map
+  ShownColours colours;                    ///< what the knobs make of them
   double time = 0;                         ///< that is shown, or will be first
   int steps = 0;                           ///< since the start
   std::vector<float> step_seconds;         ///< of the last ones

@@ -34,7 +34,10 @@ FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
       values(device, told.lookup.values * sizeof(float), GL_R32F) {}
 
 FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority)
-    : worker_(session, std::move(device), loop, low_priority), settings_(session.settings) {
+    : worker_(session, std::move(device), loop, low_priority),
+      settings_(session.settings),
+      loops_(loop),
+      begun_at_(session.settings.begin_at) {
   colours_.set_map(colormap(settings_.colormap).table);
   arrow_pass_.set_map(colormap(settings_.colormap).table);
 }
@@ -59,8 +62,12 @@ void FlowScene::set_settings(const Settings& settings, const ChangedKnobs& chang
       settings_.colormap = colours_before;
     }
   }
-  if (changed.has("color_range")) find_range();
-  const FlowRerun rerun = worker_.set_settings(settings);
+  if (changed.has_any(
+          {"color_range", "color_symmetric", "color_scale", "color_below", "color_above", "color_nan", "colormap"})) {
+    find_range();
+    show_colours(std::vector<float>(scalar_));
+  }
+  const FlowRerun rerun = pass_on(settings, changed.has("begin_at"));
   if (!(rerun == FlowRerun())) failure_.clear();
   stale_ = stale_ || rerun.has(FlowStage::step);
   ++look_version_;
@@ -100,8 +107,9 @@ bool FlowScene::has_legend() const {
 FlowCaption FlowScene::caption() const {
   FlowCaption caption;
   if (has_legend() && !results_.data.array.empty()) caption.map = &colormap(settings_.colormap);
-  caption.low = results_.range.low;
-  caption.high = results_.range.high;
+  caption.low = results_.colours.range.low;
+  caption.high = results_.colours.range.high;
+  caption.scale = results_.colours.scale;
   caption.title = results_.data.color == "speed" ? results_.data.array : results_.data.color;
   if (settings_.time_stamp && complete() && results_.data.time.high > results_.data.time.low)
     caption.time = results_.time;
@@ -129,7 +137,8 @@ Image FlowScene::overlay(int width, int height) {
 void FlowScene::advance(double now) {
   while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
   ask_boxes();
-  if (wants_step() && now - last_step_ >= 1.0 / settings_.fps && begin_step(false)) last_step_ = now;
+  if (!wants_step() || now - last_step_ < 1 / (settings_.fps * settings_.view.play_speed)) return;
+  if (play_kept() || begin_step(false)) last_step_ = now;
 }
 
 bool FlowScene::advance_and_wait(const std::atomic<bool>& stop, double patience) {
@@ -137,6 +146,7 @@ bool FlowScene::advance_and_wait(const std::atomic<bool>& stop, double patience)
   while (taken_ == before && !stop) {
     if (!failure_.empty()) throw Error(failure_);
     const bool boxes_come = ask_boxes();
+    if (wants_step() && play_kept()) return true;
     if (worker_.ready() && !(wants_step() && begin_step(true)) && !boxes_come) return true;
     std::optional<FlowEvent> event = worker_.wait(stop, patience);
     if (event)
@@ -201,22 +211,28 @@ void FlowScene::take(FlowData& told) {
   ++look_version_;
 }
 
-/// The knob's where that means something, else the data's.
+/// By the knobs where these mean something, else the data's.
 void FlowScene::find_range() {
+  const Colormap& map = colormap(settings_.colormap);
   try {
-    results_.range = color_range(settings_, results_.data.colours);
+    results_.colours = shown_colours(settings_, map, results_.data.colours);
   } catch (const Error& error) {
-    results_.range = results_.data.colours;
+    Settings plain;
+    plain.color_nan = settings_.color_nan;
+    results_.colours = shown_colours(plain, map, results_.data.colours);
     warnings_.push_back(error.what());
   }
-  colours_.set_range(results_.range.low, results_.range.high);
+  const ShownColours& c = results_.colours;
+  colours_.set_range(c.range.bottom(), c.range.top());
+  colours_.set_beyond(c.below, c.above, c.no_number);
 }
 
 void FlowScene::show_colours(const std::vector<float>& scalar) {
   if (scalar.empty())
     colours_.clear_scalar();
   else
-    colours_.set_scalar(scalar, results_.range.low, results_.range.high);
+    colours_.set_scalar(results_.colours.range.places(scalar), results_.colours.range.bottom(),
+                        results_.colours.range.top());
   scalar_ = scalar;
 }
 
@@ -243,9 +259,11 @@ void FlowScene::take(FlowBoxed& told) {
 
 void FlowScene::take(FlowStarted& told) {
   results_.span = told.span;
+  skipped_ = told.skipped;
+  newest_ = -1;
   if (!complete()) results_.time = told.span.start;
   results_.steps = 0;
-  stale_ = true;
+  stale_ = !looks_back_;
   failure_.clear();
 }
 
@@ -254,16 +272,29 @@ void FlowScene::take(FlowStepped& told) {
   if (next_) {
     if (shown_) copied_ += shown_->copied_bytes();
     shown_ = std::move(next_);
+    forget_frames();
     surface_pass_.set_texture(std::move(shown_->lookup));
     results_.embedding = shown_->info;
   }
-  results_.time = told.time;
   results_.steps = told.number;
   ++taken_;
   results_.step_seconds.push_back(float(told.seconds));
   if (results_.step_seconds.size() > 240) results_.step_seconds.erase(results_.step_seconds.begin());
-  show_colours(told.scalar);
-  vectors_ = std::move(told.vectors);
+  newest_ = position_after(told.number);
+  kept_.keep(newest_, shown_->values.shown(), told.time, told.scalar, told.vectors);
+  shown_->values.drawn();
+  if (looks_back_) return;  // at another time; this one is at hand from now on
+  position_ = newest_;
+  warming_ = false;
+  show_moment(told.time, told.scalar, std::move(told.vectors));
+}
+
+/// Colours, arrows and the stamp of a time.
+void FlowScene::show_moment(double time, const std::vector<float>& scalar,
+                            std::shared_ptr<const std::vector<Vec3f>> vectors) {
+  results_.time = time;
+  show_colours(scalar);
+  vectors_ = std::move(vectors);
   move_arrows();
   if (settings_.time_stamp) ++time_version_;
 }
@@ -277,7 +308,8 @@ void FlowScene::take(FlowInterrupted&) {
 void FlowScene::draw(const View& view) {
   view_ = view;
   if (!surface_) return;
-  surface_pass_.draw(view, surface_, colours_, shown_ ? &shown_->values.texture() : nullptr);
+  const KeptFrame* const kept = looked_back_at();
+  surface_pass_.draw(view, surface_, colours_, kept ? &kept->texture : shown_ ? &shown_->values.texture() : nullptr);
   if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.view.arrows) draw_arrows(view);
   if (settings_.view.boxes && shown_ && shown_->boxed) draw_boxes(view);

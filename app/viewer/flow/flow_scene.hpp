@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/viewer/flow/flow_worker.hpp"
+#include "app/viewer/flow/kept_frames.hpp"
 #include "app/viewer/scene/scene.hpp"
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/picture/caption.hpp"
@@ -50,6 +51,7 @@ class FlowScene : public Scene {
   std::string title() const override;
   std::string state() const override;
   SceneProgress progress() const override { return {worker_.stage(), -1}; }
+  Transport transport() const override;
   const std::string& failure() const override { return failure_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
   std::string remark() const override { return shown_ ? shown_->values.remark() : std::string(); }
@@ -83,18 +85,33 @@ class FlowScene : public Scene {
   void take(FlowArrows& told);
   void take(FlowEmbedded& told);
   void take(FlowBoxed& told);
+  void take(FlowMoment& told);
   void take(FlowStarted& told);
   void take(FlowStepped& told);
   void take(FlowSampled& told) { sampled_ = told; }
   void take(FlowWritten& told) { written_ = std::move(told.failure); }
   void take(FlowInterrupted& told);
   void take(FlowFailed& told) { failure_ = std::move(told.what); }
-  bool wants_step() const { return settings_.view.play || stale_; }
+  bool wants_step() const { return (settings_.view.play && !ended()) || stale_; }
+
+  // Time, in flow_transport.cpp. Positions are those of Transport.
+  FlowRerun pass_on(const Settings& settings, bool jumps);
+  void seek(int position);
+  void restart_at(int position);
+  void show_kept(int position);
+  bool play_kept();
+  void forget_frames();
+  int steps_in_all() const { return std::max(1, settings_.flow.steps); }
+  int next_position() const;
+  int position_after(int steps) const;
+  bool ended() const;
+  const KeptFrame* looked_back_at() const { return looks_back_ ? kept_.find(position_) : nullptr; }
   bool begin_step(bool wait);
   bool ask_boxes();
   /// That of the newest embedding; null: there is none.
   Texture* written() const { return !no_texture_.empty() ? nullptr : next_ ? next_.get() : shown_.get(); }
   void show_colours(const std::vector<float>& scalar);
+  void show_moment(double time, const std::vector<float>& scalar, std::shared_ptr<const std::vector<Vec3f>> vectors);
   void find_range();
   FlowCaption caption() const;
   void draw_arrows(const View& view);
@@ -128,6 +145,14 @@ class FlowScene : public Scene {
   View view_;  ///< of the last frame
   double last_step_ = -1e9, area_ = 0;
   bool stale_ = true;  ///< knobs have changed what the next step shows
+  KeptFrames kept_{std::size_t(512) << 20};
+  const bool loops_;         ///< the worker does, on and on
+  double begun_at_;          ///< the worker's `begin_at`
+  int skipped_ = 0;          ///< steps before the worker's first
+  int position_ = -1;        ///< that is seen; -1: none yet
+  int newest_ = -1;          ///< of the worker's last step; -1: none since it started
+  bool looks_back_ = false;  ///< a kept frame is seen, and the worker stands elsewhere
+  bool warming_ = false;     ///< a start goes on at another time than the texture's
   std::uint64_t copied_ = 0, taken_ = 0;
   std::uint64_t look_version_ = 1, time_version_ = 0, legend_version_ = 0;  ///< of the overlay
   Image legend_;

@@ -1,4 +1,5 @@
 // Nacre: the stages of the flow's worker, each on its thread.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -46,6 +47,7 @@ FlowOffer offer_of(const Surface& surface) {
 void FlowWorker::read() {
   std::string reason;
   std::vector<std::string> warnings;
+  bool told_surface = false;
   {
     StageTimers::Scope scope(pipeline_->timers(), "read");
     if (vectors_) {
@@ -57,10 +59,17 @@ void FlowWorker::read() {
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
       news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
       news.read = [&](const Surface& first) { tell(offer_of(first)); };
+      const Range all{series.times.front(), series.times.back()};
+      news.first_step = [&](VectorsInTime& first) {  // something to see, before all steps are looked at
+        tell(describe(first));
+        told_surface = true;
+        shown_time_ = first.start();
+        tell_data(first, all, reason, {});
+      };
       vectors_ = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings_, news, &interrupt_));
       shown_time_ = vectors_->start();
     }
-    tell(describe(*vectors_));
+    if (!told_surface) tell(describe(*vectors_));
   }
   tell_data(reason, std::move(warnings));
 }
@@ -86,15 +95,21 @@ void FlowWorker::choose() {
 }
 
 void FlowWorker::tell_data(std::string reason, std::vector<std::string> warnings) {
+  tell_data(*vectors_, {vectors_->start(), vectors_->end()}, std::move(reason), std::move(warnings));
+}
+
+void FlowWorker::tell_data(VectorsInTime& vectors, const Range& time, std::string reason,
+                           std::vector<std::string> warnings) {
   FlowData told;
-  told.array = vectors_->array();
-  told.color = vectors_->color();
+  told.array = vectors.array();
+  told.color = vectors.color();
   told.reason = std::move(reason);
-  told.statistics = vectors_->statistics();
-  told.time = {vectors_->start(), vectors_->end()};
-  told.colours = {vectors_->color_low(), vectors_->color_high()};
-  told.scalar = scalar(shown_time_);
-  told.vectors = vectors(shown_time_);
+  told.statistics = vectors.statistics();
+  told.time = time;
+  told.times = vectors.series().times;
+  told.colours = vectors.color_spread();
+  told.scalar = scalar(vectors, shown_time_);
+  told.vectors = vectors_at(vectors, shown_time_);
   told.warnings = std::move(warnings);
   tell(std::move(told));
 }
@@ -137,6 +152,8 @@ void FlowWorker::start() {
   steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
   pipeline_->parameters = settings_.flow;
   pipeline_->parameters.steps = steps_in_all_;
+  const double first = wrapped(span_.start + span_.frame_time);  // of the first frame
+  tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first)});
   pipeline_->flow().start(vectors);
   has_values_ = true;
   steps_made_ = 0;
@@ -145,7 +162,7 @@ void FlowWorker::start() {
     started_ = !due_.has(FlowStage::embed) && !due_.has(FlowStage::start) && !due_.has(FlowStage::surface) &&
                !due_.has(FlowStage::vectors);
   }
-  tell(FlowStarted{span_});
+  tell(FlowStarted{span_, std::max(0, settings_.flow.steps - span_.steps)});
 }
 
 void FlowWorker::make_step() {
@@ -158,8 +175,8 @@ void FlowWorker::make_step() {
   told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   told.number = ++steps_made_;
   told.time = shown_time_ = wrapped(pipeline_->flow().time());
-  told.scalar = scalar(told.time);
-  told.vectors = vectors(told.time);
+  told.scalar = scalar(*vectors_, told.time);
+  told.vectors = vectors_at(*vectors_, told.time);
   take_timers(*pipeline_);
   check_device();
   tell(std::move(told));
@@ -185,16 +202,19 @@ double FlowWorker::wrapped(double time) const {
   const double period = span_.end - span_.first;
   if (!loop_ || !(period > 0)) return time;
   const double since = std::fmod(time - span_.first, period);
+  if (!settings_.view.loop && time - span_.first > 0.5 * period &&
+      (since < 1e-9 * period || since > (1 - 1e-9) * period))
+    return span_.end;  // where it stops
   return since > (1 - 1e-9) * period ? span_.first : span_.first + since;
 }
 
-std::vector<float> FlowWorker::scalar(double time) {
-  return vectors_->colored() ? vectors_->scalar(time) : std::vector<float>();
+std::vector<float> FlowWorker::scalar(VectorsInTime& vectors, double time) {
+  return vectors.colored() ? vectors.scalar(time) : std::vector<float>();
 }
 
-std::shared_ptr<const std::vector<Vec3f>> FlowWorker::vectors(double time) {
-  auto values = std::make_shared<std::vector<Vec3f>>(vectors_->surface().points.size());
-  vectors_->vectors(time, *values);
+std::shared_ptr<const std::vector<Vec3f>> FlowWorker::vectors_at(VectorsInTime& vectors, double time) {
+  auto values = std::make_shared<std::vector<Vec3f>>(vectors.surface().points.size());
+  vectors.vectors(time, *values);
   return values;
 }
 

@@ -57,9 +57,17 @@ struct FlowBoxed {
   int embedding = 0;
 };
 
+/// A flow is about to be started: what can be shown of its first frame before there is a texture.
+struct FlowMoment {
+  double time = 0;
+  std::vector<float> scalar;
+  std::shared_ptr<const std::vector<Vec3f>> vectors;
+};
+
 /// The first values can be asked for.
 struct FlowStarted {
   FlowSpan span;
+  int skipped = 0;  ///< steps before its first, as `begin_at` says
 };
 
 /// The values are in the memory that `step` was given.
@@ -89,8 +97,8 @@ struct FlowFailed {
   std::string what;
 };
 
-using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowStarted,
-                               FlowStepped, FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
+using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowMoment,
+                               FlowStarted, FlowStepped, FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
@@ -101,7 +109,8 @@ inline SparseLookup sparse_lookup(const FlowLookup& l) {
 /// none waits for compute but `wait` and the destructor.
 class FlowWorker : public Worker<FlowEvent> {
  public:
-  /// `loop`: after the last time comes the first again, without end; else it stands still there, as headless runs do.
+  /// `loop`: after the last time comes the first again, without end (the caller stops there where the knob `loop` says
+  /// so); else it stands still there, as headless runs do.
   /// `low_priority`: see SceneOptions.
   FlowWorker(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority = false);
   ~FlowWorker();
@@ -152,6 +161,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void read();
   void choose();
   void tell_data(std::string reason, std::vector<std::string> warnings);
+  void tell_data(VectorsInTime& vectors, const Range& time, std::string reason, std::vector<std::string> warnings);
   void place_arrows();
   void embed();
   void start();
@@ -160,8 +170,8 @@ class FlowWorker : public Worker<FlowEvent> {
   void write_boxes(std::uint64_t* memory, int embedding);
   void write_values(const std::filesystem::path& file);
   double wrapped(double time) const;
-  std::vector<float> scalar(double time);
-  std::shared_ptr<const std::vector<Vec3f>> vectors(double time);
+  static std::vector<float> scalar(VectorsInTime& vectors, double time);
+  static std::shared_ptr<const std::vector<Vec3f>> vectors_at(VectorsInTime& vectors, double time);
 
   const SessionInput input_;
   std::unique_ptr<Device> device_;

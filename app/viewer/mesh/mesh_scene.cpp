@@ -35,7 +35,7 @@ std::vector<Segment> box_edges(const Int3& dims) {
 }  // namespace
 
 MeshScene::MeshScene(const Session& session, const SceneOptions& options)
-    : worker_(session, options.open_device(), options.lockstep, options.low_priority),
+    : worker_(session, options.open_device(), options.lockstep || !session.settings.view.play, options.low_priority),
       lockstep_(options.lockstep),
       stop_(options.stop),
       settings_(session.settings) {
@@ -51,6 +51,7 @@ void MeshScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   ++version_;
   settings_ = settings;
   worker_.set_settings(settings);
+  if (changed.has("play")) worker_.set_lockstep(lockstep_ || paused());
   if (changed.has("colormap")) particle_pass_.set_map(colormap(settings_.colormap).table);
   if (changed.has_any({"hidden", "ghosts"})) update_material_styles();
   if (changed.has("worst")) update_worst();
@@ -70,13 +71,13 @@ void MeshScene::resume() {
 
 void MeshScene::advance(double) {
   while (std::optional<MeshEvent> event = worker_.poll()) take(*event);
-  if (lockstep_) worker_.grant_turn();
+  if (wants_turn()) worker_.grant_turn();
   lend(false);
 }
 
 void MeshScene::set_lockstep(bool lockstep) {
   lockstep_ = lockstep;
-  worker_.set_lockstep(lockstep);
+  worker_.set_lockstep(lockstep_ || paused());
 }
 
 bool MeshScene::advance_and_wait(const std::atomic<bool>& stop, double patience) {
@@ -166,6 +167,8 @@ void MeshScene::take(RelaxBegun& told) {
   results_.particles.clear();
   lease_ = told.lease;
   farthest_ = 0;
+  iterations_ = 0;
+  kept_.clear();
   for (const auto* buffer : {&place_, &direction_, &boxes_})
     if (*buffer) (*buffer)->cancel_write();
   lent_ = boxes_lent_ = false;
@@ -192,6 +195,12 @@ void MeshScene::take(MeshIterated& told) {
   }
   if (!told.step) return;
   ++steps_;
+  ++iterations_;
+  if (told.shown) {
+    kept_.keep(iterations_, place_->shown(), direction_->shown(), counts_);
+    place_->drawn();
+    direction_->drawn();
+  }
   stale_ = true;
   if (told.progress.stage != "relax") return;
   if (told.progress.iteration == 1) results_.energy.clear(), results_.particles.clear();
@@ -273,7 +282,26 @@ std::string MeshScene::state() const {
   return fmt::format("{} particles, energy {:.4f}", grouped(particles), results_.energy.back()) + end;
 }
 
+const KeptIteration* MeshScene::looked_back_at() const {
+  const int wanted = settings_.view.iteration;
+  return wanted > 0 && wanted < iterations_ ? kept_.find(wanted) : nullptr;
+}
+
+Transport MeshScene::transport() const {
+  Transport t;
+  if (iterations_ == 0) return t;
+  t.kind = Transport::Kind::iterations;
+  t.first = 1;
+  t.last = iterations_;
+  const int wanted = settings_.view.iteration;
+  t.shown = wanted > 0 ? std::min(wanted, iterations_) : iterations_;
+  for (int k = t.first; k <= t.last; ++k) t.warm.push_back(kept_.has(k) || k == iterations_);
+  t.ended = worker_.settled();
+  return t;
+}
+
 SceneProgress MeshScene::progress() const {
+  if (paused() && worker_.waits()) return {};
   const MeshProgress p = worker_.progress();
   if (p.stage.empty()) return {};
   return {p.iteration > 0 ? fmt::format("{} {}", p.stage, p.iteration) : std::string(p.stage), p.fraction};

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/viewer/mesh/kept_particles.hpp"
 #include "app/viewer/mesh/mesh_results.hpp"
 #include "app/viewer/mesh/mesh_worker.hpp"
 #include "app/viewer/scene/scene.hpp"
@@ -52,10 +53,11 @@ class MeshScene : public Scene {
   std::uint64_t seen_version() const override { return 2 * volumes_ + (shown_plane() ? 1 : 0); }
   bool has_legend() const override { return settings_.legend && (particles_drawn() || slice_has_legend()); }
   bool complete() const override { return results_.mesh || counts_.total() > 0; }
-  bool settled() const override { return worker_.settled(); }
+  bool settled() const override { return worker_.settled() || (paused() && worker_.waits()); }
   std::string title() const override;
   std::string state() const override;
   SceneProgress progress() const override;
+  Transport transport() const override;
   const std::string& failure() const override { return failure_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
   std::string remark() const override { return place_ ? place_->remark() : std::string(); }
@@ -97,7 +99,12 @@ class MeshScene : public Scene {
   void draw_triangles(const View& view) const;
   bool particles_drawn() const;
   bool slice_has_legend() const { return slice_axis(settings_.view) >= 0 && slice_values_; }
-  bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles; }
+  bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles && !looked_back_at(); }
+  /// Between two iterations, for the user; a replay does not wait.
+  bool paused() const { return !settings_.view.play && !lockstep_; }
+  /// Iterations that come before the one that is wanted are still made.
+  bool wants_turn() const { return lockstep_ || settings_.view.iteration > iterations_; }
+  const KeptIteration* looked_back_at() const;
   std::array<double, 2> size_range() const;
   std::optional<TriangleHit> first_seen(const Vec3d& from, const Vec3d& along) const;
   void describe_hit(ProbeResult& probed, const TriangleHit& hit) const;
@@ -122,6 +129,8 @@ class MeshScene : public Scene {
   ShownCounts counts_;
   std::int64_t box_count_ = 0, box_capacity_ = 0;
   int lease_ = 0, steps_ = 0;
+  int iterations_ = 0;  ///< since the particles were seeded
+  KeptParticles kept_{std::size_t(512) << 20};
   bool lent_ = false, boxes_lent_ = false;
   std::uint64_t copied_ = 0;
   ParticlePass particle_pass_;

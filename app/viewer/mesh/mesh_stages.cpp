@@ -28,7 +28,12 @@ bool has_cells(const std::filesystem::path& file) {
 void MeshWorker::read() {
   note_progress({"read", 0, 0, 0, 0});
   StageTimers::Scope scope(pipeline_->timers(), "read");
-  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(input_, &interrupt_));
+  MaterialSettings words;
+  {
+    std::scoped_lock lock(mutex_);
+    words = wanted_.materials;
+  }
+  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(input_, words, &interrupt_));
 }
 
 void MeshWorker::choose_materials() {

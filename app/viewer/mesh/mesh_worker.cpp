@@ -23,6 +23,8 @@ auto words(const MaterialSettings& w) {
 }  // namespace
 
 MeshStage mesh_restart(const Settings& before, const Settings& after) {
+  const MaterialSettings &were = before.materials, &are = after.materials;
+  if (were.names != are.names || were.layer != are.layer) return MeshStage::read;
   if (words(before.materials) != words(after.materials)) return MeshStage::materials;
   switch (mesh_rerun(before.mesh, after.mesh)) {
     case MeshRerun::fields: return MeshStage::fields;
@@ -149,6 +151,11 @@ bool MeshWorker::settled() const {
 bool MeshWorker::halted() const {
   std::scoped_lock lock(mutex_);
   return cancelled_ || failed_ || !lost_.empty();
+}
+
+bool MeshWorker::waits() const {
+  std::scoped_lock lock(mutex_);
+  return waiting_;
 }
 
 MeshProgress MeshWorker::progress() const {
@@ -281,7 +288,9 @@ bool MeshWorker::await_turn() {
       --turns_;
       return true;
     } else {
+      waiting_ = true;
       wake_.wait(lock);
+      waiting_ = false;
     }
   }
 }

@@ -146,6 +146,7 @@ class MeshWorker : public Worker<MeshEvent> {
   bool busy() const;
   bool settled() const;  ///< all is done, and told
   bool halted() const;   ///< cancelled, or failed
+  bool waits() const;    ///< in lockstep, for a turn
 
   MeshProgress progress() const;  ///< stage empty: nothing goes on
 
@@ -193,6 +194,7 @@ class MeshWorker : public Worker<MeshEvent> {
   bool unshown_ = false;  ///< the particles have changed since they were shown
   bool lockstep_;
   int turns_ = 0;
+  bool waiting_ = false;
   bool all_turns_ = false;
   int lease_ = 0;
   std::optional<LentMemory> lent_;

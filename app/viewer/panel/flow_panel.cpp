@@ -41,8 +41,8 @@ bool FlowPanel::edit_range(const char* label, RangeEdit& edit, const Range& now)
 }
 
 void FlowPanel::data_tab(Session& session) {
-  for (const char* name : {"vectors", "color", "colormap"})
-    knob_widget(session.settings, name, flow_choices(results_.offer, name));
+  knob_widget(session.settings, "vectors", flow_choices(results_.offer, "vectors"));
+  if (ImGui::CollapsingHeader("colours", ImGuiTreeNodeFlags_DefaultOpen)) colours(session);
   if (!results_.tree || results_.corners.empty()) return;
   Vec3d low = results_.corners.front(), high = low;
   for (const Vec3d& p : results_.corners) low = min(low, p), high = max(high, p);
@@ -56,7 +56,7 @@ void FlowPanel::data_tab(Session& session) {
 }
 
 void FlowPanel::look_tab(Session& session) {
-  for (const char* name : {"play", "fps", "contrast", "edges", "boxes", "arrows", "arrow_count", "arrow_length"})
+  for (const char* name : {"fps", "contrast", "edges", "boxes", "arrows", "arrow_count", "arrow_length"})
     knob_widget(session.settings, name);
 }
 
@@ -65,7 +65,6 @@ void FlowPanel::result_tab(Session& session) {
   ImGui::PushID("flow");                            // the rest of the panel has a "play", too
   ImGui::PushItemWidth(-9 * ImGui::GetFontSize());  // room for a label and a button
   show_time(session);
-  show_range(session);
   ImGui::PopItemWidth();
   ImGui::PopID();
   show_vectors();
@@ -75,27 +74,36 @@ void FlowPanel::result_tab(Session& session) {
 void FlowPanel::show_time(Session& session) {
   Settings& settings = session.settings;
   const FlowSpan& span = results_.span;
-  ImGui::Checkbox("play", &settings.view.play);
-  ImGui::SameLine();
   text(fmt::format("time {}   step {}", time_text(results_.time), results_.steps));
   if (!(results_.data.time.high > results_.data.time.low)) return text("steady: one time only");
-  const double period = std::max(span.end - span.first, 1e-300);
-  if (!sliding_) slider_ = float(std::clamp((results_.time - span.first) / period, 0.0, 1.0));
-  ImGui::SliderFloat("begin at", &slider_, 0, 1, "%.3f");
-  sliding_ = ImGui::IsItemActive();
-  if (ImGui::IsItemDeactivatedAfterEdit()) settings.begin_at = std::clamp(double(slider_), 0.0, 1.0);
   if (edit_range("time", time_edit_, {span.first, span.end})) settings.time = range_text(time_edit_.range());
   ImGui::SameLine();
   if (ImGui::Button("all")) settings.time.clear();
 }
 
-void FlowPanel::show_range(Session& session) {
+/// The colour editor: the map, what it spans and how, and what lies beyond.
+void FlowPanel::colours(Session& session) {
+  Settings& settings = session.settings;
+  for (const char* name : {"color", "colormap"}) knob_widget(settings, name, flow_choices(results_.offer, name));
   if (results_.data.color == "none") return;
-  std::string& knob = session.settings.color_range;
-  if (edit_range("colours", colours_edit_, results_.range)) knob = range_text(colours_edit_.range());
-  ImGui::SameLine();
-  bool locked = !knob.empty();
-  if (ImGui::Checkbox("lock", &locked)) knob = locked ? range_text(results_.range) : "";
+  ImGui::PushID("colours");
+  ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  std::string& knob = settings.color_range;
+  const ColourRange& range = results_.colours.range;
+  const bool percentiles = knob.ends_with('%');
+  const char* kind = knob.empty() ? "of the data" : percentiles ? "percentiles" : "by hand";
+  if (ImGui::BeginCombo("range", kind)) {
+    if (ImGui::Selectable("of the data", knob.empty())) knob.clear();
+    if (ImGui::Selectable("percentiles", percentiles)) knob = "2%:98%";
+    if (ImGui::Selectable("by hand", !knob.empty() && !percentiles)) knob = range_text({range.low, range.high});
+    ImGui::EndCombo();
+  }
+  if (edit_range("from, to", colours_edit_, {range.low, range.high})) knob = range_text(colours_edit_.range());
+  if (percentiles) knob_widget(settings, "color_range");
+  ImGui::PopItemWidth();
+  ImGui::PopID();
+  for (const char* name : {"color_symmetric", "color_scale", "color_below", "color_above", "color_nan"})
+    knob_widget(settings, name);
 }
 
 void FlowPanel::show_vectors() const {

@@ -31,13 +31,11 @@ class FlowPanel : public ScenePanel {
 
   static bool edit_range(const char* label, RangeEdit& edit, const Range& now);
   void show_time(Session& session);
-  void show_range(Session& session);
+  void colours(Session& session);
   void show_vectors() const;
   void show_embedding() const;
 
   const FlowResults& results_;
-  float slider_ = 0;  ///< of the time; it follows it unless the user holds it
-  bool sliding_ = false;
   RangeEdit time_edit_, colours_edit_;
 };
 

@@ -6,13 +6,16 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <variant>
 
 #include "app/viewer/panel/imgui_text.hpp"
+#include "app/viewer/panel/knob_words.hpp"
 #include "app/viewer/scene/view_defaults.hpp"
 #include "engine/picture/colormap.hpp"
+#include "engine/run/shown_colours.hpp"
 #include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
@@ -63,6 +66,21 @@ void choice_widget(std::string& value, const std::vector<std::string>& choices) 
   ImGui::EndCombo();
 }
 
+/// "#rrggbb" as a swatch to click on, and the words beside it; empty: as it is by itself.
+void colour_widget(std::string& value) {
+  const std::optional<std::array<float, 3>> now = hex_colour(value);
+  std::array<float, 3> colour = now.value_or(std::array{0.5f, 0.5f, 0.5f});
+  const auto flags = ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoAlpha;
+  if (ImGui::ColorEdit3("##swatch", colour.data(), flags)) {
+    const auto byte = [](float c) { return int(std::lround(255 * std::clamp(c, 0.0f, 1.0f))); };
+    value = fmt::format("#{:02x}{:02x}{:02x}", byte(colour[0]), byte(colour[1]), byte(colour[2]));
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x - 1.5f * ImGui::GetFontSize());
+  let_go(value, [](std::string& shown) { ImGui::InputTextWithHint("##value", "of the map", &shown); });
+  if (!value.empty() && !hex_colour(value)) value.clear();  // what is no colour
+}
+
 void words_widget(std::string& value) {
   let_go(value, [](std::string& shown) { ImGui::InputText("##value", &shown); });
 }
@@ -82,7 +100,9 @@ void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
     choice->set(choice->place, int(chosen - knob.choices.begin()));
   }
   if (auto* const* words = std::get_if<std::string*>(&knob.value)) {
-    if (knob.name == "colormap")
+    if (knob.name == "color_below" || knob.name == "color_above" || knob.name == "color_nan")
+      colour_widget(**words);
+    else if (knob.name == "colormap")
       choice_widget(**words, colormap_names());
     else if (!knob.choices.empty() || !choices.empty())
       choice_widget(**words, knob.choices.empty() ? choices : knob.choices);
@@ -107,27 +127,31 @@ void keep_sizes_in_order(Settings& settings, const std::string& turned) {
   if (turned == "max_size") largest = std::max(smallest, largest);
 }
 
-void explain(const std::string& help, bool changed, const std::string& usual) {
+/// What it does, in which unit, what a change costs; `job` empty: it belongs to the look.
+void explain(const Knob& knob, const std::string& job, bool changed, const std::string& usual) {
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
-  text(help);
+  text(knob.help + (knob.unit.empty() ? "" : " (" + knob.unit + ")"));
+  if (!job.empty()) ImGui::TextDisabled("%s: %s", knob.name.c_str(), knob_cost(knob.name, job).c_str());
   if (changed) text(usual.empty() ? "right click: empty again" : "right click: " + usual + " again");
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }
 
-void show(Settings& settings, const Knob& knob, const std::vector<std::string>& choices = {}) {
+void show(Settings& settings, const Knob& knob, const std::vector<std::string>& choices = {},
+          const std::string& job = "") {
   ImGui::PushID(knob.name.c_str());
   const std::string usual = default_text(knob);
   const bool changed = knob.text() != usual;
   ImGui::BeginGroup();  // the field and its name are one thing to the mouse
-  ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  ImGui::SetNextItemWidth((job.empty() ? 0.5f : 0.42f) * ImGui::GetContentRegionAvail().x);  // plain names are longer
   value_widget(knob, choices);
   ImGui::SameLine();
-  const std::string label = (changed ? "* " : "") + knob.name + (knob.unit.empty() ? "" : " [" + knob.unit + "]");
-  ImGui::TextUnformatted(label.c_str());
+  const std::string plain = job.empty() ? "" : plain_name(knob.name),
+                    unit = knob.unit.empty() ? "" : " [" + knob.unit + "]";
+  text((changed ? "* " : "") + (plain.empty() ? knob.name + unit : plain + " (" + knob.name + ")"));
   ImGui::EndGroup();
-  if (ImGui::IsItemHovered() && !ImGui::IsAnyItemActive()) explain(knob.help, changed, usual);
+  if (ImGui::IsItemHovered() && !ImGui::IsAnyItemActive()) explain(knob, job, changed, usual);
   if (changed && ImGui::IsItemClicked(1)) set_knob(settings, knob.name, usual);
   keep_sizes_in_order(settings, knob.name);
   ImGui::PopID();
@@ -140,24 +164,47 @@ void knob_widget(Settings& settings, const std::string& name, const std::vector<
     if (knob.name == name) return show(settings, knob, choices);
 }
 
+static bool matches(const Knob& knob, const std::string& filter) {
+  const auto lower = [](std::string words) {
+    std::transform(words.begin(), words.end(), words.begin(), [](unsigned char c) { return std::tolower(c); });
+    return words;
+  };
+  const std::string wanted = lower(filter);
+  for (const std::string& words : {knob.name, knob.help, plain_name(knob.name)})
+    if (lower(words).find(wanted) != std::string::npos) return true;
+  return false;
+}
+
 void knob_groups(Settings& settings, const std::string& job, const std::string& filter) {
+  const std::vector<Knob> table = knobs(settings);
+  const std::vector<std::string>& basic = basic_knobs(job);
+  const bool searches = !filter.empty();
+  if (!searches) {
+    for (const std::string& name : basic)
+      for (const Knob& knob : table)
+        if (knob.name == name) show(settings, knob, {}, job);
+    ImGui::Spacing();
+    if (!ImGui::CollapsingHeader("Advanced")) return;
+    ImGui::Indent();
+  }
   std::string group;
   bool open = false;
-  for (const Knob& knob : knobs(settings)) {
+  for (const Knob& knob : table) {
     if (!knob.concerns(job) || knob.group == "picture" || knob.group == "frames") continue;
-    if (!filter.empty() && knob.name.find(filter) == std::string::npos && knob.help.find(filter) == std::string::npos)
-      continue;
+    if (searches ? !matches(knob, filter) : std::find(basic.begin(), basic.end(), knob.name) != basic.end()) continue;
     if (knob.group != group) {
       group = knob.group;
       open = ImGui::CollapsingHeader(group.c_str(), ImGuiTreeNodeFlags_DefaultOpen);
     }
-    if (open) show(settings, knob);
+    if (open) show(settings, knob, {}, job);
   }
+  if (!searches) ImGui::Unindent();
 }
 
 void reset_knobs(Settings& settings, const std::string& job) {
   for (const Knob& knob : knobs(settings)) {
-    const bool data = knob.name == "vectors" || knob.name == "color" || knob.group == "materials";
+    const bool data =
+        knob.name == "vectors" || knob.name == "color" || knob.group == "materials" || knob.group == "labels";
     if (knob.concerns(job) && knob.group != "picture" && !data) set_knob(settings, knob.name, default_text(knob));
   }
 }

@@ -12,8 +12,9 @@ namespace nacre {
 /// other; sliders and text take effect when they are let go. `choices`: for a knob that takes words; none: any.
 void knob_widget(Settings& settings, const std::string& name, const std::vector<std::string>& choices = {});
 
-/// All knobs of a job ("flow", "mesh") in their groups, those that contain `filter` in name or help; without those of
-/// the look. Changed ones are marked, a right click resets.
+/// Knobs of a job ("flow", "mesh"): the basic ones with plain names, and all others in their groups under "Advanced";
+/// with a `filter`, all that contain it in name or help. Without those of the look. Changed ones are marked, a right
+/// click resets.
 void knob_groups(Settings& settings, const std::string& job, const std::string& filter);
 
 /// All knobs of `job` as they are by default; the look, and what is shown of which arrays, stay.

@@ -37,7 +37,8 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"x y z", "along an axis; with shift from the other side"},
                                    {"o", "orthographic or perspective"},
                                    {"b", "turntable or trackball"},
-                                   {"space", "stop and go"},
+                                   {"space", "pause and play"},
+                                   {", .", "pause; one step back, one step forth"},
                                    {"e", "edges of triangles"},
                                    {"p", "panels"},
                                    {"t", "dark or light"},
@@ -176,6 +177,7 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests&
   }
   view_menu(session, requests);
   if (ImGui::BeginMenu("Help")) {
+    if (ImGui::MenuItem("Welcome")) welcome_.show();
     if (ImGui::MenuItem("Keys and mouse", "?")) help_ = true;
     if (ImGui::MenuItem("About")) about_ = true;
     ImGui::EndMenu();
@@ -196,6 +198,8 @@ bool Ui::close_topmost() {
     error_.clear();
   } else if (help_ || about_) {
     help_ = about_ = false;
+  } else if (welcome_.is_shown()) {
+    welcome_.hide();
   } else {
     return ImGui::IsAnyItemActive();
   }
@@ -244,7 +248,12 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'p': look.panel = !look.panel; break;
       case 't': look.theme = look.theme == "dark" ? "light" : "dark"; break;
       case '?': help_ = !help_; break;
-      case ' ': look.play = !look.play; break;
+      case ' ':
+        transport_.toggle_play(session, scene.transport());
+        if (look.play && scene.halted()) requests.resume = true;
+        break;
+      case ',': transport_.step(session, scene.transport(), -1); break;
+      case '.': transport_.step(session, scene.transport(), 1); break;
       default: break;
     }
   }
@@ -284,6 +293,15 @@ void Ui::quit_window(UiRequests& requests) {
   ImGui::SameLine();
   if (ImGui::Button("Stay")) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
+}
+
+void Ui::welcome_card(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests) {
+  if (!facts.opening.empty()) welcome_.hide();
+  const WelcomeCard::Wish wish = welcome_.draw(area, facts.recent);
+  if (wish.open) ask_open();
+  if (!wish.sample.empty()) open_sample(wish.sample, session);
+  if (wish.file) open_files({*wish.file}, session, requests);
+  requests.tour = wish.tour;
 }
 
 void Ui::help_windows(const UiFacts& facts, const FreeArea& area) {

@@ -116,7 +116,7 @@ void look_tab(Session& session, ScenePanel& panel) {
 FreeArea Ui::free_area(const ViewSettings& look, int width, int height) const {
   if (!look.panel) return {0, 0, width, height};
   const Layout l = layout(width);
-  const int left = int(l.panel), above = int(l.menu), below = int(l.status);
+  const int left = int(l.panel), above = int(l.menu), below = int(l.status) + TransportBar::height();
   return {left, above, std::max(16, width - left), std::max(16, height - above - below)};
 }
 
@@ -205,7 +205,8 @@ void Ui::status(Scene& scene, const UiFacts& facts, UiRequests& requests) {
   const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
                      ImGuiWindowFlags_NoNav;
   if (ImGui::Begin("status", nullptr, fixed)) {
-    const SceneProgress progress = scene.progress();
+    const SceneProgress progress =
+        facts.opening.empty() ? scene.progress() : SceneProgress{"opening " + facts.opening, -1};
     if (!progress.stage.empty()) {
       if (ImGui::Button("cancel")) requests.cancel = true;
       ImGui::SameLine();
@@ -278,8 +279,12 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     menus(session, scene, facts, requests);
     panel(session, scene, facts);
     status(scene, facts, requests);
+    const bool played = session.settings.view.play;
+    transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
+    if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
     if (session.camera) probe_window(scene, facts.camera, area);
   }
+  welcome_card(session, facts, area, requests);
   error_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, requests);
   help_windows(facts, area);

@@ -10,6 +10,8 @@
 #include "app/viewer/panel/file_dialog.hpp"
 #include "app/viewer/panel/frame_clock.hpp"
 #include "app/viewer/panel/scene_panel.hpp"
+#include "app/viewer/panel/transport_bar.hpp"
+#include "app/viewer/panel/welcome_card.hpp"
 #include "app/viewer/scene/free_area.hpp"
 #include "app/viewer/scene/scene.hpp"
 #include "engine/gl/window.hpp"
@@ -29,6 +31,7 @@ struct UiFacts {
   int width = 0, height = 0;
   Camera camera;               ///< of what is seen
   std::vector<KeyPress> keys;  ///< since the last frame
+  std::string opening;         ///< what is being read, and will be shown when it can be; empty: nothing
 };
 
 /// What the user wants of the program.
@@ -40,6 +43,7 @@ struct UiRequests {
   bool fit = false;
   std::optional<std::filesystem::path> load_session, save_session, save_result, save_recording, film;
   std::optional<Screenshot> screenshot;
+  std::string tour;  ///< text of a session to be played; empty: none
 };
 
 class Ui {
@@ -64,6 +68,9 @@ class Ui {
   bool animates() const;
   bool asks_quit() const { return !quit_reasons_.empty(); }
 
+  /// A card for newcomers over the picture, until something is opened.
+  void welcome() { welcome_.show(); }
+
  private:
   using Then =
       std::function<void(const std::vector<std::filesystem::path>& files, Session& session, UiRequests& requests)>;
@@ -82,6 +89,7 @@ class Ui {
   void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
   void error_window(const FreeArea& area);
   void quit_window(UiRequests& requests);
+  void welcome_card(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests);
   void help_windows(const UiFacts& facts, const FreeArea& area);
   bool close_topmost();
   void ask_open();
@@ -92,6 +100,8 @@ class Ui {
                 std::optional<std::filesystem::path> UiRequests::*wish);
 
   FileDialog dialog_;
+  TransportBar transport_;
+  WelcomeCard welcome_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;

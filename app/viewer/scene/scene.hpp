@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/viewer/scene/changed_knobs.hpp"
+#include "app/viewer/scene/transport.hpp"
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "engine/picture/image.hpp"
@@ -96,6 +97,8 @@ class Scene {
   virtual std::string title() const = 0;
   virtual std::string state() const = 0;  ///< a line: "time 0.2, step 12"; "12,345 particles, energy 0.71"
   virtual SceneProgress progress() const = 0;
+  /// Where it stands in its time or its iterations, and what of these it can show.
+  virtual Transport transport() const { return {}; }
   virtual const std::string& failure() const = 0;  ///< what went wrong last; empty: nothing
   virtual const std::vector<std::string>& warnings() const = 0;
   virtual std::string remark() const = 0;  ///< once for the user, such as that memory is copied; empty: none

@@ -1,6 +1,8 @@
 // Nacre: changes that can be taken back.
 #include "app/viewer/window/undo.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace nacre {
@@ -8,10 +10,13 @@ namespace {
 
 constexpr std::size_t max_changes = 200;
 
+constexpr const char* by_itself[] = {"width",    "height", "tab",        "panel",    "play",
+                                     "begin_at", "loop",   "play_speed", "iteration"};
+
 /// What playing and the window do by themselves is no change of the user's.
 bool worth_keeping(const SessionEvent& change) {
   for (const auto& [name, text] : change.knobs)
-    if (name != "width" && name != "height" && name != "tab" && name != "panel" && name != "play") return true;
+    if (std::find(std::begin(by_itself), std::end(by_itself), name) == std::end(by_itself)) return true;
   return change.input.has_value();
 }
 

@@ -22,6 +22,7 @@ Viewer::Viewer(const ViewerOptions& options)
   if (recording_.has_file()) recording_.begin(session_, time_.fps(), 0);
   make_graphics();
   open();
+  if (options_.welcome) ui_.welcome();
   told_ = session_;
 }
 
@@ -65,6 +66,7 @@ void Viewer::make_graphics() {
 }
 
 void Viewer::drop_graphics() {
+  opening_.reset();
   open_.reset();  // before the context that all of it lives in
   frame_.reset();
   captions_.reset();
@@ -92,11 +94,11 @@ void Viewer::frame() {
   if (width <= 0 || height <= 0) return rest(now(), shortest_frame);  // minimised
   const double time = time_.seconds();
   std::vector<Screenshot> pictures = player_->advance(time - played_since_, session_);
-  if (!dropped_.empty()) open_dropped();
+  if (!dropped_.empty()) may_differ_ = true, open_dropped();
   const bool changed = take_changes();
   leave_lost_device();
   const bool advanced = advance_scene();
-  if (scene().settle_knobs(session_)) settled_knobs_ = true;
+  if (scene().settle_knobs(session_)) settled_knobs_ = may_differ_ = true;
   if (options_.offscreen && !scene().failure().empty()) throw Error(scene().failure());
   const double begin = now();
   const DrawDemand::Shown shown = what_is_shown(width, height);
@@ -105,6 +107,8 @@ void Viewer::frame() {
   if (draws) {
     if (!frame_ || frame_->width() != width || frame_->height() != height) frame_.emplace(width, height, samples());
     draw(width, height, last_ > 0 ? begin - last_ : 1.0 / 60);
+    may_differ_ = true;
+    divert_input();
     glFinish();
   }
   const double end = now();
@@ -134,7 +138,7 @@ DrawDemand::Shown Viewer::what_is_shown(int width, int height) const {
   return {{width, height},
           scene().version(),
           progress.stage.empty() ? "" : fmt::format("{} {:.3f}", progress.stage, progress.fraction),
-          fmt::format("{} {} {}", scene().halted(), saving_.name(), scene().failure())};
+          fmt::format("{} {} {} {}", scene().halted(), saving_.name(), scene().failure(), opening_.has_value())};
 }
 
 bool Viewer::needs_frame(double time, const DrawDemand::Shown& shown, bool changed) {
@@ -194,7 +198,7 @@ void Viewer::draw(int width, int height, double seconds) {
                       recording_.on(),  film_.from_menu() ? film_.length() : "",
                       saving_.name(),   width,
                       height,           orbit(session_.camera.value_or(Camera()), turned_),
-                      imgui_->chords()};
+                      imgui_->chords(), opening_ ? input_name(opening_->session) : ""};
   requests_ = ui_.draw(session_, scene(), facts);
   imgui_->end();
   if (window_) frame_->show_in_window();
@@ -222,14 +226,17 @@ void Viewer::count_time(double frame_begin, bool advanced) {
 }
 
 bool Viewer::take_changes() {
-  const std::optional<SessionEvent> change = session_change(told_, session_);
+  const bool opened = take_opened();
+  if (!std::exchange(may_differ_, false) && !opened && !scripted_) return false;
+  std::optional<SessionEvent> change = session_change(told_, session_);
+  if (change && change->input && !opened && divert_input()) change.reset();
   undo_.note(change ? &*change : nullptr, told_, session_, ImGuiLayer::busy());
   if (!change) return false;
   const bool by_user = !scripted_ && !std::exchange(settled_knobs_, false);
   if (by_user && changes_result(change->knobs)) unsaved_ = true;
-  if (change->input)
+  if (change->input && !opened)
     open();
-  else if (!change->knobs.empty())
+  else if (!change->input && !change->knobs.empty())
     scene().set_settings(session_.settings, ChangedKnobs(change->knobs));
   told_ = session_;
   return true;

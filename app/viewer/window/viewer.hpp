@@ -26,6 +26,7 @@ struct ViewerOptions {
   bool offscreen = false;
   bool live = false;     ///< offscreen: frames do not wait for compute, as in a window
   int frames = 0;        ///< ends after as many complete ones; 0: when the window is closed, or what is played ends
+  bool welcome = false;  ///< the session is nobody's wish: a card says what can be opened
   bool picture = false;  ///< return the last frame
   FrameSink* video = nullptr;  ///< takes every frame; these wait for compute, in a window, too
   std::function<void(const Session& done)>

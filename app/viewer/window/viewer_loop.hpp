@@ -64,7 +64,28 @@ class Viewer {
   /// The graphics device was reset, and all that lay on it is gone. The session is not.
   void begin_again();
   void open();
+  SceneOptions scene_options() const;
+  void note_recent();
+
+  /// The scene that was shown goes, and all that belongs to it.
+  void leave_scene();
   Scene& scene() const { return *open_.scene; }
+
+  // Another input beside the one that is shown; in opening.cpp.
+  struct Opening {
+    OpenScene open;
+    Session session, before;              ///< with that input; the session when it was asked for
+    std::optional<SessionPlayer> player;  ///< plays from then on
+    std::filesystem::path file;           ///< that was opened, where it is not an input; empty: none
+    std::optional<Undo> history;          ///< where undo or redo has asked for it: as it is then
+  };
+  bool opens_beside() const;
+  bool divert_input();
+  void open_beside(Session wanted, std::optional<SessionPlayer> player, const std::filesystem::path& file);
+  bool take_opened();
+  void give_opening_up();
+  void move_in_history(bool back);
+  static std::string input_name(const SessionInput& input);
 
   /// A GPU that has failed does not come back while the program runs. The session is as it was.
   void leave_lost_device();
@@ -77,6 +98,7 @@ class Viewer {
   /// How long the loop waits for the user where nothing has to be drawn, seconds: what compute tells is looked after.
   double patience() const {
     if (!draws_on_demand()) return 0;
+    if (opening_) return shortest_frame;
     return !scene().settled() && !scene().halted() ? shortest_frame : 0.1;
   }
 
@@ -126,8 +148,16 @@ class Viewer {
   /// A session or a recording.
   void save(const std::filesystem::path& file, const std::string& text);
 
+  /// A recording's events, from now on.
+  void begin_playing(SessionPlayer player) {
+    player_.emplace(std::move(player));
+    played_since_ = time_.seconds();
+    scripted_ = player_->plays();
+  }
+
   /// Its state; where it is a recording, that is played.
-  void load_session(const std::filesystem::path& file);
+  void load_session(const std::filesystem::path& file) { play(read_session(file), file); }
+  void play(Session loaded, const std::filesystem::path& file);
   std::array<int, 2> size() const {
     if (window_) return window_->pixels();
     return {session_.settings.width, session_.settings.height};
@@ -172,6 +202,7 @@ class Viewer {
   std::optional<Captions> captions_;
   std::optional<Framebuffer> frame_;
   OpenScene open_;
+  std::optional<Opening> opening_;
   Ui ui_;
   Undo undo_;
   RecentFiles recent_;
@@ -181,6 +212,7 @@ class Viewer {
   FrameClock clock_;
   DrawDemand demand_;
   bool quit_ = false, spare_ = false;
+  bool may_differ_ = true;      ///< the session, from what was told: it is compared, which costs more than to wait
   bool redraw_ = false;         ///< the window has something to tell
   bool unsaved_ = false;        ///< the user has changed what a result depends on
   bool scripted_ = false;       ///< changes are those of a recording

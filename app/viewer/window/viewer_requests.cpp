@@ -26,18 +26,30 @@ std::vector<std::string> Viewer::reasons_to_stay() const {
   return reasons;
 }
 
-void Viewer::open() {
+void Viewer::leave_scene() {
   if (const std::string lost = saving_.drop(); !lost.empty()) show_error(lost);
   open_.reset();
   captions_->forget();
   event_log_.forget();
   framing_.forget();
-  // A number of frames is for headless runs to compare with: these do not begin again after the last time.
-  const SceneOptions options{spare_ ? options_.open_spare_device : options_.open_device, options_.frames == 0, waits(),
-                             !waits(), options_.stop};
+}
+
+void Viewer::open() {
+  opening_.reset();
+  leave_scene();
+  note_recent();
+  open_ = open_scene(session_, scene_options());
+}
+
+/// A number of frames is for headless runs to compare with: these do not begin again after the last time.
+SceneOptions Viewer::scene_options() const {
+  return {spare_ ? options_.open_spare_device : options_.open_device, options_.frames == 0, waits(), !waits(),
+          options_.stop};
+}
+
+void Viewer::note_recent() {
   for (const auto& file : session_.inputs)
     if (window_) recent_.add(file);
-  open_ = open_scene(session_, options);
 }
 
 void Viewer::leave_lost_device() {
@@ -70,13 +82,22 @@ void Viewer::show_error(const std::string& line) {
 
 void Viewer::obey(const UiRequests& requests) {
   if (requests.quit) try_to_quit();
-  if (requests.undo) undo_.undo(session_);
-  if (requests.redo) undo_.redo(session_);
-  if (requests.cancel) scene().cancel();
+  if (requests.undo || requests.redo) move_in_history(requests.undo);
+  if (requests.cancel && opening_)
+    give_opening_up();
+  else if (requests.cancel)
+    scene().cancel();
   if (requests.resume) scene().resume();
   if (session_.camera && requests.fit) fit_what_is_seen();
   if (session_.camera && !requests.look_from.empty()) framing_.look_from(requests.look_from, session_, scene(), area_);
   if (requests.load_session) attempt([&] { load_session(*requests.load_session); });
+  if (!requests.tour.empty())
+    attempt([&] {
+      Session tour = parse_session(requests.tour);
+      tour.settings.view = session_.settings.view;  // the window stays as it is
+      tour.settings.background = session_.settings.background;
+      play(std::move(tour), {});
+    });
   if (requests.save_session) attempt([&] { save(*requests.save_session, session_text(session_)); });
   if (requests.save_result) attempt([&] { saving_.begin(scene(), *requests.save_result); });
   obey_recording(requests);
@@ -124,17 +145,18 @@ void Viewer::save(const std::filesystem::path& file, const std::string& text) {
   ui_.show_note("saved " + file.string());
 }
 
-void Viewer::load_session(const std::filesystem::path& file) {
-  Session loaded = read_session(file);
+/// `file`: where it comes from; empty: from the program itself.
+void Viewer::play(Session loaded, const std::filesystem::path& file) {
   options_.check(loaded);
-  player_.emplace(loaded);
-  played_since_ = time_.seconds();
-  scripted_ = !loaded.events.empty();
+  SessionPlayer player(loaded);
   loaded.events.clear();
   loaded.duration = 0;
+  if (static_cast<const SessionInput&>(loaded) != session_ && opens_beside())
+    return open_beside(std::move(loaded), std::move(player), file);
+  begin_playing(std::move(player));
   if (!loaded.camera) framing_.forget();
   session_ = std::move(loaded);
-  recent_.add(file);
+  if (!file.empty()) recent_.add(file);
 }
 
 void Viewer::open_dropped() {
@@ -142,7 +164,7 @@ void Viewer::open_dropped() {
     const std::vector<std::filesystem::path> file = std::exchange(dropped_, {});
     return attempt([&] { load_session(file[0]); });
   }
-  static_cast<SessionInput&>(session_) = {std::exchange(dropped_, {}), "", 0};
+  static_cast<SessionInput&>(session_) = {std::exchange(dropped_, {}), "", 0};  // take_changes opens it
   session_.camera.reset();
 }
 

@@ -19,6 +19,9 @@ class SessionPlayer {
   /// camera. Returns the pictures to be taken of this frame.
   std::vector<Screenshot> advance(double time, Session& now);
 
+  /// Is there an event to play?
+  bool plays() const { return !recording_.events.empty(); }
+
   /// Was there something to play, and has it been brought to its duration? So the last frame is the first at or after
   /// it.
   bool ended() const;

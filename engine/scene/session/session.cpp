@@ -27,6 +27,13 @@ std::string camera_beside(const path& folder, const std::string& camera) {
   return is_camera_file(camera) ? beside(folder, camera).string() : camera;
 }
 
+/// Settings that name files, with whole names.
+void find_files_beside(const path& folder, Settings& settings) {
+  settings.camera = camera_beside(folder, settings.camera);
+  std::string& names = settings.materials.names;
+  if (!names.empty()) names = beside(folder, names).string();
+}
+
 /// Only names that a session knows: a misspelt one would be left out in silence.
 void check_names(const json& object, std::initializer_list<const char*> names, const char* what) {
   if (!object.is_object()) throw Error(fmt::format("{} is not a JSON object", what));
@@ -72,7 +79,7 @@ Camera read_camera(const json& from) {
 std::map<std::string, std::string> read_knobs(const json& from, const path& folder) {
   Settings settings;
   set_knobs(settings, from);
-  settings.camera = camera_beside(folder, settings.camera);
+  find_files_beside(folder, settings);
   std::map<std::string, std::string> texts;
   const std::vector<Knob> table = knobs(settings);
   for (const auto& [name, value] : from.items()) {
@@ -135,7 +142,7 @@ Session read_json(const json& from, const path& folder) {
   Session session;
   static_cast<SessionInput&>(session) = read_input(from, folder);
   if (from.contains("knobs")) set_knobs(session.settings, from["knobs"]);
-  session.settings.camera = camera_beside(folder, session.settings.camera);
+  find_files_beside(folder, session.settings);
   if (from.contains("camera")) session.camera = read_camera(from["camera"]);
   if (from.contains("events")) session.events = read_events(from["events"], folder);
   session.duration = seconds(from, "duration");
@@ -152,7 +159,7 @@ void write_input(const SessionInput& input, json& to) {
 
 /// All values, with the whole name of a camera's file.
 json whole_knobs(Settings settings) {
-  settings.camera = camera_beside(std::filesystem::current_path(), settings.camera);
+  find_files_beside(std::filesystem::current_path(), settings);
   return knob_values(settings);
 }
 
@@ -188,6 +195,14 @@ Session read_session(const path& file) {
     throw Error(file.string() + " is not a session", error.what());
   } catch (const Error& error) {
     throw Error(file.string() + " is not a session", error.what());
+  }
+}
+
+Session parse_session(const std::string& text) {
+  try {
+    return read_json(json::parse(text), std::filesystem::current_path());
+  } catch (const json::exception& error) {
+    throw Error("this is not a session", error.what());
   }
 }
 

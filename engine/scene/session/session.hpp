@@ -60,6 +60,9 @@ struct Session : SessionInput {
 /// Throws Error where the file cannot be read, is no session, or holds a knob that is not known or out of range.
 Session read_session(const std::filesystem::path& file);
 
+/// The same from its text; files are relative to the current folder.
+Session parse_session(const std::string& text);
+
 /// The text of a session file. Throws Error where the name of a file is no UTF-8, which JSON cannot hold.
 std::string session_text(const Session& session);
 

@@ -39,6 +39,23 @@ std::vector<Knob> material_knobs(Settings& s) {
   };
 }
 
+/// Which labels a file gives, and what they are called.
+std::vector<Knob> label_knobs(Settings& s) {
+  MaterialSettings& m = s.materials;
+  return {
+      {.name = "names",
+       .group = "labels",
+       .help = "file with names of labels, of ITK-SNAP, FreeSurfer or 3D Slicer; empty: those in the volume's file",
+       .value = &m.names},
+      {.name = "layer",
+       .group = "labels",
+       .help = "the layer of a 4-D .seg.nrrd to take, from 0; -1: all, later segments over earlier ones",
+       .value = &m.layer,
+       .min = -1,
+       .max = largest_int},
+  };
+}
+
 std::vector<Knob> field_knobs(Settings& s) {
   MeshParameters& m = s.mesh;
   const std::string fields = "fields", sizing = "sizing";
@@ -166,8 +183,7 @@ std::vector<Knob> particle_knobs(Settings& s) {
        .max = 1000000},
       {.name = "by_density",
        .group = group,
-       .help =
-           "serial and redblack solvers: control the population by estimated density, not by the thesis's rule",
+       .help = "serial and redblack solvers: control the population by estimated density, not by the thesis's rule",
        .value = &m.by_density},
       {.name = "smooth",
        .group = group,
@@ -183,6 +199,13 @@ std::vector<Knob> particle_knobs(Settings& s) {
        .value = &m.mend,
        .min = 0,
        .max = 100},
+      {.name = "triangulation",
+       .group = group,
+       .help =
+           "what triangles are made of: cells of the Delaunay triangulation, or each particle's neighbours (stars), "
+           "which is quicker; where these do not fit together, cells again",
+       .value = &m.triangles,
+       .choices = {"delaunay", "stars"}},
       {.name = "seeds",
        .group = group,
        .help = "where particles on surfaces begin; auto: with the tree solver on the embedding, else at vertices of "
@@ -209,7 +232,7 @@ std::vector<Knob> particle_knobs(Settings& s) {
 
 std::vector<Knob> mesh_knobs(Settings& settings) {
   std::vector<Knob> table = material_knobs(settings);
-  for (const auto part : {field_knobs, particle_knobs})
+  for (const auto part : {field_knobs, particle_knobs, label_knobs})
     for (Knob& knob : part(settings)) table.push_back(std::move(knob));
   return table;
 }

@@ -29,14 +29,97 @@ Range parse_time_range(const Settings& settings) {
   return {low, high};
 }
 
-Range parse_color_range(const Settings& settings) {
-  const auto [low, high] = parse_pair(settings.color_range, ':', "--color-range");
-  if (!(low < high)) throw Error("--color-range " + settings.color_range + " is empty", "", "write LOW:HIGH");
-  return {low, high};
+namespace {
+
+/// What the knob `color_range` says; it is not empty.
+struct WantedRange {
+  double low, high;
+  bool percentiles;
+};
+
+WantedRange parse_color_range(const std::string& words) {
+  std::string numbers = words;
+  const auto colon = numbers.find(':');
+  const bool percentiles =
+      colon != std::string::npos && colon > 0 && numbers.ends_with('%') && numbers[colon - 1] == '%';
+  if (percentiles) numbers = numbers.substr(0, colon - 1) + ":" + numbers.substr(colon + 1, numbers.size() - colon - 2);
+  const auto [low, high] = parse_pair(numbers, ':', "--color-range");
+  if (!(low < high)) throw Error("--color-range " + words + " is empty", "", "write LOW:HIGH");
+  if (percentiles && (low < 0 || high > 100))
+    throw Error("--color-range " + words + " goes beyond all values", "", "write percentiles from 0% to 100%");
+  return {low, high, percentiles};
 }
 
-Range color_range(const Settings& settings, const Range& of_data) {
-  return settings.color_range.empty() ? of_data : parse_color_range(settings);
+}  // namespace
+
+double ColourSpread::percentile(double percent) const {
+  if (sample.empty()) return low + (high - low) * percent / 100;
+  const double at = percent / 100 * double(sample.size() - 1);
+  const auto before = std::min(std::size_t(at), sample.size() - 1), after = std::min(before + 1, sample.size() - 1);
+  return sample[before] + (at - double(before)) * (double(sample[after]) - sample[before]);
+}
+
+void ColourSurvey::add(float value, bool sampled) {
+  if (!std::isfinite(value)) {
+    spread_.gaps = spread_.gaps || std::isnan(value);
+    return;
+  }
+  low_ = std::min(low_, double(value));
+  high_ = std::max(high_, double(value));
+  if (value > 0 && (spread_.least_positive == 0 || value < spread_.least_positive)) spread_.least_positive = value;
+  if (sampled) spread_.sample.push_back(value);
+}
+
+ColourSpread ColourSurvey::spread() && {
+  std::sort(spread_.sample.begin(), spread_.sample.end());
+  if (low_ <= high_) {
+    spread_.low = low_;
+    spread_.high = high_ > low_ ? high_ : low_ + 1;
+  }
+  return std::move(spread_);
+}
+
+float ColourRange::place(float value) const {
+  if (!log || std::isnan(value)) return value;
+  const double first = std::log10(low), last = std::log10(high);
+  return float(value > 0 ? std::log10(double(value)) : 2 * first - last);
+}
+
+std::vector<float> ColourRange::places(std::vector<float> values) const {
+  if (log)
+    for (float& value : values) value = place(value);
+  return values;
+}
+
+void check_color_range(const Settings& settings) {
+  const bool log = settings.color_scale == "log";
+  if (log && settings.color_symmetric)
+    throw Error("--color-symmetric and --color-scale log exclude each other", "a logarithm has no values below 0",
+                "leave one of them out");
+  if (settings.color_range.empty()) return;
+  const WantedRange wanted = parse_color_range(settings.color_range);
+  if (log && !wanted.percentiles && wanted.high <= 0)
+    throw Error("--color-range " + settings.color_range + " has no logarithm", "it lies at 0 or below",
+                "give values above 0, or --color-scale linear");
+}
+
+ColourRange color_range(const Settings& settings, const ColourSpread& of_data) {
+  check_color_range(settings);
+  ColourRange range{of_data.low, of_data.high, settings.color_scale == "log"};
+  if (!settings.color_range.empty()) {
+    const WantedRange wanted = parse_color_range(settings.color_range);
+    range.low = wanted.percentiles ? of_data.percentile(wanted.low) : wanted.low;
+    range.high = wanted.percentiles ? of_data.percentile(wanted.high) : wanted.high;
+  }
+  if (settings.color_symmetric) {
+    range.high = std::max(std::abs(range.low), std::abs(range.high));
+    range.low = -range.high;
+  }
+  if (range.log && !(range.low > 0)) range.low = of_data.least_positive;
+  if (range.log && !(range.low > 0 && range.high > 0))
+    throw Error("a logarithmic colour scale has nothing to show", "no value is above 0", "use --color-scale linear");
+  if (!(range.low < range.high)) range.high = range.log ? 10 * range.low : range.low + 1;
+  return range;
 }
 
 FlowSpan flow_span(const Settings& settings, const Range& of_data) {

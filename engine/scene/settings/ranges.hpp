@@ -1,8 +1,10 @@
 // Nacre: pairs of numbers in words, and what they mean for a flow: its time, its colours.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/scene/settings/settings.hpp"
 
@@ -17,11 +19,50 @@ std::pair<double, double> parse_pair(const std::string& text, char separator, co
 
 /// The knob `time`, which is not empty. Throws Error where it is no range or ends before it starts.
 Range parse_time_range(const Settings& settings);
-/// The knob `color_range`, which is not empty. Throws Error where it is no range or holds nothing.
-Range parse_color_range(const Settings& settings);
+/// Which values a colour map meets, at all times.
+struct ColourSpread {
+  double low = 0, high = 1;   ///< the range without a wish; of a speed from 0 to what is usual
+  double least_positive = 0;  ///< of those that were looked at; 0: none is above 0
+  bool gaps = false;          ///< some are no numbers
+  std::vector<float> sample;  ///< finite values, sorted: a part of all, of every time
 
-/// What the colour map spans: what the knob `color_range` says, else `of_data`. Throws Error like `parse_color_range`.
-Range color_range(const Settings& settings, const Range& of_data);
+  /// Below this are so many percent of the sample, linearly interpolated; `low` or `high` where there is no sample.
+  double percentile(double percent) const;
+};
+
+/// Collects a spread.
+class ColourSurvey {
+ public:
+  /// Of the values, every `stride`-th from the first on goes into the sample; all count for the ends.
+  void add(float value, bool sampled);
+  /// With ends 0 and 1 where there was no number, and an end above the other where all are the same.
+  ColourSpread spread() &&;
+
+ private:
+  double low_ = 1e300, high_ = -1e300;
+  ColourSpread spread_;
+};
+
+/// What a colour map spans, and how.
+struct ColourRange {
+  double low = 0, high = 1;
+  bool log = false;  ///< equal ratios are equal distances on the map; both ends are above 0
+
+  /// On a scale that is linear on the map: the value, or its logarithm. What has no logarithm lies below the low end.
+  float place(float value) const;
+  double bottom() const { return log ? place(float(low)) : low; }
+  double top() const { return log ? place(float(high)) : high; }
+  /// `place` of each; as they are where it is not logarithmic.
+  std::vector<float> places(std::vector<float> values) const;
+};
+
+/// Throws Error where the knobs `color_range`, `color_scale` and `color_symmetric` contradict themselves or each other.
+void check_color_range(const Settings& settings);
+
+/// By these knobs: numbers LOW:HIGH, percentiles A%:B%, or the spread's own ends; as far below 0 as above; on a
+/// logarithmic scale from the least positive value where it would begin at 0 or below. Throws Error like
+/// `check_color_range`, and where a logarithmic scale has nothing above 0.
+ColourRange color_range(const Settings& settings, const ColourSpread& of_data);
 
 /// What a run goes over.
 struct FlowSpan {

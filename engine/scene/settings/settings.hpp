@@ -16,11 +16,16 @@ struct MaterialSettings {
   std::string materials;  ///< L[,L...]: labels to keep; empty: all
   std::string merge;      ///< A:B[,A:B...]: label A becomes B
   int min_component = 0;  ///< drop pieces of fewer voxels
+  std::string names;      ///< a file with the names of labels; empty: those of the volume
+  int layer = -1;         ///< of a segmentation whose segments overlap, from 0; -1: all, later segments over earlier
 };
 
 /// What the viewer draws, and how. Nothing here changes a result.
 struct ViewSettings {
-  bool play = true;                         ///< flow: time goes on
+  bool play = true;                         ///< time goes on; a mesh: iterations do
+  bool loop = true;                         ///< flow: after the last time comes the first
+  double play_speed = 1;                    ///< flow: pace in a window; 1: `fps` steps a second
+  int iteration = 0;                        ///< mesh: of the particles that are drawn; 0: the newest
   bool edges = false;                       ///< of triangles
   bool arrows = false;                      ///< flow: vectors as arrows
   int arrow_count = 1500;                   ///< over the whole surface
@@ -61,11 +66,15 @@ struct Settings {
   double begin_at = 0;       ///< share of that time at which the first frame is
   std::string color = "speed";
   std::string colormap = "sea";
-  std::string color_range;         ///< LO:HI; empty: of the data
-  std::string camera = "iso";      ///< a view or a JSON file
-  double orbit = 0;                ///< degrees per frame
-  int width = 1024, height = 768;  ///< of the picture
-  int samples = 2;                 ///< rays per pixel and axis
+  std::string color_range;               ///< LO:HI, or percentiles A%:B%; empty: of the data
+  bool color_symmetric = false;          ///< as far below 0 as above
+  std::string color_scale = "linear";    ///< linear, log
+  std::string color_below, color_above;  ///< #rrggbb beyond the range; empty: the ends of the map
+  std::string color_nan = "#808080";     ///< #rrggbb where there is no number
+  std::string camera = "iso";            ///< a view or a JSON file
+  double orbit = 0;                      ///< degrees per frame
+  int width = 1024, height = 768;        ///< of the picture
+  int samples = 2;                       ///< rays per pixel and axis
   std::string background = "#ffffff";
   int fps = 25;
   bool legend = true, time_stamp = true;

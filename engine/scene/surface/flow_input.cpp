@@ -18,6 +18,14 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
   for (const std::string& warning : warnings) log.warn(warning);
   const VectorChoice choice = choose_vectors(first, settings.vectors);
   log.chosen(choice);
+  if (log.first_step && series.steps() > 1) {
+    SurfaceSeries alone;
+    alone.name = series.name;
+    alone.times = {series.times.front()};
+    alone.load = [&first](std::size_t) { return first; };
+    VectorsInTime seen(std::move(alone), surface, choice.name, settings.color, stop);
+    log.first_step(seen);
+  }
   VectorsInTime vectors(std::move(series), std::move(surface), choice.name, settings.color, stop);
   warn_of_vectors(vectors, log);
   return vectors;

@@ -17,6 +17,9 @@ struct FlowLog {
   std::function<void(const std::string& sentence)> warn;
   std::function<void(const VectorChoice& choice)> chosen;  ///< which vectors, and why
   std::function<void(const Surface& first)> read = {};     ///< the first step, before a choice is made; may be empty
+  /// The first step alone, as it can be shown before all others are looked at: its own statistics and range of colours.
+  /// Not told where there is only one; may be empty.
+  std::function<void(VectorsInTime& first)> first_step = {};
 };
 
 /// Prepares the surface of `series`, chooses vectors and looks at all steps. Throws Error where there is nothing to

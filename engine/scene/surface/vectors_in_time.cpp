@@ -12,6 +12,8 @@
 namespace nacre {
 namespace {
 
+constexpr std::size_t largest_sample = 1 << 16;  ///< about; of the values that percentiles are taken of
+
 /// Mean corner normal of each point: what speed on the surface is measured against.
 std::vector<Vec3f> point_normals(const PreparedSurface& surface) {
   std::vector<Vec3f> normals(surface.points.size());
@@ -152,8 +154,7 @@ std::vector<float> VectorsInTime::scalar(double t) {
   if (color_ == "speed") {
     std::vector<Vec3f> v(result.size());
     vectors(t, v);
-    for (std::size_t i = 0; i < v.size(); ++i)
-      result[i] = length(v[i] - point_normals_[i] * dot(v[i], point_normals_[i]));
+    for (std::size_t i = 0; i < v.size(); ++i) result[i] = speed_of(v[i], i);
     return result;
   }
   const Between at = around(t);
@@ -163,21 +164,25 @@ std::vector<float> VectorsInTime::scalar(double t) {
   return result;
 }
 
+/// Along the surface.
+float VectorsInTime::speed_of(const Vec3f& vector, std::size_t point) const {
+  return length(vector - point_normals_[point] * dot(vector, point_normals_[point]));
+}
+
 void VectorsInTime::survey(bool vectors_too) {
-  double low = 1e300, high = -1e300;
+  ColourSurvey speeds, values;
   const bool scalars = color_ != "none" && color_ != "speed";
   VectorStatistics all = statistics_;
   const std::size_t moments = analytic_ && series_.steps() == 1 && end_ > start_ ? 8 : series_.steps();
   std::vector<Vec3f> now(surface_.points.size()), next = now;
+  const std::size_t stride = now.size() * moments / largest_sample | 1;  // odd: rows of a surface are even at times
   const auto look_at = [&](std::size_t k) {
     check_stop(stop_);
     const double t = moments == series_.steps() ? series_.times[k] : start_ + (end_ - start_) * double(k) / 8;
     if (vectors_too) vectors(t, next);
     if (!scalars) return;
-    for (float x : scalar(t)) {
-      low = std::min(low, double(x));
-      high = std::max(high, double(x));
-    }
+    const std::vector<float> all_values = scalar(t);
+    for (std::size_t i = 0; i < all_values.size(); ++i) values.add(all_values[i], i % stride == k % stride);
   };
   const bool any = vectors_too || scalars;
   if (any) look_at(0);
@@ -186,7 +191,9 @@ void VectorsInTime::survey(bool vectors_too) {
     VectorStatistics s;
     tbb::parallel_invoke(
         [&] {
-          if (vectors_too) s = vector_statistics(surface_, now);
+          if (!vectors_too) return;
+          s = vector_statistics(surface_, now);
+          for (std::size_t i = k % stride; i < now.size(); i += stride) speeds.add(speed_of(now[i], i), true);
         },
         [&] {
           if (k + 1 < moments) look_at(k + 1);
@@ -201,13 +208,12 @@ void VectorsInTime::survey(bool vectors_too) {
   }
   if (vectors_too) all.percentile_98 /= double(moments);
   statistics_ = all;
-  if (color_ == "speed") {
-    low_ = 0;
-    high_ = statistics_.percentile_98 > 0 ? statistics_.percentile_98 : 1;
-  } else if (scalars) {
-    low_ = low;
-    high_ = high > low ? high : low + 1;
+  if (vectors_too) {
+    speeds_ = std::move(speeds).spread();
+    speeds_.low = 0;
+    speeds_.high = statistics_.percentile_98 > 0 ? statistics_.percentile_98 : 1;
   }
+  if (scalars) scalars_ = std::move(values).spread();
 }
 
 }  // namespace nacre

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/prepare.hpp"
 #include "engine/scene/surface/surface.hpp"
 
@@ -38,8 +39,7 @@ class VectorsInTime {
   /// Over all steps: the mean of the steps' 98th percentile, the largest speed, the smallest share of zeros; the share
   /// that is normal is the first step's.
   const VectorStatistics& statistics() const { return statistics_; }
-  double color_low() const { return low_; }
-  double color_high() const { return high_; }
+  const ColourSpread& color_spread() const { return color_ == "speed" ? speeds_ : scalars_; }
   bool colored() const { return color_ != "none"; }
 
   /// One vector per point at time `t`.
@@ -58,6 +58,7 @@ class VectorsInTime {
   Step load(std::size_t number) const;
   const Step& step(std::size_t number);
   void survey(bool vectors_too = true);
+  float speed_of(const Vec3f& vector, std::size_t point) const;
   void choose(const std::string& vectors, const std::string& color);
   /// The steps around `t` and the share of the later one.
   struct Between {
@@ -72,7 +73,7 @@ class VectorsInTime {
   std::string vectors_, color_;
   bool analytic_;
   double start_, end_;
-  double low_ = 0, high_ = 1;
+  ColourSpread speeds_, scalars_;  ///< of the vectors; of the array that colours
   VectorStatistics statistics_;
   Step steps_[2];
   std::size_t oldest_ = 0;

@@ -43,7 +43,8 @@ class UiTest : public ImGuiFrames {
                         width,
                         height,
                         Camera(),
-                        std::exchange(keys_, {})};
+                        std::exchange(keys_, {}),
+                        ""};
     const UiRequests requests = ui_.draw(session_, scene_, facts);
     cancelled_ = cancelled_ || requests.cancel;
   }

@@ -45,6 +45,11 @@ const std::map<std::string, FlowRerun>& expected() {
       // These are of the picture: they are drawn otherwise, and nothing runs again.
       {"colormap", {}},
       {"color_range", {}},
+      {"color_symmetric", {}},
+      {"color_scale", {}},
+      {"color_below", {}},
+      {"color_above", {}},
+      {"color_nan", {}},
       {"legend", {}},
       {"time_stamp", {}},
       {"orbit", {}},

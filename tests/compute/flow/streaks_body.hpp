@@ -38,11 +38,11 @@ struct NotePosition {
   NACRE_HD void operator()(CellIndex s, const Int3& position) const { positions[s] = position; }
 };
 
-/// Gives cells their values by hand.
+/// Gives cells their values as they are.
 struct SetValue {
   const float* value;
   StreakCell* cells;
-  NACRE_HD void operator()(CellIndex s, const Int3&) const { cells[s].value = value[s]; }
+  NACRE_HD void operator()(CellIndex s, const Int3&) const { cells[s].value = value[s] - 0.5f; }
 };
 
 /// What was made of a texture, per surface cell.
@@ -56,31 +56,31 @@ struct DrawnStreaks {
   }
 };
 
-/// How a texture is drawn: what each cell's value is, whether it is high-passed, how far it is convolved.
+/// How a texture is drawn: what each cell's value is; how far it is convolved.
 template <class Texture>
 struct StreakRecipe {
-  Texture value;  ///< value(Int3)
-  bool high_pass = false;
+  Texture value;  ///< value(Int3), from 1/2
   int reach = 6;
+  bool smooth = false;  ///< along the flow, before
 };
 
-template <class Backend, class Streaks, class Texture>
-DrawnStreaks draw_on(Executor<Backend>& exec, const Streaks& on, std::int64_t n, const MeshView& mesh, double cell,
+template <class Backend, class Surface, class Texture>
+DrawnStreaks draw_on(Executor<Backend>& exec, const Surface& on, std::int64_t n, const MeshView& mesh, double cell,
                      const Vec3f* vectors, const StreakRecipe<Texture>& recipe) {
   Arena& arena = exec.arena();
   const Array<Int3> positions = arena.permanent<Int3>(n);
-  for_each_streak_cell(exec, on, n, NotePosition{positions.data()});
+  for_each_surface_cell_of(exec, on, n, NotePosition{positions.data()});
   DrawnStreaks drawn;
   drawn.position = positions.download();
-  for (const Int3& p : drawn.position) drawn.value.push_back(recipe.value(p));
+  for (const Int3& p : drawn.position) drawn.value.push_back(0.5f + recipe.value(p));
   const Array<float> value = arena.permanent_copy<float>(drawn.value), streaks = arena.permanent<float>(n);
   const Array<StreakCell> cells = arena.permanent<StreakCell>(n);
-  for_each_streak_cell(exec, on, n, MarkStreakCells<Streaks>{on, mesh, cell, vectors, 1e-6f, cells.data()});
-  if (recipe.high_pass)
-    for_each_streak_cell(exec, on, n, HighPass<Streaks>{on, value.data(), cells.data()});
+  for_each_surface_cell_of(exec, on, n, MarkStreakCells<Surface>{on, mesh, cell, vectors, 1e-6f, cells.data()});
+  if (recipe.smooth)
+    for_each_surface_cell_of(exec, on, n, SmoothAlongFlow<Surface>{on, value.data(), cells.data()});
   else
-    for_each_streak_cell(exec, on, n, SetValue{value.data(), cells.data()});
-  for_each_streak_cell(exec, on, n, ConvolveAlongFlow<Streaks>{on, cells.data(), recipe.reach, streaks.data()});
+    for_each_surface_cell_of(exec, on, n, SetValue{value.data(), cells.data()});
+  for_each_surface_cell_of(exec, on, n, ConvolveAlongFlow<Surface>{on, cells.data(), recipe.reach, streaks.data()});
   drawn.cells = cells.download();
   drawn.streaks = streaks.download();
   return drawn;
@@ -101,7 +101,7 @@ DrawnStreaks draw_on_grid(Executor<Backend>& exec, const FlowSheet& sheet, const
   const ClosestPointGrid coarse = build_closest_point_grid(exec, mesh, triangles, Int3(8), 4, 4.47f);
   const RefinedGrid fine = build_refined_grid(exec, mesh, triangles, coarse, refine);
   DrawnStreaks drawn =
-      draw_on(exec, GridStreaks{fine.view(coarse.view())}, fine.surface_cells, mesh, 1.0 / refine, vectors, recipe);
+      draw_on(exec, GridSurface{fine.view(coarse.view())}, fine.surface_cells, mesh, 1.0 / refine, vectors, recipe);
   arena.rewind(mark);
   return drawn;
 }
@@ -116,7 +116,7 @@ DrawnStreaks draw_on_bricks(Executor<Backend>& exec, const FlowSheet& sheet, con
   const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
   const BrickOctree tree = build_brick_octree(exec, mesh, std::uint32_t(sheet.mesh.triangles.size()), 3, 3.6);
   const BrickOctreeView view = tree.view();
-  DrawnStreaks drawn = draw_on(exec, BrickStreaks{view}, std::int64_t(view.surface_cells), mesh, 1.0, vectors, recipe);
+  DrawnStreaks drawn = draw_on(exec, BrickSurface{view}, std::int64_t(view.surface_cells), mesh, 1.0, vectors, recipe);
   arena.rewind(mark);
   return drawn;
 }
@@ -159,19 +159,35 @@ void CellsKnowFlowAndPlane(Executor<Backend>& exec) {
   });
 }
 
-/// Streamlines read every second cell: HighPass has mixed those between into it.
 template <class Backend>
 void AnImpulseSpreadsEvenlyAlongItsLine(Executor<Backend>& exec) {
   FlowSheet sheet;
   sheet.add(flat_part(first_x, last_x), {2, 0, 0});
   const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}};
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
-    const float share = recipe.value({30, middle_y, layer}) / float(2 * (recipe.reach / 2) + 1);
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
-      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach && p.x % 2 == 0;
-      ASSERT_NEAR(drawn.streaks[s], 0.5f + (reached ? ConvolveAlongFlow<GridStreaks>::gain * share : 0), 1e-6)
+      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + (reached ? ConvolveAlongFlow<GridSurface>::gain * share : 0), 1e-6)
           << p.x << ' ' << p.y;
+    }
+  });
+}
+
+/// Smoothed first, it reaches one cell farther, and its ends are soft.
+template <class Backend>
+void SmoothingSoftensTheEndsOfALine(Executor<Backend>& exec) {
+  FlowSheet sheet;
+  sheet.add(flat_part(first_x, last_x), {2, 0, 0});
+  const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}, 6, true};
+  on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
+    for (std::size_t s = 0; s < drawn.position.size(); ++s) {
+      const Int3 p = drawn.position[s];
+      const int beyond = std::abs(p.x - 30) - recipe.reach;
+      const float part = p.y != middle_y || beyond > 1 ? 0 : beyond == 1 ? 0.25f : beyond == 0 ? 0.75f : 1;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + ConvolveAlongFlow<GridSurface>::gain * share * part, 1e-6) << p.x;
     }
   });
 }
@@ -183,7 +199,7 @@ void StreaksEndAtTheRim(Executor<Backend>& exec) {
   sheet.add(flat_part(first_x, 24), {1, 0, 0});
   sheet.add(flat_part(36, last_x), {1, 0, 0});
   const auto halves = [](const Int3& p) { return p.x <= 24 ? 0.05f : -0.05f; };
-  on_both(exec, sheet, StreakRecipe<decltype(halves)>{halves, false, 20}, [&](const DrawnStreaks& drawn) {
+  on_both(exec, sheet, StreakRecipe<decltype(halves)>{halves, 20}, [&](const DrawnStreaks& drawn) {
     for (std::size_t s = 0; s < drawn.position.size(); ++s)
       ASSERT_NEAR(drawn.streaks[s], 0.5f + 4 * halves(drawn.position[s]), 1e-6) << drawn.position[s].x;
   });
@@ -199,8 +215,8 @@ void StreaksEndWhereTheFlowTurnsBack(Executor<Backend>& exec) {
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
     for (int x = 20; x < 41; ++x) {
       const int to_the_line = std::min(recipe.reach, 30 - x);
-      const bool reached = x <= 29 && 29 - x <= recipe.reach && x % 2 == 1;
-      const float share = reached ? 0.1f / float(1 + recipe.reach / 2 + to_the_line / 2) : 0;
+      const bool reached = x <= 30 && 29 - x <= recipe.reach;
+      const float share = reached ? 0.1f / float(1 + recipe.reach + to_the_line) : 0;
       EXPECT_NEAR(drawn.streaks[drawn.at({x, middle_y, layer})], 0.5f + 4 * share, 1e-6) << x;
     }
   });
@@ -216,7 +232,7 @@ void StreaksEndAtACrease(Executor<Backend>& exec) {
   roof.add(sheet(eave + up, down, along, 1), Vec3f(-down));
   const float ridge = float(eave.x + up.x);
   const auto sides = [=](const Int3& p) { return float(p.x) + 0.5f < ridge ? 0.1f : -0.1f; };
-  on_both(exec, roof, StreakRecipe<decltype(sides)>{sides, false, 8}, [&](const DrawnStreaks& drawn) {
+  on_both(exec, roof, StreakRecipe<decltype(sides)>{sides, 8}, [&](const DrawnStreaks& drawn) {
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
       if (std::fabs(float(p.x) + 0.5f - ridge) < 2) continue;
@@ -225,27 +241,23 @@ void StreaksEndAtACrease(Executor<Backend>& exec) {
   });
 }
 
-/// Where nothing flows each cell shows its own value, less most of the mean around.
 template <class Backend>
 void ACellWithoutFlowKeepsItsOwnValue(Executor<Backend>& exec) {
   FlowSheet sheet;
   sheet.add(flat_part(first_x, last_x), {0, 0, 0});
-  const auto value = [](const Int3& p) { return 0.5f + 0.02f * float((7 * p.x + 3 * p.y) % 5 - 2); };
-  on_both(exec, sheet, StreakRecipe<decltype(value)>{value, true}, [&](const DrawnStreaks& drawn) {
+  const auto value = [](const Int3& p) { return 0.02f * float((7 * p.x + 3 * p.y) % 5 - 2); };
+  on_both(exec, sheet, StreakRecipe<decltype(value)>{value}, [&](const DrawnStreaks& drawn) {
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
-      const Int3 p = drawn.position[s];
       EXPECT_EQ(drawn.cells[s].direction, 0u);
-      if (p.x == first_x || p.x == last_x || p.y == 16 || p.y == 31) continue;
-      float around = 2 * value(p);  // above and below lies what is extended from the cell itself
-      for (const Int3& step : {Int3(1, 0, 0), Int3(-1, 0, 0), Int3(0, 1, 0), Int3(0, -1, 0)}) around += value(p + step);
-      const float share = HighPass<GridStreaks>::share, gain = ConvolveAlongFlow<GridStreaks>::gain;
-      ASSERT_NEAR(drawn.streaks[s], 0.5f + gain * (value(p) - 0.5f - share * (around / 6 - 0.5f)), 1e-5);
+      const float gain = ConvolveAlongFlow<GridSurface>::gain;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + gain * value(drawn.position[s]), 1e-5);
     }
   });
 }
 
 NACRE_DEVICE_TEST(Streaks, CellsKnowFlowAndPlane)
 NACRE_DEVICE_TEST(Streaks, AnImpulseSpreadsEvenlyAlongItsLine)
+NACRE_DEVICE_TEST(Streaks, SmoothingSoftensTheEndsOfALine)
 NACRE_DEVICE_TEST(Streaks, StreaksEndAtTheRim)
 NACRE_DEVICE_TEST(Streaks, StreaksEndWhereTheFlowTurnsBack)
 NACRE_DEVICE_TEST(Streaks, StreaksEndAtACrease)

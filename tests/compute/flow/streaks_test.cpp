@@ -41,8 +41,10 @@ DrawnStreaks on_a_ball(int threads, bool bricks) {
   ball.add(sphere({30, 30, 30}, 20, 24), {});
   for (std::size_t i = 0; i < ball.vectors.size(); ++i)
     ball.vectors[i] = Vec3f(cross(Vec3d(1, 2, 3), ball.mesh.points[i] - Vec3d(30, 30, 30)));
-  const auto noise = [](const Int3& p) { return uniform_random(7, std::uint32_t((p.z * 64 + p.y) * 64 + p.x), 0); };
-  const StreakRecipe<decltype(noise)> recipe{noise, true, 16};
+  const auto noise = [](const Int3& p) {
+    return uniform_random(7, std::uint32_t((p.z * 64 + p.y) * 64 + p.x), 0) - 0.5f;
+  };
+  const StreakRecipe<decltype(noise)> recipe{noise, 16};
   return bricks ? draw_on_bricks(exec, ball, recipe) : draw_on_grid(exec, ball, recipe);
 }
 

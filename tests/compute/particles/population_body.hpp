@@ -11,7 +11,7 @@ inline double sphere_count() { return ideal_count(4 * M_PI * 100); }
 template <class Backend>
 void CountsSettleFromAnyStart(Executor<Backend>& exec) {
   for (const double share : {0.3, 0.7, 1.0, 1.5, 2.3}) {
-    Relaxation<Backend, Spheres> run(exec, {{10}, 1}, Solver::redblack, sphere_seeds(share), plain_table(1), 4000);
+    Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(share), plain_table(1), 4000);
     run.iterate(30, 10);
     EXPECT_NEAR(double(run.set.count), sphere_count(), 0.04 * sphere_count()) << "seeded with the share " << share;
     const std::int64_t before = run.set.count;
@@ -30,7 +30,7 @@ void TheOriginalRuleSettlesToo(Executor<Backend>& exec) {
   parameters.population.add_below = 0.75f, parameters.population.delete_above = 1.35f;
   parameters.step = 1;
   for (const double share : {0.5, 2.0}) {
-    Relaxation<Backend, Spheres> run(exec, {{10}, 1}, Solver::redblack, sphere_seeds(share), plain_table(1), 4000,
+    Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(share), plain_table(1), 4000,
                                      parameters);
     run.iterate(30, 1);
     EXPECT_NEAR(double(run.set.count), sphere_count(), 0.06 * sphere_count()) << "seeded with the share " << share;
@@ -43,7 +43,7 @@ void TheOriginalRuleSettlesToo(Executor<Backend>& exec) {
 template <class Backend>
 void OneParticleFillsASphere(Executor<Backend>& exec) {
   const Seeds one{{{4, 0, 0}}, {0}, 0};
-  Relaxation<Backend, Spheres> run(exec, {{4}, 1}, Solver::redblack, one, plain_table(1), 2000);
+  Relaxation<Backend, Spheres> run(exec, {{4}, 1}, PlainSolver::redblack, one, plain_table(1), 2000);
   const IterationResult first = run.control();
   EXPECT_EQ(run.set.count, 4);  // a particle without neighbours makes four
   EXPECT_EQ(first.added, 3);
@@ -54,7 +54,7 @@ void OneParticleFillsASphere(Executor<Backend>& exec) {
 template <class Backend>
 void ALonelyParticleOnACurveMakesThree(Executor<Backend>& exec) {
   const Seeds one{{{8, 0, 0}}, {1}, 0};
-  Relaxation<Backend, Disc> run(exec, {8, 1}, Solver::redblack, one, {Junction(0, 1), Junction(0, 1, 2)}, 100);
+  Relaxation<Backend, Disc> run(exec, {8, 1}, PlainSolver::redblack, one, {Junction(0, 1), Junction(0, 1, 2)}, 100);
   run.control();
   ASSERT_EQ(run.set.count, 3);
   const auto places = run.places();
@@ -66,12 +66,12 @@ template <class Backend>
 void NoneIsAddedWhereNoneMayBe(Executor<Backend>& exec) {
   SolverParameters parameters;
   parameters.population.may_add = false;
-  Relaxation<Backend, Spheres> few(exec, {{10}, 1}, Solver::redblack, sphere_seeds(0.3), plain_table(1), 4000,
+  Relaxation<Backend, Spheres> few(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(0.3), plain_table(1), 4000,
                                    parameters);
   const std::int64_t before = few.set.count;
   few.iterate(10, 5);
   EXPECT_EQ(few.set.count, before);
-  Relaxation<Backend, Spheres> many(exec, {{10}, 1}, Solver::redblack, sphere_seeds(1.6), plain_table(1), 4000,
+  Relaxation<Backend, Spheres> many(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1.6), plain_table(1), 4000,
                                     parameters);
   many.iterate(30, 10);
   EXPECT_NEAR(double(many.set.count), sphere_count(), 0.04 * sphere_count());  // deletion goes on (sec. 3.4.3)
@@ -80,7 +80,7 @@ void NoneIsAddedWhereNoneMayBe(Executor<Backend>& exec) {
 template <class Backend>
 void TooManyParticlesAreRefused(Executor<Backend>& exec) {
   const Seeds seeds = sphere_seeds(0.3);
-  Relaxation<Backend, Spheres> run(exec, {{10}, 1}, Solver::redblack, seeds, plain_table(1),
+  Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1),
                                    std::int64_t(seeds.points.size()) + 10);
   run.iterate(5);
   const auto before = run.places();
@@ -101,7 +101,7 @@ template <class Backend>
 void WhatParticlesCarryGoesWithThem(Executor<Backend>& exec) {
   Seeds seeds = sphere_seeds(2);
   seeds.fixed = 100;
-  Relaxation<Backend, Spheres> run(exec, {{10}, 1}, Solver::redblack, seeds, plain_table(1), 8000);
+  Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1), 8000);
   const auto before = run.places();
   std::vector<float> mark(before.size());
   for (std::size_t k = 0; k < mark.size(); ++k) mark[k] = before[k].x + 3 * before[k].y;  // tells who is who

@@ -8,7 +8,7 @@ namespace nacre::test {
 
 template <class Backend>
 void EnergyFallsOnASphere(Executor<Backend>& exec) {
-  Relaxation<Backend, Spheres> run(exec, {{10}, 1}, Solver::redblack, sphere_seeds(1), plain_table(1));
+  Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1), plain_table(1));
   run.iterate(30);
   for (std::size_t k = 1; k < run.energy.size(); ++k) EXPECT_LT(run.energy[k], run.energy[k - 1]) << k;
   EXPECT_GT(run.energy.front(), 1.5);
@@ -43,9 +43,9 @@ void SheetsOneVoxelApartIgnoreEachOther(Executor<Backend>& exec) {
   const Seeds inner = sphere_seeds(1, 9, 2);
   both.points.insert(both.points.end(), inner.points.begin(), inner.points.end());
   both.interface.resize(both.points.size(), 0);
-  Relaxation<Backend, Shell> shell(exec, {9, 10}, Solver::redblack, both, plain_table(1));
+  Relaxation<Backend, Shell> shell(exec, {9, 10}, PlainSolver::redblack, both, plain_table(1));
   shell.iterate(25);
-  Relaxation<Backend, Spheres> alone(exec, {{10}, 1}, Solver::redblack, sphere_seeds(1, 10, 1), plain_table(1));
+  Relaxation<Backend, Spheres> alone(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1, 10, 1), plain_table(1));
   alone.iterate(25);
   EXPECT_NEAR(shell.energy.back(), alone.energy.back(), 0.02);
   std::int64_t outside = 0;
@@ -77,7 +77,7 @@ template <class Backend>
 void AFixedRimStaysAndIsFelt(Executor<Backend>& exec) {
   const float radius = 8;
   const Seeds seeds = disc_seeds(radius, int(0.9 * ideal_count(M_PI * radius * radius)) - int(M_PI * radius));
-  Relaxation<Backend, Disc> run(exec, {radius, 1}, Solver::redblack, seeds, disc_table());
+  Relaxation<Backend, Disc> run(exec, {radius, 1}, PlainSolver::redblack, seeds, disc_table());
   const std::vector<Float4> before = run.places();
   run.iterate(40, 10);
   const std::vector<Float4> after = run.places();
@@ -99,11 +99,11 @@ void ParticlesOfOtherInterfacesAreNotFelt(Executor<Backend>& exec) {
   seeds.points = {{0.4f, 0, 0}, {0, 0, 0}};
   seeds.interface = {1, 0};
   seeds.fixed = 1;
-  Relaxation<Backend, Disc> run(exec, {8, 1}, Solver::redblack, seeds, {Junction(0, 1), Junction(0, 2)});
+  Relaxation<Backend, Disc> run(exec, {8, 1}, PlainSolver::redblack, seeds, {Junction(0, 1), Junction(0, 2)});
   run.iterate(3);
   EXPECT_EQ(xyz_of(run.places()[1]), Vec3f());
   EXPECT_EQ(run.energy.back(), 0);
-  Relaxation<Backend, Disc> rim(exec, {8, 1}, Solver::redblack, seeds, {Junction(0, 1), Junction(0, 1, 2)});
+  Relaxation<Backend, Disc> rim(exec, {8, 1}, PlainSolver::redblack, seeds, {Junction(0, 1), Junction(0, 1, 2)});
   rim.iterate(20);
   EXPECT_GT(length(xyz_of(rim.places()[1]) - xyz_of(rim.places()[0])), 1.5f);  // out of its support of 1.73, nearly
 }
@@ -125,7 +125,7 @@ void GradedSizesGiveGradedSpacings(Executor<Backend>& exec) {
       if (uniform_random(4, i, j) < share) seeds.points.push_back(p);
     }
   seeds.interface.assign(seeds.points.size(), 0);
-  Relaxation<Backend, Torus> run(exec, torus, Solver::redblack, seeds, plain_table(1));
+  Relaxation<Backend, Torus> run(exec, torus, PlainSolver::redblack, seeds, plain_table(1));
   run.iterate(40, 10);
   EXPECT_NEAR(double(run.set.count), wanted, 0.06 * wanted);
   EXPECT_LT(run.energy.back(), 1.15 * hexagonal_energy);
@@ -160,7 +160,7 @@ void CurvesAreFilledBetweenFixedPoints(Executor<Backend>& exec) {
   seeds.fixed = 2;
   SolverParameters parameters;
   parameters.population.ideal_energy = row_energy;
-  Relaxation<Backend, Rim> run(exec, {{radius, 1}}, Solver::redblack, seeds,
+  Relaxation<Backend, Rim> run(exec, {{radius, 1}}, PlainSolver::redblack, seeds,
                                {Junction(0, 1), Junction(0, 1, 2), Junction(0, 1, 2, 3)}, 1000, parameters);
   run.iterate(60, 5);
   const double wanted = 2 * M_PI * radius;
@@ -172,16 +172,16 @@ void CurvesAreFilledBetweenFixedPoints(Executor<Backend>& exec) {
 
 template <class Backend>
 void NothingToMoveIsFine(Executor<Backend>& exec) {
-  Relaxation<Backend, Spheres> none(exec, {{10}, 1}, Solver::redblack, {}, plain_table(1), 100);
+  Relaxation<Backend, Spheres> none(exec, {{10}, 1}, PlainSolver::redblack, {}, plain_table(1), 100);
   none.iterate(2, 1);
   EXPECT_EQ(none.set.count, 0);
   Seeds seeds{{{10, 0, 0}, {0, 10, 0}}, {0, 0}, 2};
-  Relaxation<Backend, Spheres> fixed(exec, {{10}, 1}, Solver::redblack, seeds, plain_table(1), 100);
+  Relaxation<Backend, Spheres> fixed(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1), 100);
   fixed.iterate(2, 1);
   EXPECT_EQ(fixed.set.count, 2);
   seeds.points[1] = seeds.points[0];
   seeds.fixed = 0;
-  Relaxation<Backend, Spheres> same(exec, {{10}, 1}, Solver::redblack, seeds, plain_table(1), 100);
+  Relaxation<Backend, Spheres> same(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1), 100);
   same.iterate(3);
   for (const Float4& p : same.places()) EXPECT_TRUE(is_finite(xyz_of(p)));
 }

@@ -14,7 +14,7 @@ TEST(Redblack, OneThreadAndTwoGiveTheSame) {
   for (const int threads : {1, 2}) {
     const auto device = make_cpu_device(threads);
     Executor<Cpu> exec(*device);
-    Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::redblack, sphere_seeds(1.4), plain_table(1));
+    Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1.4), plain_table(1));
     run.iterate(12, 4);
     places[threads - 1] = run.places();
   }
@@ -27,7 +27,7 @@ TEST(Redblack, AgreesWithTheSerialSolver) {
   Executor<Cpu> exec(*device);
   double energy[2];
   std::int64_t count[2];
-  for (const Solver solver : {Solver::serial, Solver::redblack}) {
+  for (const PlainSolver solver : {PlainSolver::serial, PlainSolver::redblack}) {
     Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, solver, sphere_seeds(1.2), plain_table(1));
     run.iterate(30, 10);
     energy[int(solver)] = run.energy.back(), count[int(solver)] = run.set.count;
@@ -41,7 +41,8 @@ TEST(Redblack, AStepOfHNeedsLargerBinsAndWorks) {  // the thesis's own limit
   Executor<Cpu> exec(*device);
   SolverParameters parameters;
   parameters.step = 1;
-  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::redblack, sphere_seeds(1), plain_table(1), 5000, parameters);
+  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1), plain_table(1), 5000,
+                               parameters);
   run.iterate(30);
   EXPECT_LT(run.energy.back(), 1.05 * hexagonal_energy);
 }
@@ -49,7 +50,7 @@ TEST(Redblack, AStepOfHNeedsLargerBinsAndWorks) {  // the thesis's own limit
 TEST(Redblack, StopsWhenAsked) {
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
-  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::redblack, sphere_seeds(1), plain_table(1));
+  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1), plain_table(1));
   std::atomic<bool> stop = true;
   exec.watch(&stop);
   EXPECT_THROW(run.iterate(1), Interrupted);
@@ -107,7 +108,7 @@ TEST(Redblack, MovesOnTheInterfacesOfAField) {
   ASSERT_GT(seeds.points.size(), 800u);
   double energy[2];
   std::int64_t count[2];
-  for (const Solver solver : {Solver::serial, Solver::redblack}) {
+  for (const PlainSolver solver : {PlainSolver::serial, PlainSolver::redblack}) {
     const auto device = make_cpu_device();
     Executor<Cpu> exec(*device);
     Relaxation<Cpu, BallsSurface> run(exec, surface, solver, seeds, table);

@@ -12,7 +12,7 @@ namespace {
 TEST(Serial, EnergyFallsOnASphere) {
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
-  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::serial, sphere_seeds(1), plain_table(1));
+  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::serial, sphere_seeds(1), plain_table(1));
   run.iterate(30);
   for (std::size_t k = 1; k < run.energy.size(); ++k) EXPECT_LT(run.energy[k], run.energy[k - 1]) << k;
   EXPECT_LT(run.energy.back(), 1.05 * hexagonal_energy);
@@ -23,7 +23,7 @@ TEST(Serial, EnergyFallsOnASphere) {
 TEST(Serial, ReadsAndWritesTheDevicesMemoryOnlyInLaunches) {
   const auto device = make_cpu_device(0, true);  // its memory is closed to the host
   Executor<Cpu> exec(*device);
-  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::serial, sphere_seeds(0.3), plain_table(1));
+  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::serial, sphere_seeds(0.3), plain_table(1));
   run.iterate(3, 1);
   EXPECT_GT(run.set.count, 0);
 }
@@ -31,7 +31,7 @@ TEST(Serial, ReadsAndWritesTheDevicesMemoryOnlyInLaunches) {
 TEST(Serial, LeavesEachParticleTheEnergyThatItHas) {
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
-  Relaxation<Cpu, Spheres> run(exec, {{4}, 1}, Solver::serial, sphere_seeds(1, 4), plain_table(1));
+  Relaxation<Cpu, Spheres> run(exec, {{4}, 1}, PlainSolver::serial, sphere_seeds(1, 4), plain_table(1));
   run.iterate(200);  // until nothing moves
   const auto places = run.places(), directions = run.directions();
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -49,7 +49,7 @@ TEST(Serial, EachMoveLowersTheMoversEnergy) {  // two particles on a plane push 
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
   const Seeds seeds{{{-0.3f, 0, 0}, {0.3f, 0.1f, 0}}, {0, 0}, 0};
-  Relaxation<Cpu, Disc> run(exec, {20, 1}, Solver::serial, seeds, plain_table(1), 10);
+  Relaxation<Cpu, Disc> run(exec, {20, 1}, PlainSolver::serial, seeds, plain_table(1), 10);
   run.iterate(40);
   for (std::size_t k = 1; k < run.energy.size(); ++k) EXPECT_LE(run.energy[k], run.energy[k - 1]);
   const auto places = run.places();
@@ -63,7 +63,7 @@ TEST(Serial, StepsAreAsShortAsTheyMustBe) {
   SolverParameters parameters;
   parameters.step = 0.1f;
   const Seeds seeds = sphere_seeds(2);
-  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::serial, seeds, plain_table(1), 0, parameters);
+  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::serial, seeds, plain_table(1), 0, parameters);
   const auto before = run.places();
   run.iterate(1);
   const auto after = run.places();
@@ -79,7 +79,7 @@ TEST(Serial, StepsAreAsShortAsTheyMustBe) {
 TEST(Serial, StopsWhenAsked) {
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
-  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, Solver::serial, sphere_seeds(1), plain_table(1));
+  Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::serial, sphere_seeds(1), plain_table(1));
   std::atomic<bool> stop = true;
   exec.watch(&stop);
   EXPECT_THROW(run.iterate(1), Interrupted);
@@ -100,7 +100,7 @@ TEST(Serial, StaysWhereTheSurfaceIs) {
   const auto device = make_cpu_device();
   Executor<Cpu> exec(*device);
   const Seeds seeds{{{0, 0, 0}, {0.2f, 0, 0}}, {0, 0}, 0};
-  Relaxation<Cpu, Strip> run(exec, {0.5f}, Solver::serial, seeds, plain_table(1), 10);
+  Relaxation<Cpu, Strip> run(exec, {0.5f}, PlainSolver::serial, seeds, plain_table(1), 10);
   run.iterate(30);
   for (const Float4& p : run.places()) EXPECT_LE(std::fabs(p.x), 0.5f);
 }

@@ -15,21 +15,21 @@ namespace nacre::test {
 /// How many particles a surface of this area asks for at size h: a hexagonal lattice with spacing h.
 inline double ideal_count(double area, double h = 1) { return area / (0.8660254 * h * h); }
 
-enum class Solver { serial, redblack };
+enum class PlainSolver { serial, redblack };
 
 /// A set of particles with all that a solver needs.
 template <class Backend, class Surface>
 struct Relaxation {
   Executor<Backend>& exec;
   Surface surface;
-  Solver solver;
+  PlainSolver solver;
   SolverParameters parameters;
   ParticleSet set;
   Array<Junction> table;
   SolverState state;
   std::vector<double> energy;
 
-  Relaxation(Executor<Backend>& e, const Surface& s, Solver by, const Seeds& seeds,
+  Relaxation(Executor<Backend>& e, const Surface& s, PlainSolver by, const Seeds& seeds,
              const std::vector<Junction>& junctions, std::int64_t capacity = 0, const SolverParameters& with = {})
       : exec(e), surface(s), solver(by), parameters(with) {
     set = make_particles(exec, surface, seeds, capacity > 0 ? capacity : std::int64_t(4 * seeds.points.size()) + 1000);
@@ -40,7 +40,7 @@ struct Relaxation {
   /// `count` iterations, the population controlled after every `every`-th (0: never).
   void iterate(int count, int every = 0) {
     for (int k = 1; k <= count; ++k) {
-      const IterationResult r = solver == Solver::serial
+      const IterationResult r = solver == PlainSolver::serial
                                     ? serial_iteration(exec, set, state, table, surface, parameters)
                                     : redblack_iteration(exec, set, state, table, surface, parameters);
       energy.push_back(r.energy);

@@ -67,6 +67,9 @@ TEST(MeshChoices, ThePipelineRefusesThemToo) {
   expect_refused([&] { pipeline->relax(); }, "seeds", "auto");
   parameters.seeds = "auto";
   pipeline->relax();
+  parameters.triangles = "newton";
+  expect_refused([&] { pipeline->triangulate(); }, "triangulation", "stars");
+  parameters.triangles = "delaunay";
   EXPECT_GT(pipeline->triangulate().triangles.size(), 100u);
 }
 

@@ -51,6 +51,9 @@ class SphereParticles : public MovableParticles {
     for (const Vec3d& p : points) material.push_back(length(p) < radius ? 1 : 0);
     return material;
   }
+  std::vector<JunctionGradients> junction_gradients(std::span<const Vec3f> points, std::span<const Junction>) override {
+    return std::vector<JunctionGradients>(points.size());
+  }
   void in_stage(std::string_view name, const std::function<void()>& work) override {
     stages.insert(std::string(name));
     work();
@@ -89,7 +92,7 @@ class SphereParticles : public MovableParticles {
 };
 
 ImprovedMesh improve(SphereParticles& particles, int smooth, int mend) {
-  const ImprovementRule rule{smooth, mend, 1, nullptr};
+  const ImprovementRule rule{smooth, mend, false, 1, nullptr};
   const TellStage tell = [](std::string_view, double fraction, int, double) {
     EXPECT_GE(fraction, 0.85);
     EXPECT_LE(fraction, 0.94);
@@ -137,7 +140,7 @@ TEST(MeshImprovement, StopsWhenAsked) {
   SphereParticles particles(even_directions(even));
   const std::atomic<bool> stop = true;
   const TellStage tell = [](std::string_view, double, int, double) {};
-  EXPECT_THROW(MeshImprovement(particles, particles.table, particles.frame, {2, 12, 1, &stop}, tell).run(),
+  EXPECT_THROW(MeshImprovement(particles, particles.table, particles.frame, {2, 12, false, 1, &stop}, tell).run(),
                Interrupted);
 }
 

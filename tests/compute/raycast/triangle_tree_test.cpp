@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "compute/device/random.hpp"
+#include "compute/embedding/triangle.hpp"
 
 namespace nacre {
 namespace {
@@ -86,6 +87,35 @@ TEST(TriangleTree, RaysAlongAxesAndBetweenBounds) {
 TEST(TriangleTree, OfNothingFindsNothing) {
   EXPECT_FALSE(TriangleTree().first({0, 0, 0}, {1, 0, 0}));
   EXPECT_FALSE(TriangleTree({}, {}).first({0, 0, 0}, {1, 0, 0}));
+}
+
+TEST(TriangleTree, FindsTheClosestPointOfAllTriangles) {
+  const Soup s = soup(400);
+  const TriangleTree tree(s.points, s.triangles);
+  for (std::uint32_t k = 0; k < 200; ++k) {
+    const Vec3d from = (random_place(k, 40) - Vec3d(0.25)) * 2.0;  // inside and outside of the cube
+    std::uint32_t nearest = 0;
+    double least = INFINITY;
+    for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
+      const Triangle& c = s.triangles[t];
+      const double distance = length(closest_point(Corners{s.points[c.a], s.points[c.b], s.points[c.c]}, from) - from);
+      if (distance < least) least = distance, nearest = t;
+    }
+    const auto hit = tree.closest(from);
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit->triangle, nearest);
+    EXPECT_NEAR(hit->distance, least, 1e-12);  // compiled apart: the last bit may differ
+    EXPECT_NEAR(length(hit->position - from), least, 1e-12);
+  }
+}
+
+TEST(TriangleTree, OfTrianglesThatAreEquallyCloseTheFirst) {
+  Soup s = soup(30);
+  const std::vector<Triangle> once = s.triangles;
+  s.triangles.insert(s.triangles.end(), once.begin(), once.end());
+  const TriangleTree tree(s.points, s.triangles);
+  for (std::uint32_t k = 0; k < 50; ++k) EXPECT_LT(tree.closest(random_place(k, 50))->triangle, once.size());
+  EXPECT_FALSE(TriangleTree().closest(Vec3d(0)));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 
@@ -107,6 +108,21 @@ TEST(BuildSurface, BadValuesBecomeZeroAndAreCounted) {
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0], "test: array 'short' dropped: it has 2 entries where 3 belong.");
   EXPECT_EQ(warnings[1], "test: array 'u' is NaN or infinite at 2 of 3 places, set to 0.");
+}
+
+TEST(BuildSurface, WhatOnlyColoursKeepsItsGaps) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  RawMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  add(mesh, {0, 1, 2});
+  mesh.point_arrays = {{"p", 1, {nan, 2, inf}}};
+  std::vector<std::string> warnings;
+  const Surface surface = build_surface(mesh, "test", warnings);
+  const std::vector<float>& values = surface.find("p")->values;
+  EXPECT_TRUE(std::isnan(values[0]) && std::isnan(values[2]));
+  EXPECT_EQ(values[1], 2);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0], "test: array 'p' is NaN or infinite at 2 of 3 places, drawn in the colour of NaN.");
 }
 
 TEST(BuildSurface, NothingLeftIsAnErrorThatSaysWhy) {

@@ -12,31 +12,17 @@
 #include "engine/io/registry.hpp"
 #include "engine/io/vtk_xml.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
+#include "tests/engine/io/two_bodies.hpp"
 
 namespace nacre {
 namespace {
 
 using test::read_all;
 using test::TemporaryFolder;
+using test::two_bodies;
+using test::two_cells;
 
-const std::vector<std::int64_t> labels = {0, 5, -7, 300};
-
-/// Two tetrahedra on a common triangle: material 1 above, 3 below; volume 1/6 each.
-SurfaceMesh two_bodies() {
-  SurfaceMesh mesh;
-  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}};
-  mesh.triangles = {{1, 2, 3}, {0, 1, 2}, {0, 3, 2}, {0, 1, 3}, {1, 4, 2}, {0, 2, 4}, {0, 4, 1}};
-  mesh.materials = {{0, 1}, {1, 3}, {0, 1}, {0, 1}, {0, 3}, {0, 3}, {0, 3}};
-  return mesh;
-}
-
-TetrahedralMesh two_cells() {
-  TetrahedralMesh mesh;
-  mesh.points = two_bodies().points;
-  mesh.cells = {{0, 1, 2, 3}, {0, 2, 1, 4}};
-  mesh.material = {1, 3};
-  return mesh;
-}
+const std::vector<std::int64_t> labels = test::body_labels;
 
 double volume(const Surface& s) {
   double sum = 0;

@@ -49,6 +49,37 @@ TEST_F(Series, CollectionGivesTimesAndParts) {
   EXPECT_TRUE(series.warnings.empty());
 }
 
+TEST_F(Series, ListOfParaViewGivesTimes) {
+  write("a.vtp", step(0, 1));
+  write("b.vtp", step(0, 2));
+  const std::string begin = "{\"file-series-version\": \"1.0\", \"files\": [";
+  const SurfaceSeries series = open_surface({write(
+      "all.vtp.series", begin + "{\"name\": \"b.vtp\", \"time\": 2.5}, {\"name\": \"a.vtp\", \"time\": 0.5}]}")});
+  EXPECT_EQ(series.times, (std::vector<double>{0.5, 2.5}));
+  EXPECT_EQ(series.load(1).find("p")->values[0], 2);
+  EXPECT_TRUE(series.warnings.empty());
+  const FileInfo info = describe(folder_ / "all.vtp.series");
+  EXPECT_EQ(info.kind, "series");
+  EXPECT_EQ(info.times, series.times);
+  const SurfaceSeries numbered =
+      open_surface({write("n.vtu.series", begin + "{\"name\": \"b.vtp\"}, {\"name\": \"a.vtp\", \"time\": 7}]}")});
+  EXPECT_EQ(numbered.times, (std::vector<double>{0, 1}));
+  EXPECT_EQ(numbered.load(0).find("p")->values[0], 2);
+  EXPECT_EQ(numbered.warnings.size(), 1u);
+}
+
+TEST_F(Series, ListsThatAreDamagedAreErrors) {
+  write("a.vtp", step(0, 1));
+  const auto failed = [&](const std::string& text) { return failure("all.vtp.series", text); };
+  EXPECT_TRUE(contains(failed("{\"files\": ["), "not a list of files"));
+  EXPECT_TRUE(contains(failed(std::string(100000, '[')), "not a list of files"));
+  EXPECT_TRUE(contains(failed("{\"files\": []}"), "names no files"));
+  EXPECT_TRUE(contains(failed("{\"files\": [{\"time\": 1}]}"), "names no file"));
+  EXPECT_TRUE(contains(failed("{\"files\": [{\"name\": \"a.vtp\", \"time\": \"x\"}]}"), "not a number"));
+  EXPECT_TRUE(contains(failed("{\"files\": [{\"name\": \"gone.vtp\"}]}"), "gone.vtp"));
+  EXPECT_TRUE(contains(failed("{\"files\": [{\"name\": \"all.vtp.series\"}]}"), "a list itself"));
+}
+
 TEST_F(Series, CollectionNamesWhatIsMissing) {
   write("a.vtp", step(0, 1));
   const std::string message =

@@ -136,7 +136,8 @@ TEST(VolumeData, MalformedFilesEndWell) {
                                      "example4d.nii.gz",
                                      "example_nifti2.nii.gz",
                                      "row_major.dconn.nii",
-                                     "functional.nii"};
+                                     "functional.nii",
+                                     "test.mgz"};
   std::size_t seen = 0;
   for (const char* folder : {"e-nrrd", "e-nifti", "e-vtk", "e-misc"})
     for (const fs::path& path : volumes_in(shared_data("malformed") / folder)) {
@@ -145,7 +146,7 @@ TEST(VolumeData, MalformedFilesEndWell) {
       EXPECT_EQ(!why.empty(), bad.count(path.filename().string()) > 0) << path << ": " << why;
       ++seen;
     }
-  EXPECT_EQ(seen, 43u);
+  EXPECT_EQ(seen, 44u);
 }
 
 TEST(VolumeData, TwinsAreEqual) {

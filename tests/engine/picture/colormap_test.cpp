@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "compute/device/error.hpp"
 #include "engine/picture/oklab.hpp"
@@ -34,6 +37,14 @@ Color deuteranope(const Color& srgb) {
   const Color seen = {0.367322f * r + 0.860646f * g - 0.227968f * b, 0.280085f * r + 0.672501f * g + 0.047413f * b,
                       -0.011820f * r + 0.042940f * g + 0.968881f * b};
   return {std::clamp(seen[0], 0.f, 1.f), std::clamp(seen[1], 0.f, 1.f), std::clamp(seen[2], 0.f, 1.f)};
+}
+
+/// Maps that are computed here; the others are what their authors have published.
+std::vector<std::string> own_names() {
+  std::vector<std::string> names = colormap_names();
+  const std::set<std::string> published{"viridis", "cividis", "turbo", "coolwarm", "twilight"};
+  std::erase_if(names, [&](const std::string& name) { return published.contains(name); });
+  return names;
 }
 
 TEST(Oklab, KnownColours) {
@@ -77,7 +88,7 @@ TEST(Colormap, UnknownNameListsTheKnown) {
 
 TEST(Colormap, LiesInsideTheGamut) {
   // A colour that was clipped has a channel at exactly 0 or 1.
-  for (const std::string& name : colormap_names())
+  for (const std::string& name : own_names())
     for (std::size_t i = 1; i + 1 < 256; ++i)
       for (const float c : colormap(name).table[i]) {
         EXPECT_GT(c, 0) << name << " " << i;
@@ -86,7 +97,7 @@ TEST(Colormap, LiesInsideTheGamut) {
 }
 
 TEST(Colormap, SequentialLightnessRisesNearlyLinearly) {
-  for (const std::string& name : colormap_names()) {
+  for (const std::string& name : own_names()) {
     const Colormap& map = colormap(name);
     if (map.kind != "sequential" && map.kind != "gray") continue;
     const float first = cie_lightness(map.table.front()), last = cie_lightness(map.table.back());
@@ -100,7 +111,7 @@ TEST(Colormap, SequentialLightnessRisesNearlyLinearly) {
 }
 
 TEST(Colormap, NeighboursDifferByTheSame) {
-  for (const std::string& name : colormap_names()) {
+  for (const std::string& name : own_names()) {
     const Colormap& map = colormap(name);
     std::vector<float> steps;
     for (int i = 1; i < 256; ++i) steps.push_back(difference(linear_of(map.table[i]), linear_of(map.table[i - 1])));
@@ -112,7 +123,7 @@ TEST(Colormap, NeighboursDifferByTheSame) {
 }
 
 TEST(Colormap, DivergingIsSymmetricAboutANeutralCentre) {
-  for (const std::string& name : colormap_names()) {
+  for (const std::string& name : own_names()) {
     const Colormap& map = colormap(name);
     if (map.kind != "diverging") continue;
     for (int i = 0; i < 128; ++i)
@@ -127,7 +138,7 @@ TEST(Colormap, DivergingIsSymmetricAboutANeutralCentre) {
 }
 
 TEST(Colormap, CyclicClosesWithOneMoreStep) {
-  for (const std::string& name : colormap_names()) {
+  for (const std::string& name : own_names()) {
     const Colormap& map = colormap(name);
     if (map.kind != "cyclic") continue;
     const float step = difference(linear_of(map.table[0]), linear_of(map.table[1]));
@@ -137,7 +148,7 @@ TEST(Colormap, CyclicClosesWithOneMoreStep) {
 
 TEST(Colormap, StaysReadableWithoutGreenCones) {
   // Any two colours a tenth of the map apart must differ, for a deuteranope, by half of what others see or more.
-  for (const std::string& name : colormap_names()) {
+  for (const std::string& name : own_names()) {
     const Colormap& map = colormap(name);
     for (int i = 0; i + 26 < 256; ++i) {
       const bool across_centre = map.kind == "diverging" && i > 101 && i < 128;
@@ -147,11 +158,46 @@ TEST(Colormap, StaysReadableWithoutGreenCones) {
     }
   }
   // The two halves of a diverging or cyclic map pass through the same lightness: their hues must tell them apart.
-  for (const std::string& name : colormap_names()) {
+  for (const std::string& name : own_names()) {
     const Colormap& map = colormap(name);
     if (map.kind != "diverging" && map.kind != "cyclic") continue;
     EXPECT_GT(difference(deuteranope(map.table[64]), deuteranope(map.table[191])), 0.1f) << name;
   }
+}
+
+/// Bytes of a colour.
+std::array<int, 3> bytes_of(const Color& srgb) {
+  std::array<int, 3> bytes;
+  for (std::size_t k = 0; k < 3; ++k) bytes[k] = int(std::lround(255 * srgb[k]));
+  return bytes;
+}
+
+TEST(Colormap, PublishedMapsHaveTheirPublishedColours) {
+  using Bytes = std::array<int, 3>;
+  EXPECT_EQ(bytes_of(colormap("viridis").table[0]), (Bytes{68, 1, 84}));
+  EXPECT_EQ(bytes_of(colormap("viridis").table[128]), (Bytes{33, 145, 140}));
+  EXPECT_EQ(bytes_of(colormap("viridis").table[255]), (Bytes{253, 231, 37}));
+  EXPECT_EQ(bytes_of(colormap("cividis").table[0]), (Bytes{0, 34, 78}));
+  EXPECT_EQ(bytes_of(colormap("cividis").table[255]), (Bytes{254, 232, 56}));
+  // Moreland's table: its ends and, within rounding, its middle.
+  EXPECT_EQ(bytes_of(colormap("coolwarm").table[0]), (Bytes{59, 76, 192}));
+  EXPECT_EQ(bytes_of(colormap("coolwarm").table[255]), (Bytes{180, 4, 38}));
+  for (const int channel : bytes_of(colormap("coolwarm").table[127])) EXPECT_NEAR(channel, 221, 2);
+}
+
+TEST(Colormap, PublishedMapsAreOfTheKindThatTheySay) {
+  for (const char* name : {"viridis", "cividis"})
+    for (std::size_t i = 1; i < 256; ++i)
+      EXPECT_GT(cie_lightness(colormap(name).table[i]), cie_lightness(colormap(name).table[i - 1]) - 0.05f) << name;
+  const Colormap& circle = colormap("twilight");
+  const float step = difference(linear_of(circle.table[0]), linear_of(circle.table[1]));
+  EXPECT_NEAR(difference(linear_of(circle.table[255]), linear_of(circle.table[0])), step, 0.6f * step);
+  const Colormap& rainbow = colormap("turbo");
+  for (const Color& colour : rainbow.table)
+    for (const float c : colour) EXPECT_TRUE(c >= 0 && c <= 1);
+  EXPECT_GT(rainbow.table[60][2], rainbow.table[60][0]) << "low is blue";
+  EXPECT_GT(rainbow.table[128][1], rainbow.table[128][2]) << "the middle is green";
+  EXPECT_GT(rainbow.table[220][0], rainbow.table[220][2]) << "high is red";
 }
 
 }  // namespace

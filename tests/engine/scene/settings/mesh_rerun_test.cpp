@@ -15,15 +15,19 @@ namespace {
 /// Knobs of MeshParameters by name, for the tree solver.
 const std::map<std::string, MeshRerun>& begins() {
   static const std::map<std::string, MeshRerun> list{
-      {"tighten", MeshRerun::fields},       {"stairs", MeshRerun::fields},      {"kernel", MeshRerun::fields},
-      {"mesh_subcells", MeshRerun::fields}, {"epsilon", MeshRerun::fields},     {"delta", MeshRerun::fields},
-      {"min_size", MeshRerun::fields},      {"max_size", MeshRerun::fields},    {"curvature", MeshRerun::fields},
-      {"solver", MeshRerun::relax},         {"theta", MeshRerun::relax},        {"iterations", MeshRerun::relax},
-      {"stagnation", MeshRerun::relax},     {"step", MeshRerun::relax},         {"momentum", MeshRerun::relax},
-      {"ideal_energy", MeshRerun::relax},   {"add_below", MeshRerun::relax},    {"delete_above", MeshRerun::relax},
-      {"control_every", MeshRerun::relax},  {"particles", MeshRerun::relax},    {"seed", MeshRerun::relax},
-      {"seeds", MeshRerun::relax},          {"by_density", MeshRerun::nothing}, {"mend", MeshRerun::triangulate},
-      {"smooth", MeshRerun::triangulate},
+      {"tighten", MeshRerun::fields},      {"stairs", MeshRerun::fields},
+      {"kernel", MeshRerun::fields},       {"mesh_subcells", MeshRerun::fields},
+      {"epsilon", MeshRerun::fields},      {"delta", MeshRerun::fields},
+      {"min_size", MeshRerun::fields},     {"max_size", MeshRerun::fields},
+      {"curvature", MeshRerun::fields},    {"solver", MeshRerun::relax},
+      {"theta", MeshRerun::relax},         {"iterations", MeshRerun::relax},
+      {"stagnation", MeshRerun::relax},    {"step", MeshRerun::relax},
+      {"momentum", MeshRerun::relax},      {"ideal_energy", MeshRerun::relax},
+      {"add_below", MeshRerun::relax},     {"delete_above", MeshRerun::relax},
+      {"control_every", MeshRerun::relax}, {"particles", MeshRerun::relax},
+      {"seed", MeshRerun::relax},          {"seeds", MeshRerun::relax},
+      {"by_density", MeshRerun::nothing},  {"mend", MeshRerun::triangulate},
+      {"smooth", MeshRerun::triangulate},  {"triangulation", MeshRerun::triangulate},
   };
   return list;
 }

@@ -81,8 +81,8 @@ TEST(VectorsInTime, AStepThatCannotBeReadLeavesTheOthers) {
 
 TEST(VectorsInTime, RangeOfTheColoursIsThatOfAllSteps) {
   const VectorsInTime input = squares_in_time(4);
-  EXPECT_EQ(input.color_low(), 0);
-  EXPECT_EQ(input.color_high(), 90);
+  EXPECT_EQ(input.color_spread().low, 0);
+  EXPECT_EQ(input.color_spread().high, 90);
   EXPECT_EQ(input.start(), 0);
   EXPECT_EQ(input.end(), 3);
 }

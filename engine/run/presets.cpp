@@ -1,5 +1,5 @@
 // Nacre: presets.
-#include "app/presets.hpp"
+#include "engine/run/presets.hpp"
 
 #include <algorithm>
 #include <vector>

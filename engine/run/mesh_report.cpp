@@ -2,8 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
-#include "app/mesh_run.hpp"
+#include "engine/run/mesh_result.hpp"
 #include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
@@ -85,6 +86,13 @@ json particles_json(const MeshInfo& info, bool interrupted) {
           {"final_energy", info.final_energy},
           {"count", info.count},
           {"seconds", info.seconds}};
+}
+
+json stars_json(const StarUse& use) {
+  return {{"meshes", use.meshes},         {"fallbacks", use.fallbacks},
+          {"stars", use.last.stars},      {"disagreeing", use.last.disagreeing},
+          {"holes", use.last.holes},      {"filled_triangles", use.last.filled},
+          {"left_out", use.last.left_out}};
 }
 
 json angles_json(const TriangleQuality& q) {
@@ -173,6 +181,7 @@ void add_mesh_report(json& report, const MeshInput& input, const Settings& setti
   report["fields"] = fields_json(input, info);
   report["particles"] = particles_json(info, result.interrupted);
   report["mesh"] = mesh_json(input, result);
+  if (settings.mesh.triangles == "stars") report["mesh"]["stars"] = stars_json(info.stars);
   if (result.cells) report["tetrahedra"] = cells_json(input, result);
 }
 

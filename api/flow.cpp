@@ -1,0 +1,307 @@
+// Nacre: a flow run of the library, frame by frame.
+#include "include/nacre/flow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <set>
+
+#include "api/support.hpp"
+#include "engine/io/flow_values.hpp"
+#include "engine/picture/png.hpp"
+#include "engine/run/flow_painter.hpp"
+#include "engine/run/flow_report.hpp"
+#include "engine/run/picture_settings.hpp"
+#include "engine/run/report.hpp"
+#include "engine/scene/settings/ranges.hpp"
+#include "engine/scene/surface/flow_input.hpp"
+
+namespace nacre {
+namespace {
+
+Vec3d vec(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+
+void check_surface(const SurfaceFlow& surface) {
+  if (surface.points.empty()) throw Error("the surface has no points");
+  if (surface.triangles.empty()) throw Error("the surface has no triangles");
+  if (surface.times.empty()) throw Error("the flow has no times");
+  for (std::size_t k = 0; k < surface.times.size(); ++k) {
+    if (!std::isfinite(surface.times[k])) throw Error(fmt::format("time {} is not finite", k));
+    if (k > 0 && !(surface.times[k] > surface.times[k - 1]))
+      throw Error("the times do not ascend", fmt::format("time {} is not after the one before", k));
+  }
+}
+
+/// The points as they are used, so that a copy of a step is made only of what differs between steps.
+Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const std::string& color) {
+  Surface surface;
+  if (geometry) {
+    surface.points.reserve(flow.points.size());
+    for (const auto& p : flow.points) surface.points.push_back(vec(p));
+    surface.triangles.reserve(flow.triangles.size());
+    for (const auto& t : flow.triangles) surface.triangles.push_back({t[0], t[1], t[2]});
+  }
+  const std::size_t n = flow.points.size();
+  if (flow.vectors) {
+    PointArray& array = surface.arrays.emplace_back(PointArray{flow.vector_name, 3, std::vector<float>(3 * n)});
+    flow.vectors(step, array.values);
+  }
+  for (const std::string& name : flow.scalar_names) {
+    if (!geometry && name != color) continue;
+    PointArray& array = surface.arrays.emplace_back(PointArray{name, 1, std::vector<float>(n)});
+    flow.scalars(name, step, array.values);
+  }
+  return surface;
+}
+
+/// Knobs for which the texture is made anew, and those of them for which the embedding is, too.
+const std::set<std::string> embedding_knobs{"method", "octree",   "neighbour_index", "resolution",
+                                            "refine", "subcells", "radius"};
+const std::set<std::string> start_knobs{"ttl", "warmup", "seed"};
+
+}  // namespace
+
+struct Flow::State {
+  RunOptions options;
+  Session session;
+  std::unique_ptr<Device> device;
+  std::unique_ptr<FlowPipeline> pipeline;
+  std::unique_ptr<VectorsInTime> input;
+  FlowSpan span;
+  FlowVectors vectors;
+  std::vector<double> seconds;
+  int done = 0;   ///< frames made
+  int begun = 0;  ///< the frame with which the present texture began
+  bool embedded = false, started = false;
+  std::string color;  ///< whose numbers a step has to load
+  mutable std::mutex mutex;
+
+  Settings& settings() { return session.settings; }
+
+  void open(SurfaceFlow surface) {
+    check_surface(surface);
+    StageTimers::Scope scope(pipeline->timers(), "read");
+    SurfaceSeries series;
+    series.name = surface.name;
+    series.times = surface.times;
+    const auto shared = std::make_shared<SurfaceFlow>(std::move(surface));
+    const auto first = std::make_shared<bool>(true);
+    series.load = [this, shared, first](std::size_t step) {
+      const Surface loaded = step_of(*shared, step, *first, color);
+      *first = false;
+      return loaded;
+    };
+    FlowLog log;
+    log.warn = [this](const std::string& sentence) { tell(options, sentence); };
+    log.chosen = [](const VectorChoice&) {};
+    color = settings().color;
+    input = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings(), log, options.stop));
+    span = flow_span(settings(), {input->start(), input->end()});
+  }
+
+  void announce(const char* name, double fraction) {
+    check_stop(options.stop);
+    if (options.progress) options.progress({name, fraction, 0, 0, 0});
+  }
+
+  double time_of(int frame) const {
+    return span.start + (span.end - span.start) * (double(frame) / std::max(1, span.steps));
+  }
+
+  /// Embeds the surface and starts the flow where that has not been done with the knobs as they are.
+  void prepare() {
+    pipeline->parameters = settings().flow;
+    pipeline->parameters.steps = std::max(1, span.steps - begun);
+    if (!embedded) {
+      announce("embed", 0);
+      started = false;
+      const PreparedSurface& surface = input->surface();
+      pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
+      embedded = true;
+    }
+    if (!started) {
+      announce("warm-up", 0.02);
+      begun = done;
+      vectors = flow_vectors(*input, time_of(begun), span.end);
+      pipeline->parameters.steps = span.steps - begun;
+      pipeline->flow().start(vectors);
+      started = true;
+    }
+  }
+
+  bool step() {
+    if (done >= span.steps) return false;
+    prepare();
+    const auto before = std::chrono::steady_clock::now();
+    pipeline->flow().step();
+    seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
+    ++done;
+    announce("step", double(done) / span.steps);
+    return true;
+  }
+
+  FlowPicture picture(const PictureOptions& asked) {
+    prepare();
+    Session view = session;
+    if (asked.width) apply_knobs(view.settings, {{"width", std::int64_t(*asked.width)}}, Job::flow);
+    if (asked.height) apply_knobs(view.settings, {{"height", std::int64_t(*asked.height)}}, Job::flow);
+    if (asked.view) view.settings.camera = *asked.view;
+    if (asked.camera) {
+      const CameraView& c = *asked.camera;
+      const Vec3d eye = vec(c.eye), target = vec(c.target), up = vec(c.up);
+      if (!(length(target - eye) > 0) || !(length(up) > 0) || !(c.height > 0) || !is_finite(eye) ||
+          !is_finite(target) || !is_finite(up) || !std::isfinite(c.height))
+        throw Error("this is not a camera", "eye and target must differ, up must not be zero, height must be positive");
+      view.camera = Camera{eye, target, up, c.height, c.orthographic};
+    }
+    check_picture_settings(view.settings);
+    Image image = FlowPainter(*pipeline, *input, view, span.frame_time).paint(std::max(0, done - 1));
+    return {image.width, image.height, std::move(image.pixels)};
+  }
+};
+
+Flow::Flow(SurfaceFlow surface, const KnobValues& knobs, RunOptions options) : state_(std::make_unique<State>()) {
+  library_call([&] {
+    State& s = *state_;
+    s.options = std::move(options);
+    apply_knobs(s.settings(), knobs, Job::flow);
+    if (!surface.vectors) {
+      if (surface.vector_name.empty() || surface.vector_name[0] != '@')
+        throw Error("the flow has no vectors", "", "give them, or name an analytic field: @swirl or @rotation");
+    }
+    s.settings().vectors = surface.vector_name;
+    check_picture_settings(s.settings());
+    colormap(s.settings().colormap);
+    check_color_range(s.settings());
+    s.device = open_library_device(s.options);
+    const Caller caller(s.mutex, s.options.threads);
+    s.pipeline = make_flow_pipeline(*s.device);
+    s.pipeline->watch(s.options.stop);
+    s.open(std::move(surface));
+  });
+}
+
+Flow::~Flow() = default;
+Flow::Flow(Flow&&) noexcept = default;
+Flow& Flow::operator=(Flow&&) noexcept = default;
+
+int Flow::frames() const { return state_->span.steps; }
+int Flow::frame() const { return state_->done; }
+
+bool Flow::step() {
+  return library_call([&] {
+    const Caller caller(state_->mutex, state_->options.threads);
+    return state_->step();
+  });
+}
+
+double Flow::time() const { return state_->started ? state_->pipeline->flow().time() : state_->time_of(state_->done); }
+
+void Flow::set(const std::string& knob, const KnobValue& value) {
+  library_call([&] {
+    State& s = *state_;
+    const Caller caller(s.mutex, 0);
+    Settings changed = s.settings();
+    apply_knobs(changed, {{knob, value}}, Job::flow);
+    for (const KnobDescription& each : describe_knobs(Job::flow))
+      if (each.name == knob && !each.live)
+        throw Error(fmt::format("{} cannot be changed any more", knob), "the data are prepared when a run begins",
+                    "begin a new run");
+    check_picture_settings(changed);
+    colormap(changed.colormap);
+    check_color_range(changed);
+    if (changed.color != s.settings().color) {
+      const std::string before = s.color;
+      s.color = changed.color;
+      try {
+        s.input->set_color(changed.color);
+      } catch (...) {
+        s.color = before;
+        throw;
+      }
+    }
+    s.settings() = changed;
+    if (embedding_knobs.contains(knob)) s.embedded = s.started = false;
+    if (start_knobs.contains(knob)) s.started = false;
+    if (s.started) {
+      s.pipeline->parameters = changed.flow;
+      s.pipeline->parameters.steps = s.span.steps - s.begun;
+    }
+  });
+}
+
+KnobValue Flow::get(const std::string& knob) const {
+  return library_call([&] { return knob_value(state_->session.settings, knob, Job::flow); });
+}
+
+FlowPicture Flow::picture(const PictureOptions& options) {
+  return library_call([&] {
+    const Caller caller(state_->mutex, state_->options.threads);
+    return state_->picture(options);
+  });
+}
+
+FlowCells Flow::cells() const {
+  return library_call([&] {
+    const Caller caller(state_->mutex, state_->options.threads);
+    state_->prepare();
+    const FlowValues v = state_->pipeline->flow().values();
+    FlowCells cells;
+    cells.value = v.value;
+    for (const Vec3d& p : v.centre) cells.centre.push_back({p.x, p.y, p.z});
+    for (const Vec3d& p : v.closest_point) cells.closest_point.push_back({p.x, p.y, p.z});
+    for (const Vec3f& p : v.velocity) cells.velocity.push_back({p.x, p.y, p.z});
+    for (const Vec3f& p : v.normal) cells.normal.push_back({p.x, p.y, p.z});
+    return cells;
+  });
+}
+
+std::vector<float> Flow::sample(std::span<const std::array<double, 3>> points) {
+  return library_call([&] {
+    const Caller caller(state_->mutex, state_->options.threads);
+    state_->prepare();
+    std::vector<Vec3d> places;
+    for (const auto& p : points) places.push_back(vec(p));
+    for (const Vec3d& p : places)
+      if (!is_finite(p)) throw Error("a point is not finite");
+    return state_->pipeline->flow().sample_shown(places);
+  });
+}
+
+void Flow::save(const std::filesystem::path& file) const {
+  library_call([&] {
+    const Caller caller(state_->mutex, state_->options.threads);
+    state_->prepare();
+    if (file.extension() != ".vtp") throw Error("cannot write " + file.string(), "", "values are written as .vtp");
+    write_flow_values(state_->pipeline->flow(), file, state_->pipeline->flow().time());
+  });
+}
+
+std::string Flow::report() const {
+  return library_call([&] {
+    State& s = *state_;
+    const Caller caller(s.mutex, s.options.threads);
+    s.prepare();
+    nlohmann::json report = report_frame("flow", *s.device, s.pipeline->timers(), s.pipeline->peak_bytes());
+    add_flow_report(report, *s.input, s.vectors, s.settings(), s.pipeline->flow().embedding(), s.seconds);
+    return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  });
+}
+
+void save(const std::filesystem::path& file, const FlowPicture& picture) {
+  library_call([&] {
+    if (picture.width < 1 || picture.height < 1 ||
+        picture.pixels.size() != std::size_t(4) * std::size_t(picture.width) * std::size_t(picture.height))
+      throw Error("the picture has no pixels");
+    Image image;
+    image.width = picture.width;
+    image.height = picture.height;
+    image.pixels = picture.pixels;
+    write_png(file, image);
+  });
+}
+
+}  // namespace nacre

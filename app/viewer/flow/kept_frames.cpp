@@ -1,0 +1,40 @@
+// Nacre: frames of a flow that have been shown.
+#include "app/viewer/flow/kept_frames.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace nacre {
+
+void KeptFrames::keep(int position, const Buffer& shown, double time, const std::vector<float>& scalar,
+                      std::shared_ptr<const std::vector<Vec3f>> vectors) {
+  drop(position);
+  KeptFrame frame;
+  frame.bytes = shown.bytes() + scalar.size() * sizeof(float) + (vectors ? vectors->size() * sizeof(Vec3f) : 0);
+  if (frame.bytes > most_bytes_) return;
+  while (bytes_ + frame.bytes > most_bytes_) drop_oldest();
+  frame.values = Buffer(shown.bytes());
+  glCopyNamedBufferSubData(shown.id(), frame.values.id(), 0, 0, GLsizeiptr(shown.bytes()));
+  frame.texture = BufferTexture(frame.values, GL_R32F);
+  frame.time = time;
+  frame.scalar = scalar;
+  frame.vectors = std::move(vectors);
+  frame.age = ++age_;
+  bytes_ += frame.bytes;
+  frames_.emplace(position, std::move(frame));
+}
+
+void KeptFrames::drop(int position) {
+  const auto found = frames_.find(position);
+  if (found == frames_.end()) return;
+  bytes_ -= found->second.bytes;
+  frames_.erase(found);
+}
+
+void KeptFrames::drop_oldest() {
+  drop(std::min_element(frames_.begin(), frames_.end(), [](const auto& a, const auto& b) {
+         return a.second.age < b.second.age;
+       })->first);
+}
+
+}  // namespace nacre

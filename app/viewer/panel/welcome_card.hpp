@@ -1,0 +1,34 @@
+// Nacre: what a newcomer sees first: how to open something of one's own, or something that is there.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/scene/free_area.hpp"
+
+namespace nacre {
+
+class WelcomeCard {
+ public:
+  /// What was clicked on.
+  struct Wish {
+    bool open = false;                          ///< the dialog
+    std::string sample;                         ///< empty: none
+    std::string tour;                           ///< text of a session; empty: none
+    std::optional<std::filesystem::path> file;  ///< of those opened last
+  };
+
+  void show() { shown_ = true; }
+  void hide() { shown_ = false; }
+  bool is_shown() const { return shown_; }
+
+  /// With Dear ImGui, over the middle of `area`, while it is shown. Every choice hides it.
+  Wish draw(const FreeArea& area, const std::vector<std::filesystem::path>& recent);
+
+ private:
+  bool shown_ = false;
+};
+
+}  // namespace nacre

@@ -1,0 +1,24 @@
+// Nacre: what became of the stars that triangles were read off from.
+#pragma once
+
+#include <cstdint>
+
+namespace nacre {
+
+/// Of one mesh.
+struct StarCounts {
+  std::int64_t stars = 0;        ///< a particle has one on each of its surfaces
+  std::int64_t disagreeing = 0;  ///< of these, with a triangle that another corner does not have
+  std::int64_t holes = 0;        ///< between agreed triangles, filled one by one
+  std::int64_t filled = 0;       ///< triangles in them
+  std::int64_t left_out = 0;     ///< particles that no triangle has
+};
+
+/// Of all meshes that an improvement made.
+struct StarUse {
+  std::int64_t meshes = 0;     ///< from stars
+  std::int64_t fallbacks = 0;  ///< by the Delaunay triangulation, since the stars' mesh was not sound
+  StarCounts last;             ///< of the last mesh that was tried
+};
+
+}  // namespace nacre

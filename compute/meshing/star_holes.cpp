@@ -1,0 +1,259 @@
+// Nacre: what stars leave open between the triangles that they agree on, and how it is filled.
+#include "compute/meshing/star_holes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+namespace nacre {
+namespace {
+
+constexpr std::size_t longest_loop = 160;  // the time to fill one grows with its cube
+constexpr double fold = 1e3, taken = 1e9;  // prices of a triangle that faces aside, and of an edge that there is
+
+/// An edge of a hole: a triangle that has it is wanted.
+struct Side {
+  std::uint32_t from, to;
+  bool used = false;
+};
+
+bool agreed_from(const Star& star, int k) { return star.agreed >> k & 1; }
+
+/// Whether the triangle on the far side of edge (item, ring[k]) is agreed: the one that has the edge backwards.
+bool agreed_to(const Star& star, int k) {
+  if (k > 0) return agreed_from(star, k - 1);
+  return star.closed && agreed_from(star, star.count - 1);
+}
+
+bool is_used(const Star& star) { return star.agreed != 0; }
+
+std::vector<Side> list_sides(const StarItems& items, const std::vector<Star>& stars) {
+  std::vector<Side> sides;
+  for (std::uint32_t i = 0; i < items.count(); ++i) {
+    const Star& star = stars[i];
+    const std::uint32_t next = items.next[i];
+    bool has_next = false;
+    for (int k = 0; k < star.count; ++k) {
+      const std::uint32_t r = star.ring[std::size_t(k)];
+      has_next = has_next || (r == next && agreed_from(star, k));
+      if (agreed_to(star, k) && !agreed_from(star, k) && items.next[r] != i && r != next) sides.push_back({i, r});
+    }
+    if (next != none && !has_next && items.next[next] != i) sides.push_back({i, next});
+  }
+  return sides;
+}
+
+/// The angle by which one turns from a to b, clockwise seen against the normal; in (0, 2 pi].
+double clockwise(const Vec3d& normal, const Vec3d& a, const Vec3d& b) {
+  const double angle = std::atan2(dot(normal, cross(b, a)), dot(a, b) - dot(a, normal) * dot(b, normal));
+  return angle > 0 ? angle : angle + 2 * M_PI;
+}
+
+/// The side to go on with from the end of `side`: the first one clockwise.
+Side* follow(std::vector<Side>& sides, const Side& side, const StarItems& items) {
+  const auto begin =
+      std::lower_bound(sides.begin(), sides.end(), side.to, [](const Side& s, std::uint32_t v) { return s.from < v; });
+  Side* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  const Vec3d at = items.place[side.to], back = items.place[side.from] - at;
+  for (auto s = begin; s != sides.end() && s->from == side.to; ++s) {
+    if (s->used) continue;
+    const double turn = clockwise(items.normal[side.to], back, items.place[s->to] - at);
+    if (turn < least) least = turn, best = &*s;
+  }
+  return best;
+}
+
+std::ptrdiff_t unused_neighbours(const std::vector<Star>& stars, const Star& star) {
+  return std::count_if(star.ring.begin(), star.ring.begin() + star.count,
+                       [&](std::uint32_t r) { return !is_used(stars[r]); });
+}
+
+/// Items that no triangle has go to the hole that most of their neighbours are at.
+void add_orphans(StarHoles& found, const StarItems& items, const std::vector<Star>& stars) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> holes_at;
+  for (std::uint32_t h = 0; h < found.holes.size(); ++h)
+    for (const std::uint32_t v : found.holes[h].loop) holes_at[v].push_back(h);
+  for (std::uint32_t i = 0; i < items.count(); ++i) {
+    const Star& star = stars[i];
+    if (is_used(star) || star.hidden || items.next[i] != none) continue;
+    std::map<std::uint32_t, int> votes;
+    for (int k = 0; k < star.count; ++k)
+      if (const auto at = holes_at.find(star.ring[std::size_t(k)]); at != holes_at.end())
+        for (const std::uint32_t h : at->second) ++votes[h];
+    const auto best =
+        std::max_element(votes.begin(), votes.end(), [](const auto& s, const auto& t) { return s.second < t.second; });
+    if (best != votes.end() && best->second >= 2)
+      found.holes[best->first].within.push_back(i);
+    else if (unused_neighbours(stars, star) >= 3)
+      ++found.alone;  // else it stands beside a surface that does without it, or for a speck of one
+  }
+}
+
+/// Fills one hole: the cheapest triangulation of its loop, then its inner items, then flips.
+class Filling {
+ public:
+  Filling(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole)
+      : items_(items), stars_(stars), hole_(hole), n_(hole.loop.size()) {}
+
+  std::vector<Triangle> run() {
+    if (n_ < 3 || n_ > longest_loop || !triangulate_loop()) return {};
+    for (const std::uint32_t v : hole_.within) insert(v);
+    if (!hole_.within.empty()) improve();
+    return triangles_;
+  }
+
+ private:
+  Vec3d place(std::uint32_t i) const { return items_.place[i]; }
+
+  /// Sum of squared edges by area (1 where equilateral), dear where it faces aside.
+  double price(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    if (a == b || b == c || c == a) return taken;
+    const Vec3d u = place(b) - place(a), v = place(c) - place(a), w = place(c) - place(b), n = cross(u, v);
+    const double twice_area = length(n), edges = dot(u, u) + dot(v, v) + dot(w, w);
+    const Vec3d up = normalized(items_.normal[a] + items_.normal[b] + items_.normal[c]);
+    const double shape = edges / std::max(2 * std::sqrt(3.0) * twice_area, 1e-6 * edges);
+    const double facing = dot(n, up) / std::max(twice_area, 1e-300);
+    return shape + (facing < 0.3 ? fold * (0.4 - facing) : 0);
+  }
+
+  bool is_there(std::uint32_t a, std::uint32_t b) const {
+    const Star& star = stars_[a];
+    for (int k = 0; k < star.count; ++k)
+      if (star.ring[std::size_t(k)] == b) return agreed_from(star, k) || agreed_to(star, k);
+    return items_.next[a] == b || items_.previous[a] == b;
+  }
+
+  double inner_edge(std::size_t i, std::size_t j) const {
+    const bool side = j == i + 1 || (i == 0 && j + 1 == n_);
+    if (side) return 0;
+    const std::uint32_t a = hole_.loop[i], b = hole_.loop[j];
+    if (a == b || is_there(a, b)) return taken;
+    for (std::size_t k = 0; k < n_; ++k) {  // two sides of the same loop
+      const std::uint32_t s = hole_.loop[k], t = hole_.loop[(k + 1) % n_];
+      if ((s == a && t == b) || (s == b && t == a)) return taken;
+    }
+    return 0;
+  }
+
+  bool triangulate_loop() {
+    std::vector<double> cost(n_ * n_, 0);
+    std::vector<std::uint32_t> apex(n_ * n_, 0);
+    for (std::size_t span = 2; span < n_; ++span)
+      for (std::size_t i = 0; i + span < n_; ++i) {
+        const std::size_t j = i + span;
+        double best = std::numeric_limits<double>::infinity();
+        for (std::size_t k = i + 1; k < j; ++k) {
+          const double c = cost[i * n_ + k] + cost[k * n_ + j] + price(hole_.loop[i], hole_.loop[k], hole_.loop[j]);
+          if (c < best) best = c, apex[i * n_ + j] = std::uint32_t(k);
+        }
+        cost[i * n_ + j] = best + inner_edge(i, j);
+      }
+    if (!(cost[n_ - 1] < taken)) return false;
+    if (n_ == 3 && stars_has_backwards()) return false;
+    emit(0, n_ - 1, apex);
+    return true;
+  }
+
+  bool stars_has_backwards() const {
+    const Star& star = stars_[hole_.loop[0]];
+    for (int k = 0; k < star.count; ++k)
+      if (star.ring[std::size_t(k)] == hole_.loop[2] && agreed_from(star, k) &&
+          star.ring[std::size_t(star.after(k))] == hole_.loop[1])
+        return true;
+    return false;
+  }
+
+  void emit(std::size_t i, std::size_t j, const std::vector<std::uint32_t>& apex) {
+    if (j < i + 2) return;
+    const std::size_t k = apex[i * n_ + j];
+    triangles_.push_back({hole_.loop[i], hole_.loop[k], hole_.loop[j]});
+    emit(i, k, apex);
+    emit(k, j, apex);
+  }
+
+  /// Divides the triangle that an item is in or next to.
+  void insert(std::uint32_t v) {
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const auto [a, b, c] = std::array{triangles_[t].a, triangles_[t].b, triangles_[t].c};
+      const double worst = std::max({price(a, b, v), price(b, c, v), price(c, a, v)});
+      if (worst < least) least = worst, best = t;
+    }
+    if (least >= fold) return;  // it lies aside, and stays out
+    const Triangle t = triangles_[best];
+    triangles_[best] = {t.a, t.b, v};
+    triangles_.push_back({t.b, t.c, v});
+    triangles_.push_back({t.c, t.a, v});
+  }
+
+  /// Exchanges diagonals while that is cheaper.
+  void improve() {
+    for (int round = 0; round < 50; ++round) {
+      bool changed = false;
+      for (std::size_t s = 0; s < triangles_.size(); ++s)
+        for (std::size_t t = s + 1; t < triangles_.size(); ++t) changed = flip(triangles_[s], triangles_[t]) || changed;
+      if (!changed) return;
+    }
+  }
+
+  bool flip(Triangle& s, Triangle& t) const {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const std::uint32_t a = s[i], b = s[(i + 1) % 3], c = s[(i + 2) % 3], d = t[(j + 2) % 3];
+        if (t[j] != b || t[(j + 1) % 3] != a) continue;
+        if (c == d || is_there(c, d) || in_patch(c, d)) return false;
+        if (!(price(a, d, c) + price(d, b, c) < price(a, b, c) + price(b, a, d) - 1e-9)) return false;
+        s = {a, d, c};
+        t = {d, b, c};
+        return true;
+      }
+    return false;
+  }
+
+  bool in_patch(std::uint32_t a, std::uint32_t b) const {
+    const auto has = [](const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; };
+    return std::any_of(triangles_.begin(), triangles_.end(), [&](const Triangle& t) { return has(t, a) && has(t, b); });
+  }
+
+  const StarItems& items_;
+  const std::vector<Star>& stars_;
+  const StarHole& hole_;
+  std::size_t n_;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace
+
+StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars) {
+  std::vector<Side> sides = list_sides(items, stars);
+  StarHoles found;
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    if (sides[s].used) continue;
+    StarHole hole;
+    const std::uint32_t start = sides[s].from;
+    Side* side = &sides[s];
+    while (side) {
+      side->used = true;
+      hole.loop.push_back(side->from);
+      if (side->to == start) break;
+      side = follow(sides, *side, items);
+    }
+    if (!side)
+      ++found.open;
+    else
+      found.holes.push_back(std::move(hole));
+  }
+  add_orphans(found, items, stars);
+  return found;
+}
+
+std::vector<Triangle> fill_hole(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole) {
+  return Filling(items, stars, hole).run();
+}
+
+}  // namespace nacre

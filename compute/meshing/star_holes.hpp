@@ -1,0 +1,30 @@
+// Nacre: what stars leave open between the triangles that they agree on, and how it is filled.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compute/meshing/stars.hpp"
+
+namespace nacre {
+
+/// A hole of one surface: items around it, so that what is to be filled lies to the left seen against the normals, and
+/// items within it that no triangle has yet. Begins with its smallest item.
+struct StarHole {
+  std::vector<std::uint32_t> loop, within;
+};
+
+struct StarHoles {
+  std::vector<StarHole> holes;
+  std::int64_t alone = 0;  ///< items in no hole without a triangle, among others such: maybe a body of its own
+  std::int64_t open = 0;   ///< chains of edges that do not close: a rim is broken there
+};
+
+/// All holes, ascending by their smallest items.
+StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars);
+
+/// The triangles that fill a hole, corners as items, counter-clockwise. Empty where it cannot be filled without a
+/// triangle or an edge that there is already.
+std::vector<Triangle> fill_hole(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole);
+
+}  // namespace nacre

@@ -1,0 +1,158 @@
+// Nacre: the triangles between materials, read off from the particles themselves.
+#include "compute/meshing/star_mesh.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "compute/meshing/star_holes.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr double most_disagreeing = 0.12;  // share of the stars: beyond, the surfaces are too coarsely sampled
+constexpr std::size_t largest_hole = 40;   // sides: beyond, its shape is no longer given by what is around it
+
+bool agrees(const StarItems& items, const Star& star, std::uint32_t i) {
+  if (star.count < 2 || (!star.closed && items.next[i] == none)) return false;
+  for (int k = 0; k < star.count; ++k)
+    if ((star.closed || k + 1 < star.count) && !(star.agreed >> k & 1)) return false;
+  return true;
+}
+
+/// The triangles that all corners agree on, each listed by its smallest item, as items.
+std::vector<Triangle> agreed_triangles(const std::vector<Star>& stars) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(2 * stars.size());
+  for (std::uint32_t i = 0; i < stars.size(); ++i)
+    for (int k = 0; k < stars[i].count; ++k) {
+      if (!(stars[i].agreed >> k & 1)) continue;
+      const std::uint32_t a = stars[i].ring[std::size_t(k)], b = stars[i].ring[std::size_t(stars[i].after(k))];
+      if (i < a && i < b) triangles.push_back({i, a, b});
+    }
+  return triangles;
+}
+
+/// Whether edges of filled holes are passed once each way, counting the agreed triangles beside them.
+bool edges_match(const StarItems& items, const std::vector<Star>& stars, std::span<const Triangle> filled) {
+  std::vector<std::array<std::uint32_t, 2>> edges;
+  for (const Triangle& t : filled)
+    for (int k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
+  std::sort(edges.begin(), edges.end());
+  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+  const auto agreed = [&](std::uint32_t a, std::uint32_t b) {
+    const Star& star = stars[a];
+    for (int k = 0; k < star.count; ++k)
+      if (star.ring[std::size_t(k)] == b) return (star.agreed >> k & 1) != 0;
+    return false;
+  };
+  return std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
+    if (agreed(e[0], e[1])) return false;
+    if (items.next[e[0]] == e[1]) return true;  // the surface ends here
+    return agreed(e[1], e[0]) || std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]});
+  });
+}
+
+/// Of two triangles with the same corners, what is left without the material between them: one triangle or, where the
+/// same material is on both outer sides, none. Both are used up, the first one for what is left.
+void join_doubles(Triangle& first, std::array<std::uint16_t, 2>& first_materials,
+                  std::array<std::uint16_t, 2>& second_materials) {
+  const auto [low, high] = first_materials;
+  const bool low_between = low == second_materials[0] || low == second_materials[1];
+  const std::uint16_t between = low_between ? low : high;
+  const std::uint16_t beyond = second_materials[0] == between ? second_materials[1] : second_materials[0];
+  std::array<std::uint16_t, 2> left = {low_between ? beyond : low, low_between ? high : beyond};
+  if (left[0] > left[1]) std::swap(left[0], left[1]), std::swap(first.b, first.c);
+  const bool gone = first_materials == second_materials;
+  first_materials = gone ? std::array<std::uint16_t, 2>{0, 0} : left;
+  second_materials = {0, 0};
+}
+
+/// A material that is no thicker than one triangle is taken away there: two surfaces that have it on one of their sides
+/// would have the same corners, all of which are on rims.
+void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_items, StarMesh& made) {
+  std::vector<std::pair<std::array<std::uint32_t, 3>, std::size_t>> corners;
+  for (std::size_t i = 0; i < with_items.size(); ++i) {
+    const Triangle& t = with_items[i];
+    if (items.next[t.a] == none || items.next[t.b] == none || items.next[t.c] == none) continue;
+    std::array<std::uint32_t, 3> c = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
+    std::sort(c.begin(), c.end());
+    corners.push_back({c, i});
+  }
+  std::sort(corners.begin(), corners.end());
+  bool any = false;
+  const auto there = [&](std::size_t i) { return made.materials[i][1] != 0; };
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    for (std::size_t k = i; k > 0 && corners[k - 1].first == corners[i].first && there(corners[i].second); --k) {
+      const std::size_t s = corners[k - 1].second, t = corners[i].second;
+      if (!there(s)) continue;
+      join_doubles(made.triangles[t], made.materials[t], made.materials[s]);
+      any = true;
+    }
+  if (!any) return;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < made.triangles.size(); ++i)
+    if (there(i)) made.triangles[kept] = made.triangles[i], made.materials[kept++] = made.materials[i];
+  made.triangles.resize(kept), made.materials.resize(kept);
+}
+
+/// Fills the holes; false where one cannot be filled.
+bool fill(const StarItems& items, const std::vector<Star>& stars, const std::vector<StarHole>& holes,
+          std::vector<Triangle>& triangles) {
+  std::vector<std::vector<Triangle>> fillings(holes.size());
+  tbb::parallel_for(std::size_t(0), holes.size(), [&](std::size_t i) {
+    if (holes[i].loop.size() <= largest_hole) fillings[i] = fill_hole(items, stars, holes[i]);
+  });
+  for (const std::vector<Triangle>& filling : fillings) {
+    if (filling.empty()) return false;
+    triangles.insert(triangles.end(), filling.begin(), filling.end());
+  }
+  return true;
+}
+
+/// Whether each material that has an interface has triangles.
+bool has_all_materials(const StarItems& items, const StarMesh& made) {
+  std::vector<std::uint8_t> there(0x10000, 0);
+  for (const auto& [low, high] : made.materials) there[low] = there[high] = 1;
+  return std::all_of(items.materials.begin(), items.materials.end(),
+                     [&](const auto& pair) { return there[pair[0]] && there[pair[1]]; });
+}
+
+}  // namespace
+
+StarMesh mesh_from_stars(const StarParticles& particles) {
+  StarMesh made;
+  const StarItems items = star_items(particles);
+  made.counts.stars = std::int64_t(items.count());
+  if (items.open_rims > 0) return made;
+  const std::vector<Star> stars = find_stars(items);
+  for (std::uint32_t i = 0; i < items.count(); ++i) made.counts.disagreeing += !agrees(items, stars[i], i);
+  if (double(made.counts.disagreeing) > most_disagreeing * double(items.count())) return made;
+  const StarHoles found = find_holes(items, stars);
+  made.counts.holes = std::int64_t(found.holes.size());
+  if (found.open > 0 || found.alone > 0) return made;
+
+  std::vector<Triangle> triangles = agreed_triangles(stars);
+  const std::size_t agreed = triangles.size();
+  if (!fill(items, stars, found.holes, triangles)) return made;
+  const std::span<const Triangle> filled = std::span(triangles).subspan(agreed);
+  made.counts.filled = std::int64_t(filled.size());
+  if (!edges_match(items, stars, filled)) return made;
+
+  std::vector<std::uint8_t> used(particles.count(), 0);
+  made.triangles.reserve(triangles.size());
+  made.materials.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    made.triangles.push_back({items.particle[t.a], items.particle[t.b], items.particle[t.c]});
+    made.materials.push_back(items.materials[items.surface[t.a]]);
+  }
+  remove_doubles(items, triangles, made);
+  for (const Triangle& t : made.triangles)
+    for (int k = 0; k < 3; ++k) used[t[k]] = 1;
+  made.counts.left_out = std::count(used.begin(), used.end(), 0);
+  made.sound = !made.triangles.empty() && has_all_materials(items, made);
+  return made;
+}
+
+}  // namespace nacre

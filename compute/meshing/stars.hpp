@@ -1,0 +1,56 @@
+// Nacre: triangles read off from the particles themselves: each finds its neighbours, and a triangle stands where its
+// three corners agree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "compute/math/vec.hpp"
+#include "compute/meshing/curve_links.hpp"
+
+namespace nacre {
+
+/// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
+/// particle.
+struct StarItems {
+  std::vector<Vec3d> place, normal;  ///< the unit normal towards the lower material
+  std::vector<double> size;
+  std::vector<std::uint32_t> particle;
+  std::vector<std::uint32_t> surface;         ///< number of its surface
+  std::vector<std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the left
+                                              ///< of the rim, seen against the normal; `none` off the rims
+  std::vector<std::array<std::uint16_t, 2>> materials;  ///< per surface, ascending
+  std::vector<std::uint32_t> first;                     ///< per surface and one more: its first item
+  std::int64_t open_rims = 0;                           ///< items at which a rim begins or ends
+
+  std::size_t count() const { return place.size(); }
+};
+
+StarItems star_items(const StarParticles& particles);
+
+/// The neighbours of one item, counter-clockwise: those whose bisecting planes bound its Voronoi cell in the tangent
+/// plane. On a rim from the next item of the rim to the previous one, else closed.
+struct Star {
+  static constexpr int most = 20;
+  std::array<std::uint32_t, most> ring;
+  std::uint8_t count = 0;
+  bool closed = false;
+  bool hidden = false;       ///< another item is in the same place; it has no neighbours
+  std::uint32_t gaps = 0;    ///< bit k: ring[k] and the one after it are no neighbours of each other
+  std::uint32_t agreed = 0;  ///< bit k: triangle (item, ring[k], the one after it) is in the stars of all its corners
+
+  int after(int k) const { return k + 1 == count ? 0 : k + 1; }
+  /// Whether a triangle may begin with ring[k].
+  bool has_triangle(int k) const { return !(gaps >> k & 1) && (closed || k + 1 < count) && count > 1; }
+  bool has(std::uint32_t a, std::uint32_t b) const {
+    for (int k = 0; k < count; ++k)
+      if (ring[std::size_t(k)] == a) return has_triangle(k) && ring[std::size_t(after(k))] == b;
+    return false;
+  }
+};
+
+/// The stars of all items, with what is agreed marked.
+std::vector<Star> find_stars(const StarItems& items);
+
+}  // namespace nacre

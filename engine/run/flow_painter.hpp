@@ -1,0 +1,37 @@
+// Nacre: frames of a flow as pictures, with legend, time stamp and axes.
+#pragma once
+
+#include <array>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/picture/colormap.hpp"
+#include "engine/picture/image.hpp"
+#include "engine/run/shown_colours.hpp"
+#include "engine/scene/session/session.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
+
+namespace nacre {
+
+/// Draws frames of one run, without OpenGL, as the knobs of `session` say. Both references and `session` must outlive
+/// it.
+class FlowPainter {
+ public:
+  /// `frame_time`: of the data, from frame to frame. Throws Error for a camera or a colour that does not exist.
+  FlowPainter(FlowPipeline& pipeline, VectorsInTime& input, const Session& session, double frame_time);
+
+  /// The frame that is shown now; `frame` counts from 0, and turns the camera by the knob `orbit`.
+  Image paint(int frame);
+
+ private:
+  FlowPipeline& pipeline_;
+  VectorsInTime& input_;
+  const Settings& settings_;
+  double frame_time_;
+  const Colormap& map_;
+  const ShownColours colours_;
+  Camera camera_;
+  std::array<float, 3> background_{1, 1, 1};
+  bool transparent_ = false;
+};
+
+}  // namespace nacre

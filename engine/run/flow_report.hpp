@@ -1,0 +1,17 @@
+// Nacre: the report of a flow run.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/scene/settings/settings.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
+
+namespace nacre {
+
+/// The report's own part: input, parameters, embedding, flow. `seconds`: how long each step took.
+void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const FlowVectors& vectors,
+                     const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds);
+
+}  // namespace nacre

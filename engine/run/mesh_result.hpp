@@ -1,0 +1,51 @@
+// Nacre: what a mesh run gives, measured and in words.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "compute/meshing/quality.hpp"
+#include "compute/meshing/topology.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+#include "engine/scene/session/mesh_materials.hpp"
+
+namespace nacre {
+
+struct MeshResult {
+  SurfaceMesh mesh;
+  TopologyReport topology;
+  SurfaceQuality quality;
+  SurfaceDistance distance;
+  std::optional<TetrahedralMesh> cells;
+  CellQuality cell_quality;
+  bool interrupted = false;  ///< the particles were stopped before they were done
+};
+
+/// Throws Error where the smallest distance of particles is above the largest.
+void check_particle_sizes(const MeshParameters& mesh);
+
+/// What a user should know of the fields before the long part begins: junctions that are left out, a very large number
+/// of particles. Full sentences.
+struct FieldRemarks {
+  std::vector<std::string> warnings, remarks;
+};
+FieldRemarks remarks_on_fields(const MeshInfo& info, const MeshParameters& parameters);
+
+/// Topology and shape of `result.mesh` (stage quality).
+void measure_triangles(MeshResult& result, int materials, StageTimers& timers);
+
+/// Fills `result.mesh` with tetrahedra (stage tetrahedra), whose longest edge is the knob `max_cell`, and measures
+/// them. `input` is the volume that the mesh was made of. Throws as fill_with_tetrahedra does.
+void fill_result(MeshResult& result, double max_cell, const MeshInput& input, StageTimers& timers,
+                 const std::atomic<bool>* stop);
+
+/// The report's own part: input, parameters, embedding, fields, particles, mesh, tetrahedra.
+void add_mesh_report(nlohmann::json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
+                     const MeshResult& result);
+
+/// The result in a few lines, for the terminal.
+std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds);
+
+}  // namespace nacre

@@ -1,0 +1,71 @@
+// Nacre: meshes of stars through the whole pipeline, beside those of Delaunay cells.
+#include <gtest/gtest.h>
+
+#include "compute/device/error.hpp"
+#include "compute/meshing/quality.hpp"
+#include "compute/meshing/topology.hpp"
+#include "tests/compute/pipeline/mesh_volumes.hpp"
+
+namespace nacre::test {
+namespace {
+
+MeshRun run_with(const char* triangles, const MeshVolume& volume, int threads = 0, const MeshParameters& base = {}) {
+  const auto device = make_cpu_device(threads);
+  MeshParameters parameters = base;
+  parameters.triangles = triangles;
+  return run_mesh(*device, volume, parameters);
+}
+
+TEST(MeshStars, AreAsGoodAsCells) {
+  for (const MeshVolume& volume : {three_materials(), three_balls(), label_balls()}) {
+    const int materials = int(volume.labels.size());
+    const MeshRun stars = run_with("stars", volume), cells = run_with("delaunay", volume);
+    EXPECT_GT(stars.info.stars.meshes, 0);
+    EXPECT_EQ(stars.info.stars.fallbacks, 0);
+    EXPECT_EQ(cells.info.stars.meshes + cells.info.stars.fallbacks, 0);
+    const TopologyReport mine = check_topology(stars.mesh, materials), other = check_topology(cells.mesh, materials);
+    EXPECT_TRUE(mine.sound());
+    for (int m = 0; m < materials; ++m) {
+      const auto i = std::size_t(m);
+      EXPECT_EQ(mine.materials[i].euler, other.materials[i].euler) << m;
+      EXPECT_NEAR(mine.materials[i].volume, other.materials[i].volume, 0.005 * std::abs(other.materials[i].volume));
+    }
+    EXPECT_NEAR(double(mine.triangles), double(other.triangles), 0.01 * double(other.triangles));
+    EXPECT_GT(surface_quality(stars.mesh).all.radius_ratio_mean,
+              surface_quality(cells.mesh).all.radius_ratio_mean - 0.005);
+    EXPECT_LT(stars.distance.facet_mean, 1.05 * cells.distance.facet_mean);
+  }
+}
+
+TEST(MeshStars, OneSeedGivesOneMeshOnAnyNumberOfThreads) {
+  const MeshRun one = run_with("stars", three_balls(), 1);
+  ASSERT_GT(one.info.stars.meshes, 0);
+  expect_same(one.mesh, run_with("stars", three_balls(), 2).mesh);
+}
+
+TEST(MeshStars, InAMirroredWorldTooNormalsPointOutwards) {
+  MeshVolume volume = three_balls();
+  volume.axes[0] = -1.0 * volume.axes[0];
+  const MeshRun stars = run_with("stars", volume);
+  ASSERT_GT(stars.info.stars.meshes, 0);
+  const TopologyReport topology = check_topology(stars.mesh, 4);
+  EXPECT_TRUE(topology.sound());
+  for (std::size_t m = 1; m < 4; ++m) EXPECT_GT(topology.materials[m].volume, 100);
+}
+
+/// Cubes of three voxels, with particles as far apart: more junctions than anything else.
+TEST(MeshStars, WhatTheyCannotMeshIsLeftToCells) {
+  MeshParameters coarse;
+  coarse.min_size = coarse.max_size = 3;
+  const MeshVolume volume = label_volume({30, 30, 30}, 3, [](const Vec3d& p) {
+    return std::min({p.x, p.y, p.z}) < 5 || std::max({p.x, p.y, p.z}) > 24
+               ? 0
+               : (int(p.x) / 3 + int(p.y) / 3 + int(p.z) / 3) % 3;
+  });
+  const MeshRun stars = run_with("stars", volume, 0, coarse);
+  EXPECT_GT(stars.info.stars.fallbacks, 0);
+  EXPECT_GT(stars.mesh.triangles.size(), 0);
+}
+
+}  // namespace
+}  // namespace nacre::test

@@ -1,0 +1,221 @@
+// Nacre: tests of the formats that solvers and slides take, by hand. tests/exchange reads them with other programs.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "compute/device/error.hpp"
+#include "engine/io/cell_faces.hpp"
+#include "engine/io/mesh_parts.hpp"
+#include "engine/io/mesh_writer.hpp"
+#include "tests/engine/io/temporary_folder.hpp"
+#include "tests/engine/io/two_bodies.hpp"
+
+namespace nacre {
+namespace {
+
+using test::body_labels;
+using test::read_all;
+using test::TemporaryFolder;
+using test::two_bodies;
+using test::two_cells;
+
+const std::vector<std::string> names = {"outside", "liver & bile", "", "kidney, left"};
+
+std::string written(const std::string& file, bool cells, const std::vector<std::string>& called = names) {
+  const TemporaryFolder folder;
+  if (cells)
+    write_tetrahedral_mesh(folder / file, two_cells(), two_bodies(), body_labels, called);
+  else
+    write_surface_mesh(folder / file, two_bodies(), body_labels, called);
+  EXPECT_EQ(folder.entries(), 1u);
+  return read_all(folder / file);
+}
+
+TEST(MeshFormats, FacesOfCellsAreEachThereOnceInUpperTriangularOrder) {
+  // A fan of three cells around the edge 0-1, numbered against the order in which they touch.
+  const std::vector<std::array<std::uint32_t, 4>> cells = {{0, 1, 4, 5}, {0, 1, 2, 3}, {0, 1, 3, 4}};
+  const std::vector<CellFace> faces = cell_faces(cells);
+  ASSERT_EQ(faces.size(), 4u * 3 - 2);
+  EXPECT_EQ(faces[0].owner, 0u);
+  EXPECT_EQ(faces[0].neighbour, 2u);
+  EXPECT_EQ(faces[1].owner, 1u);
+  EXPECT_EQ(faces[1].neighbour, 2u);
+  for (std::size_t i = 2; i < faces.size(); ++i) {
+    EXPECT_EQ(faces[i].neighbour, no_cell);
+    EXPECT_GE(faces[i].owner, faces[i - 1].owner * (i > 2));
+  }
+  for (const CellFace& face : faces) {
+    const auto& corner = tetrahedron_faces[face.owner_face];
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(face.corners[k], cells[face.owner][std::size_t(corner[k])]);
+  }
+}
+
+TEST(MeshFormats, FacesPointOutOfTheirCell) {
+  const TetrahedralMesh mesh = two_cells();
+  for (const CellFace& face : cell_faces(mesh.cells)) {
+    Vec3d centre(0, 0, 0);
+    for (const std::uint32_t corner : mesh.cells[face.owner]) centre += mesh.points[corner] * 0.25;
+    const Vec3d a = mesh.points[face.corners[0]], b = mesh.points[face.corners[1]], c = mesh.points[face.corners[2]];
+    EXPECT_GT(dot(cross(b - a, c - a), a - centre), 0);
+  }
+}
+
+TEST(MeshFormats, WordsSuitEverySolver) {
+  Identifiers words;
+  EXPECT_EQ(words.of("outside - liver & bile"), "outside_liver_bile");
+  EXPECT_EQ(words.of("Outside, LIVER (bile)"), "Outside_LIVER_bile_2") << "Abaqus has no case";
+  EXPECT_EQ(words.of("3rd ventricle"), "group_3rd_ventricle");
+  EXPECT_EQ(words.of("\u809d"), "group_");
+  const std::string wide(200, 'w');
+  EXPECT_EQ(words.of(wide).size(), 60u);
+  EXPECT_EQ(words.of(wide), std::string(58, 'w') + "_2");
+}
+
+TEST(MeshFormats, AbaqusHasSetsPerMaterialAndSurfacesPerPair) {
+  const std::string file = written("a.inp", true);
+  const std::string rest = file.substr(file.find("** liver"));
+  EXPECT_EQ(rest,
+            "** liver & bile\n*ELEMENT, TYPE=C3D4, ELSET=liver_bile\n1, 1, 2, 3, 4\n"
+            "*NSET, NSET=liver_bile\n1, 2, 3, 4\n"
+            "** kidney, left\n*ELEMENT, TYPE=C3D4, ELSET=kidney_left\n2, 1, 3, 2, 5\n"
+            "*NSET, NSET=kidney_left\n1, 2, 3, 5\n"
+            "** outside - liver & bile\n*SURFACE, NAME=liver_bile_outside, TYPE=ELEMENT\n1, S2\n1, S3\n1, S4\n"
+            "** outside - kidney, left\n*SURFACE, NAME=kidney_left_outside, TYPE=ELEMENT\n2, S2\n2, S3\n2, S4\n"
+            "** liver & bile - kidney, left\n*SURFACE, NAME=liver_bile_kidney_left, TYPE=ELEMENT\n1, S1\n"
+            "*SURFACE, NAME=kidney_left_liver_bile, TYPE=ELEMENT\n2, S1\n");
+  EXPECT_NE(file.find("*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n"), file.npos);
+}
+
+TEST(MeshFormats, AbaqusSurfacesAreShellsWithTwoSides) {
+  const std::string file = written("a.inp", false, {});
+  EXPECT_NE(file.find("*ELEMENT, TYPE=S3, ELSET=material_0_5\n1, 2, 3, 4\n2, 1, 4, 3\n3, 1, 2, 4\n"
+                      "*NSET, NSET=material_0_5\n1, 2, 3, 4\n"),
+            file.npos);
+  EXPECT_NE(file.find("*SURFACE, NAME=material_5_300_SPOS, TYPE=ELEMENT\nmaterial_5_300, SPOS\n"
+                      "*SURFACE, NAME=material_5_300_SNEG, TYPE=ELEMENT\nmaterial_5_300, SNEG\n"),
+            file.npos);
+}
+
+TEST(MeshFormats, AbaqusHasAtMostSixteenNumbersInALine) {
+  SurfaceMesh mesh;
+  for (int i = 0; i < 33; ++i) mesh.points.push_back({double(i), double(i % 2), double(i * i)});
+  for (std::uint32_t i = 0; i + 2 < 33; ++i) mesh.triangles.push_back({i, i + 1, i + 2});
+  mesh.materials.assign(mesh.triangles.size(), {0, 1});
+  const TemporaryFolder folder;
+  write_surface_mesh(folder / "a.inp", mesh, body_labels);
+  const std::string file = read_all(folder / "a.inp");
+  const std::size_t set = file.find("*NSET"), begin = file.find('\n', set) + 1;
+  EXPECT_EQ(file.substr(begin, file.find('*', begin) - begin),
+            "1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16\n"
+            "17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32\n33\n");
+}
+
+TEST(MeshFormats, Gmsh4HasAnEntityPerGroup) {
+  const std::string file = written("a.msh4", true);
+  EXPECT_TRUE(file.starts_with(std::string("$MeshFormat\n4.1 1 8\n\1\0\0\0\n$EndMeshFormat\n", 40)));
+  EXPECT_NE(file.find("$PhysicalNames\n5\n2 1 \"outside - liver & bile\"\n"), file.npos);
+  EXPECT_NE(file.find("\n3 5 \"liver & bile\"\n3 300 \"kidney, left\"\n$EndPhysicalNames\n"), file.npos);
+  std::size_t at = file.find("$Entities\n") + 10 + 32;
+  const auto take = [&]<class T>(T) {
+    T value;
+    std::memcpy(&value, &file[at], sizeof value);
+    at += sizeof value;
+    return value;
+  };
+  std::vector<std::int32_t> bounds;
+  for (int entity = 0; entity < 5; ++entity) {
+    EXPECT_EQ(take(std::int32_t()), (std::array{1, 2, 3, 5, 300}[std::size_t(entity)]));
+    at += 48;
+    EXPECT_EQ(take(std::uint64_t()), 1u);
+    at += 4;
+    for (std::uint64_t left = take(std::uint64_t()); left > 0; --left) bounds.push_back(take(std::int32_t()));
+  }
+  EXPECT_EQ(bounds, (std::vector<std::int32_t>{1, -3, 2, 3})) << "the interface of both points out of the second";
+  EXPECT_EQ(file.substr(at, 14), "\n$EndEntities\n");
+}
+
+TEST(MeshFormats, MfemHasAttributesWithNames) {
+  const std::string file = written("a.mesh", true);
+  EXPECT_TRUE(file.starts_with("MFEM mesh v1.3\n\ndimension\n3\n\nelements\n2\n5 4 0 1 2 3\n300 4 0 2 1 4\n"));
+  EXPECT_NE(
+      file.find("attribute_sets\n2\n\"liver & bile\"\n1\n5\n\"kidney, left\"\n1\n300\n\nboundary\n7\n1 2 1 2 3\n"),
+      file.npos);
+  EXPECT_NE(file.find("\nvertices\n5\n3\n0 0 0\n"), file.npos);
+}
+
+TEST(MeshFormats, FebioHasPartsSurfacesAndPairs) {
+  const std::string file = written("a.feb", true);
+  EXPECT_NE(file.find("<Elements type=\"tet4\" name=\"liver &amp; bile\">\n<elem id=\"1\">1,2,3,4</elem>\n"),
+            file.npos);
+  EXPECT_NE(file.find("<NodeSet name=\"kidney, left\">1,2,3,5</NodeSet>"), file.npos);
+  EXPECT_NE(file.find("<Surface name=\"liver &amp; bile - kidney, left\">\n<tri3 id=\"1\">1,3,2</tri3>\n"), file.npos);
+  EXPECT_NE(file.find("<Surface name=\"kidney, left - liver &amp; bile\">\n<tri3 id=\"1\">1,2,3</tri3>\n"), file.npos);
+  EXPECT_NE(file.find("<primary>liver &amp; bile - kidney, left</primary>"), file.npos);
+}
+
+TEST(MeshFormats, OpenFoamHasPatchesAndZones) {
+  const TemporaryFolder folder;
+  write_tetrahedral_mesh(folder / "a.foam", two_cells(), two_bodies(), body_labels, names);
+  const auto body = [&](const std::string& file) {
+    const std::string text = read_all(folder / ("constant/polyMesh/" + file));
+    return text.substr(text.find("}\n\n") + 3);
+  };
+  EXPECT_EQ(body("owner"), "7\n(\n0\n0\n0\n0\n1\n1\n1\n)\n");
+  EXPECT_EQ(body("neighbour"), "1\n(\n1\n)\n");
+  EXPECT_TRUE(body("faces").starts_with("7\n(\n3(0 2 1)\n"));
+  EXPECT_EQ(body("boundary"),
+            "2\n(\noutside_liver_bile\n{\n    type        patch;\n    nFaces      3;\n    startFace   1;\n}\n"
+            "outside_kidney_left\n{\n    type        patch;\n    nFaces      3;\n    startFace   4;\n}\n)\n");
+  EXPECT_EQ(body("faceZones"),
+            "1\n(\nliver_bile_kidney_left\n{\n    type        faceZone;\n    faceLabels  List<label>\n1\n(\n0\n);\n"
+            "    flipMap     List<bool>\n1\n(\n1\n);\n}\n)\n");
+  EXPECT_NE(
+      body("cellZones").find("kidney_left\n{\n    type        cellZone;\n    cellLabels  List<label>\n1\n(\n1\n);"),
+      std::string::npos);
+  EXPECT_TRUE(read_all(folder / "a.foam").empty());
+  std::ofstream(folder / "system/controlDict") << "mine";
+  write_tetrahedral_mesh(folder / "a.foam", two_cells(), two_bodies(), body_labels, names);
+  EXPECT_EQ(read_all(folder / "system/controlDict"), "mine");
+}
+
+TEST(MeshFormats, OpenFoamLeavesNothingBehindAfterAFailure) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "constant") << "a file";
+  EXPECT_THROW(write_tetrahedral_mesh(folder / "a.foam", two_cells(), two_bodies(), body_labels, names), Error);
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(MeshFormats, GltfHasAMeshPerPair) {
+  const std::string file = written("a.glb", false);
+  std::uint32_t head[5];
+  std::memcpy(head, file.data(), sizeof head);
+  EXPECT_EQ(file.substr(0, 4), "glTF");
+  EXPECT_EQ(head[1], 2u);
+  EXPECT_EQ(head[2], file.size());
+  const auto asset = nlohmann::json::parse(file.substr(20, head[3]));
+  ASSERT_EQ(asset["meshes"].size(), 3u);
+  EXPECT_EQ(asset["nodes"][3]["name"], "liver & bile - kidney, left");
+  const auto& accessor = asset["accessors"][asset["meshes"][2]["primitives"][0]["attributes"]["POSITION"].get<int>()];
+  EXPECT_EQ(accessor["count"], 3);
+  EXPECT_EQ(accessor["max"], (nlohmann::json{0.5, 0.5, 0})) << "about the centre of the box";
+  EXPECT_EQ(asset["nodes"][0]["children"], (nlohmann::json{1, 2, 3}));
+  EXPECT_EQ(asset["buffers"][0]["byteLength"].get<std::size_t>() + 28 + head[3], file.size());
+}
+
+TEST(MeshFormats, MaterialsApartHaveTheirNames) {
+  const TemporaryFolder folder;
+  for (const char* extension : {".inp", ".msh4", ".glb"}) {
+    const auto files =
+        write_material_surfaces(folder / (std::string("a") + extension), two_bodies(), body_labels, names);
+    ASSERT_EQ(files.size(), 2u);
+    const std::string file = read_all(files[1]);
+    EXPECT_NE(file.find("kidney, left"), file.npos) << extension;
+    EXPECT_EQ(file.find("outside"), file.npos) << extension;
+  }
+}
+
+}  // namespace
+}  // namespace nacre

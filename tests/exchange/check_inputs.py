@@ -1,0 +1,39 @@
+"""Nacre: compares what `nacre info` says about files of others with what they are. Usage: check_inputs.py FOLDER"""
+
+import json
+import pathlib
+import sys
+
+import nibabel
+import numpy as np
+
+from make_inputs import NAMES, labels
+
+
+def check_volume(path):
+    info, image = json.loads(path.with_name(path.name + ".json").read_text())["volume"], nibabel.load(path)
+    affine, axes, spacing = image.affine, np.array(info["axes"]), np.array(info["spacing"])
+    assert np.allclose(affine[:3, :3], (axes * spacing[:, None]).T, atol=1e-6), f"{path.name}: axes {info['axes']}"
+    assert np.allclose(affine[:3, 3], info["origin"], atol=1e-5), f"{path.name}: origin {info['origin']}"
+    found = {entry["label"]: (entry["voxels"], entry["name"]) for entry in info["labels"] if entry["label"]}
+    values = labels()
+    expected = {label: (int((values == label).sum()), name) for label, name in NAMES.items()}
+    assert found == expected, f"{path.name}: {found}, not {expected}"
+    print(f"{path.name}: as nibabel wrote it")
+
+
+if __name__ == "__main__":
+    folder = pathlib.Path(sys.argv[1])
+    check_volume(folder / "labels.mgz")
+    check_volume(folder / "labels.mgh")
+    surface = json.loads((folder / "a.flow.gii.json").read_text())
+    assert surface["triangles"] == 4 and surface["points"] == 4, surface
+    assert [(a["name"], a["components"], a["max"]) for a in surface["arrays"]] == [("flow", 3, 1)], surface["arrays"]
+    print("a.flow.gii: as nibabel wrote it")
+    case = folder / "case/liver.foam.json"
+    if case.stat().st_size:
+        found = json.loads(case.read_text())
+        assert found["triangles"] > 100 and found["times"] == [0.5, 1.5], found["times"]
+        stress = [(a["components"], a["max"]) for a in found["arrays"] if a["name"] == "wallShearStress"]
+        assert stress == [(3, 0.5)], f"liver.foam: {found['arrays']}"
+        print("liver.foam: VTK finds its patches, their wall shear stress and both steps")

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Nacre: writes a mesh with named materials in each format and has programs of others read it, and reads what they write.
+# Usage: run.sh NACRE FOLDER [PYTHON]; FOLDER keeps the Python environment for the next time.
+set -euo pipefail
+here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
+nacre=$(readlink -f "${1:?usage: run.sh NACRE FOLDER [PYTHON]}")
+folder=$(readlink -f "${2:?usage: run.sh NACRE FOLDER [PYTHON]}")
+python=$folder/venv/bin/python
+
+if ! cmp -s "$here/requirements.txt" "$folder/installed.txt"; then
+  rm -rf "$folder/venv" "$folder/installed.txt"
+  if ! "${3:-python3}" -m venv "$folder/venv" >"$folder/pip.log" 2>&1 ||
+    ! "$python" -m pip install --quiet --disable-pip-version-check -r "$here/requirements.txt" >>"$folder/pip.log" 2>&1; then
+    tail -n 3 "$folder/pip.log"
+    echo "Skipped: the packages of requirements.txt cannot be installed from PyPI"
+    exit 0
+  fi
+  cp "$here/requirements.txt" "$folder/installed.txt"
+fi
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir "$work/case"
+"$python" "$here/make_inputs.py" "$work"
+
+mesh() {
+  "$nacre" mesh "$work/labels.seg.nrrd" --max-size 3 --min-size 1.5 --quiet --out "$work/$1" "${@:2}" >/dev/null
+}
+mesh cells.vtu
+for file in cells.msh cells.msh4 cells.inp cells.mesh cells.feb case/liver.foam surface.glb; do mesh "$file"; done
+mesh surface.msh4 --surface-only
+mesh surface.inp --surface-only
+"$python" "$here/read_meshes.py" "$work"
+
+info() { "$nacre" info --json "$work/$1" "${@:2}" >"$work/$1.json"; }
+for file in labels.mgz labels.mgh; do info "$file" --names "$work/names.txt"; done
+info a.flow.gii
+if command -v checkMesh >/dev/null; then
+  head='FoamFile { version 2.0; format ascii; class dictionary; object schemes; }'
+  echo "$head" >"$work/case/system/fvSolution"
+  echo "$head ddtSchemes {} gradSchemes {} divSchemes {} laplacianSchemes {} interpolationSchemes {} snGradSchemes {}" \
+    >"$work/case/system/fvSchemes"
+  checkMesh -allTopology -case "$work/case" >"$folder/checkMesh.log" 2>&1 || true
+  grep -q "^Mesh OK" "$folder/checkMesh.log" || { cat "$folder/checkMesh.log"; exit 1; }
+  echo "checkMesh: the mesh is OK"
+else
+  echo "checkMesh is left out: OpenFOAM is not installed"
+fi
+"$python" "$here/add_steps.py" "$work/case"
+if info case/liver.foam; then :; else echo "case/liver.foam is left out: this program reads nothing through VTK"; fi
+"$python" "$here/check_inputs.py" "$work"
