@@ -7,6 +7,7 @@
 #include "compute/embedding/triangle.hpp"
 #include "compute/math/lanes.hpp"
 #include "compute/math/morton.hpp"
+#include "compute/math/packet.hpp"
 #include "compute/math/vec.hpp"
 #include "compute/math/weno4.hpp"
 
@@ -41,9 +42,10 @@ struct Divider {
     for (int k = 0; k < 5; ++k)
       if (d == 1 << k) shift = k;
   }
-  /// Exact for 0 <= i < 2^20; floors for negative ones.
-  NACRE_HD int operator()(int i) const {
-    return shift >= 0 ? i >> shift : int(std::floor((float(i) + 0.5f) * inverse));
+  /// Exact for 0 <= i < 2^20; floors for negative ones. One number or a packet.
+  template <class Int>
+  NACRE_HD_INLINE Int operator()(const Int& i) const {
+    return shift >= 0 ? i >> shift : floor_to_int((to_float(i) + 0.5f) * inverse);
   }
 };
 
@@ -73,12 +75,19 @@ struct ClosestPointGridView {
   }
 
   /// Address of a cell in the arrays, or `none` outside of the bricks.
-  NACRE_HD std::uint32_t address(const Int3& cell) const {
-    if (!inside(cell)) return none;
-    const int bx = divide(cell.x), by = divide(cell.y), bz = divide(cell.z);
-    const std::uint32_t b = brick(bx, by, bz);
-    if (b == none) return none;
-    return b * cells_per_brick() + ((cell.z - bz * sub) * sub + (cell.y - by * sub)) * sub + (cell.x - bx * sub);
+  NACRE_HD std::uint32_t address(const Int3& cell) const { return std::uint32_t(addresses<Single>(cell, true)); }
+
+  /// Addresses of one cell or several, -1 outside of the bricks and where they are masked out.
+  template <class Wide, class Int = typename Wide::Int, class Mask = typename Wide::Mask>
+  NACRE_HD_INLINE Int addresses(const Vec3<Int>& cell, Mask mask) const {
+    const Int3 size = dims();
+    mask = mask & (cell.x >= 0) & (cell.y >= 0) & (cell.z >= 0) & (cell.x < size.x) & (cell.y < size.y) &
+           (cell.z < size.z);
+    const Vec3<Int> at{divide(cell.x), divide(cell.y), divide(cell.z)};
+    const Int brick =
+        select(mask, gather(brick_index, (at.z * bricks.y + at.y) * bricks.x + at.x, mask), Wide::all(-1));
+    const Vec3<Int> in{cell.x - at.x * sub, cell.y - at.y * sub, cell.z - at.z * sub};
+    return select(brick != -1, brick * cells_per_brick() + (in.z * sub + in.y) * sub + in.x, Wide::all(-1));
   }
 
   /// Coordinates of the cell at an address.

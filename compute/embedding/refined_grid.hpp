@@ -77,30 +77,54 @@ struct RefinedGridView {
   }
 };
 
-/// `surface_cell` for cells near each other: remembers the block of the last one.
+/// What `texel` stores for cells near each other, one or several at a time: remembers the blocks of the last ones.
+template <class Wide>
+class SurfaceCellCursors {
+ public:
+  using Int = typename Wide::Int;
+  using Mask = typename Wide::Mask;
+
+  NACRE_HD_INLINE explicit SurfaceCellCursors(const RefinedGridView& texture) : texture_(texture) {}
+
+  /// With the bit `extended` where the surface does not pass through a cell; -1 where nothing is stored, and where
+  /// `mask` is not set.
+  NACRE_HD_INLINE Int texel(const Vec3<Int>& cell, Mask mask) {
+    const RefinedGridView& t = texture_;
+    const Vec3<Int> outer{t.divide(cell.x), t.divide(cell.y), t.divide(cell.z)};
+    const Mask moved = mask & ((outer.x != outer_.x) | (outer.y != outer_.y) | (outer.z != outer_.z));
+    if (any(moved)) {
+      const Int at = t.grid.template addresses<Wide>(outer, moved);
+      const Mask known = moved & (at != -1);
+      block_ = select(moved, select(known, gather(t.block, at, known), Wide::all(-1)), block_);
+      outer_ = {select(moved, outer.x, outer_.x), select(moved, outer.y, outer_.y), select(moved, outer.z, outer_.z)};
+    }
+    const Mask found = mask & (block_ != -1);
+    const Vec3<Int> in{cell.x - outer.x * t.refine, cell.y - outer.y * t.refine, cell.z - outer.z * t.refine};
+    const Int entry = block_ * t.cells_per_block() + (in.z * t.refine + in.y) * t.refine + in.x;
+    return select(found, gather(t.texel, entry, found), Wide::all(-1));
+  }
+
+ private:
+  const RefinedGridView& texture_;
+  Vec3<Int> outer_{Wide::all(-1), Wide::all(-1), Wide::all(-1)};
+  Int block_ = Wide::all(-1);
+};
+
+/// `surface_cell` for cells near each other.
 class SurfaceCellCursor {
  public:
-  NACRE_HD explicit SurfaceCellCursor(const RefinedGridView& texture) : texture_(texture) {}
+  NACRE_HD_INLINE explicit SurfaceCellCursor(const RefinedGridView& texture) : cursor_(texture) {}
 
-  NACRE_HD std::uint32_t find(const Int3& cell) {
+  NACRE_HD_INLINE std::uint32_t find(const Int3& cell) {
     const std::uint32_t value = texel(cell);
     return value == none ? none : value & ~RefinedGridView::extended;
   }
 
   /// What `texel` stores for the cell: with the bit `extended` where the surface does not pass through it.
-  NACRE_HD_INLINE std::uint32_t texel(const Int3& cell) {
-    const Int3 outer = texture_.outer(cell);
-    if (!(outer == outer_)) {
-      outer_ = outer;
-      block_ = texture_.block_of(outer);
-    }
-    return block_ == none ? none : texture_.texel[texture_.entry_in(block_, cell, outer)];
-  }
+  NACRE_HD_INLINE std::uint32_t texel(const Int3& cell) { return std::uint32_t(cursor_.texel(cell, true)); }
 
  private:
-  const RefinedGridView& texture_;
-  Int3 outer_{-1, -1, -1};
-  std::uint32_t block_ = none;
+  SurfaceCellCursors<Single> cursor_;
 };
 
 /// `values` (one per surface cell) at point `p`, linear among the texture cells around it, extended off the surface.

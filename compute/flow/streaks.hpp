@@ -8,28 +8,67 @@
 
 namespace nacre {
 
-/// A unit vector in 30 bits, 10 for each component; exact to 0.1 degrees. 0 stands for no direction.
-struct PackedDirection {
-  NACRE_HD_INLINE static std::uint32_t pack(const Vec3f& v) {
-    std::uint32_t all = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      all |= (std::uint32_t(int(std::floor(v[axis] * 511.0f + 0.5f))) & 0x3ff) << (10 * axis);
-    return all;
+/// What a streamline reads of a surface cell: unit vectors whose components have 10 bits (exact to 0.1 degrees) or 8.
+struct StreakCell {
+  std::uint32_t direction;  ///< of the flow, tangential, 10 bits for each component; 0 where nothing flows
+  std::uint32_t surface;    ///< normal, 8 bits for each component, and plane, 8 bits
+  float value;
+
+  static constexpr int direction_bits = 10, normal_bits = 8, plane_bits = 8;
+  static constexpr float direction_scale = 511, normal_scale = 127, plane_scale = 127 / 0.87f;
+
+  /// `plane`: height of the closest point above the cell's centre along the normal, in cells; at most 0.87.
+  NACRE_HD_INLINE static StreakCell of(const Vec3f& direction, const Vec3f& normal, float plane) {
+    return {packed(direction, direction_bits, direction_scale),
+            packed(normal, normal_bits, normal_scale) | bits(plane * plane_scale, plane_bits) << 3 * normal_bits, 0};
   }
-  NACRE_HD_INLINE static Vec3f unpack(std::uint32_t p) {
-    constexpr float scale = 1.0f / 511;
-    return {float(std::int32_t(p << 22) >> 22) * scale, float(std::int32_t(p << 12) >> 22) * scale,
-            float(std::int32_t(p << 2) >> 22) * scale};
+
+  NACRE_HD_INLINE static std::uint32_t bits(float a, int count) {
+    return std::uint32_t(int(std::floor(a + 0.5f))) & ((1u << count) - 1);
+  }
+  NACRE_HD_INLINE static std::uint32_t packed(const Vec3f& v, int count, float scale) {
+    return bits(v.x * scale, count) | bits(v.y * scale, count) << count | bits(v.z * scale, count) << 2 * count;
   }
 };
 
-/// What a streamline reads of a surface cell.
-struct StreakCell {
-  std::uint32_t direction;  ///< PackedDirection of the flow, tangential; 0 where nothing flows
-  std::uint32_t normal;     ///< PackedDirection
-  float plane;              ///< height of the closest point above the cell's centre along the normal, in cells
-  float value;
+/// The same, unpacked, of one cell or several.
+template <class Wide>
+struct StreakCells {
+  using Float = typename Wide::Float;
+  using Int = typename Wide::Int;
+  Int direction_word, surface_word;
+  Float value;
+
+  NACRE_HD_INLINE Vec3<Float> direction() const {
+    return vector(direction_word, StreakCell::direction_bits, 1 / StreakCell::direction_scale);
+  }
+  NACRE_HD_INLINE Vec3<Float> normal() const {
+    return vector(surface_word, StreakCell::normal_bits, 1 / StreakCell::normal_scale);
+  }
+  NACRE_HD_INLINE Float plane() const {
+    return to_float(signed_bits(surface_word, 3 * StreakCell::normal_bits, StreakCell::plane_bits)) *
+           (1 / StreakCell::plane_scale);
+  }
+
+ private:
+  NACRE_HD_INLINE static Vec3<Float> vector(const Int& word, int bits, float scale) {
+    return {to_float(signed_bits(word, 0, bits)) * scale, to_float(signed_bits(word, bits, bits)) * scale,
+            to_float(signed_bits(word, 2 * bits, bits)) * scale};
+  }
 };
+
+NACRE_HD_INLINE StreakCells<Single> load_streak_cells(const StreakCell* cells, CellIndex s, bool mask) {
+  if (!mask) return {};
+  return {std::int32_t(cells[s].direction), std::int32_t(cells[s].surface), cells[s].value};
+}
+
+#if defined(NACRE_PACKETS)
+NACRE_HD_INLINE StreakCells<Packet> load_streak_cells(const StreakCell* cells, Packet::Int s, Packet::Mask mask) {
+  static_assert(sizeof(StreakCell) == 12);
+  const auto* words = reinterpret_cast<const std::uint32_t*>(cells);
+  return {gather(words, s * 3, mask), gather(words, s * 3 + 1, mask), Packet::Float(gather(words, s * 3 + 2, mask))};
+}
+#endif
 
 /// Fills in the flow and the surface of each surface cell, from the triangle of its closest point: exact where vectors
 /// kept on a coarser grid are blurred, and at creases.
@@ -50,8 +89,7 @@ struct MarkStreakCells {
     const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
     const Vec3f tangential = v - n * dot(n, v);
     const float speed = length(tangential);
-    const std::uint32_t direction = speed > least ? PackedDirection::pack(tangential / speed) : 0;
-    cells[s] = {direction, PackedDirection::pack(n), dot(n, foot.offset), 0};
+    cells[s] = StreakCell::of(speed > least ? tangential / speed : Vec3f{}, n, dot(n, foot.offset));
   }
 };
 
@@ -70,9 +108,9 @@ struct SmoothAlongFlow {
       return value[found.cell == no_cell ? s : found.cell];
     };
     float mean = value[s];
-    if (const std::uint32_t direction = cells[s].direction) {
-      const Vec3f d = PackedDirection::unpack(direction);
-      const Vec3f p = Vec3f(0.5f) + PackedDirection::unpack(cells[s].normal) * cells[s].plane;
+    const StreakCells<Single> own = load_streak_cells(cells, s, true);
+    if (own.direction_word != 0) {
+      const Vec3f d = own.direction(), p = Vec3f(0.5f) + own.normal() * own.plane();
       mean = 0.5f * mean + 0.25f * (at(p + d) + at(p - d));
     }
     cells[s].value = mean - 0.5f;
@@ -80,49 +118,53 @@ struct SmoothAlongFlow {
 };
 
 /// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
-/// to where the flow or the surface ends or turns back.
+/// to where the flow or the surface ends or turns back; stretched, around 1/2. Streamlines of several cells run side by
+/// side where the surface allows.
 template <class Surface>
 struct ConvolveAlongFlow {
   Surface surface;
   const StreakCell* cells;
   int reach;
-  float* result;  ///< 0..1, around 1/2
 
+  using Wide = typename Surface::Wide;
+  using Float = typename Wide::Float;
+  using Int = typename Wide::Int;
+  using Mask = typename Wide::Mask;
   static constexpr float gain = 4;  ///< a mean of so many values is small
 
-  NACRE_HD void operator()(CellIndex home, const Int3& position) const {
-    result[home] = clamp01(0.5f + gain * mean(home, position));
+  NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
+    const Float shown = mean(home, position) * gain + 0.5f, black = Wide::all(0.0f), white = Wide::all(1.0f);
+    return select(shown < black, black, select(shown > white, white, shown));
   }
 
-  NACRE_HD_INLINE float mean(CellIndex home, const Int3& position) const {
-    const StreakCell own = cells[home];
-    float sum = own.value;
-    if (own.direction == 0) return sum;
-    int count = 1;
-    const Vec3f along = PackedDirection::unpack(own.direction);
-    const Vec3f start = Vec3f(0.5f) + PackedDirection::unpack(own.normal) * own.plane;
+  NACRE_HD_INLINE Float mean(const typename Surface::Index& home, const Vec3<Int>& position) const {
+    const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
+    const Vec3<Float> along = own.direction(), middle(Wide::all(0.5f));
+    const Vec3<Float> start = middle + own.normal() * own.plane();
+    Float sum = own.value, count = Wide::all(1.0f);
     for (int side = -1; side <= 1; side += 2) {
-      typename Surface::Cursor cursor(surface);
-      Vec3f p = start, d = along * float(side), before = d;
-      for (int i = 0; i < reach; ++i) {
-        p = p + d * 1.5f - before * 0.5f;  // a cell by Adams and Bashforth's second order: one direction a step
-        const Vec3f low{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
-        const NearSurfaceCell found = cursor.find(position + Int3(int(low.x), int(low.y), int(low.z)));
-        if (found.cell == no_cell) break;
-        const StreakCell cell = cells[found.cell];
-        const Vec3f next = PackedDirection::unpack(cell.direction) * float(side);
-        if (!(dot(next, d) > 0)) break;
+      typename Surface::WideCursor cursor(surface);
+      const Float sign = Wide::all(float(side));
+      Vec3<Float> p = start, d = along * sign, before = d;
+      Mask runs = own.direction_word != 0;
+      for (int i = 0; i < reach && any(runs); ++i) {
+        // A cell by Adams and Bashforth's second order: one direction a step.
+        p = p + d * Wide::all(1.5f) - before * Wide::all(0.5f);
+        const Vec3<Int> in{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
+        const auto found = cursor.find(position + in, runs);
+        const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);
+        const Vec3<Float> next = cell.direction() * sign;
+        runs = found.found & (dot(next, d) > 0.0f);
         before = d;
         d = next;
-        if (found.direct) {
-          const Vec3f n = PackedDirection::unpack(cell.normal);
-          p = p - n * (dot(n, p - low - Vec3f(0.5f)) - cell.plane);
-        }
-        sum += cell.value;
-        ++count;
+        const Vec3<Float> normal = cell.normal(), low{to_float(in.x), to_float(in.y), to_float(in.z)};
+        const Float height = dot(normal, p - low - middle) - cell.plane();
+        p = p - normal * select(found.direct, height, Wide::all(0.0f));
+        sum = sum + select(runs, cell.value, Wide::all(0.0f));
+        count = count + select(runs, Wide::all(1.0f), Wide::all(0.0f));
       }
     }
-    return sum / float(count);
+    return sum / count;
   }
 };
 

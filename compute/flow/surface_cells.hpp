@@ -19,9 +19,19 @@ struct SurfaceFoot {
   std::uint32_t triangle;
 };
 
-/// The surface cells of the grid.
-struct GridSurface {
+/// The same for one cell or several. Where `found` is not set, the rest says nothing.
+template <class Wide, class Index>
+struct NearSurfaceCells {
+  Index cell;
+  typename Wide::Mask found, direct;
+};
+
+/// The surface cells of the grid. Kernels that can do so compute with as many of them at a time as `Lanes` has.
+template <class Lanes>
+struct GridSurfaceOf {
   RefinedGridView texture;
+  using Wide = Lanes;
+  using Index = typename Wide::Int;  ///< their numbers
 
   NACRE_HD_INLINE SurfaceFoot foot(CellIndex s, const Int3&) const {
     const Float4 offset = texture.seed[s];
@@ -30,7 +40,7 @@ struct GridSurface {
 
   class Cursor {
    public:
-    NACRE_HD_INLINE explicit Cursor(const GridSurface& surface) : cursor_(surface.texture) {}
+    NACRE_HD_INLINE explicit Cursor(const GridSurfaceOf& surface) : cursor_(surface.texture) {}
     NACRE_HD_INLINE NearSurfaceCell find(const Int3& cell) {
       const std::uint32_t value = cursor_.texel(cell);
       if (value == none) return {};
@@ -40,11 +50,27 @@ struct GridSurface {
    private:
     SurfaceCellCursor cursor_;
   };
+
+  class WideCursor {
+   public:
+    NACRE_HD_INLINE explicit WideCursor(const GridSurfaceOf& surface) : cursor_(surface.texture) {}
+    NACRE_HD_INLINE NearSurfaceCells<Wide, Index> find(const Vec3<typename Wide::Int>& cell, typename Wide::Mask mask) {
+      const Index value = cursor_.texel(cell, mask);
+      return {value & ~std::int32_t(RefinedGridView::extended), value != -1, value >= 0};
+    }
+
+   private:
+    SurfaceCellCursors<Wide> cursor_;
+  };
 };
+
+using GridSurface = GridSurfaceOf<Widest>;
 
 /// The same on the octree of bricks.
 struct BrickSurface {
   BrickOctreeView view;
+  using Wide = Single;
+  using Index = CellIndex;
 
   NACRE_HD_INLINE SurfaceFoot foot(CellIndex, const Int3& position) const {
     const CellPoint point = view.point[BrickOctreeView::Cursor(view).find(position)];
@@ -69,6 +95,18 @@ struct BrickSurface {
     const BrickOctreeView& view_;
     BrickOctreeView::Cursor cursor_;
   };
+
+  class WideCursor {
+   public:
+    NACRE_HD_INLINE explicit WideCursor(const BrickSurface& surface) : cursor_(surface) {}
+    NACRE_HD_INLINE NearSurfaceCells<Wide, Index> find(const Int3& cell, bool mask) {
+      const NearSurfaceCell near = mask ? cursor_.find(cell) : NearSurfaceCell{};
+      return {near.cell, near.cell != no_cell, near.direct};
+    }
+
+   private:
+    Cursor cursor_;
+  };
 };
 
 /// Runs `kernel(surface_cell, position)` on all surface cells, of the grid or of the octree.
@@ -87,8 +125,8 @@ struct OnBrickSurface {
   }
 };
 
-template <class Backend, class Kernel>
-void for_each_surface_cell_of(Executor<Backend>& exec, const GridSurface& surface, std::int64_t n,
+template <class Backend, class Lanes, class Kernel>
+void for_each_surface_cell_of(Executor<Backend>& exec, const GridSurfaceOf<Lanes>& surface, std::int64_t n,
                               const Kernel& kernel) {
   exec.for_each(n, OnGridSurface<Kernel>{surface.texture, kernel});
 }
@@ -97,6 +135,56 @@ template <class Backend, class Kernel>
 void for_each_surface_cell_of(Executor<Backend>& exec, const BrickSurface& surface, std::int64_t,
                               const Kernel& kernel) {
   for_each_surface_cell(exec, surface.view, OnBrickSurface<Kernel>{kernel});
+}
+
+/// Stores `kernel(surface_cells, positions)` of all surface cells in `result`, computing as many at a time as the
+/// surface allows.
+template <class Wide, class Kernel>
+struct StoreOnGridSurface {
+  RefinedGridView texture;
+  std::int64_t n;
+  Kernel kernel;
+  float* result;
+
+  NACRE_HD void operator()(std::int64_t packet) const {
+    typename Wide::Int home;
+    Vec3<typename Wide::Int> position;
+    const std::int64_t first = packet * Wide::lanes, count = n - first < Wide::lanes ? n - first : Wide::lanes;
+    if constexpr (Wide::lanes == 1) {
+      home = std::int32_t(first);
+      position = texture.cell(std::uint32_t(first));
+      result[first] = kernel(home, position);
+    } else {
+      for (int lane = 0; lane < Wide::lanes; ++lane) {
+        const auto s = std::uint32_t(first + (lane < count ? lane : count - 1));
+        const Int3 cell = texture.cell(s);
+        home[lane] = std::int32_t(s);
+        position.x[lane] = cell.x, position.y[lane] = cell.y, position.z[lane] = cell.z;
+      }
+      const typename Wide::Float value = kernel(home, position);
+      for (int lane = 0; lane < count; ++lane) result[first + lane] = value[lane];
+    }
+  }
+};
+
+template <class Kernel>
+struct StoreOnBrickSurface {
+  Kernel kernel;
+  float* result;
+  NACRE_HD void operator()(CellIndex s, const Int3& position) const { result[s] = kernel(s, position); }
+};
+
+template <class Backend, class Lanes, class Kernel>
+void store_on_surface(Executor<Backend>& exec, const GridSurfaceOf<Lanes>& surface, std::int64_t n,
+                      const Kernel& kernel, float* result) {
+  constexpr int lanes = Lanes::lanes;
+  exec.for_each((n + lanes - 1) / lanes, StoreOnGridSurface<Lanes, Kernel>{surface.texture, n, kernel, result});
+}
+
+template <class Backend, class Kernel>
+void store_on_surface(Executor<Backend>& exec, const BrickSurface& surface, std::int64_t n, const Kernel& kernel,
+                      float* result) {
+  for_each_surface_cell_of(exec, surface, n, StoreOnBrickSurface<Kernel>{kernel, result});
 }
 
 }  // namespace nacre

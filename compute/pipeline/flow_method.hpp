@@ -118,7 +118,7 @@ class FlowMethodOn : public FlowMethod {
     for_each_surface_cell_of(exec_, on, n,
                              MarkStreakCells<Surface>{on, mesh_, cell, present_vectors_.data(), least, cells});
     for_each_surface_cell_of(exec_, on, n, SmoothAlongFlow<Surface>{on, value, cells});
-    for_each_surface_cell_of(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks, streaks});
+    store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, streaks);
   }
 
   /// Time of the data at the beginning of step `k`; it stands still before the first step and after the last.

@@ -7,33 +7,48 @@
 namespace nacre::test {
 namespace {
 
-TEST(PackedDirection, ZeroStaysZero) {
-  EXPECT_EQ(PackedDirection::pack({0, 0, 0}), 0u);
-  EXPECT_EQ(PackedDirection::unpack(0), Vec3f());
+StreakCells<Single> unpacked(const StreakCell& cell) { return load_streak_cells(&cell, 0, true); }
+
+TEST(StreakCell, ZeroStaysZero) {
+  const StreakCell cell = StreakCell::of({}, {}, 0);
+  EXPECT_EQ(cell.direction, 0u);
+  EXPECT_EQ(unpacked(cell).direction(), Vec3f());
+  EXPECT_EQ(unpacked(cell).plane(), 0);
 }
 
-TEST(PackedDirection, AxesAreExact) {
+TEST(StreakCell, AxesAreExact) {
   for (int axis = 0; axis < 3; ++axis)
     for (const float side : {-1.0f, 1.0f}) {
       Vec3f v{};
       v[axis] = side;
-      EXPECT_EQ(PackedDirection::unpack(PackedDirection::pack(v)), v);
+      EXPECT_EQ(unpacked(StreakCell::of(v, v, 0)).direction(), v);
+      EXPECT_EQ(unpacked(StreakCell::of(v, v, 0)).normal(), v);
     }
 }
 
-TEST(PackedDirection, HoldsToATenthOfADegree) {
+double degrees_between(const Vec3d& a, const Vec3d& b) { return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / pi; }
+
+TEST(StreakCell, HoldsDirectionsToATenthOfADegreeAndNormalsToAHalf) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  double worst = 0;
+  std::uniform_real_distribution<float> plane(-0.866f, 0.866f);
+  const auto direction = [&] { return normalized(Vec3d(normal(random), normal(random), normal(random))); };
+  double flow = 0, surface = 0, height = 0;
   for (int k = 0; k < 100000; ++k) {
-    const Vec3d v = normalized(Vec3d(normal(random), normal(random), normal(random)));
-    const Vec3d back(PackedDirection::unpack(PackedDirection::pack(Vec3f(v))));
-    worst = std::max(worst, std::atan2(length(cross(v, back)), dot(v, back)));
+    const Vec3d v = direction(), n = direction();
+    const float h = plane(random);
+    const StreakCells<Single> back = unpacked(StreakCell::of(Vec3f(v), Vec3f(n), h));
+    flow = std::max(flow, degrees_between(v, Vec3d(back.direction())));
+    surface = std::max(surface, degrees_between(n, Vec3d(back.normal())));
+    height = std::max<double>(height, std::fabs(back.plane() - h));
   }
-  EXPECT_LT(worst * 180 / pi, 0.1);
+  EXPECT_LT(flow, 0.1);
+  EXPECT_LT(surface, 0.5);
+  EXPECT_LT(height, 0.004) << "of a cell";
 }
 
 /// Noise on a ball that turns about a slanted axis.
+template <class Lanes = Widest>
 DrawnStreaks on_a_ball(int threads, bool bricks) {
   const auto device = make_cpu_device(threads);
   Executor<Cpu> exec(*device);
@@ -45,7 +60,7 @@ DrawnStreaks on_a_ball(int threads, bool bricks) {
     return uniform_random(7, std::uint32_t((p.z * 64 + p.y) * 64 + p.x), 0) - 0.5f;
   };
   const StreakRecipe<decltype(noise)> recipe{noise, 16};
-  return bricks ? draw_on_bricks(exec, ball, recipe) : draw_on_grid(exec, ball, recipe);
+  return bricks ? draw_on_bricks(exec, ball, recipe) : draw_on_grid<Lanes>(exec, ball, recipe);
 }
 
 TEST(Streaks, AreTheSameOnAnyNumberOfThreads) {
@@ -55,6 +70,12 @@ TEST(Streaks, AreTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(one.streaks, two.streaks);
     EXPECT_NE(one.streaks, one.value);
   }
+}
+
+TEST(Streaks, OfOneCellAtATimeAndOfManyAreTheSame) {
+  const DrawnStreaks one = on_a_ball<Single>(2, false), many = on_a_ball(2, false);
+  EXPECT_NE(one.streaks.size() % std::size_t(Widest::lanes), 0u) << "the last ones do not fill a packet";
+  EXPECT_EQ(one.streaks, many.streaks);
 }
 
 }  // namespace

@@ -1,0 +1,94 @@
+// Nacre: several numbers side by side in SIMD registers, for kernels that do the same with many elements.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "compute/device/backend.hpp"
+
+#if !defined(__CUDACC__) && defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace nacre {
+
+/// One element: what a GPU's thread computes with. A kernel written in Wide::Float, Wide::Int and Wide::Mask runs with
+/// Single and with Packet, and gives the same numbers.
+struct Single {
+  static constexpr int lanes = 1;
+  using Float = float;
+  using Int = std::int32_t;
+  using Mask = bool;
+
+  NACRE_HD_INLINE static Float all(float a) { return a; }
+  NACRE_HD_INLINE static Int all(std::int32_t a) { return a; }
+  NACRE_HD_INLINE static Mask nothing_masked() { return true; }
+};
+
+NACRE_HD_INLINE float select(bool which, float a, float b) { return which ? a : b; }
+NACRE_HD_INLINE std::int32_t select(bool which, std::int32_t a, std::int32_t b) { return which ? a : b; }
+NACRE_HD_INLINE bool any(bool mask) { return mask; }
+NACRE_HD_INLINE float to_float(std::int32_t a) { return float(a); }
+NACRE_HD_INLINE std::int32_t floor_to_int(float a) { return std::int32_t(std::floor(a)); }
+/// `from[index]`, or 0 where it is masked out. The index is read as an unsigned number.
+NACRE_HD_INLINE std::int32_t gather(const std::uint32_t* from, std::int32_t index, bool mask) {
+  return mask ? std::int32_t(from[std::uint32_t(index)]) : 0;
+}
+
+#if !defined(__CUDACC__) && defined(__AVX2__)
+#define NACRE_PACKETS 1
+
+/// As many elements as a SIMD register holds.
+struct Packet {
+#if defined(__AVX512F__)
+  static constexpr int lanes = 16;
+#else
+  static constexpr int lanes = 8;
+#endif
+  typedef float Float __attribute__((vector_size(4 * lanes)));
+  typedef std::int32_t Int __attribute__((vector_size(4 * lanes)));
+  using Mask = Int;  ///< all bits set, or none
+
+  static Float all(float a) { return Float{} + a; }
+  static Int all(std::int32_t a) { return Int{} + a; }
+  static Mask nothing_masked() { return ~Int{}; }
+};
+
+NACRE_HD_INLINE Packet::Float select(Packet::Mask which, Packet::Float a, Packet::Float b) { return which ? a : b; }
+NACRE_HD_INLINE Packet::Int select(Packet::Mask which, Packet::Int a, Packet::Int b) { return which ? a : b; }
+NACRE_HD_INLINE Packet::Float to_float(Packet::Int a) { return __builtin_convertvector(a, Packet::Float); }
+NACRE_HD_INLINE Packet::Int floor_to_int(Packet::Float a) {
+  const Packet::Int towards_zero = __builtin_convertvector(a, Packet::Int);
+  return towards_zero + (to_float(towards_zero) > a);
+}
+
+#if defined(__AVX512F__)
+NACRE_HD_INLINE __mmask16 bits_of(Packet::Mask mask) { return _mm512_test_epi32_mask(__m512i(mask), __m512i(mask)); }
+NACRE_HD_INLINE bool any(Packet::Mask mask) { return bits_of(mask) != 0; }
+NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index, Packet::Mask mask) {
+  constexpr std::int32_t half = INT32_MIN;  // the instruction's indices are signed
+  return Packet::Int(
+      _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), bits_of(mask), __m512i(index ^ half), from + 0x80000000u, 4));
+}
+#else
+NACRE_HD_INLINE bool any(Packet::Mask mask) { return !_mm256_testz_si256(__m256i(mask), __m256i(mask)); }
+NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index, Packet::Mask mask) {
+  constexpr std::int32_t half = INT32_MIN;  // the instruction's indices are signed
+  return Packet::Int(_mm256_mask_i32gather_epi32(_mm256_setzero_si256(),
+                                                 reinterpret_cast<const int*>(from + 0x80000000u),
+                                                 __m256i(index ^ half), __m256i(mask), 4));
+}
+#endif
+
+using Widest = Packet;
+#else
+using Widest = Single;
+#endif
+
+/// Bits first .. first + count - 1 of a word, as a signed number.
+template <class Int>
+NACRE_HD_INLINE Int signed_bits(Int word, int first, int count) {
+  return (word << (32 - first - count)) >> (32 - count);
+}
+
+}  // namespace nacre
