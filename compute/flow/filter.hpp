@@ -89,6 +89,25 @@ struct LocalMoments {
   }
 };
 
+/// Moments of the 27 closest-point cells around one; nothing where there is none.
+class MomentsAround {
+ public:
+  NACRE_HD_INLINE MomentsAround(const ClosestPointGridView& grid, const Int3& cell, const Float4* moments)
+      : grid_(grid), lowest_(cell - Int3(1)), moments_(moments), whole_(stencil_.find(grid, lowest_)) {}
+
+  NACRE_HD_INLINE Float4 at(int x, int y, int z) const {
+    const std::uint32_t at = whole_ ? stencil_.address(grid_, x, y, z) : grid_.address(lowest_ + Int3(x, y, z));
+    return at == none ? Float4{0, 0, 0, 0} : moments_[at];
+  }
+
+ private:
+  const ClosestPointGridView& grid_;
+  Int3 lowest_;
+  const Float4* moments_;
+  Stencil<3> stencil_{};
+  bool whole_;  ///< all bricks around are there
+};
+
 /// One pass of a (1 2 1)^3 filter over the moments, to widen their window. Cells without a block hold no value and are
 /// never asked: they stay empty.
 struct BlurMoments {
@@ -97,13 +116,12 @@ struct BlurMoments {
   Float4* to;
   NACRE_HD void operator()(std::int64_t b) const {
     const std::uint32_t i = texture.block_cell[b];
-    const Int3 cell = texture.grid.cell(i);
+    const MomentsAround around(texture.grid, texture.grid.cell(i), from);
     Lanes sum = lanes(0, 0, 0);
-    for (int k = 0; k < 27; ++k) {
-      const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
-      const std::uint32_t at = texture.grid.address(cell + Int3(x, y, z));
-      if (at != none) sum = sum + load(from[at]) * float((2 - x * x) * (2 - y * y) * (2 - z * z));
-    }
+    for (int z = 0; z < 3; ++z)
+      for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 3; ++x)
+          sum = sum + load(around.at(x, y, z)) * float((x & 1 ? 2 : 1) * (y & 1 ? 2 : 1) * (z & 1 ? 2 : 1));
     to[i] = store(sum);
   }
 };
@@ -123,7 +141,7 @@ NACRE_HD_INLINE float equalised(float value, const Vec3f& around, const TextureS
   return (value - mean) / deviation;
 }
 
-/// `equalised` on the grid.
+/// `equalised` on the grid: a team per block, with the moments in the closest-point cells around it.
 struct Equalise {
   RefinedGridView texture;
   const float* value;
@@ -131,11 +149,36 @@ struct Equalise {
   const TextureSpread* whole;
   float local;
   float* detail;
-  NACRE_HD void operator()(std::int64_t i) const {
-    const Vec3f p = cell_centre(texture.cell(std::uint32_t(i))) * texture.inverse_refine;
-    Lanes around;
-    const bool known = interpolate_linear(texture.grid, moments, p, around);
-    detail[i] = equalised(value[i], known ? xyz(around) : Vec3f{}, *whole, local);
+
+  static constexpr std::size_t scratch_bytes() { return 27 * sizeof(Float4); }
+
+  NACRE_HD void operator()(Team& team, std::int64_t b) const {
+    auto* near = reinterpret_cast<Float4*>(team.scratch());
+    {
+      const MomentsAround around(texture.grid, texture.grid.cell(texture.block_cell[b]), moments);
+      team.each(27, [&](int k) { near[k] = around.at(k % 3, k / 3 % 3, k / 9); });
+    }
+    const int refine = texture.refine, cells = texture.cells_per_block();
+    team.each(cells, [&](int k) {
+      const std::uint32_t s = texture.texel[b * cells + k];
+      if (s & RefinedGridView::extended) return;  // beside the surface, or nothing
+      const int row = texture.divide(k), layer = texture.divide(row);
+      const Int3 in{k - row * refine, row - layer * refine, layer};
+      detail[s] = equalised(value[s], interpolated(near, (cell_centre(in)) * texture.inverse_refine), *whole, local);
+    });
+  }
+
+  /// Linear among the 27, at `p` from the lowest corner of the middle one.
+  NACRE_HD_INLINE static Vec3f interpolated(const Float4* near, const Vec3f& p) {
+    const Int3 first{p.x < 0.5f ? 0 : 1, p.y < 0.5f ? 0 : 1, p.z < 0.5f ? 0 : 1};
+    const Vec3f f = p + Vec3f(0.5f) - Vec3f(first);
+    const Float4* low = near + (first.z * 3 + first.y) * 3 + first.x;
+    const auto row = [&](int y, int z) {
+      const Float4* two = low + (z * 3 + y) * 3;
+      return load(two[0]) + (load(two[1]) - load(two[0])) * f.x;
+    };
+    const auto layer = [&](int z) { return row(0, z) + (row(1, z) - row(0, z)) * f.y; };
+    return xyz(layer(0) + (layer(1) - layer(0)) * f.z);
   }
 };
 

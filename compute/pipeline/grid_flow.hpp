@@ -155,7 +155,8 @@ class GridFlow final : public FlowMethodOn<Backend> {
     const auto equalise = [&](const float* value) {
       const TextureSpread* whole = measure_spread(exec_, n, value);
       const Float4* moments = gather_moments(texture, value);
-      exec_.for_each(n, Equalise{texture, value, moments, whole, float(parameters_.equalise), detail_.data()});
+      exec_.for_each_team(fine_.block_cell.size(),
+                          Equalise{texture, value, moments, whole, float(parameters_.equalise), detail_.data()});
     };
     equalise(value_.data());
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
