@@ -117,7 +117,7 @@ class FlowMethodOn : public FlowMethod {
     auto stage = exec_.stage("streaks");
     for_each_surface_cell_of(exec_, on, n,
                              MarkStreakCells<Surface>{on, mesh_, cell, present_vectors_.data(), least, cells});
-    for_each_surface_cell_of(exec_, on, n, SmoothAlongFlow<Surface>{on, value, cells});
+    for_each_surface_cell_of(exec_, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value, cells});
     store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, streaks);
   }
 

@@ -77,7 +77,7 @@ DrawnStreaks draw_on(Executor<Backend>& exec, const Surface& on, std::int64_t n,
   const Array<StreakCell> cells = arena.permanent<StreakCell>(n);
   for_each_surface_cell_of(exec, on, n, MarkStreakCells<Surface>{on, mesh, cell, vectors, 1e-6f, cells.data()});
   if (recipe.smooth)
-    for_each_surface_cell_of(exec, on, n, SmoothAlongFlow<Surface>{on, value.data(), cells.data()});
+    for_each_surface_cell_of(exec, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value.data(), cells.data()});
   else
     for_each_surface_cell_of(exec, on, n, SetValue{value.data(), cells.data()});
   store_on_surface(exec, on, n, ConvolveAlongFlow<Surface>{on, cells.data(), recipe.reach}, streaks.data());
@@ -177,19 +177,22 @@ void AnImpulseSpreadsEvenlyAlongItsLine(Executor<Backend>& exec) {
   });
 }
 
-/// Smoothed first, it reaches one cell farther, and its ends are soft.
+/// Smoothed first, it reaches one cell farther, and its ends are soft; the lines beside it become darker.
 template <class Backend>
-void SmoothingSoftensTheEndsOfALine(Executor<Backend>& exec) {
+void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
   FlowSheet sheet;
   sheet.add(flat_part(first_x, last_x), {2, 0, 0});
   const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}, 6, true};
+  const float across = SmoothAlongAndSharpenAcross<GridSurface>::across;
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
     const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
-      const int beyond = std::abs(p.x - 30) - recipe.reach;
-      const float part = p.y != middle_y || beyond > 1 ? 0 : beyond == 1 ? 0.25f : beyond == 0 ? 0.75f : 1;
-      ASSERT_NEAR(drawn.streaks[s], 0.5f + ConvolveAlongFlow<GridSurface>::gain * share * part, 1e-6) << p.x;
+      const int beyond = std::abs(p.x - 30) - recipe.reach, beside = std::abs(p.y - middle_y);
+      const float line = beyond > 1 ? 0 : beyond == 1 ? 0.25f : beyond == 0 ? 0.75f : 1;
+      const float part = beside == 0 ? (1 + 2 * across) * line : beside == 1 && beyond <= 0 ? -across : 0;
+      ASSERT_NEAR(drawn.streaks[s], 0.5f + ConvolveAlongFlow<GridSurface>::gain * share * part, 1e-6)
+          << p.x << ' ' << p.y;
     }
   });
 }
@@ -259,7 +262,7 @@ void ACellWithoutFlowKeepsItsOwnValue(Executor<Backend>& exec) {
 
 NACRE_DEVICE_TEST(Streaks, CellsKnowFlowAndPlane)
 NACRE_DEVICE_TEST(Streaks, AnImpulseSpreadsEvenlyAlongItsLine)
-NACRE_DEVICE_TEST(Streaks, SmoothingSoftensTheEndsOfALine)
+NACRE_DEVICE_TEST(Streaks, SmoothingSoftensTheEndsOfALineAndDarkensItsSides)
 NACRE_DEVICE_TEST(Streaks, StreaksEndAtTheRim)
 NACRE_DEVICE_TEST(Streaks, StreaksEndWhereTheFlowTurnsBack)
 NACRE_DEVICE_TEST(Streaks, StreaksEndAtACrease)
