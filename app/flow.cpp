@@ -15,6 +15,7 @@
 #include "engine/picture/video.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
+#include "engine/run/focus.hpp"
 #include "engine/run/report.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/session/session.hpp"
@@ -62,6 +63,28 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
   return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
+}
+
+/// What a close-up is computed on; none: the whole surface.
+std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const Camera& camera,
+                                  const PreparedSurface& surface, const Device& device) {
+  const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
+  if (!settings.focus || !pictures || settings.orbit != 0) return {};
+  if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
+  std::optional<Focus> focus =
+      focus_on({camera, settings.width, settings.height}, surface, settings.flow, device.available_bytes());
+  if (!focus) return {};
+  if (!options.out.empty()) {
+    say(options.common,
+        "a close-up, but --out needs the whole surface: the picture has its cells; leave --out away "
+        "for a sharper one");
+    return {};
+  }
+  say(options.common, fmt::format("a close-up: {} of {} triangles, {} cells along the part in view, {:.2g} to a pixel "
+                                  "(--no-focus: the whole surface)",
+                                  focus->part.surface.triangles.size(), surface.triangles.size(), focus->resolution,
+                                  focus->pixel / focus->cell_size));
+  return focus;
 }
 
 /// Where every frame goes; null if it was not asked for.
@@ -137,9 +160,17 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 
+  const std::optional<Focus> focus = choose_focus(options, settings, painter.camera(), surface, *device);
+  const SurfacePart* part = focus ? &focus->part : nullptr;
+  if (focus) {
+    pipeline->parameters.resolution = focus->resolution;
+    painter.show_part(*part);
+  }
+  const PreparedSurface& shown = part ? part->surface : surface;
+
   progress.update("embed", 0);
-  pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
-  const FlowVectors vectors = flow_vectors(input, span.start, span.end);
+  pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
+  const FlowVectors vectors = flow_vectors(input, span.start, span.end, part);
   pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
   pipeline->flow().start(vectors);
@@ -148,7 +179,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds);
+    add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr);
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);

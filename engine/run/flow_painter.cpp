@@ -34,7 +34,9 @@ Image FlowPainter::paint(int frame) {
   options.transparent = transparent_;
   std::vector<float> scalar;
   if (input_.colored()) {
-    scalar = colours_.range.places(input_.scalar(pipeline_.flow().time()));
+    scalar = input_.scalar(pipeline_.flow().time());
+    if (part_) scalar = part_->take(scalar);
+    scalar = colours_.range.places(scalar);
     options.scalar = scalar;
     options.low = colours_.range.bottom();
     options.high = colours_.range.top();

@@ -8,6 +8,7 @@
 #include "engine/picture/image.hpp"
 #include "engine/run/shown_colours.hpp"
 #include "engine/scene/session/session.hpp"
+#include "engine/scene/surface/surface_part.hpp"
 #include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
@@ -18,6 +19,11 @@ class FlowPainter {
  public:
   /// `frame_time`: of the data, from frame to frame. Throws Error for a camera or a colour that does not exist.
   FlowPainter(FlowPipeline& pipeline, VectorsInTime& input, const Session& session, double frame_time);
+
+  const Camera& camera() const { return camera_; }  ///< of the first frame
+
+  /// The pipeline works on this part of the surface only; it must outlive the painter.
+  void show_part(const SurfacePart& part) { part_ = &part; }
 
   /// The frame that is shown now; `frame` counts from 0, and turns the camera by the knob `orbit`.
   Image paint(int frame);
@@ -30,6 +36,7 @@ class FlowPainter {
   const Colormap& map_;
   const ShownColours colours_;
   Camera camera_;
+  const SurfacePart* part_ = nullptr;
   std::array<float, 3> background_{1, 1, 1};
   bool transparent_ = false;
 };

@@ -32,7 +32,8 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
 }  // namespace
 
 void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const FlowVectors& vectors,
-                     const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds) {
+                     const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds,
+                     const Focus* focus) {
   report["input"] = {{"name", input.series().name},
                      {"vectors", input.array()},
                      {"points", input.surface().points.size()},
@@ -45,6 +46,11 @@ void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const F
   report["embedding"] = embedding_report(embedding);
   report["flow"] = {{"steps", seconds.size()}, {"seconds_per_step", median_min_max(seconds)}};
   if (embedding.flow_bytes) report["flow"]["bytes"] = embedding.flow_bytes;
+  if (focus)
+    report["focus"] = {{"triangles", focus->part.surface.triangles.size()},
+                       {"resolution", focus->resolution},
+                       {"cell_size", focus->cell_size},
+                       {"cells_per_pixel", focus->pixel / focus->cell_size}};
 }
 
 }  // namespace nacre

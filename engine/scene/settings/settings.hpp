@@ -72,6 +72,7 @@ struct Settings {
   std::string color_below, color_above;  ///< #rrggbb beyond the range; empty: the ends of the map
   std::string color_nan = "#808080";     ///< #rrggbb where there is no number
   std::string camera = "iso";            ///< a view or a JSON file
+  bool focus = true;                     ///< close-ups are computed at the picture's resolution
   double orbit = 0;                      ///< degrees per frame
   int width = 1024, height = 768;        ///< of the picture
   int samples = 2;                       ///< rays per pixel and axis

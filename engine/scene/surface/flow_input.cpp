@@ -42,9 +42,15 @@ void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log) {
     log.warn(fmt::format("{} is zero at {:.0f}% of the points", vectors.array(), 100 * s.zero_share));
 }
 
-FlowVectors flow_vectors(VectorsInTime& input, double start, double end) {
+FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const SurfacePart* part) {
   FlowVectors vectors;
   vectors.at = [&input](double t, std::span<Vec3f> out) { input.vectors(t, out); };
+  if (part)
+    vectors.at = [&input, part, whole = std::vector<Vec3f>(input.surface().points.size())](
+                     double t, std::span<Vec3f> out) mutable {
+      input.vectors(t, whole);
+      part->take(whole, out);
+    };
   vectors.start = start;
   vectors.end = end;
   const double speed = input.statistics().percentile_98;

@@ -8,6 +8,7 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/scene/settings/settings.hpp"
 #include "engine/scene/surface/surface.hpp"
+#include "engine/scene/surface/surface_part.hpp"
 #include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
@@ -30,9 +31,9 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
 /// Warns where the vectors show little: all zero, mostly normal to the surface, zero in many places.
 void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log);
 
-/// The vectors of `input` between two times of the data, as the flow pipeline takes them; `input` must outlive them.
-/// Where nothing moves, the reference speed is 1.
-FlowVectors flow_vectors(VectorsInTime& input, double start, double end);
+/// The vectors of `input` between two times of the data, as the flow pipeline takes them: on the whole surface or, where
+/// a `part` is given, on that. Both must outlive them. Where nothing moves, the reference speed is 1.
+FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const SurfacePart* part = nullptr);
 
 /// The corners of all triangles, one after the other: what a camera must see. Points that no triangle uses do not
 /// count.

@@ -1,0 +1,169 @@
+// Nacre: focus: which part of a surface is in view, and how fine its cells must be.
+#include "engine/run/focus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace nacre {
+namespace {
+
+constexpr int least_resolution = 16;
+constexpr int finest_grid = 12000;  // cells along an axis that the two-level grid can number
+constexpr int finest_octree = 1 << 20;
+constexpr double cells_per_pixel = 4;  // of the picture, at most: hidden sheets and slanted ones count, too
+constexpr double nearest = 1e-3;       // of the distance to the target: what is nearer to the eye is not drawn
+
+/// The view's axes, and where points lie in its picture.
+class Projection {
+ public:
+  explicit Projection(const FlowView& view)
+      : view_(view),
+        forward_(view.camera.forward()),
+        right_(view.camera.right()),
+        up_(cross(right_, forward_)),
+        distance_(length(view.camera.target - view.camera.eye)) {}
+
+  double distance() const { return distance_; }
+  double depth(const Vec3d& p) const { return dot(p - view_.camera.eye, forward_); }
+  /// Edge of a pixel at a depth.
+  double pixel(double depth) const {
+    const double at_target = view_.camera.height / view_.height;
+    return view_.camera.orthographic ? at_target : at_target * depth / distance_;
+  }
+  /// In pixels from the upper left corner; the depth behind it.
+  Vec3d operator()(const Vec3d& p) const {
+    const Vec3d v = p - view_.camera.eye;
+    const double z = depth(p), edge = pixel(z);
+    return {0.5 * view_.width + dot(v, right_) / edge, 0.5 * view_.height - dot(v, up_) / edge, z};
+  }
+
+  /// What the picture shows, `margin` wider on all sides.
+  std::vector<HalfSpace> sides(double margin) const {
+    const double half_height = 0.5 * view_.camera.height, half_width = half_height * view_.width / view_.height;
+    std::vector<HalfSpace> sides;
+    for (const auto& [axis, half] : {std::pair{right_, half_width}, {up_, half_height}})
+      for (const double sign : {-1.0, 1.0}) {
+        Vec3d normal = axis * sign;
+        if (!view_.camera.orthographic) normal = normalized(normal * distance_ - forward_ * half);
+        const double offset = dot(normal, view_.camera.eye) + (view_.camera.orthographic ? half : 0.0);
+        sides.push_back({normal, offset + margin});
+      }
+    if (!view_.camera.orthographic)
+      sides.push_back({-forward_, dot(-forward_, view_.camera.eye) - nearest * distance_});
+    return sides;
+  }
+
+  /// Nothing deeper than `depth`.
+  HalfSpace no_deeper(double depth) const { return {forward_, dot(forward_, view_.camera.eye) + depth}; }
+
+ private:
+  FlowView view_;
+  Vec3d forward_, right_, up_;
+  double distance_;
+};
+
+struct Depths {
+  double nearest, farthest;
+};
+
+/// The depths that are seen, of all pixels; by a depth buffer on the host. None: no pixel shows the surface.
+std::optional<Depths> visible_depths(const Projection& project, const FlowView& view, const PreparedSurface& surface) {
+  constexpr float nothing = std::numeric_limits<float>::infinity();
+  std::vector<float> buffer(std::size_t(view.width) * view.height, nothing);
+  for (const Triangle& t : surface.triangles) {
+    const Vec3d a = project(surface.points[t.a]), b = project(surface.points[t.b]), c = project(surface.points[t.c]);
+    const double twice_area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+    if (twice_area == 0) continue;
+    const auto first = [](double low, int end) { return std::clamp(int(std::ceil(low - 0.5)), 0, end); };
+    const int x0 = first(std::min({a.x, b.x, c.x}), view.width), y0 = first(std::min({a.y, b.y, c.y}), view.height);
+    const int x1 = first(std::max({a.x, b.x, c.x}), view.width), y1 = first(std::max({a.y, b.y, c.y}), view.height);
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const double px = x + 0.5, py = y + 0.5;
+        const double u = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / twice_area;
+        const double v = ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / twice_area;
+        if (u < 0 || v < 0 || u + v > 1) continue;
+        // Exact with parallel rays; else between the corners' depths, which is enough for a bound.
+        const auto z = float(std::max(a.z + u * (b.z - a.z) + v * (c.z - a.z), std::min({a.z, b.z, c.z})));
+        float& nearest_here = buffer[std::size_t(y) * view.width + x];
+        nearest_here = std::min(nearest_here, z);
+      }
+  }
+  std::erase(buffer, nothing);
+  if (buffer.empty()) return {};
+  // One pixel in a hundred may be nearer: a spike towards the eye does not decide how fine all cells are.
+  const auto hundredth = buffer.begin() + std::ptrdiff_t(buffer.size() / 100);
+  std::nth_element(buffer.begin(), hundredth, buffer.end());
+  return Depths{*hundredth, *std::max_element(buffer.begin(), buffer.end())};
+}
+
+double longest_side(const PreparedSurface& surface) {
+  Vec3d lower(1e300), upper(-1e300);
+  for (const Triangle& t : surface.triangles)
+    for (int k = 0; k < 3; ++k) {
+      lower = min(lower, surface.points[t[k]]);
+      upper = max(upper, surface.points[t[k]]);
+    }
+  const Vec3d size = upper - lower;
+  return surface.triangles.empty() ? 0 : std::max({size.x, size.y, size.z});
+}
+
+double area_of(const PreparedSurface& surface) {
+  double twice = 0;
+  for (const Triangle& t : surface.triangles) {
+    const Vec3d& a = surface.points[t.a];
+    twice += length(cross(surface.points[t.b] - a, surface.points[t.c] - a));
+  }
+  return 0.5 * twice;
+}
+
+/// The finest resolution, at most `wanted`, that the method can number and the memory holds; 0: none does.
+int affordable(const PreparedSurface& part, FlowParameters parameters, double wanted, double available) {
+  const bool grid = parameters.method == EmbeddingKind::grid;
+  const FlowMesh mesh{part.points, part.triangles, part.corner_normals};
+  parameters.resolution = int(std::min<double>(wanted, grid ? finest_grid : finest_octree));
+  while (parameters.resolution >= least_resolution) {
+    const double bytes = grid ? estimate_flow_bytes(mesh, parameters) : estimate_octree_bytes(mesh, parameters);
+    if (bytes <= available) return parameters.resolution;
+    parameters.resolution = parameters.resolution * 15 / 16;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
+                              std::size_t available) {
+  const Projection project(view);
+  const double coarse = longest_side(whole) / parameters.resolution;
+  if (!(coarse > 0) || !(project.distance() > 0) || !(view.camera.height > 0)) return {};
+  const SurfacePart seen = cut_surface(whole, project.sides(0));
+  if (seen.whole_triangles == whole.triangles.size()) return {};  // all of it
+  const std::optional<Depths> depths = visible_depths(project, view, seen.surface);
+  if (!depths) return {};
+
+  Focus focus;
+  focus.pixel = project.pixel(depths->nearest);
+  if (coarse <= coarsest_cell * focus.pixel) return {};
+  // What flows into the picture begins outside of it, and streaks read what lies beside it.
+  const double cells_beside = parameters.streaks + 2 * parameters.step_cells;
+  double cell = focus.pixel;
+  for (int attempt = 0; attempt < 2; ++attempt) {  // a coarser cell needs a wider margin
+    std::vector<HalfSpace> inside = project.sides(cells_beside * cell);
+    inside.push_back(project.no_deeper(depths->farthest + cells_beside * cell));
+    focus.part = cut_surface(whole, inside);
+    const double pixels = double(view.width) * view.height;
+    cell = std::max(cell, std::sqrt(area_of(focus.part.surface) / (cells_per_pixel * pixels)));
+  }
+  const double longest = longest_side(focus.part.surface);
+  if (!(longest > 0)) return {};
+  focus.resolution = affordable(focus.part.surface, parameters, std::ceil(longest / cell), double(available));
+  if (focus.resolution == 0) return {};
+  focus.cell_size = longest / focus.resolution;
+  if (focus.cell_size * coarsest_cell > coarse) return {};  // no finer than the whole
+  return focus;
+}
+
+}  // namespace nacre

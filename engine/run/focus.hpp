@@ -1,0 +1,35 @@
+// Nacre: focus: a close-up is computed on the part of the surface in view, with cells as fine as the picture's pixels.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/raycast/camera.hpp"
+#include "engine/scene/surface/surface_part.hpp"
+
+namespace nacre {
+
+/// A picture that a flow is drawn into.
+struct FlowView {
+  Camera camera;
+  int width = 1024, height = 768;
+};
+
+struct Focus {
+  SurfacePart part;      ///< what is in view, with a margin as wide as streaks and a step are long
+  int resolution = 0;    ///< for FlowParameters, of the part
+  double cell_size = 0;  ///< world units
+  double pixel = 0;      ///< edge of a pixel where the surface is nearest, world units
+};
+
+/// Larger cells than this many pixels are seen as such.
+inline constexpr double coarsest_cell = 1.5;
+
+/// The focus for a view; none where the whole surface is in view, nothing is, or where the whole's cells are fine
+/// enough. Cells are a pixel, or larger where the memory (`available` bytes), the picture's budget of four cells a
+/// pixel, or the limits of the method ask for it.
+std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
+                              std::size_t available);
+
+}  // namespace nacre
