@@ -58,7 +58,7 @@ NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh
     const float out = leave_box(Vec3f(cell), 1.0f);
     const std::uint32_t first = grid.touch_start[at], last = grid.touch_start[at + 1];
     if (first == last) {  // no surface here: the nearest one is at least this far from any point of the cell
-      const float skip = (grid.offset[at].w - 0.8661f) / speed;
+      const float skip = (min(grid.offset[at].w, grid.radius) - 0.8661f) / speed;
       t = past(out > t + skip ? out : t + skip);
       continue;
     }

@@ -52,6 +52,7 @@ const std::map<std::string, FlowRerun>& expected() {
       {"color_nan", {}},
       {"legend", {}},
       {"time_stamp", {}},
+      {"focus", {}},
       {"orbit", {}},
       {"fps", {}},
   };
