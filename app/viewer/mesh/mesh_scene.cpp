@@ -71,7 +71,8 @@ void MeshScene::resume() {
 
 void MeshScene::advance(double) {
   while (std::optional<MeshEvent> event = worker_.poll()) take(*event);
-  if (wants_turn()) worker_.grant_turn();
+  if (lockstep_) worker_.grant_turn();
+  worker_.run_to(settings_.view.iteration);
   lend(false);
 }
 

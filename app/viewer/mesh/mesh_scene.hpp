@@ -102,8 +102,6 @@ class MeshScene : public Scene {
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles && !looked_back_at(); }
   /// Between two iterations, for the user; a replay does not wait.
   bool paused() const { return !settings_.view.play && !lockstep_; }
-  /// Iterations that come before the one that is wanted are still made.
-  bool wants_turn() const { return lockstep_ || settings_.view.iteration > iterations_; }
   const KeptIteration* looked_back_at() const;
   std::array<double, 2> size_range() const;
   std::optional<TriangleHit> first_seen(const Vec3d& from, const Vec3d& along) const;

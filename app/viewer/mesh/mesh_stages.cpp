@@ -84,6 +84,7 @@ void MeshWorker::relax() {
   {
     std::scoped_lock lock(mutex_);
     lent_.reset();
+    made_ = 0;
     told.lease = ++lease_;
   }
   tell(told);

@@ -70,6 +70,15 @@ void MeshWorker::grant_turn(bool all) {
   wake_.notify_all();
 }
 
+void MeshWorker::run_to(int iteration) {
+  {
+    std::scoped_lock lock(mutex_);
+    if (run_to_ == iteration) return;
+    run_to_ = iteration;
+  }
+  wake_.notify_all();
+}
+
 void MeshWorker::lend(const LentMemory& memory) {
   {
     std::scoped_lock lock(mutex_);
@@ -284,6 +293,8 @@ bool MeshWorker::await_turn() {
       lock.lock();
     } else if (!lockstep_ || all_turns_) {
       return true;
+    } else if (made_ < run_to_ && memory_due()) {
+      return true;
     } else if (turns_ > 0 && memory_due()) {
       --turns_;
       return true;
@@ -311,6 +322,7 @@ void MeshWorker::show(const MeshProgress& progress, bool step) {
   {
     std::scoped_lock lock(mutex_);
     unshown_ = true;
+    if (step) ++made_;
     if (memory_due()) memory = std::exchange(lent_, std::nullopt);
   }
   MeshIterated told{progress, step, {}, 0};

@@ -125,6 +125,9 @@ class MeshWorker : public Worker<MeshEvent> {
   void set_lockstep(bool lockstep);
   /// In lockstep: one more iteration may be told; `all`: all that follow.
   void grant_turn(bool all = false);
+  /// In lockstep: the iterations up to this one, counted from 1 since the particles were seeded, need no turn. Asking
+  /// again changes nothing, so no iteration is made too many.
+  void run_to(int iteration);
   /// Gives memory for the next iteration that is to be shown. It is filled before the MeshIterated with `shown`, once.
   void lend(const LentMemory& memory);
 
@@ -194,6 +197,7 @@ class MeshWorker : public Worker<MeshEvent> {
   bool unshown_ = false;  ///< the particles have changed since they were shown
   bool lockstep_;
   int turns_ = 0;
+  int made_ = 0, run_to_ = 0;  ///< iterations since the particles were seeded
   bool waiting_ = false;
   bool all_turns_ = false;
   int lease_ = 0;
