@@ -12,6 +12,7 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run);
 void add_info_command(CLI::App& program, std::function<void()>& run);
 void add_sample_command(CLI::App& program, std::function<void()>& run);
 void add_bench_command(CLI::App& program, std::function<void()>& run);
+void add_join_command(CLI::App& program, std::function<void()>& run);
 void add_view_command(CLI::App& program, std::function<void()>& run);
 
 }  // namespace nacre

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/commands.hpp"
 #include "app/picture_options.hpp"
@@ -29,7 +30,21 @@ struct FlowOptions {
   CommonOptions common;
   InputOptions input;
   std::string image, frames, video, out;
+  std::string chunk;  ///< I/N: this part of the steps only
+  int lead_in = 256;  ///< steps before it
 };
+
+/// The steps of a run that are made: all of them, or part I of N. Parts differ by one step at most. Throws UsageError.
+FrameRange wanted_steps(const std::string& chunk, int steps) {
+  if (chunk.empty()) return {0, steps};
+  const auto [part, parts] = with_usage_errors([&] { return parse_pair(chunk, '/', "--chunk"); });
+  if (part != std::floor(part) || parts != std::floor(parts) || part < 1 || part > parts)
+    throw UsageError("--chunk takes I/N with whole numbers, and I from 1 to N, not '" + chunk + "'");
+  if (parts > steps)
+    throw UsageError(fmt::format("--chunk {} makes more parts than there are steps ({})", chunk, steps));
+  const auto begin_of = [&](double i) { return int(std::int64_t(i) * steps / std::int64_t(parts)); };
+  return {begin_of(part - 1), begin_of(part)};
+}
 
 /// Finds unknown names and outputs that cannot be written before the work begins.
 void check_options(const FlowOptions& options, const Settings& settings) {
@@ -98,22 +113,23 @@ struct Films {
   }
 };
 
-Films open_films(const FlowOptions& options, int fps, Progress& progress) {
+Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, Progress& progress) {
   Films films;
   const auto tell = [&](const std::string& line) {
     progress.clear();
     say(options.common, line);
   };
-  if (!options.frames.empty()) films.frames = make_frame_folder(options.frames, tell);
+  const std::optional<FrameRange> part = options.chunk.empty() ? std::nullopt : std::optional(steps);
+  if (!options.frames.empty()) films.frames = make_frame_folder(options.frames, tell, part);
   if (!options.video.empty()) films.video = make_video(options.video, fps, &interrupt_flag());
   return films;
 }
 
 /// Returns how long each took, seconds.
-std::vector<double> take_steps(FlowPipeline& pipeline, int steps, FlowPainter& painter, Films& films,
+std::vector<double> take_steps(FlowPipeline& pipeline, const FrameRange& steps, FlowPainter& painter, Films& films,
                                Progress& progress) {
   std::vector<double> seconds;
-  for (int k = 0; k < steps; ++k) {
+  for (int k = steps.first; k < steps.last; ++k) {
     const double before = now();
     pipeline.flow().step();
     seconds.push_back(now() - before);
@@ -122,18 +138,18 @@ std::vector<double> take_steps(FlowPipeline& pipeline, int steps, FlowPainter& p
       StageTimers::Scope scope(pipeline.timers(), "write");
       films.add(image);
     }
-    progress.update("step", double(k + 1) / steps);
+    progress.update("step", double(k + 1 - steps.first) / (steps.last - steps.first));
     if (interrupt_flag()) throw Interrupted();
   }
   return seconds;
 }
 
 /// Returns the files.
-std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, int steps,
+std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, const FrameRange& steps,
                                        FlowPainter& painter, Films& films) {
   std::vector<std::string> outputs;
   Image image;
-  if (!options.image.empty()) image = painter.paint(std::max(0, steps - 1));
+  if (!options.image.empty()) image = painter.paint(std::max(0, steps.last - 1));
   StageTimers::Scope scope(pipeline.timers(), "write");
   if (!options.image.empty()) write_png(options.image, image), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
@@ -153,7 +169,8 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   pipeline->watch(&interrupt_flag());
   pipeline->parameters = settings.flow;
   Progress progress(options.common.quiet);
-  Films films = open_films(options, settings.fps, progress);  // complains before what may be long
+  const FrameRange steps = wanted_steps(options.chunk, remaining_steps(settings));
+  Films films = open_films(options, steps, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
@@ -172,14 +189,17 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
   const FlowVectors vectors = flow_vectors(input, span.start, span.end, part);
   pipeline->parameters.steps = span.steps;
+  pipeline->parameters.first_step = steps.first;
+  pipeline->parameters.lead_in = options.lead_in;
   progress.update("warm-up", 0.02);
   pipeline->flow().start(vectors);
-  const std::vector<double> seconds = take_steps(*pipeline, span.steps, painter, films, progress);
-  const std::vector<std::string> outputs = write_outputs(options, *pipeline, span.steps, painter, films);
+  const std::vector<double> seconds = take_steps(*pipeline, steps, painter, films, progress);
+  const std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films);
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
-    add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr);
+    add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
+                    steps.first);
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);
@@ -196,6 +216,12 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");
   command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
+  command->add_option("--chunk", options->chunk,
+                      "I/N: only part I of N of the steps, with the frames of the whole run (`nacre join` joins them)");
+  command
+      ->add_option("--lead-in", options->lead_in,
+                   "steps that a part makes from noise before its first, to reach the texture of the whole run")
+      ->check(CLI::Range(0, 1000000));
   add_common_options(*command, options->common);
   add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "flow");

@@ -60,6 +60,7 @@ Status run(int argc, char** argv) {
   nacre::add_info_command(program, command);
   nacre::add_sample_command(program, command);
   nacre::add_bench_command(program, command);
+  nacre::add_join_command(program, command);
   nacre::add_view_command(program, command);
   for (CLI::App* each : program.get_subcommands({})) each->set_version_flag("--version", program.version());
   try {

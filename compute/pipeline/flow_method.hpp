@@ -77,8 +77,10 @@ class FlowMethodOn : public FlowMethod {
     exec_.arena().rewind(embedding_mark_);
     point_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
     present_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
-    step_ = launched_ = 0;
-    first_ = parameters_.warmup >= 0 ? -parameters_.warmup : -ttl_;
+    step_ = parameters_.first_step;
+    const int whole = parameters_.warmup >= 0 ? -parameters_.warmup : -ttl_;  // where a whole run begins
+    first_ = step_ > 0 ? std::max(whole, step_ - parameters_.lead_in) : whole;
+    launched_ = first_ - whole;  // noise and rounding are those of the whole run
     output_ = nullptr;
   }
 

@@ -39,6 +39,8 @@ struct FlowParameters {
   double speed_power = 1;  ///< displacement ~ speed^power: 1 true speeds, 0 all alike
   int steps = 20;          ///< steps from the first to the last time
   int warmup = -1;         ///< steps before the first, at the first time; -1: ttl
+  int first_step = 0;      ///< `start` goes to the beginning of this step: a part of a run
+  int lead_in = 256;       ///< steps from noise to `first_step`, at most
   double sharpen = 0.05;   ///< strength of the Laplacian between steps
   double jitter = 0.4;     ///< share of fresh noise between steps
   double equalise = 0.5;   ///< share of local contrast against that of the whole texture

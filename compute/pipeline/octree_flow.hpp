@@ -150,7 +150,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     this->warm_up();
     show();
     ++launched_;
-    for (int k = first_; k < 0; ++k) advance(k);
+    for (int k = first_; k < this->step_; ++k) advance(k);
     exec_.wait();
   }
 

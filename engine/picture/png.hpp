@@ -20,4 +20,7 @@ std::vector<std::uint8_t> encode_png(const Image& image);
 /// the reason) where it cannot be written or the disk is full.
 void write_png(const std::filesystem::path& file, const Image& image);
 
+/// Any PNG, as RGBA with 8 bits a channel. Throws Error where the file is not a whole PNG.
+Image read_png(const std::filesystem::path& file);
+
 }  // namespace nacre

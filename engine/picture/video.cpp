@@ -30,15 +30,17 @@ using Words = std::vector<std::string>;
 
 std::string frame_name(long number) { return fmt::format("frame_{:04}.png", number); }
 
-bool is_frame_name(const std::string& name) {
+/// The number in the name of a frame; -1: it is not such a name.
+long frame_number(const std::string& name) {
   long number = -1;
-  return std::sscanf(name.c_str(), "frame_%9ld", &number) == 1 && number >= 0 && name == frame_name(number);
+  return std::sscanf(name.c_str(), "frame_%9ld", &number) == 1 && number >= 0 && name == frame_name(number) ? number
+                                                                                                            : -1;
 }
 
 class FrameFolder : public FrameSink {
  public:
-  FrameFolder(fs::path folder, std::function<void(const std::string&)> say)
-      : folder_(std::move(folder)), say_(std::move(say)) {
+  FrameFolder(fs::path folder, std::function<void(const std::string&)> say, std::optional<FrameRange> part)
+      : folder_(std::move(folder)), say_(std::move(say)), part_(part), first_(part ? part->first : 0) {
     std::error_code failed;
     made_ = fs::create_directories(folder_, failed);
     if (!fs::is_directory(folder_))
@@ -53,7 +55,7 @@ class FrameFolder : public FrameSink {
 
   void write(const Image& frame) override {
     if (count_ == 0) remove_earlier_frames();
-    write_png(folder_ / frame_name(count_), frame);
+    write_png(folder_ / frame_name(first_ + count_), frame);
     ++count_;
   }
 
@@ -66,7 +68,7 @@ class FrameFolder : public FrameSink {
     std::error_code ignored;  // old frames are overwritten, or the next frame reports what is wrong with the folder
     std::vector<fs::path> earlier;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored))
-      if (is_frame_name(entry.path().filename().string()) && entry.is_regular_file(ignored))
+      if (concerns(frame_number(entry.path().filename().string())) && entry.is_regular_file(ignored))
         earlier.push_back(entry.path());
     std::size_t removed = 0;
     for (const fs::path& file : earlier) removed += fs::remove(file, ignored);
@@ -75,8 +77,14 @@ class FrameFolder : public FrameSink {
                        folder_.string()));
   }
 
+  bool concerns(long number) const {
+    return number >= 0 && (!part_ || (number >= part_->first && number < part_->last));
+  }
+
   fs::path folder_;
   std::function<void(const std::string&)> say_;
+  std::optional<FrameRange> part_;
+  int first_;  ///< number of the first frame
   bool made_ = false;
   int count_ = 0;
 };
@@ -198,14 +206,40 @@ void check_video_size(int width, int height) {
                 fmt::format("ffmpeg takes about {} million pixels", most / bytes / 1000000), "choose a smaller size");
 }
 
-std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder, std::function<void(const std::string&)> say) {
-  return std::make_unique<FrameFolder>(folder, std::move(say));
+std::unique_ptr<FrameSink> make_frame_folder(const fs::path& folder, std::function<void(const std::string&)> say,
+                                             std::optional<FrameRange> part) {
+  return std::make_unique<FrameFolder>(folder, std::move(say), part);
+}
+
+int count_frames(const fs::path& folder) {
+  std::error_code failed;
+  long frames = 0, last = -1;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+    const long number = frame_number(entry.path().filename().string());
+    frames += number >= 0;
+    last = std::max(last, number);
+  }
+  if (failed) throw Error("cannot read the folder " + folder.string(), failed.message());
+  if (frames == 0)
+    throw Error("there are no frames in " + folder.string(), "", "write them with --frames " + folder.string());
+  for (long number = 0; number <= last; ++number)
+    if (!fs::exists(folder / frame_name(number)))
+      throw Error(fmt::format("{} is missing in {}", frame_name(number), folder.string()),
+                  fmt::format("it has {} of {} frames", frames, last + 1), "make that part of the run");
+  return int(frames);
 }
 
 void check_video_name(const fs::path& file) { format_of(file); }
 
 std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps, const std::atomic<bool>* stop) {
   return std::make_unique<Video>(file, fps, stop);
+}
+
+void make_video_of_folder(const fs::path& folder, const fs::path& file, int fps, const std::atomic<bool>* stop) {
+  const std::unique_ptr<FrameSink> video = make_video(file, fps, stop);
+  const int frames = count_frames(folder);
+  for (int number = 0; number < frames; ++number) video->add(read_png(folder / frame_name(number)));
+  video->finish();
 }
 
 }  // namespace nacre

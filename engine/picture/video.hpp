@@ -5,11 +5,17 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "engine/picture/image.hpp"
 
 namespace nacre {
+
+/// Frames first .. last - 1 of a run.
+struct FrameRange {
+  int first = 0, last = 0;
+};
 
 /// Takes frames in the order in which they are shown.
 class FrameSink {
@@ -38,8 +44,15 @@ void check_video_size(int width, int height);
 /// The first frame removes those of an earlier run (files with exactly such names, no others), so that a film made of
 /// the folder is of one run, however that ends; `say` is told how many. A folder that was made for the frames and gets
 /// none is removed. Throws Error if it cannot be made.
+///
+/// `part`: the frames of one part of a run, whose other parts may be written to the same folder at the same time. They
+/// are numbered as in the whole run, and only earlier frames with these numbers are removed.
 std::unique_ptr<FrameSink> make_frame_folder(const std::filesystem::path& folder,
-                                             std::function<void(const std::string&)> say = {});
+                                             std::function<void(const std::string&)> say = {},
+                                             std::optional<FrameRange> part = {});
+
+/// How many frames a folder holds, frame_0000.png first. Throws Error if there are none or one is missing.
+int count_frames(const std::filesystem::path& folder);
 
 /// Throws Error if the extension of `file` is not a kind of video that `make_video` makes.
 void check_video_name(const std::filesystem::path& file);
@@ -50,5 +63,9 @@ void check_video_name(const std::filesystem::path& file);
 /// for ffmpeg: Interrupted.
 std::unique_ptr<FrameSink> make_video(const std::filesystem::path& file, int fps,
                                       const std::atomic<bool>* stop = nullptr);
+
+/// A video of all frames of `folder`, otherwise as `make_video`. Throws Error if one is missing or cannot be read.
+void make_video_of_folder(const std::filesystem::path& folder, const std::filesystem::path& file, int fps,
+                          const std::atomic<bool>* stop = nullptr);
 
 }  // namespace nacre

@@ -33,7 +33,7 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
 
 void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const FlowVectors& vectors,
                      const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds,
-                     const Focus* focus) {
+                     const Focus* focus, int first_step) {
   report["input"] = {{"name", input.series().name},
                      {"vectors", input.array()},
                      {"points", input.surface().points.size()},
@@ -45,6 +45,7 @@ void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const F
   report["parameters"] = knob_values(settings);
   report["embedding"] = embedding_report(embedding);
   report["flow"] = {{"steps", seconds.size()}, {"seconds_per_step", median_min_max(seconds)}};
+  if (first_step > 0) report["flow"]["first_step"] = first_step;
   if (embedding.flow_bytes) report["flow"]["bytes"] = embedding.flow_bytes;
   if (focus)
     report["focus"] = {{"triangles", focus->part.surface.triangles.size()},

@@ -94,6 +94,7 @@ bool Knob::concerns(const std::string& command) const {
     return std::find(groups.begin(), groups.end(), group) != groups.end();
   };
   if (in({"general"}) || command == "view") return true;
+  if (command == "join") return name == "fps";  // its frames are pictures already
   if (in({"picture"})) return command == "flow" || command == "mesh";
   if (in({"labels"})) return command == "mesh" || command == "info";
   if (in({"materials", "fields", "sizing", "particles", "cells"})) return command == "mesh";

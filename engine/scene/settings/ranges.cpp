@@ -122,6 +122,11 @@ ColourRange color_range(const Settings& settings, const ColourSpread& of_data) {
   return range;
 }
 
+int remaining_steps(const Settings& settings) {
+  const int steps = settings.flow.steps;
+  return steps - std::clamp(int(std::lround(settings.begin_at * steps)), 0, steps);
+}
+
 FlowSpan flow_span(const Settings& settings, const Range& of_data) {
   Range all = of_data;
   if (!settings.time.empty()) {
@@ -130,8 +135,7 @@ FlowSpan flow_span(const Settings& settings, const Range& of_data) {
       throw Error(fmt::format("--time {} is outside of the data", settings.time), "",
                   fmt::format("use {:g}:{:g}", of_data.low, of_data.high));
   }
-  const int steps = settings.flow.steps;
-  const int skipped = std::clamp(int(std::lround(settings.begin_at * steps)), 0, steps);
+  const int steps = settings.flow.steps, skipped = steps - remaining_steps(settings);
   FlowSpan span;
   span.frame_time = (all.high - all.low) / std::max(1, steps);
   span.first = all.low;

@@ -72,6 +72,9 @@ struct FlowSpan {
   double frame_time = 0;      ///< of the data, from frame to frame
 };
 
+/// The steps of a run: the knob `steps`, less those that `begin_at` skips.
+int remaining_steps(const Settings& settings);
+
 /// By the knobs `time`, `begin_at` and `steps`, for data over `of_data`. The frames of a run that begins later are
 /// frames of the whole one. Throws Error where `time` is off or outside of the data.
 FlowSpan flow_span(const Settings& settings, const Range& of_data);

@@ -1,8 +1,8 @@
-// Nacre: PNG files as tests read them back.
-#include "tests/engine/picture/read_png.hpp"
-
+// Nacre: reads PNG files.
 #include <algorithm>
-#include <stdexcept>
+
+#include "compute/device/error.hpp"
+#include "engine/picture/png.hpp"
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -15,7 +15,7 @@
 nacre::Image nacre::read_png(const std::filesystem::path& file) {
   int width = 0, height = 0, channels = 0;
   stbi_uc* const pixels = stbi_load(file.c_str(), &width, &height, &channels, 4);
-  if (!pixels) throw std::runtime_error("cannot read " + file.string() + ": " + stbi_failure_reason());
+  if (!pixels) throw Error("cannot read " + file.string(), stbi_failure_reason());
   Image image(width, height);
   std::copy_n(pixels, image.pixels.size(), image.pixels.begin());
   stbi_image_free(pixels);
