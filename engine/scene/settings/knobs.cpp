@@ -96,6 +96,7 @@ bool Knob::concerns(const std::string& command) const {
   if (in({"general"}) || command == "view") return true;
   if (in({"picture"})) return command == "flow" || command == "mesh";
   if (in({"labels"})) return command == "mesh" || command == "info";
+  if (in({"case"})) return command == "flow" || command == "info";
   if (in({"materials", "fields", "sizing", "particles", "cells"})) return command == "mesh";
   return command == "flow" && !in({"view"});
 }
