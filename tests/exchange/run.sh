@@ -62,9 +62,10 @@ if "$nacre" info "$work/segments.dcm" >/dev/null 2>"$work/none.txt"; then
   for place in gap two; do
     if info "$place" 2>"$work/$place.txt"; then echo "$place is read"; exit 1; fi
   done
-  "$nacre" mesh "$work/truth.seg.nrrd" --max-size 3 --quiet --out "$work/truth.vtp" >/dev/null
-  "$nacre" mesh "$work/series/IM007" --labels --max-size 3 --quiet --out "$work/series.vtp" >/dev/null
+  "$nacre" mesh "$work/truth.seg.nrrd" --max-size 3 --quiet --out "$work/truth.ply" >/dev/null
+  "$nacre" mesh "$work/series/IM007" --labels --max-size 3 --quiet --out "$work/series.ply" >/dev/null
   "$nacre" mesh "$work/segments.dcm" --max-size 3 --quiet --out "$work/segments.vtu" >/dev/null
+  "$nacre" mesh "$work/numbered.seg.nrrd" --max-size 3 --quiet --out "$work/numbered.vtu" >/dev/null
   "$python" "$here/check_dicom.py" "$work"
 else
   grep -q "built without GDCM" "$work/none.txt" || { cat "$work/none.txt"; exit 1; }
