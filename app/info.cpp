@@ -125,8 +125,8 @@ std::vector<std::string> requested_files(const InfoOptions& options) {
   return files;
 }
 
-/// Knobs have no effect here but for the names and layers of labels, and for patches; they are checked: all commands take the same
-/// options.
+/// Knobs have no effect here but for the names and layers of labels, and for patches; they are checked: all commands
+/// take the same options.
 void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
   Settings settings;
   knob_options.apply(settings, options.common.set);

@@ -36,8 +36,8 @@ struct ImportResult {
 /// Whether the child can be run.
 bool is_available(const Importer& importer);
 
-/// Runs the child. Throws Error if it reports one (its first line), crashes, or takes more than 120 s; Interrupted if it
-/// was stopped by Ctrl-C.
+/// Runs the child. Throws Error if it reports one (its first line), crashes, or takes more than 120 s; Interrupted if
+/// it was stopped by Ctrl-C.
 ImportResult import_by_child(const Importer& importer, const ImportRequest& request);
 
 /// From now on children stop (Interrupted) once `*stop` is true. Without this, they stop only if Ctrl-C reaches them

@@ -62,8 +62,8 @@ struct FileInfo {
 /// of the parts to take of a file that VTK reads, as `convert_with_vtk` takes them; empty: all.
 SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths, const std::string& patches = {});
 
-/// Describes the contents of a file, even if it is not a surface; `choice` for volumes, `patches` for surfaces. Throws Error if it cannot be
-/// read.
+/// Describes the contents of a file, even if it is not a surface; `choice` for volumes, `patches` for surfaces. Throws
+/// Error if it cannot be read.
 FileInfo describe(const std::filesystem::path& path, const VolumeChoice& choice = {}, const std::string& patches = {});
 
 /// Extensions that can be opened, lower case, with dot.

@@ -1,4 +1,4 @@
-// Nacre: nacre-dicom-import PLACE FOLDER: the volume in a folder of DICOM files, or in a file, as FOLDER/volume.seg.nrrd.
+// Nacre: nacre-dicom-import PLACE FOLDER: the volume in a folder of DICOM files, or in a file, as a NRRD in FOLDER.
 // Prints "0 path". On failure it prints one line to stderr and exits with 1.
 #include <gdcmTrace.h>
 #include <sys/prctl.h>

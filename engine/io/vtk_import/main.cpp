@@ -1,7 +1,8 @@
 // Nacre: nacre-vtk-import [--parts NAMES] FILE FOLDER: converts a file that VTK reads to one .vtp per time step in
 // FOLDER; of its parts (patches, blocks), those that are named.
 // nacre-vtk-import --volume FILE FOLDER: converts the image in it to one .vti in FOLDER.
-// Prints "part name" for each part that it has, and "time path" for each file. On failure it prints one line to stderr and exits with 1.
+// Prints "part name" for each part that it has, and "time path" for each file. On failure it
+// prints one line to stderr and exits with 1.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>

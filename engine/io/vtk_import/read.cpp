@@ -65,8 +65,8 @@ vtkSmartPointer<vtkAlgorithm> exodus_reader(const std::string& file) {
   return reader.Get();
 }
 
-/// The wanted parts; if none are named, the patches if there are any (wall values are stored there), otherwise the inner
-/// mesh.
+/// The wanted parts; if none are named, the patches if there are any (wall values are stored there), otherwise the
+/// inner mesh.
 vtkSmartPointer<vtkAlgorithm> foam_reader(const std::string& file, const std::string& wanted) {
   vtkNew<vtkOpenFOAMReader> reader;
   reader->SetFileName(file.c_str());
