@@ -32,8 +32,8 @@ struct VolumeChoice {
 const std::vector<VolumeFormat>& volume_formats();
 
 /// The format of volumes for this file, or nullptr. By extension; a legacy .vtk file only if its header says
-/// STRUCTURED_POINTS, a .vtkhdf if it holds an image. Folders with DICOM files, and such files whatever they are called,
-/// count by their content.
+/// STRUCTURED_POINTS, a .vtkhdf if it holds an image. Folders with DICOM files, and such files whatever they are
+/// called, count by their content.
 const VolumeFormat* find_volume_format(const std::filesystem::path& path);
 
 /// Whether `read_volume` reads this file. Files of VTK and those of unknown extensions are opened to find out.
