@@ -40,8 +40,8 @@ struct SliceStack {
 };
 
 /// Puts slices whose first voxels are at `origins` in order. Slots between them may be empty only if `gaps`.
-/// `thickness`: the spacing of a single one. Throws std::runtime_error if slices are unevenly spaced, moved against each
-/// other across the normal, or (unless `repeated`) two at one place.
+/// `thickness`: the spacing of a single one. Throws std::runtime_error if slices are unevenly spaced, moved against
+/// each other across the normal, or (unless `repeated`) two at one place.
 SliceStack stack_slices(const SliceGeometry& slices, const std::vector<Vec>& origins, double thickness, bool gaps,
                         bool repeated);
 
