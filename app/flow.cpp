@@ -70,7 +70,7 @@ void check_options(const FlowOptions& options, const Settings& settings) {
 VectorsInTime read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
   StageTimers::Scope scope(timers, "read");
   SurfaceSeries series = session.sample.empty()
-                             ? open_surface(session.inputs)
+                             ? open_surface(session.inputs, session.settings.patch)
                              : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
   FlowLog log;
   log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };

@@ -1,5 +1,6 @@
 // Nacre: `nacre info`: what is in a file.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -67,6 +68,7 @@ nlohmann::json as_json(const FileInfo& info) {
                          {"upper", vector_as_json(info.upper)},
                          {"times", info.times},
                          {"arrays", arrays},
+                         {"parts", info.parts},
                          {"warnings", info.warnings}};
   if (info.volume) json["volume"] = as_json(*info.volume);
   return json;
@@ -109,6 +111,7 @@ void print(const FileInfo& info) {
   for (const ArrayInfo& a : info.arrays)
     fmt::print("  {:<24} {} component{} on {:<6} {:>9} {}: {:.6g} to {:.6g}\n", a.name, a.components,
                a.components == 1 ? "" : "s", a.on, a.count, a.components > 1 ? "magnitude" : "range", a.min, a.max);
+  if (!info.parts.empty()) fmt::print("  parts: {}\n", fmt::join(info.parts, ", "));
   for (const std::string& warning : info.warnings) fmt::print("  warning: {}\n", warning);
 }
 
@@ -122,8 +125,8 @@ std::vector<std::string> requested_files(const InfoOptions& options) {
   return files;
 }
 
-/// Knobs have no effect here but for the names and layers of labels; they are checked: all commands take the same
-/// options.
+/// Knobs have no effect here but for the names and layers of labels, and for patches; they are checked: all commands
+/// take the same options.
 void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
   Settings settings;
   knob_options.apply(settings, options.common.set);
@@ -135,7 +138,7 @@ void run_info(const InfoOptions& options, const KnobOptions& knob_options) {
     FileInfo info;
     {
       StageTimers::Scope scope(timers, "read");
-      info = describe(file, {settings.materials.layer, settings.materials.names});
+      info = describe(file, {settings.materials.layer, settings.materials.names}, settings.patch);
     }
     files.push_back(as_json(info));
     if (options.json)

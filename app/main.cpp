@@ -87,7 +87,7 @@ Status run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   nacre::catch_interrupts();
-  nacre::watch_vtk_child(&nacre::interrupt_flag());
+  nacre::watch_import_children(&nacre::interrupt_flag());
   try {
     return flushed(run(argc, argv));
   } catch (const nacre::Interrupted&) {

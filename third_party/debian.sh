@@ -9,6 +9,7 @@ required_packages=(
 optional_packages=(ccache)
 viewer_packages=(libglfw3-dev libglew-dev libegl-dev libglm-dev libimgui-dev libgl1-mesa-dri xvfb xauth xdotool)
 vtk_packages=(libvtk9-dev)
+dicom_packages=(libgdcm-dev)
 check_packages=(clang-format clang-tidy)
 
 apt_options=(-y -q --no-install-recommends --no-remove -o DPkg::Lock::Timeout=120

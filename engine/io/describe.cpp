@@ -135,7 +135,8 @@ void add_volume(FileInfo& info, const Volume& volume, const std::string& format)
 
 /// A file that lists or contains several steps: describes the first one, and the times of all.
 void add_steps(FileInfo& info, const FileSteps& files) {
-  add_mesh(info, read_step(files.steps[0]));
+  add_mesh(info, read_step(files.steps[0], files.patches));
+  info.parts = files.parts;
   if (files.steps.size() > 1) info.kind = "series";
   info.times.clear();
   for (const FileStep& step : files.steps) info.times.push_back(step.time);
@@ -163,11 +164,11 @@ bool add_volume_file(FileInfo& info, const fs::path& path, const VolumeChoice& c
   return true;
 }
 
-void add_content(FileInfo& info, const fs::path& path, const VolumeChoice& choice) {
+void add_content(FileInfo& info, const fs::path& path, const VolumeChoice& choice, const std::string& patches) {
   if (add_volume_file(info, path, choice)) return;
   if (is_file_list(path) || goes_through_vtk(path)) {
     info.format = format_extension(path) == "pvd" ? "VTK XML" : is_file_list(path) ? "list of files" : "VTK";
-    add_steps(info, find_steps(path));
+    add_steps(info, find_steps(path, patches));
     return;
   }
   std::string bytes = read_file(path);
@@ -182,14 +183,15 @@ void add_content(FileInfo& info, const fs::path& path, const VolumeChoice& choic
 
 }  // namespace
 
-FileInfo describe(const fs::path& path, const VolumeChoice& choice) {
-  require_file(path);
+FileInfo describe(const fs::path& path, const VolumeChoice& choice, const std::string& patches) {
+  const VolumeFormat* format = find_volume_format(path);
+  if (!format || format->name != "DICOM") require_file(path);
   FileInfo info;
   info.path = path.string();
   std::error_code code;
-  info.bytes = fs::file_size(path, code);
+  info.bytes = fs::is_directory(path, code) ? 0 : fs::file_size(path, code);
   try {
-    add_content(info, path, choice);
+    add_content(info, path, choice, patches);
   } catch (const std::bad_alloc&) {
     fail_reading(path, "it does not fit in memory", "open a smaller file");
   }

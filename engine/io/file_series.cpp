@@ -34,7 +34,7 @@ bool differ(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
 }  // namespace
 
 FileSeries::FileSeries(FileSteps files) : files_(std::move(files)), warnings_(files_.warnings) {
-  RawMesh mesh = read_step(files_.steps[0]);
+  RawMesh mesh = read_step(files_.steps[0], files_.patches);
   file_points_ = mesh.points;
   first_ = build_surface(std::move(mesh), name_of(files_.steps[0]), warnings_);
   if (files_.steps.size() > 1) {
@@ -65,7 +65,7 @@ Surface FileSeries::load(std::size_t k) const {
 
 Surface FileSeries::load_file(std::size_t k, bool& moved) const {
   const FileStep& step = files_.steps[k];
-  RawMesh mesh = read_step(step);
+  RawMesh mesh = read_step(step, files_.patches);
   const auto fail = [&](const char* what, std::size_t here, std::size_t first) {
     throw Error(
         name_of(step) + " does not fit the first step",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "compute/device/error.hpp"
 #include "engine/io/build_surface.hpp"
@@ -85,21 +86,37 @@ FileSteps series_steps(const fs::path& path) {
   return result;
 }
 
-FileSteps imported_steps(const fs::path& path) {
+FileSteps imported_steps(const fs::path& path, const std::string& patches) {
   if (!vtk_child_available())
     throw Error(path.string() + " cannot be read",
                 "." + format_extension(path) + " files go through VTK, and this program was built without it",
                 "build with NACRE_VTK=ON (Debian package libvtk9-dev), or convert the file to .vtp");
-  const auto conversion = std::make_shared<const VtkConversion>(convert_with_vtk(path));
+  const auto conversion = std::make_shared<const VtkConversion>(convert_with_vtk(path, patches));
   if (conversion->files.empty()) fail_reading(path, "VTK found no surface in it", "check what it holds");
   FileSteps result;
   result.keep_alive = conversion;
+  result.parts = conversion->parts;
   const std::vector<double>& times = conversion->times;
   const bool timed = times.size() == conversion->files.size() &&
                      std::adjacent_find(times.begin(), times.end(), std::greater_equal<>()) == times.end();
   for (std::size_t i = 0; i < conversion->files.size(); ++i)
     result.steps.push_back({timed ? times[i] : double(i), {conversion->files[i]}});
   return result;
+}
+
+FileSteps one_step(std::vector<fs::path> parts) {
+  FileSteps result;
+  result.steps.push_back({0.0, std::move(parts)});
+  return result;
+}
+
+/// Parts can be chosen of what VTK reads.
+void require_parts(const FileSteps& files, const fs::path& path, const std::string& patches) {
+  if (patches.empty() || !files.parts.empty()) return;
+  for (const FileStep& step : files.steps)
+    for (const fs::path& part : step.parts)
+      if (goes_through_vtk(part)) return;
+  throw Error(path.string() + " has no patches that could be chosen", "", "leave --patch out");
 }
 
 std::optional<double> own_time(const fs::path& path) {
@@ -117,14 +134,22 @@ bool goes_through_vtk(const fs::path& path) {
   return lower_extension(path) != ".gz" && !find_format(extension) && vtk_child_reads("." + extension);
 }
 
-FileSteps find_steps(const fs::path& path) {
-  if (is_pvd(path)) return collection_steps(path);
-  if (is_file_list(path)) return series_steps(path);
-  if (goes_through_vtk(path)) return imported_steps(path);
-  return {{{0.0, {path}}}, {}, nullptr};
+FileSteps find_steps(const fs::path& path, const std::string& patches) {
+  FileSteps result = is_pvd(path)             ? collection_steps(path)
+                     : is_file_list(path)     ? series_steps(path)
+                     : goes_through_vtk(path) ? imported_steps(path, patches)
+                                              : one_step({path});
+  require_parts(result, path, patches);
+  if (result.parts.empty()) result.patches = patches;  // else they have been chosen
+  return result;
 }
 
 namespace {
+
+bool may_hold_steps(const fs::path& path) {
+  static const std::set<std::string> extensions = {"case", "encas", "ex2", "exo", "e", "g", "foam", "vtkhdf"};
+  return extensions.count(format_extension(path)) > 0;
+}
 
 /// GIFTI has shapes and vectors in files of their own, beside the surface.
 bool is_surface_with_shapes(const std::vector<fs::path>& paths) {
@@ -150,19 +175,21 @@ void add_shapes(RawMesh& mesh, RawMesh&& part, const fs::path& file) {
 
 }  // namespace
 
-FileSteps find_steps(const std::vector<fs::path>& paths) {
-  if (paths.size() == 1) return find_steps(paths[0]);
-  if (is_surface_with_shapes(paths)) return {{{0.0, paths}}, {}, nullptr};
+FileSteps find_steps(const std::vector<fs::path>& paths, const std::string& patches) {
+  if (paths.size() == 1) return find_steps(paths[0], patches);
+  if (is_surface_with_shapes(paths)) return one_step(paths);
   FileSteps result;
   std::size_t timed = 0;
   for (const fs::path& path : paths) {
-    if (is_file_list(path) || goes_through_vtk(path))
+    if (is_file_list(path) || (goes_through_vtk(path) && may_hold_steps(path)))
       throw Error(path.string() + " cannot be one of several files", "it may hold several steps itself",
                   "open it alone");
     const std::optional<double> time = own_time(path);
     timed += time.has_value();
     result.steps.push_back({time.value_or(0), {path}});
   }
+  require_parts(result, paths[0], patches);
+  result.patches = patches;
   const auto same = [](const FileStep& a, const FileStep& b) { return a.time == b.time; };
   std::vector<FileStep> sorted = result.steps;
   std::stable_sort(sorted.begin(), sorted.end(), is_earlier);
@@ -180,18 +207,18 @@ FileSteps find_steps(const std::vector<fs::path>& paths) {
 namespace {
 
 /// A part that only VTK reads may have steps itself; the first is taken.
-RawMesh read_part(const fs::path& part) {
+RawMesh read_part(const fs::path& part, const std::string& patches) {
   if (!goes_through_vtk(part)) return read_raw(part).mesh;
-  const FileSteps imported = imported_steps(part);
+  const FileSteps imported = imported_steps(part, patches);
   return read_raw(imported.steps.front().parts.front()).mesh;
 }
 
 }  // namespace
 
-RawMesh read_step(const FileStep& step) {
-  RawMesh mesh = read_part(step.parts.front());
+RawMesh read_step(const FileStep& step, const std::string& patches) {
+  RawMesh mesh = read_part(step.parts.front(), patches);
   for (std::size_t i = 1; i < step.parts.size(); ++i) {
-    RawMesh part = read_part(step.parts[i]);
+    RawMesh part = read_part(step.parts[i], patches);
     if (format_extension(step.parts[i]) == "gii" && part.points.empty())
       add_shapes(mesh, std::move(part), step.parts[i]);
     else

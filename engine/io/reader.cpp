@@ -12,11 +12,11 @@
 
 namespace nacre {
 
-SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths) {
+SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths, const std::string& patches) {
   if (paths.empty()) throw Error("no file to open", "", "name at least one file");
   for (const std::filesystem::path& path : paths) require_file(path);
   try {
-    const auto files = std::make_shared<const FileSeries>(find_steps(paths));
+    const auto files = std::make_shared<const FileSeries>(find_steps(paths, patches));
     return {paths[0].filename().string(), files->times(), [files](std::size_t k) { return files->load(k); },
             files->warnings()};
   } catch (const std::bad_alloc&) {
@@ -30,7 +30,7 @@ std::vector<std::string> readable_extensions() {
   extensions.push_back(".series");
   if (!vtk_child_available()) return extensions;
   for (const char* other : {".vtk", ".vts", ".vtr", ".vtm", ".vtmb", ".pvts", ".pvtr", ".case", ".encas", ".ex2",
-                            ".exo", ".e", ".g", ".foam"})
+                            ".exo", ".e", ".g", ".foam", ".vtkhdf"})
     if (vtk_child_reads(other)) extensions.push_back(other);
   return extensions;
 }

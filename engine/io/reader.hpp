@@ -51,18 +51,20 @@ struct FileInfo {
   std::vector<double> times;  ///< one per step; empty if there is no time
   std::vector<ArrayInfo> arrays;
   std::optional<VolumeInfo> volume;   ///< if `read_volume` reads it as one
+  std::vector<std::string> parts;     ///< names of its patches or blocks, if it goes through VTK
   std::vector<std::string> warnings;  ///< full sentences
 };
 
 /// Opens one file, a .pvd or .series, or several files of one series in the given order (in the order of their own
 /// TimeValue if all have one). The first step is read at once, and two more to see whether the surface moves; the
 /// others are read on demand. A surface that moves keeps the points of its first step, with a warning. Throws Error if
-/// a file is missing, unreadable, not a surface, or has other points or triangles than the first step.
-SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths);
+/// a file is missing, unreadable, not a surface, or has other points or triangles than the first step. `patches`: names
+/// of the parts to take of a file that VTK reads, as `convert_with_vtk` takes them; empty: all.
+SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths, const std::string& patches = {});
 
-/// Describes the contents of a file, even if it is not a surface; `choice` for volumes. Throws Error if it cannot be
-/// read.
-FileInfo describe(const std::filesystem::path& path, const VolumeChoice& choice = {});
+/// Describes the contents of a file, even if it is not a surface; `choice` for volumes, `patches` for surfaces. Throws
+/// Error if it cannot be read.
+FileInfo describe(const std::filesystem::path& path, const VolumeChoice& choice = {}, const std::string& patches = {});
 
 /// Extensions that can be opened, lower case, with dot.
 std::vector<std::string> readable_extensions();

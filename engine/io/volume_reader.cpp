@@ -10,7 +10,9 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/file_bytes.hpp"
+#include "engine/io/file_steps.hpp"
 #include "engine/io/label_names.hpp"
+#include "engine/io/registry.hpp"
 #include "engine/io/volume_readers.hpp"
 #include "engine/io/vtk_child.hpp"
 #include "engine/system/extension.hpp"
@@ -31,18 +33,29 @@ bool is_legacy_image(const fs::path& path) {
   return dataset != head.npos && head.find("STRUCTURED_POINTS", dataset) < dataset + 40;
 }
 
+/// The attribute Type of the group VTKHDF is a word in the file's text.
+bool is_hdf_image(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(1 << 16, '\0');
+  file.read(head.data(), std::streamsize(head.size()));
+  head.resize(std::size_t(std::max<std::streamsize>(file.gcount(), 0)));
+  return head.find("ImageData") != head.npos;
+}
+
 }  // namespace
 
 const std::vector<VolumeFormat>& volume_formats() {
   static const std::vector<VolumeFormat> formats = {
-      {"NRRD", {"nrrd", "nhdr"}, false, false, read_nrrd, read_nrrd_layer},
-      {"NIfTI", {"nii", "hdr", "img"}, true, false, read_nifti},
-      {"INR", {"inr"}, true, false, read_inr},
-      {"FreeSurfer", {"mgz", "mgh"}, false, false, read_mgh},
-      {"VTK image", {"vti"}, false, false, read_vti},
-      {"MetaImage", {"mhd", "mha"}, false, false, read_metaimage},
-      {"SLC", {"slc"}, false, true, read_vtk_volume},
-      {"VTK image", {"vtk"}, false, true, read_vtk_volume},
+      {"NRRD", {"nrrd", "nhdr"}, false, nullptr, read_nrrd, read_nrrd_layer},
+      {"NIfTI", {"nii", "hdr", "img"}, true, nullptr, read_nifti},
+      {"INR", {"inr"}, true, nullptr, read_inr},
+      {"FreeSurfer", {"mgz", "mgh"}, false, nullptr, read_mgh},
+      {"VTK image", {"vti"}, false, nullptr, read_vti},
+      {"MetaImage", {"mhd", "mha"}, false, nullptr, read_metaimage},
+      {"DICOM", {"dcm"}, false, dicom_child_available, read_dicom, read_dicom_layer},
+      {"SLC", {"slc"}, false, vtk_child_available, read_vtk_volume},
+      {"VTK image", {"vtk"}, false, vtk_child_available, read_vtk_volume},
+      {"VTKHDF image", {"vtkhdf"}, false, vtk_child_available, read_vtk_volume},
   };
   return formats;
 }
@@ -55,8 +68,13 @@ const VolumeFormat* find_volume_format(const fs::path& path) {
     if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end()) continue;
     if (packed && !format.gzip) return nullptr;
     if (extension == "vtk" && !is_legacy_image(path)) return nullptr;
+    if (extension == "vtkhdf" && !is_hdf_image(path)) return nullptr;
     return &format;
   }
+  // Files of scanners are often called by a number.
+  if (!find_format(extension) && !goes_through_vtk(path) && !is_file_list(path) && is_dicom(path))
+    return &*std::find_if(volume_formats().begin(), volume_formats().end(),
+                          [](const VolumeFormat& format) { return format.name == "DICOM"; });
   return nullptr;
 }
 
@@ -70,8 +88,8 @@ void add_label_names(Volume& volume, const fs::path& names) {
 }
 
 Volume read_volume(const fs::path& path, const VolumeChoice& choice) {
-  require_file(path);
   const VolumeFormat* format = find_volume_format(path);
+  if (!format || format->name != "DICOM") require_file(path);
   if (!format)
     fail_reading(path, "its name is not that of a known volume format",
                  fmt::format("known are {}", fmt::join(volume_extensions(), " ")));
@@ -88,10 +106,9 @@ Volume read_volume(const fs::path& path, const VolumeChoice& choice) {
 }
 
 std::vector<std::string> volume_extensions() {
-  const bool vtk = vtk_child_available();
   std::vector<std::string> extensions;
   for (const VolumeFormat& format : volume_formats())
-    if (vtk || !format.through_vtk)
+    if (!format.available || format.available())
       for (const std::string& extension : format.extensions) {
         extensions.push_back("." + extension);
         if (format.gzip) extensions.push_back("." + extension + ".gz");

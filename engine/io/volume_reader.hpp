@@ -14,7 +14,7 @@ struct VolumeFormat {
   std::string name;                     ///< "NRRD"
   std::vector<std::string> extensions;  ///< lower case, without the dot; if `gzip`, each also followed by .gz
   bool gzip = false;
-  bool through_vtk = false;  ///< read by the child process
+  bool (*available)() = nullptr;  ///< of a format that a child process reads: whether there is one
   Volume (*read)(const std::filesystem::path& path) = nullptr;
   Volume (*read_layer)(const std::filesystem::path& path, int layer) = nullptr;  ///< if the format has layers
 };
@@ -32,10 +32,11 @@ struct VolumeChoice {
 const std::vector<VolumeFormat>& volume_formats();
 
 /// The format of volumes for this file, or nullptr. By extension; a legacy .vtk file only if its header says
-/// STRUCTURED_POINTS.
+/// STRUCTURED_POINTS, a .vtkhdf if it holds an image. Folders with DICOM files, and such files whatever they are
+/// called, count by their content.
 const VolumeFormat* find_volume_format(const std::filesystem::path& path);
 
-/// Whether `read_volume` reads this file. Only .vtk files are opened to find out.
+/// Whether `read_volume` reads this file. Files of VTK and those of unknown extensions are opened to find out.
 bool is_volume_file(const std::filesystem::path& path);
 
 /// Reads one volume. Throws Error if the file is missing, of unknown format, damaged, truncated, not a volume (2-D, or

@@ -16,6 +16,14 @@ Volume read_inr(const std::filesystem::path& path);  ///< .inr, INRIMAGE-4
 Volume read_mgh(const std::filesystem::path& path);  ///< .mgh .mgz of FreeSurfer
 Volume read_vti(const std::filesystem::path& path);  ///< .vti of one piece
 Volume read_metaimage(const std::filesystem::path& path);   ///< .mhd .mha with one data file
-Volume read_vtk_volume(const std::filesystem::path& path);  ///< .slc .vtk, in a child process
+Volume read_vtk_volume(const std::filesystem::path& path);  ///< .slc .vtk .vtkhdf, in a child process
+Volume read_dicom(const std::filesystem::path& place);      ///< a folder with one series, or one of its files, or a SEG
+Volume read_dicom_layer(const std::filesystem::path& place, int layer);
+
+/// Whether a file begins as DICOM does, or one of the first files of a folder.
+bool is_dicom(const std::filesystem::path& place);
+
+/// Whether `nacre-dicom-import` exists: beside this program, or where the environment variable NACRE_DICOM_IMPORT says.
+bool dicom_child_available();
 
 }  // namespace nacre

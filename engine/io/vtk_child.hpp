@@ -1,11 +1,10 @@
 // Nacre: reads formats that only VTK knows, in a child process.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
-#include <memory>
 #include <string>
-#include <vector>
+
+#include "engine/io/import_child.hpp"
 
 namespace nacre {
 
@@ -16,21 +15,14 @@ bool vtk_child_available();
 bool vtk_child_reads(const std::string& extension);
 
 /// A file as VTK read it: its surface, triangulated, one .vtp per time step; or its image as one .vti.
-struct VtkConversion {
-  std::shared_ptr<const std::filesystem::path> folder;  ///< removed with the last copy
-  std::vector<std::filesystem::path> files;             ///< in `folder`, at least one
-  std::vector<double> times;                            ///< one per file, as in the file; 0 if it has none
-};
+using VtkConversion = ImportResult;
 
-/// Converts `file` in a child process, since VTK ends the whole process on some broken files. Throws Error if VTK
-/// reports an error (its first line), crashes, or takes more than 120 s; Interrupted if it was stopped by Ctrl-C.
-VtkConversion convert_with_vtk(const std::filesystem::path& file);
+/// Converts `file` in a child process, since VTK ends the whole process on some broken files. `parts`: names of patches
+/// or blocks, separated by commas, with * and ? for any letters; empty: all (of an OpenFOAM case, all patches). Throws
+/// as `import_by_child`, and if no part has such a name.
+VtkConversion convert_with_vtk(const std::filesystem::path& file, const std::string& parts = {});
 
-/// The same for the image in an SLC or legacy .vtk file: one .vti, its values in the type of the file.
+/// The same for the image in an SLC, VTKHDF or legacy .vtk file: one .vti, its values in the type of the file.
 VtkConversion convert_volume_with_vtk(const std::filesystem::path& file);
-
-/// From now on both stop (Interrupted) once `*stop` is true. Without this, they stop only if Ctrl-C reaches the child
-/// itself, as from a terminal.
-void watch_vtk_child(const std::atomic<bool>* stop);
 
 }  // namespace nacre

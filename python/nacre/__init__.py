@@ -41,6 +41,8 @@ _require_processor()
 from . import _core  # noqa: E402
 from ._flow import Flow, FlowCells, Frame, flow  # noqa: E402
 from ._mesh import Mesh, Meshing, Particles, Progress, Quality, Stage, Tetrahedra, mesh, meshing  # noqa: E402
+from ._tetrahedra import register_meshio, save_tetrahedra  # noqa: E402
+from ._view import View, view  # noqa: E402
 
 __version__: str = _core.version
 
@@ -161,6 +163,7 @@ __all__ = [
     "Quality",
     "Stage",
     "Tetrahedra",
+    "View",
     "Warning",
     "closest_points",
     "devices",
@@ -168,6 +171,9 @@ __all__ = [
     "knobs",
     "mesh",
     "meshing",
+    "register_meshio",
+    "save_tetrahedra",
     "surface_extensions",
+    "view",
     "volume_extensions",
 ]

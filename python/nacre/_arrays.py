@@ -9,23 +9,42 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ._errors import Error
 
 
-def real_array(values: ArrayLike, what: str) -> NDArray[Any]:
-    """Numbers of any kind; what is no array becomes one."""
+def _from_elsewhere(values: Any) -> Any:
+    """Arrays that are not numpy's: by DLPack, without a copy where they are in the CPU's memory; others as they are."""
+    if isinstance(values, np.ndarray) or hasattr(values, "__array__") or not hasattr(values, "__dlpack__"):
+        return values
     try:
-        array = np.asarray(values)
+        return np.from_dlpack(values)
+    except (BufferError, RuntimeError, TypeError, ValueError):
+        return np.from_dlpack(values, device="cpu")  # numpy 2.1 and later: copied from the GPU
+
+
+def _on_gpu(values: Any) -> bool:
+    try:
+        device = int(values.__dlpack_device__()[0])
+    except Exception:
+        return hasattr(values, "__cuda_array_interface__")
+    return device != 1
+
+
+def real_array(values: Any, what: str) -> NDArray[Any]:
+    """Numbers of any kind (numpy's, buffers, DLPack); what is no array becomes one."""
+    try:
+        array = np.asarray(_from_elsewhere(values))
     except Exception as error:
-        raise Error(f"{what} cannot be read as an array", str(error)) from error
+        advice = "copy it to the CPU first: .get() of cupy, .cpu() of torch" if _on_gpu(values) else ""
+        raise Error(f"{what} cannot be read as an array", str(error), advice) from error
     if array.dtype.kind not in "buif":
         raise Error(f"{what} holds {array.dtype}, not numbers", "", "give an array of integers or real numbers")
     return array
 
 
-def rows(values: ArrayLike, width: int, what: str, dtype: type, finite: bool = False) -> NDArray[Any]:
+def rows(values: Any, width: int, what: str, dtype: type, finite: bool = False) -> NDArray[Any]:
     """An (n, width) array, contiguous, of that type."""
     array = real_array(values, what)
     if array.size == 0 and array.ndim <= 2:

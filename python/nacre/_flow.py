@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -113,6 +113,9 @@ class Frame:
         else:
             self._present().save(path)
 
+    def __reduce__(self) -> NoReturn:
+        raise Error("a frame cannot be pickled or copied", "it belongs to a run", "keep its image or its values")
+
     def __repr__(self) -> str:
         return f"<nacre.Frame: {self.index}, time {self.time:g}>"
 
@@ -160,6 +163,9 @@ class Flow:
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *_FLOW_KNOBS]
+
+    def __reduce__(self) -> NoReturn:
+        raise Error("a flow cannot be pickled or copied", "", "keep what its frames give: images, values")
 
     def __repr__(self) -> str:
         return f"<nacre.Flow: frame {self._native.frame()} of {len(self)}>"
@@ -235,6 +241,59 @@ def _array_of(surface: Any, name: str) -> Any:
     return numpy_support.vtk_to_numpy(array)
 
 
+@dataclass(frozen=True)
+class FlowInput:
+    """What a flow run begins from, checked."""
+
+    points: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    times: list[float]
+    vectors: Steps | None  #: by number of time; None: the analytic field `title`
+    scalar: Callable[[str, int], NDArray[np.float32]]
+    scalar_names: list[str]
+    title: str
+
+
+def flow_input(
+    points: Any,
+    triangles: Any,
+    velocity: Any,
+    times: Any = None,
+    scalars: Mapping[str, Any] | None = None,
+    title: str | None = None,
+    color: object = None,
+) -> FlowInput:
+    """The arguments of `flow`, checked; `color` is the scalar that is taken from a PolyData."""
+    if hasattr(points, "GetPolys"):
+        surface = points
+        points, own = _mesh_of(surface)
+        triangles = own if triangles is None else triangles
+        if isinstance(velocity, str) and not velocity.startswith("@"):
+            title = velocity if title is None else title
+            velocity = _array_of(surface, velocity)
+        if color not in (None, "speed", "none") and scalars is None:
+            scalars = {str(color): _array_of(surface, str(color))}
+    if triangles is None or velocity is None:
+        raise Error("the surface needs triangles and a velocity", "", "nacre.flow(points, triangles, velocity)")
+    places = rows(points, 3, "points", np.float64)
+    corners = rows(triangles, 3, "triangles", np.int64)
+    n = len(places)
+    vectors, moments, analytic = _velocity(velocity, times, n)
+    numbers = {str(key): real_array(value, f"scalars {key!r}") for key, value in (scalars or {}).items()}
+    for key, array in numbers.items():
+        if array.shape not in ((n,), (len(moments), n)):
+            raise Error(f"scalars {key!r} has shape {array.shape}", "", f"it must be ({n},) or ({len(moments)}, {n})")
+
+    def scalar(key: str, step: int) -> NDArray[np.float32]:
+        array = numbers[key]
+        return np.ascontiguousarray(array if array.ndim == 1 else array[step], dtype=np.float32)
+
+    title = analytic or title or "velocity"
+    if analytic is None and title.startswith("@"):
+        raise Error(f"no vectors may be called {title!r}", "names with @ are those of analytic fields")
+    return FlowInput(places, corners, moments, vectors, scalar, list(numbers), title)
+
+
 def flow(
     points: Any,
     triangles: Any = None,
@@ -281,45 +340,18 @@ def flow(
     Flow
         An iterator of `steps` frames.
     """
-    title = vector_name
-    if hasattr(points, "GetPolys"):
-        surface = points
-        points, own = _mesh_of(surface)
-        triangles = own if triangles is None else triangles
-        if isinstance(velocity, str) and not velocity.startswith("@"):
-            title = velocity if title is None else title
-            velocity = _array_of(surface, velocity)
-        if knobs.get("color") not in (None, "speed", "none") and scalars is None:
-            scalars = {str(knobs["color"]): _array_of(surface, str(knobs["color"]))}
-    if triangles is None or velocity is None:
-        raise Error("the surface needs triangles and a velocity", "", "nacre.flow(points, triangles, velocity)")
-    places = rows(points, 3, "points", np.float64)
-    corners = rows(triangles, 3, "triangles", np.int64)
-    n = len(places)
-    vectors, moments, analytic = _velocity(velocity, times, n)
-    numbers = {str(key): real_array(value, f"scalars {key!r}") for key, value in (scalars or {}).items()}
-    for key, array in numbers.items():
-        if array.shape not in ((n,), (len(moments), n)):
-            raise Error(f"scalars {key!r} has shape {array.shape}", "", f"it must be ({n},) or ({len(moments)}, {n})")
-
-    def scalar(key: str, step: int) -> NDArray[np.float32]:
-        array = numbers[key]
-        return np.ascontiguousarray(array if array.ndim == 1 else array[step], dtype=np.float32)
-
+    given = flow_input(points, triangles, velocity, times, scalars, vector_name, knobs.get("color"))
     if progress is not None and not callable(progress):
         raise Error("progress is no function")
-    title = analytic or title or "velocity"
-    if analytic is None and title.startswith("@"):
-        raise Error(f"no vectors may be called {title!r}", "names with @ are those of analytic fields")
     core = _core.Flow(
-        places,
-        corners,
-        moments,
-        vectors,
-        scalar,
-        list(numbers),
+        given.points,
+        given.triangles,
+        given.times,
+        given.vectors,
+        given.scalar,
+        given.scalar_names,
         str(name),
-        title,
+        given.title,
         knob_dict(knobs),
         str(device),
         int(threads),

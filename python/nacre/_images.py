@@ -144,6 +144,13 @@ def _checked_values(values: NDArray[Any]) -> NDArray[Any]:
     return np.ascontiguousarray(values)
 
 
+def volumes_of(volume: Any) -> list[Any]:
+    """The argument of `nacre.mesh` as a list of volumes: a list of images is several, nested lists of numbers are one."""
+    stack = isinstance(volume, list) and len(volume) > 0 and isinstance(volume[0], (list, np.ndarray))
+    several = isinstance(volume, list) and len(volume) > 0 and not (stack and np.ndim(volume[0]) < 3)
+    return volume if several else [volume]
+
+
 def volume_dict(
     image: Any,
     spacing: Any = None,

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import weakref
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._arrays import knob, knob_dict
 from ._errors import Error, give_warning
-from ._images import volume_dict
+from ._images import volume_dict, volumes_of
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -70,6 +71,13 @@ def _package(name: str) -> Any:
         raise Error(f"{name} is not installed", "", f"pip install {name}") from error
 
 
+def _add_names(dataset: Any, names: Mapping[int, str]) -> None:
+    """Names of labels as two field arrays, which every VTK format keeps."""
+    if names:
+        dataset.field_data["material_labels"] = np.array(list(names), dtype=np.int64)
+        dataset.field_data["material_names"] = list(names.values())
+
+
 class Tetrahedra:
     """The insides of the materials, filled. The facets between them are exactly the triangles of the mesh."""
 
@@ -98,6 +106,7 @@ class Tetrahedra:
         pyvista = _package("pyvista")
         grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.cells}, self.points)
         grid.cell_data["material"] = self.labels
+        _add_names(grid, self.names)
         return grid
 
     def to_meshio(self) -> Any:
@@ -112,9 +121,11 @@ class Tetrahedra:
 class Mesh:
     """The interfaces of all materials as one conformal mesh of triangles, in world coordinates."""
 
-    def __init__(self, run: Meshing, data: dict[str, Any]) -> None:
+    def __init__(self, run: Meshing | None, data: dict[str, Any]) -> None:
         self._run = run
-        self._changes = run._changes
+        self._changes = 0 if run is None else run._changes
+        self._kept: tuple[Quality, dict[str, Any]] | None = None  # of a pickled mesh
+        self._data = data
         self._materials: list[tuple[int, str]] = data["materials"]
         self._sides: NDArray[np.uint16] = data["sides"]
         self.points: NDArray[np.float64] = data["points"]  #: (n, 3)
@@ -139,6 +150,8 @@ class Mesh:
         return {label: name for label, name in self._materials if name}
 
     def _live_run(self) -> Meshing:
+        if self._run is None:
+            raise Error("this mesh was pickled, and its run was not", "", "fill it before, and pickle the tetrahedra too")
         if self._changes != self._run._changes:
             raise Error("the run that made this mesh has gone on", "a knob was changed", "ask the run's new mesh")
         return self._run
@@ -160,11 +173,15 @@ class Mesh:
     @property
     def quality(self) -> Quality:
         """Shape of the triangles, their distance from the interfaces, and whether the mesh is sound."""
+        if self._kept is not None:
+            return self._kept[0]
         return Quality(**self._live_run()._native.quality())
 
     @property
     def report(self) -> dict[str, Any]:
         """Version, device, knobs, input, timings and measures: the report of the program, as a dictionary."""
+        if self._kept is not None:
+            return copy.deepcopy(self._kept[1])
         report: dict[str, Any] = json.loads(self._live_run()._native.report())
         return report
 
@@ -195,6 +212,7 @@ class Mesh:
         surface = pyvista.PolyData.from_regular_faces(self.points, self.triangles)
         surface.cell_data["material_0"] = self.materials[:, 0]
         surface.cell_data["material_1"] = self.materials[:, 1]
+        _add_names(surface, self.names)
         return surface
 
     def to_meshio(self) -> Any:
@@ -203,8 +221,27 @@ class Mesh:
         data = {"material_0": [self.materials[:, 0]], "material_1": [self.materials[:, 1]]}
         return meshio.Mesh(self.points, [("triangle", self.triangles)], cell_data=data)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Arrays, quality and report are pickled; the run is not."""
+        return _unpickled_mesh, (self._data, (self.quality, self.report))
+
+    def __copy__(self) -> Mesh:
+        return self.__deepcopy__({})
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Mesh:
+        """Arrays of its own; the run is the same."""
+        twin = Mesh(self._run, {key: value.copy() for key, value in self._data.items()})
+        twin._changes, twin._kept = self._changes, self._kept
+        return twin
+
     def __repr__(self) -> str:
         return f"<nacre.Mesh: {len(self.triangles)} triangles, {len(self.points)} points, labels {self.labels}>"
+
+
+def _unpickled_mesh(data: dict[str, Any], kept: tuple[Quality, dict[str, Any]]) -> Mesh:
+    mesh = Mesh(None, data)
+    mesh._kept = kept
+    return mesh
 
 
 class Stage:
@@ -283,6 +320,9 @@ class Meshing:
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *_MESH_KNOBS]
 
+    def __reduce__(self) -> NoReturn:
+        raise Error("a mesh run cannot be pickled or copied", "", "pickle its mesh, which leaves the run behind")
+
 
 _MESH_KNOBS = frozenset(each["name"] for each in _core.knobs("mesh"))
 
@@ -304,10 +344,7 @@ def meshing(
     **knobs: Unpack[MeshKnobs],
 ) -> Meshing:
     """Begin a mesh run, to go through it stage by stage. The arguments are those of `nacre.mesh`."""
-    stack = isinstance(volume, list) and len(volume) > 0 and isinstance(volume[0], (list, np.ndarray))
-    several = isinstance(volume, list) and len(volume) > 0 and not (stack and np.ndim(volume[0]) < 3)
-    images = volume if several else [volume]
-    volumes = [volume_dict(image, spacing, origin, direction, order, names, name) for image in images]
+    volumes = [volume_dict(image, spacing, origin, direction, order, names, name) for image in volumes_of(volume)]
     if progress is not None and not callable(progress):
         raise Error("progress is no function")
     return Meshing(_core.Meshing(volumes, knob_dict(knobs), str(device), int(threads), str(preset), progress))

@@ -36,4 +36,14 @@ if __name__ == "__main__":
         assert found["triangles"] > 100 and found["times"] == [0.5, 1.5], found["times"]
         stress = [(a["components"], a["max"]) for a in found["arrays"] if a["name"] == "wallShearStress"]
         assert stress == [(3, 0.5)], f"liver.foam: {found['arrays']}"
-        print("liver.foam: VTK finds its patches, their wall shear stress and both steps")
+        chosen = json.loads((folder / "kidney.json").read_text())
+        assert set(found["parts"]) == {"outside_liver_bile", "outside_kidney_left"}, found["parts"]
+        assert chosen["parts"] == ["outside_kidney_left"] and 50 < chosen["triangles"] < found["triangles"] - 50
+        assert chosen["times"] == [0.5, 1.5]
+        print("liver.foam: VTK finds its patches, chosen by name too, their wall shear stress and both steps")
+    if (folder / "image.vtkhdf.json").stat().st_size:
+        volume = json.loads((folder / "image.vtkhdf.json").read_text())["volume"]
+        counts = {entry["label"]: entry["voxels"] for entry in volume["labels"]}
+        assert counts == {int(v): int((labels() == v).sum()) for v in np.unique(labels())}, counts
+        assert volume["dimensions"] == list(labels().shape) and np.allclose(volume["origin"], (-10, 20, 5))
+        print("image.vtkhdf: as h5py wrote it")

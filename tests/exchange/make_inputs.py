@@ -16,16 +16,16 @@ def labels():
     return np.where(ball, np.where(x < 2, 5, 300), 0).astype(np.uint16)
 
 
-def write_segmentation(path, values, names, spacing=(0.7, 0.8, 1.25), origin=(-10, 20, 5)):
+def write_segmentation(path, values, names, spacing=(0.7, 0.8, 1.25), origin=(-10, 20, 5), directions=np.eye(3)):
+    steps = [tuple(float(x) for x in s * np.asarray(d)) for s, d in zip(spacing, directions)]
     header = [
         "NRRD0004",
         "type: uint16",
         "dimension: 3",
         "space: left-posterior-superior",
         f"sizes: {' '.join(map(str, values.shape))}",
-        "space directions: " + " ".join(str(tuple(s * (i == k) for k in range(3))).replace(" ", "")
-                                        for i, s in enumerate(spacing)),
-        f"space origin: {str(origin).replace(' ', '')}",
+        "space directions: " + " ".join(str(step).replace(" ", "") for step in steps),
+        f"space origin: {str(tuple(float(x) for x in origin)).replace(' ', '')}",
         "endian: little",
         "encoding: raw",
     ]

@@ -22,6 +22,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/case"
 "$python" "$here/make_inputs.py" "$work"
+"$python" -W ignore "$here/make_dicom.py" "$work"
 
 mesh() {
   "$nacre" mesh "$work/labels.seg.nrrd" --max-size 3 --min-size 1.5 --quiet --out "$work/$1" "${@:2}" >/dev/null
@@ -48,4 +49,31 @@ else
 fi
 "$python" "$here/add_steps.py" "$work/case"
 if info case/liver.foam; then :; else echo "case/liver.foam is left out: this program reads nothing through VTK"; fi
+
+patches() { "$nacre" info --json "$work/case/liver.foam" --patch "$1"; }
+if [[ -s $work/case/liver.foam.json ]]; then
+  patches 'outside_kidney*' >"$work/kidney.json"
+  if patches inlet >"$work/none.json" 2>"$work/none.txt"; then echo "a patch that does not exist is found"; exit 1; fi
+  grep -q "no part inlet.*outside_kidney_left" "$work/none.txt" || { cat "$work/none.txt"; exit 1; }
+fi
+
+if "$nacre" info "$work/segments.dcm" >/dev/null 2>"$work/none.txt"; then
+  for file in truth.seg.nrrd numbered.seg.nrrd series implicit segments.dcm overlapping.dcm; do info "$file"; done
+  for place in gap two; do
+    if info "$place" 2>"$work/$place.txt"; then echo "$place is read"; exit 1; fi
+  done
+  "$nacre" mesh "$work/truth.seg.nrrd" --max-size 3 --quiet --out "$work/truth.ply" >/dev/null
+  "$nacre" mesh "$work/series/IM007" --labels --max-size 3 --quiet --out "$work/series.ply" >/dev/null
+  "$nacre" mesh "$work/segments.dcm" --max-size 3 --quiet --out "$work/segments.vtu" >/dev/null
+  "$nacre" mesh "$work/numbered.seg.nrrd" --max-size 3 --quiet --out "$work/numbered.vtu" >/dev/null
+  "$python" "$here/check_dicom.py" "$work"
+else
+  grep -q "built without GDCM" "$work/none.txt" || { cat "$work/none.txt"; exit 1; }
+  echo "DICOM is left out: this program was built without GDCM"
+fi
+if "$nacre" info --json "$work/image.vtkhdf" >"$work/image.vtkhdf.json" 2>"$work/none.txt"; then
+  :
+else
+  echo "image.vtkhdf is left out: $(<"$work/none.txt")"
+fi
 "$python" "$here/check_inputs.py" "$work"

@@ -19,6 +19,9 @@ for stage in nacre.meshing(np.zeros((4, 4, 4))):
     name: str = stage.name
 for frame in nacre.flow(points, mesh.triangles, points, ttl=8):
     value: np.ndarray = frame.values.value
+nacre.save_tetrahedra("a.msh", points, mesh.tetrahedra().cells, names={1: "liver"})
+window: nacre.View = nacre.view(np.zeros((4, 4, 4)), max_size=1.5)
+closed: bool = window.wait(1.0)
 '''
 WRONG = '''
 import nacre

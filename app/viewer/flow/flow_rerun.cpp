@@ -29,7 +29,7 @@ void FlowRerun::add(const FlowRerun& other) {
 FlowRerun flow_rerun(const Settings& before, const Settings& after) {
   using enum FlowStage;
   FlowRerun rerun;
-  if (before.crease_angle != after.crease_angle) rerun.add({surface, embed, start});
+  if (before.crease_angle != after.crease_angle || before.patch != after.patch) rerun.add({surface, embed, start});
   if (before.vectors != after.vectors) rerun.add({vectors, start});
   if (before.color != after.color) rerun.add(colours);
   if (of_arrows(before.view) != of_arrows(after.view)) rerun.add(arrows);

@@ -50,11 +50,13 @@ void FlowWorker::read() {
   bool told_surface = false;
   {
     StageTimers::Scope scope(pipeline_->timers(), "read");
+    if (read_patch_ != settings_.patch) vectors_.reset();  // another surface
+    read_patch_ = settings_.patch;
     if (vectors_) {
       vectors_->set_surface(prepare(vectors_->series().load(0), settings_.crease_angle));
     } else {
-      SurfaceSeries series =
-          input_.sample.empty() ? open_surface(input_.inputs) : make_sample(input_.sample, input_.detail);
+      SurfaceSeries series = input_.sample.empty() ? open_surface(input_.inputs, settings_.patch)
+                                                   : make_sample(input_.sample, input_.detail);
       FlowLog news;
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
       news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };

@@ -179,7 +179,8 @@ class FlowWorker : public Worker<FlowEvent> {
   bool loop_, low_priority_;
 
   // The thread's own.
-  Settings settings_;  ///< of what it does
+  Settings settings_;       ///< of what it does
+  std::string read_patch_;  ///< of which `vectors_` are
   std::unique_ptr<VectorsInTime> vectors_;
   FlowSpan span_;
   int steps_made_ = 0, steps_in_all_ = 0;

@@ -1,6 +1,8 @@
-// Nacre: nacre-vtk-import FILE FOLDER: converts a file that VTK reads to one .vtp per time step in FOLDER.
+// Nacre: nacre-vtk-import [--parts NAMES] FILE FOLDER: converts a file that VTK reads to one .vtp per time step in
+// FOLDER; of its parts (patches, blocks), those that are named.
 // nacre-vtk-import --volume FILE FOLDER: converts the image in it to one .vti in FOLDER.
-// Prints "time path" for each. On failure it prints one line to stderr and exits with 1.
+// Prints "part name" for each part that it has, and "time path" for each file. On failure it
+// prints one line to stderr and exits with 1.
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -68,16 +70,19 @@ void import_volume(const std::string& file, const std::filesystem::path& folder)
   std::printf("0 %s\n", path.c_str());
 }
 
-void import(const std::string& file, const std::filesystem::path& folder) {
+void import(const std::string& file, const std::string& parts, const std::filesystem::path& folder) {
   require(file);
-  const vtkSmartPointer<vtkAlgorithm> reader = reader_for(file);
+  const vtkSmartPointer<vtkAlgorithm> reader = reader_for(file, parts);
   const std::vector<double> times = time_steps(*reader);
   fail_on_complaint();
   for (std::size_t k = 0; k < times.size(); ++k) {
     reader->UpdateTimeStep(times[k]);
     fail_on_complaint();
     const std::string path = folder / ("step_" + std::to_string(k) + ".vtp");
-    write<vtkXMLPolyDataWriter>(surface_of(reader->GetOutputDataObject(0)), path);
+    vtkDataObject* data = reader->GetOutputDataObject(0);
+    write<vtkXMLPolyDataWriter>(surface_of(data, parts), path);
+    if (k == 0)
+      for (const std::string& name : block_names(data)) std::printf("part %s\n", name.c_str());
     std::printf("%.17g %s\n", times[k], path.c_str());
   }
 }
@@ -86,14 +91,15 @@ void import(const std::string& file, const std::filesystem::path& folder) {
 
 int main(int argc, char** argv) {
   const bool volume = argc == 4 && std::strcmp(argv[1], "--volume") == 0;
-  if (argc != 3 && !volume) {
-    std::fputs("usage: nacre-vtk-import [--volume] FILE FOLDER\n", stderr);
+  const bool parts = argc == 5 && std::strcmp(argv[1], "--parts") == 0;
+  if (argc != 3 && !volume && !parts) {
+    std::fputs("usage: nacre-vtk-import [--volume | --parts NAMES] FILE FOLDER\n", stderr);
     return 2;
   }
   limit_damage();
   keep_complaints();
   try {
-    volume ? import_volume(argv[2], argv[3]) : import(argv[1], argv[2]);
+    volume ? import_volume(argv[2], argv[3]) : import(argv[argc - 2], parts ? argv[2] : "", argv[argc - 1]);
     if (std::fflush(stdout) != 0) throw std::runtime_error("the result cannot be handed over");
     return 0;
   } catch (const std::bad_alloc&) {

@@ -4,6 +4,11 @@
 #include <vtkExodusIIReader.h>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkGenericEnSightReader.h>
+
+#include "engine/io/vtk_import/surface.hpp"
+#if NACRE_HAS_VTKHDF
+#include <vtkHDFReader.h>
+#endif
 #include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkOpenFOAMReader.h>
@@ -60,8 +65,9 @@ vtkSmartPointer<vtkAlgorithm> exodus_reader(const std::string& file) {
   return reader.Get();
 }
 
-/// The patches if there are any (wall values are stored there), otherwise the inner mesh.
-vtkSmartPointer<vtkAlgorithm> foam_reader(const std::string& file) {
+/// The wanted parts; if none are named, the patches if there are any (wall values are stored there), otherwise the
+/// inner mesh.
+vtkSmartPointer<vtkAlgorithm> foam_reader(const std::string& file, const std::string& wanted) {
   vtkNew<vtkOpenFOAMReader> reader;
   reader->SetFileName(file.c_str());
   reader->CreateCellToPointOn();
@@ -75,13 +81,22 @@ vtkSmartPointer<vtkAlgorithm> foam_reader(const std::string& file) {
   };
   bool any_patch = false;
   for (int i = 0; i < parts; ++i) any_patch = any_patch || is_patch(i);
-  for (int i = 0; i < parts; ++i) reader->SetPatchArrayStatus(reader->GetPatchArrayName(i), !any_patch || is_patch(i));
+  const auto is_wanted = [&](int i) {
+    if (wanted.empty()) return !any_patch || is_patch(i);
+    const std::string name = reader->GetPatchArrayName(i);
+    return names_part(wanted, name.substr(name.rfind('/') + 1));
+  };
+  bool any_wanted = false;
+  for (int i = 0; i < parts; ++i) any_wanted = any_wanted || is_wanted(i);
+  // With no such part all are read, and their names are told.
+  for (int i = 0; i < parts; ++i)
+    reader->SetPatchArrayStatus(reader->GetPatchArrayName(i), !any_wanted || is_wanted(i));
   return reader.Get();
 }
 
 }  // namespace
 
-vtkSmartPointer<vtkAlgorithm> reader_for(const std::string& file) {
+vtkSmartPointer<vtkAlgorithm> reader_for(const std::string& file, const std::string& parts) {
   std::string extension = std::filesystem::path(file).extension().string();
   for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
   if (extension == ".vtk") return legacy_reader(file);
@@ -92,7 +107,10 @@ vtkSmartPointer<vtkAlgorithm> reader_for(const std::string& file) {
   if (extension == ".pvtr") return simple_reader<vtkXMLPRectilinearGridReader>(file);
   if (extension == ".case" || extension == ".encas") return ensight_reader(file);
   if (extension == ".ex2" || extension == ".exo" || extension == ".e" || extension == ".g") return exodus_reader(file);
-  if (extension == ".foam") return foam_reader(file);
+  if (extension == ".foam") return foam_reader(file, parts);
+#if NACRE_HAS_VTKHDF
+  if (extension == ".vtkhdf") return simple_reader<vtkHDFReader>(file);
+#endif
   throw std::runtime_error("files that end in \"" + extension + "\" are not read");
 }
 

@@ -1,6 +1,7 @@
 // Nacre: reduces any VTK data set to the triangles of its surface.
 #include "engine/io/vtk_import/surface.hpp"
 
+#include <fnmatch.h>
 #include <vtkAppendPolyData.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -9,11 +10,13 @@
 #include <vtkCompositeDataSet.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkFloatArray.h>
+#include <vtkInformation.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkTriangleFilter.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <functional>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -121,15 +124,35 @@ void add_part(vtkDataSet* data, std::vector<vtkSmartPointer<vtkPolyData>>& parts
   if (triangles->GetNumberOfPolys() > 0) parts.push_back(triangles);
 }
 
-std::vector<vtkSmartPointer<vtkPolyData>> parts_of(vtkDataObject* data) {
-  std::vector<vtkSmartPointer<vtkPolyData>> parts;
-  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data)) {
-    const vtkSmartPointer<vtkCompositeDataIterator> it = vtk::TakeSmartPointer(blocks->NewIterator());
-    for (it->InitTraversal(); !it->IsDoneWithTraversal(); it->GoToNextItem())
-      add_part(vtkDataSet::SafeDownCast(it->GetCurrentDataObject()), parts);
-  } else {
-    add_part(vtkDataSet::SafeDownCast(data), parts);
+void each_block(vtkCompositeDataSet* blocks, const std::function<void(const std::string&, vtkDataSet*)>& use) {
+  const vtkSmartPointer<vtkCompositeDataIterator> it = vtk::TakeSmartPointer(blocks->NewIterator());
+  int number = 0;
+  for (it->InitTraversal(); !it->IsDoneWithTraversal(); it->GoToNextItem()) {
+    auto* data = vtkDataSet::SafeDownCast(it->GetCurrentDataObject());
+    if (!data || data->GetNumberOfPoints() == 0 || data->GetNumberOfCells() == 0) continue;
+    const char* name = it->HasCurrentMetaData() ? it->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME()) : nullptr;
+    use(name && *name ? name : std::to_string(number), data);
+    ++number;
   }
+}
+
+std::vector<vtkSmartPointer<vtkPolyData>> parts_of(vtkDataObject* data, const std::string& wanted) {
+  std::vector<vtkSmartPointer<vtkPolyData>> parts;
+  auto* blocks = vtkCompositeDataSet::SafeDownCast(data);
+  if (!blocks) {
+    if (!wanted.empty()) throw std::runtime_error("it has no parts that could be chosen by name");
+    add_part(vtkDataSet::SafeDownCast(data), parts);
+    return parts;
+  }
+  std::string known;
+  bool any = wanted.empty();
+  each_block(blocks, [&](const std::string& name, vtkDataSet* block) {
+    known += (known.empty() ? "" : ", ") + name;
+    if (!wanted.empty() && !names_part(wanted, name)) return;
+    any = true;
+    add_part(block, parts);
+  });
+  if (!any) throw std::runtime_error("it has no part " + wanted + "; its parts are " + known);
   return parts;
 }
 
@@ -153,8 +176,24 @@ void complete_arrays(const std::vector<vtkSmartPointer<vtkPolyData>>& parts) {
 
 }  // namespace
 
-vtkSmartPointer<vtkPolyData> surface_of(vtkDataObject* data) {
-  const std::vector<vtkSmartPointer<vtkPolyData>> parts = parts_of(data);
+bool names_part(const std::string& list, const std::string& part) {
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t end = std::min(list.find(',', at), list.size());
+    if (end > at && ::fnmatch(list.substr(at, end - at).c_str(), part.c_str(), 0) == 0) return true;
+    at = end + 1;
+  }
+  return false;
+}
+
+std::vector<std::string> block_names(vtkDataObject* data) {
+  std::vector<std::string> names;
+  if (auto* blocks = vtkCompositeDataSet::SafeDownCast(data))
+    each_block(blocks, [&](const std::string& name, vtkDataSet*) { names.push_back(name); });
+  return names;
+}
+
+vtkSmartPointer<vtkPolyData> surface_of(vtkDataObject* data, const std::string& wanted) {
+  const std::vector<vtkSmartPointer<vtkPolyData>> parts = parts_of(data, wanted);
   if (parts.empty()) throw std::runtime_error("there are no polygons and no volume cells in it");
   if (parts.size() == 1) return parts[0];
   complete_arrays(parts);

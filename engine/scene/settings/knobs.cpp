@@ -97,6 +97,7 @@ bool Knob::concerns(const std::string& command) const {
   if (command == "join") return name == "fps";  // its frames are pictures already
   if (in({"picture"})) return command == "flow" || command == "mesh";
   if (in({"labels"})) return command == "mesh" || command == "info";
+  if (in({"case"})) return command == "flow" || command == "info";
   if (in({"materials", "fields", "sizing", "particles", "cells"})) return command == "mesh";
   return command == "flow" && !in({"view"});
 }

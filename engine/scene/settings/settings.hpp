@@ -60,6 +60,7 @@ struct Settings {
   ViewSettings view;
   double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
+  std::string patch;         ///< names of the parts of a case to show; empty: all
   std::string vectors;       ///< array name or @field; empty: chosen
   double crease_angle = 40;  ///< degrees
   std::string time;          ///< LO:HI of the data; empty: all of it

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "compute/device/error.hpp"
+#include "engine/io/reader.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 #include "tests/paths.hpp"
 
@@ -42,9 +43,9 @@ class FakeChild {
   std::optional<std::string> before_;
 };
 
-std::string error_of(const fs::path& file) {
+std::string error_of(const fs::path& file, const std::string& parts = {}) {
   try {
-    convert_with_vtk(file);
+    convert_with_vtk(file, parts);
   } catch (const Error& e) {
     return e.what();
   }
@@ -135,9 +136,9 @@ TEST(VtkChild, StopFlagInterrupts) {
   const TemporaryFolder folder;
   const FakeChild fake(folder, "exec sleep 60");
   const std::atomic<bool> stop{true};
-  watch_vtk_child(&stop);
+  watch_import_children(&stop);
   EXPECT_THROW(convert_with_vtk("a.vtk"), Interrupted);
-  watch_vtk_child(nullptr);
+  watch_import_children(nullptr);
 }
 
 TEST(VtkChild, HexahedronBecomesTwelveTrianglesWithPointArrays) {
@@ -279,6 +280,55 @@ TEST(VtkChild, OpenFoamPatches) {
   EXPECT_NE(file.find("Name=\"U\""), std::string::npos);
   EXPECT_NE(file.find("RangeMin=\"3.7416"),
             std::string::npos);  // |(1, 2, 3)|: the patches' values, not the cell's zero
+  EXPECT_EQ(conversion.parts, (std::vector<std::string>{"floor", "rest"}));
+  const VtkConversion floor = convert_with_vtk(folder / "run.foam", "fl*r");
+  EXPECT_EQ(triangles_in(floor.files.at(0)), 2);
+  EXPECT_EQ(triangles_in(convert_with_vtk(folder / "run.foam", "floor,rest").files.at(0)), 12);
+  EXPECT_EQ(triangles_in(convert_with_vtk(folder / "run.foam", "internalMesh").files.at(0)), 12);
+  const std::string error = error_of(folder / "run.foam", "wings");
+  EXPECT_NE(error.find("no part wings"), std::string::npos) << error;
+  EXPECT_NE(error.find("floor"), std::string::npos) << error;
+}
+
+TEST(VtkChild, BlocksAreChosenByName) {
+  NEEDS_VTK();
+  const TemporaryFolder folder;
+  write(folder, "one.vts", grid_with("p"));
+  const fs::path file =
+      write(folder, "both.vtm",
+            "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+            "name=\"hull\" file=\"one.vts\"/><DataSet index=\"1\" file=\"one.vts\"/>"
+            "</vtkMultiBlockDataSet></VTKFile>");
+  const VtkConversion hull = convert_with_vtk(file, "hull");
+  EXPECT_EQ(triangles_in(hull.files.at(0)), 20);
+  EXPECT_EQ(hull.parts.size(), 2u);
+  EXPECT_NE(error_of(file, "sail").find("its parts are hull"), std::string::npos) << error_of(file, "sail");
+  EXPECT_NE(error_of(folder / "one.vts", "hull").find("no parts"), std::string::npos);
+}
+
+TEST(VtkChild, SeveralFilesAndListsOfThemAreSteps) {
+  NEEDS_VTK();
+  const TemporaryFolder folder;
+  write(folder, "one.vts", grid_with("p"));
+  const std::string block =
+      "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\"><vtkMultiBlockDataSet><DataSet index=\"0\" "
+      "name=\"hull\" file=\"one.vts\"/></vtkMultiBlockDataSet></VTKFile>";
+  const fs::path first = write(folder, "a_0.vtm", block), second = write(folder, "a_1.vtm", block);
+  EXPECT_EQ(open_surface({first, second}).times, (std::vector<double>{0, 1}));
+  EXPECT_EQ(open_surface({first, second}, "hull").load(1).triangles.size(), 20u);
+  const fs::path list = write(folder, "a.vtm.series",
+                              "{\"file-series-version\": \"1.0\", \"files\": [{\"name\": \"a_0.vtm\", \"time\": 0.5}, "
+                              "{\"name\": \"a_1.vtm\", \"time\": 2}]}");
+  EXPECT_EQ(open_surface({list}).times, (std::vector<double>{0.5, 2}));
+  EXPECT_EQ(open_surface({list}, "h?ll").load(1).triangles.size(), 20u);
+  EXPECT_THROW(open_surface({list}, "sail"), Error);
+}
+
+TEST(VtkChild, PartsAreOnlyThoseOfFilesThatVtkReads) {
+  const TemporaryFolder folder;
+  const fs::path file = write(folder, "a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(open_surface({file}).load(0).triangles.size(), 1u);
+  EXPECT_THROW(open_surface({file}, "hull"), Error);
 }
 
 TEST(VtkChild, RotatingDisk) {
