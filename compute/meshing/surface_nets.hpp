@@ -1,4 +1,4 @@
-// Nacre: surface nets, a quick mesh of the interfaces between labelled voxels: what is shown before there is a better one.
+// Nacre: surface nets, a quick mesh of the interfaces between labelled voxels, to be shown until there is a better one.
 #pragma once
 
 #include <array>
