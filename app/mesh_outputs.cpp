@@ -15,6 +15,7 @@
 #include "engine/picture/legend.hpp"
 #include "engine/picture/material_colours.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/run/material_palette.hpp"
 #include "engine/system/extension.hpp"
 
 namespace nacre {
@@ -37,7 +38,7 @@ void write_particles(const std::string& file, const MeshParticles& particles) {
   write_vtp(file, std::span<const Vec3d>(particles.points), {}, arrays);
 }
 
-Image draw_mesh(const SurfaceMesh& mesh, const Session& session, bool cut_away) {
+Image draw_mesh(const SurfaceMesh& mesh, const MeshInput& input, const Session& session, bool cut_away) {
   const Settings& settings = session.settings;
   MeshPictureOptions options;
   options.camera = read_camera(session, mesh.points, false);
@@ -51,12 +52,13 @@ Image draw_mesh(const SurfaceMesh& mesh, const Session& session, bool cut_away) 
   const Vec3d middle = (low + high) * 0.5, forward = options.camera.forward();
   std::vector<Triangle> triangles;
   std::vector<Color> colours;
+  const std::vector<Color> palette = material_palette(input, settings.view.material_colors);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& triangle = mesh.triangles[t];
     const Vec3d centre = (mesh.points[triangle.a] + mesh.points[triangle.b] + mesh.points[triangle.c]) / 3.0;
     if (cut_away && dot(centre - middle, forward) < 0) continue;
     triangles.push_back(triangle);
-    colours.push_back(pair_colour(mesh.materials[t]));
+    colours.push_back(pair_colour(mesh.materials[t], palette));
   }
   Image image;
   image.width = settings.width;
@@ -101,7 +103,7 @@ std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Se
   Image image;
   if (!options.image.empty()) {
     StageTimers::Scope scope(timers, "render");
-    image = draw_mesh(result.mesh, session, options.cut_away);
+    image = draw_mesh(result.mesh, input, session, options.cut_away);
   }
   StageTimers::Scope scope(timers, "write");
   if (result.cells) {

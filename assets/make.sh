@@ -26,6 +26,10 @@ pictures=../docs/pictures
   --color-scale log --color-range 1%:99% --color-below '#d0d0d0' --color-above '#ff7f0e' --image "$pictures/colours.png"
 torus=(view --offscreen --sample torus --detail 48 --resolution 128 --panel)
 "$nacre" "${torus[@]}" --frames-count 2 --set tab=knobs --size 800x420 --image "$pictures/knobs.png"
+"$nacre" "${torus[@]}" --frames-count 3 --set panel_side=right --set tab=knobs --set isolines=12 --size 900x650 \
+  --set "ruler=1.2 0 0.3;0 1.2 0.3;-1 0 0.3" --set "notes=0.8 -0.8 0.3 stagnation" --image "$pictures/marks.png"
+"$nacre" view --offscreen --sample three-sectors --detail 28 --set iterations=20 --panel --set tab=result \
+  --set opacity=1:0.4 --set "material_colors=2:#c0392b" --size 1024x600 --image "$pictures/materials.png"
 cat >"$frames/paused.json" <<'JSON'
 {"sample": "torus", "detail": 48, "knobs": {"resolution": 160, "width": 960, "height": 480},
  "events": [{"time": 0.4, "knobs": {"play": false, "begin_at": 0.2}},

@@ -1,6 +1,7 @@
 // Triangles between materials, flat, with the appearance of compute/raycast/mesh_picture.hpp. A material can be solid,
 // a ghost or hidden; a triangle takes the more visible of its two materials.
 #include "view.glsl"
+#include "backs.glsl"
 
 in vec3 seen;
 out vec4 pixel;
@@ -16,7 +17,10 @@ void main() {
   bool outside = (pair & 0xffffu) == 0u;
   float opacity = outside ? high.a : max(low.a, high.a);
   if (opacity <= 0.0 || (opacity < 1.0) != ghosts) discard;
+  bool behind = outside && is_back();  // between two materials, both sides are fronts
+  if (behind && backs == 2) discard;
   vec3 colour = outside ? high.rgb : mix(0.5 * (low.rgb + high.rgb), vec3(1.0), 0.35);
   vec3 normal = cross(dFdx(seen), dFdy(seen));
-  pixel = vec4(to_encoded(to_linear(colour) * brightness(normal, seen)), opacity);
+  vec3 base = behind ? neutral_back : to_linear(colour);
+  pixel = vec4(to_encoded(base * brightness(normal, seen)), opacity);
 }

@@ -1,5 +1,6 @@
 // A surface with the texture of the flow and a colour map, with the appearance of compute/raycast/render.hpp.
 #include "view.glsl"
+#include "backs.glsl"
 
 in vec3 seen;
 in vec3 direction;
@@ -9,6 +10,7 @@ out vec4 pixel;
 
 uniform bool coloured;
 uniform vec2 range;  // of the colour map
+uniform float isolines;  // steps of the range between lines of equal value; 0: no lines
 uniform vec3 below;  // of values beyond it
 uniform vec3 above;
 uniform vec3 no_number;
@@ -21,10 +23,12 @@ uniform sampler1D colours;
 #endif
 
 void main() {
-  if (is_cut(seen)) discard;
+  bool behind = is_back();
+  if (is_cut(seen) || (behind && backs == 2)) discard;
   vec3 base = vec3(0.62);
   if (coloured) {
     float x = (shade - range.x) / (range.y - range.x);
+    float pixel_step = max(fwidth(x) * isolines, 1e-6);
     if (!(x >= 0.0) && !(x < 0.0))
       base = no_number;
     else if (x < -1e-5)
@@ -33,10 +37,17 @@ void main() {
       base = above;
     else
       base = texture(colours, (clamp(x, 0.0, 1.0) * 255.0 + 0.5) / 256.0).rgb;
+    if (isolines > 0.0 && x > 0.0 && x < 1.0) {
+      float nearest = abs(fract(x * isolines + 0.5) - 0.5) / pixel_step;  // pixels to the next line
+      base *= mix(0.06, 1.0, smoothstep(0.5, 1.5, nearest));
+    }
   }
   float light_here = brightness(direction, seen);
+  if (behind)
+    base = neutral_back;
 #ifdef TEXTURED
-  light_here *= 0.04 + 1.52 * shown_at(place);
+  else
+    light_here *= 0.04 + 1.52 * shown_at(place);
 #endif
   pixel = vec4(to_encoded(base * light_here), 1.0);
 }

@@ -1,4 +1,4 @@
-// Nacre: names of labels, if the file of a volume has them.
+// Nacre: names and colours of labels, if the file of a volume has them.
 #include "engine/io/label_names.hpp"
 
 #include <fmt/format.h>
@@ -33,6 +33,16 @@ void keep(LabelNames& names, std::string_view number, std::string_view words) {
   if (error != std::errc() || end != number.data() + number.size() || names.size() >= most_names) return;
   std::string name = in_one_line(words);
   if (!name.empty()) names.try_emplace(label, std::move(name));
+}
+
+/// Stores a colour, 0..1; of two for one label, the first is kept.
+void keep(LabelColours& colours, std::string_view number, const std::array<double, 3>& colour) {
+  std::int64_t label = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), label);
+  if (error != std::errc() || end != number.data() + number.size() || colours.size() >= most_names) return;
+  for (const double c : colour)
+    if (!(c >= 0 && c <= 1)) return;
+  colours.try_emplace(label, std::array{float(colour[0]), float(colour[1]), float(colour[2])});
 }
 
 /// Takes numbers and names from bytes; after the end, or after a length that cannot be, `good` is false.
@@ -71,6 +81,12 @@ bool is_number(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size();
 }
 
+double number_in(std::string_view word) {
+  double value = -1;
+  std::from_chars(word.data(), word.data() + word.size(), value);
+  return value;
+}
+
 std::vector<std::string_view> words_of_line(std::string_view line) {
   constexpr std::string_view blank = " \t\r,;";
   std::vector<std::string_view> words;
@@ -95,11 +111,25 @@ std::string_view name_in_line(std::string_view line, const std::vector<std::stri
   return {words[1].data(), std::size_t(end - words[1].data())};
 }
 
+/// Three bytes: behind the number where the name stands in quotes, otherwise behind the name.
+std::optional<std::array<double, 3>> colour_in_line(std::string_view line, const std::vector<std::string_view>& words) {
+  std::size_t first = 1;
+  if (line.find('"') == line.npos) {
+    first = words.size();
+    while (first > 1 && is_number(words[first - 1])) --first;
+    if (words.size() - first > 4) first = words.size() - 4;  // the name ends with a number
+  }
+  if (first + 3 > words.size()) return {};
+  std::array<double, 3> colour;
+  for (std::size_t k = 0; k < 3; ++k) colour[k] = number_in(words[first + k]) / 255;
+  return colour;
+}
+
 }  // namespace
 
-LabelNames names_of_colour_table(std::string_view bytes) {
+LabelTable label_table_in_bytes(std::string_view bytes) {
   TableBytes table(bytes);
-  LabelNames names;
+  LabelTable labels;
   const std::int32_t head = table.number();
   const bool numbered = head < 0;
   if (numbered) {
@@ -111,15 +141,21 @@ LabelNames names_of_colour_table(std::string_view bytes) {
   for (std::int32_t i = 0; i < entries && table.good; ++i) {
     const std::int32_t label = numbered ? table.number() : i;
     const std::string_view name = table.text();
-    for (int colour = 0; colour < 4; ++colour) table.number();
-    if (table.good) keep(names, std::to_string(label), name);
+    std::array<double, 3> colour;
+    for (double& c : colour) c = table.number() / 255.0;
+    table.number();  // transparency
+    if (!table.good) break;
+    keep(labels.names, std::to_string(label), name);
+    keep(labels.colours, std::to_string(label), colour);
   }
-  return table.good ? names : LabelNames{};
+  return table.good ? labels : LabelTable{};
 }
 
-LabelNames read_label_names(const std::filesystem::path& path) {
+LabelNames read_label_names(const std::filesystem::path& path) { return read_label_table(path).names; }
+
+LabelTable read_label_table(const std::filesystem::path& path) {
   const std::string text = read_file(path);
-  LabelNames names;
+  LabelTable labels;
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
@@ -132,24 +168,30 @@ LabelNames read_label_names(const std::filesystem::path& path) {
     if (name.empty() || !is_number(words[0]))
       fail_reading(path, fmt::format("line {} is not a number and a name: '{}'", number, in_utf8(line, 60)),
                    "give a label file of ITK-SNAP, a colour table of FreeSurfer, or lines such as `5 liver`");
-    keep(names, words[0], name);
+    keep(labels.names, words[0], name);
+    if (const auto colour = colour_in_line(line, words)) keep(labels.colours, words[0], *colour);
   }
-  if (names.empty())
+  if (labels.names.empty())
     fail_reading(path, "it names no labels",
                  "give a label file of ITK-SNAP, a colour table of FreeSurfer, or lines such as `5 liver`");
-  return names;
+  return labels;
 }
 
-LabelNames names_of_label_table(std::string_view xml) {
-  LabelNames names;
+LabelTable label_table_in_xml(std::string_view xml) {
+  LabelTable labels;
   const std::string_view text = xml.substr(0, xml.find('\0'));  // padded to full lines of 16 bytes
   pugi::xml_document document;
-  if (!document.load_buffer(text.data(), text.size())) return names;
+  if (!document.load_buffer(text.data(), text.size())) return labels;
   const pugi::xml_node table =
       document.find_node([](const pugi::xml_node& node) { return std::string_view(node.name()) == "LabelTable"; });
-  for (const pugi::xml_node& label : table.children("Label"))
-    keep(names, label.attribute("Key").value(), label.child_value());
-  return names;
+  for (const pugi::xml_node& label : table.children("Label")) {
+    const char* key = label.attribute("Key").value();
+    keep(labels.names, key, label.child_value());
+    const std::array<double, 3> colour{label.attribute("Red").as_double(-1), label.attribute("Green").as_double(-1),
+                                       label.attribute("Blue").as_double(-1)};
+    keep(labels.colours, key, colour);
+  }
+  return labels;
 }
 
 std::vector<Segment> find_segments(const std::function<std::optional<std::string>(const std::string& key)>& field) {
@@ -163,19 +205,28 @@ std::vector<Segment> find_segments(const std::function<std::optional<std::string
     const std::string key = fmt::format("Segment{}_", number);
     const std::optional<std::string> name = field(key + "Name"), label = field(key + "LabelValue");
     if (!name && !label) break;
-    Segment segment{in_one_line(name.value_or("")), 0, 0};
+    Segment segment{in_one_line(name.value_or("")), 0, 0, {}};
     if (!whole(label, segment.label)) continue;
     whole(field(key + "Layer"), segment.layer);
+    if (const std::optional<std::string> colour = field(key + "Color"))
+      if (const auto words = words_of_line(*colour); words.size() >= 3) {
+        LabelColours one;
+        keep(one, "0", {number_in(words[0]), number_in(words[1]), number_in(words[2])});
+        if (!one.empty()) segment.colour = one.at(0);
+      }
     segments.push_back(std::move(segment));
   }
   return segments;
 }
 
-LabelNames names_of_segments(const std::vector<Segment>& segments, std::int64_t layer) {
-  LabelNames names;
-  for (const Segment& segment : segments)
-    if (segment.layer == layer && !segment.name.empty()) names.try_emplace(segment.label, segment.name);
-  return names;
+LabelTable table_of_segments(const std::vector<Segment>& segments, std::int64_t layer) {
+  LabelTable labels;
+  for (const Segment& segment : segments) {
+    if (segment.layer != layer) continue;
+    if (!segment.name.empty()) labels.names.try_emplace(segment.label, segment.name);
+    if (segment.colour) labels.colours.try_emplace(segment.label, *segment.colour);
+  }
+  return labels;
 }
 
 }  // namespace nacre

@@ -86,7 +86,7 @@ void set_mgh_orientation(Volume& volume, const MghHeader& header, const fs::path
 
 /// What follows the values: five numbers of the scanner, then tags. Most tags have a length of 8 bytes, old ones have
 /// none. Empty if there is no colour table before something unknown.
-LabelNames names_in_mgh_tail(std::string_view tail) {
+LabelTable labels_in_mgh_tail(std::string_view tail) {
   constexpr std::size_t scanner_bytes = 20;
   constexpr std::int32_t old_colour_table = 1, old_real_ras = 2, colour_table = 5, old_geometry = 20,
                          old_transform = 30;
@@ -95,14 +95,14 @@ LabelNames names_in_mgh_tail(std::string_view tail) {
   while (tail.size() > 4) {
     const auto tag = load_number<std::int32_t>(tail.data(), std::endian::big);
     tail.remove_prefix(4);
-    if (tag == old_colour_table) return names_of_colour_table(tail);
+    if (tag == old_colour_table) return label_table_in_bytes(tail);
     if (tag == old_real_ras || tag == old_geometry) return {};  // of surfaces
     const std::size_t size_bytes = tag == old_transform ? 4 : 8;
     if (tail.size() < size_bytes) return {};
     const std::int64_t length = size_bytes == 4 ? load_number<std::int32_t>(tail.data(), std::endian::big)
                                                 : load_number<std::int64_t>(tail.data(), std::endian::big);
     tail.remove_prefix(size_bytes);
-    if (tag == colour_table) return names_of_colour_table(tail);
+    if (tag == colour_table) return label_table_in_bytes(tail);
     if (length < 0 || std::uint64_t(length) > tail.size()) return {};
     tail.remove_prefix(std::size_t(length));
   }
@@ -135,7 +135,10 @@ Volume read_mgh(const fs::path& path) {
   });
   std::string tail(longest_mgh_tail, '\0');
   tail.resize(file.read(tail.data(), tail.size()));
-  volume.label_names = names_in_mgh_tail(tail);
+  LabelTable labels = labels_in_mgh_tail(tail);
+  volume.label_names = std::move(labels.names);
+  volume.label_colours = std::move(labels.colours);
+  volume.unit = "mm";
   return volume;
 }
 

@@ -156,16 +156,25 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
     volume.warnings.push_back("It has neither sform nor qform; its axes are assumed to be those of the world.");
 }
 
+std::string unit_of(const nifti_image& image) {
+  switch (image.xyz_units) {
+    case NIFTI_UNITS_METER: return "m";
+    case NIFTI_UNITS_MM: return "mm";
+    case NIFTI_UNITS_MICRON: return "um";
+    default: return "";
+  }
+}
+
 /// From the first extension that names labels.
-LabelNames label_names_of(const nifti_image& image) {
+LabelTable label_table_of(const nifti_image& image) {
   constexpr int head = 8;  // its size and its code precede its text
   for (int i = 0; i < image.num_ext; ++i) {
     const nifti1_extension& extension = image.ext_list[i];
     const bool known =
         extension.ecode == NIFTI_ECODE_CARET || extension.ecode == NIFTI_ECODE_IGNORE;  // TotalSegmentator
     if (!known || !extension.edata || extension.esize <= head) continue;
-    LabelNames names = names_of_label_table({extension.edata, std::size_t(extension.esize - head)});
-    if (!names.empty()) return names;
+    LabelTable labels = label_table_in_xml({extension.edata, std::size_t(extension.esize - head)});
+    if (!labels.names.empty()) return labels;
   }
   return {};
 }
@@ -203,7 +212,10 @@ Volume read_nifti(const fs::path& path) {
   });
   const Image image = read_header(header);
   set_orientation(volume, *image, raw, path);
-  volume.label_names = label_names_of(*image);
+  LabelTable labels = label_table_of(*image);
+  volume.label_names = std::move(labels.names);
+  volume.label_colours = std::move(labels.colours);
+  volume.unit = unit_of(*image);
   with_datatype(raw.type, path, [&](auto zero) {
     using T = decltype(zero);
     const fs::path data = image_path(*image, header);

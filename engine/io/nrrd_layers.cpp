@@ -66,8 +66,11 @@ void merge_layers(Volume& volume, std::int64_t layers, const std::vector<Segment
   else
     volume.values = as_type<std::int64_t>(ranks, labels);
   volume.label_names.clear();
-  for (std::size_t i = 0; i < segments.size(); ++i)
+  volume.label_colours.clear();
+  for (std::size_t i = 0; i < segments.size(); ++i) {
     if (!segments[i].name.empty()) volume.label_names.try_emplace(labels[i + 1], segments[i].name);
+    if (segments[i].colour) volume.label_colours.try_emplace(labels[i + 1], *segments[i].colour);
+  }
   if (overlaps > 0)
     volume.warnings.push_back(
         fmt::format("Its {} segments lie in {} layers and overlap in {} voxels, where the later segment counts; "

@@ -250,7 +250,10 @@ Volume read_nrrd_layer(const fs::path& path, int layer) {
   if (layers > most_layers) fail_reading(path, fmt::format("it has {} layers", with_commas(layers)));
   set_dims(volume, dims, bytes_per_voxel * layers, path);
   set_orientation(volume, *header, axes.spatial, path);
-  volume.label_names = names_of_segments(segments, std::max(layer, 0));
+  LabelTable labels = table_of_segments(segments, std::max(layer, 0));
+  volume.label_names = std::move(labels.names);
+  volume.label_colours = std::move(labels.colours);
+  if (header->spaceDim > 0 && header->spaceUnits[0]) volume.unit = header->spaceUnits[0];
   const std::size_t numbers = volume.voxels() * layers;
   check_stored(storage.bytes, numbers * bytes_per_voxel, ratio_of(encoding, bytes_per_voxel), path);
 

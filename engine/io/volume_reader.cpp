@@ -82,9 +82,11 @@ bool is_volume_file(const fs::path& path) { return find_volume_format(path) != n
 
 void add_label_names(Volume& volume, const fs::path& names) {
   if (names.empty()) return;
-  LabelNames known = read_label_names(names);
-  known.merge(volume.label_names);
-  volume.label_names = std::move(known);
+  LabelTable known = read_label_table(names);
+  known.names.merge(volume.label_names);
+  volume.label_names = std::move(known.names);
+  known.colours.merge(volume.label_colours);
+  volume.label_colours = std::move(known.colours);
 }
 
 Volume read_volume(const fs::path& path, const VolumeChoice& choice) {

@@ -17,13 +17,19 @@ Color material_colour(int material) {
   return rgb;
 }
 
-Color pair_colour(const std::array<std::uint16_t, 2>& pair) {
-  const Color b = material_colour(pair[1]);
-  if (pair[0] == 0) return b;
-  const Color a = material_colour(pair[0]);
+static Color mixture(bool outside, const Color& a, const Color& b) {
+  if (outside) return b;
   Color mixed;
   for (std::size_t k = 0; k < 3; ++k) mixed[k] = 0.35f + 0.65f * 0.5f * (a[k] + b[k]);
   return mixed;
+}
+
+Color pair_colour(const std::array<std::uint16_t, 2>& pair) {
+  return mixture(pair[0] == 0, material_colour(pair[0]), material_colour(pair[1]));
+}
+
+Color pair_colour(const std::array<std::uint16_t, 2>& pair, std::span<const Color> palette) {
+  return mixture(pair[0] == 0, palette[pair[0]], palette[pair[1]]);
 }
 
 }  // namespace nacre

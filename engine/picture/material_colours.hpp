@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "engine/picture/oklab.hpp"
 
@@ -13,5 +14,7 @@ Color material_colour(int material);
 
 /// Facets to the outside have the colour of their material, those between two materials a lighter mixture.
 Color pair_colour(const std::array<std::uint16_t, 2>& pair);
+/// The same of these colours, one per material.
+Color pair_colour(const std::array<std::uint16_t, 2>& pair, std::span<const Color> palette);
 
 }  // namespace nacre

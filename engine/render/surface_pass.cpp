@@ -49,6 +49,7 @@ int SurfaceColours::bind(const Program& program, int unit) const {
   program.set("scalar", unit + 1);
   program.set("coloured", coloured_ ? 1 : 0);
   program.set("range", std::array<float, 2>{low_, high_});
+  program.set("isolines", isolines_);
   program.set("below", below_);
   program.set("above", above_);
   program.set("no_number", no_number_);

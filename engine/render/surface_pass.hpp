@@ -20,6 +20,8 @@ class SurfaceColours {
   void set_map(std::span<const std::array<float, 3>> colours);
   /// One number per point. They are input, not results: this is the only array that is uploaded as time advances.
   void set_scalar(std::span<const float> scalar, double low, double high);
+  /// Lines of equal value: so many steps over the range; 0: none.
+  void set_isolines(int steps) { isolines_ = float(steps); }
   void set_range(double low, double high);  ///< of the colour map
   /// Encoded colours of values beyond the range, and of NaN.
   void set_beyond(const std::array<float, 3>& below, const std::array<float, 3>& above,
@@ -33,7 +35,7 @@ class SurfaceColours {
   Buffer scalar_;
   BufferTexture scalar_texture_;
   bool coloured_ = false;
-  float low_ = 0, high_ = 1;
+  float low_ = 0, high_ = 1, isolines_ = 0;
   std::array<float, 3> below_{}, above_{}, no_number_{0.25f, 0.25f, 0.25f};  ///< as the shader sees them
 };
 

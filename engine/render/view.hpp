@@ -15,6 +15,9 @@ struct ClipPlane {
   double offset = 0;
 };
 
+/// Sides of a surface that are seen from behind.
+enum class Backs { shown, neutral, hidden };
+
 /// What all passes of one frame share.
 struct View {
   Camera camera;
@@ -23,6 +26,7 @@ struct View {
   float ambient = 0.3f;
   double extent = 0;  ///< radius of a ball around the eye that contains the scene, for orthographic cameras
   std::optional<ClipPlane> clip;
+  Backs backs = Backs::shown;
 
   /// From world coordinates relative to the eye to the clip space of a Framebuffer: depth 1 near, 0 infinitely far (0
   /// at the far end of an orthographic camera).

@@ -33,4 +33,10 @@ xdotool key Escape mousemove 540 200 key e # and goes on
 edges() { grep -q '"edges": true' "$recording"; }
 until_true "the edges" edges
 until_true "the whole file" opens "$whole" titled "$(basename "$whole" .vtp).* - Nacre\$"
+whole_shown() { titled "$(basename "$whole" .vtp).* - Nacre\$"; }
+xdotool mousemove 540 200 key ctrl+z
+until_true "what was there before" titled 'sphere.* - Nacre$'
+rm "$whole" # its result is still at hand
+xdotool key ctrl+y
+until_true "the result of a file that is gone" whole_shown
 quit_window

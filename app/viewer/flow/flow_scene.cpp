@@ -309,6 +309,7 @@ void FlowScene::draw(const View& view) {
   view_ = view;
   if (!surface_) return;
   const KeptFrame* const kept = looked_back_at();
+  colours_.set_isolines(settings_.view.isolines);
   surface_pass_.draw(view, surface_, colours_, kept ? &kept->texture : shown_ ? &shown_->values.texture() : nullptr);
   if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.view.arrows) draw_arrows(view);

@@ -9,13 +9,12 @@
 #include "compute/particles/energy.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
-#include "engine/picture/material_colours.hpp"
+#include "engine/run/material_palette.hpp"
 #include "engine/scene/settings/ranges.hpp"
 
 namespace nacre {
 namespace {
 
-constexpr float ghost_opacity = 0.25f;
 constexpr std::array<float, 4> worst_colour{0.93f, 0.05f, 0.45f, 1};
 
 /// Of the colours, in ideal energies: where particles are split, and where they are deleted.
@@ -32,20 +31,22 @@ void MeshScene::update_material_styles() {
   if (!results_.volume) return;
   const std::vector<std::int64_t>& labels = results_.volume->input.labels;
   material_styles_.assign(labels.size(), {});
-  for (std::size_t m = 1; m < labels.size(); ++m) material_styles_[m].colour = material_colour(int(m));
+  palette_ = material_palette(results_.volume->input, settings_.view.material_colors);
+  for (std::size_t m = 1; m < labels.size(); ++m) material_styles_[m].colour = palette_[m];
   material_styles_[0].opacity = 0;
-  const auto apply = [&](const std::string& words, float opacity, const char* knob) {
-    for (const std::int64_t label : labels_of(words)) {
-      const auto found = std::find(labels.begin() + 1, labels.end(), label);
-      if (found == labels.end())
-        warn_once(fmt::format("{}: there is no label {}", knob, label));
-      else
-        material_styles_[std::size_t(found - labels.begin())].opacity = opacity;
-    }
+  const auto apply = [&](std::int64_t label, float opacity, const char* knob) {
+    const auto found = std::find(labels.begin() + 1, labels.end(), label);
+    if (found == labels.end())
+      warn_once(fmt::format("{}: there is no label {}", knob, label));
+    else
+      material_styles_[std::size_t(found - labels.begin())].opacity = opacity;
   };
-  apply(settings_.view.ghosts, ghost_opacity, "ghosts");
-  apply(settings_.view.hidden, 0, "hidden");
+  for (const std::int64_t label : labels_of(settings_.view.ghosts)) apply(label, ghost_opacity, "ghosts");
+  for (const auto& [label, opacity] : parse_label_opacities(settings_.view.opacity))
+    apply(label, float(opacity), "opacity");
+  for (const std::int64_t label : labels_of(settings_.view.hidden)) apply(label, 0, "hidden");
   material_pass_.set_styles(material_styles_);
+  preview_pass_.set_styles(material_styles_);
   update_edges();
   update_worst();
 }
@@ -95,7 +96,8 @@ void MeshScene::update_worst() {
 std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
   const int axis = slice_axis(settings_.view);
   if (axis >= 0) return VolumePlane{axis, settings_.view.slice_at};
-  if (!complete()) return VolumePlane{2, 0.5};
+  const bool hides = preview_drawn() && results_.volume->input.kind == MeshVolume::Kind::labels;
+  if (!complete() && !hides) return VolumePlane{2, 0.5};
   return {};
 }
 
@@ -142,7 +144,8 @@ void MeshScene::show_volume_slice(int axis, double at) {
   const SlicePlane plane = slice_plane(volume.input, axis, at);
   slice_values_ = volume.input.kind == MeshVolume::Kind::scalar;
   slice_range_ = volume_range();
-  slice_pass_.set_image(volume_slice(volume, plane, slice_map(), slice_range_[0], slice_range_[1]), slice_values_);
+  slice_pass_.set_image(volume_slice(volume, plane, palette_, slice_map(), slice_range_[0], slice_range_[1]),
+                        slice_values_);
   slice_pass_.set_place(plane.corner, plane.across, plane.up);
 }
 
@@ -156,7 +159,7 @@ void MeshScene::take(SliceFilled& told) {
                                         colormap(settings_.colormap)),
                           true);
   } else {
-    slice_pass_.set_image(colour_materials(told.values, told.columns, told.rows), false);
+    slice_pass_.set_image(colour_materials(told.values, told.columns, told.rows, palette_), false);
   }
   slice_pass_.set_place(told.plane.corner, told.plane.across, told.plane.up);
 }
@@ -188,6 +191,7 @@ void MeshScene::draw(const View& frame) {
   const bool begun = complete();
   if (shown_plane()) slice_pass_.draw(view);
   if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
+  if (preview_drawn()) preview_pass_.draw(view, preview_surface_, Placement(1.0));
   if (particles_drawn()) draw_particles(view);
   if (triangles_drawn()) draw_triangles(view);
   if (settings_.view.boxes && boxes_ && box_count_ > 0) {

@@ -44,6 +44,16 @@ MeshDrawing make_mesh_drawing(const SurfaceMesh& mesh) {
   return drawing;
 }
 
+std::vector<double> material_areas(const SurfaceMesh& mesh, std::size_t materials) {
+  std::vector<double> area(materials, 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& c = mesh.triangles[t];
+    const double own = 0.5 * length(cross(mesh.points[c.b] - mesh.points[c.a], mesh.points[c.c] - mesh.points[c.a]));
+    for (const std::uint16_t material : mesh.materials[t]) area[material] += own;
+  }
+  return area;
+}
+
 std::vector<WorstTriangle> worst_triangles(const SurfaceMesh& mesh, std::size_t most) {
   std::vector<WorstTriangle> all;
   all.reserve(mesh.triangles.size());

@@ -35,7 +35,11 @@ struct MeshMeasures {
   SurfaceDistance distance;
   std::vector<WorstTriangle> worst;  ///< the worst first; at most 1000
   std::vector<float> size;           ///< sizing field at the mesh's points, voxels
+  std::vector<double> area;          ///< per material, of all its facets, world units^2
 };
+
+/// Of the facets of each of `materials` materials, world units^2.
+std::vector<double> material_areas(const SurfaceMesh& mesh, std::size_t materials);
 
 std::vector<WorstTriangle> worst_triangles(const SurfaceMesh& mesh, std::size_t most);
 

@@ -11,6 +11,8 @@
 
 namespace nacre {
 
+inline constexpr float ghost_opacity = 0.25f;
+
 struct MeshResults {
   std::shared_ptr<const ViewedVolume> volume;
   std::shared_ptr<const SurfaceMesh> mesh;

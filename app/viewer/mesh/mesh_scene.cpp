@@ -35,7 +35,8 @@ std::vector<Segment> box_edges(const Int3& dims) {
 }  // namespace
 
 MeshScene::MeshScene(const Session& session, const SceneOptions& options)
-    : worker_(session, options.open_device(), options.lockstep || !session.settings.view.play, options.low_priority),
+    : worker_(session, options.open_device(), options.lockstep || !session.settings.view.play, options.low_priority,
+              !options.lockstep),
       lockstep_(options.lockstep),
       stop_(options.stop),
       settings_(session.settings) {
@@ -53,9 +54,10 @@ void MeshScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   worker_.set_settings(settings);
   if (changed.has("play")) worker_.set_lockstep(lockstep_ || paused());
   if (changed.has("colormap")) particle_pass_.set_map(colormap(settings_.colormap).table);
-  if (changed.has_any({"hidden", "ghosts"})) update_material_styles();
+  if (changed.has_any({"hidden", "ghosts", "opacity", "material_colors"})) update_material_styles();
   if (changed.has("worst")) update_worst();
-  if (changed.has_any({"slice", "slice_at", "slice_field", "slice_range", "colormap"})) update_slice();
+  if (changed.has_any({"slice", "slice_at", "slice_field", "slice_range", "colormap", "material_colors"}))
+    update_slice();
 }
 
 bool MeshScene::settle_knobs(Session& session) {
@@ -146,6 +148,7 @@ void MeshScene::take(VolumeRead& told) {
   rays_ = {};
   drawing_ = {};
   surface_ = {};
+  preview_surface_ = {};
   counts_ = {};
   corners_ = std::move(told.corners);
   box_ = told.volume->box();
@@ -159,6 +162,11 @@ void MeshScene::take(VolumeRead& told) {
   outline_ = Buffer::of<Segment>(box_edges(input.dims));
   update_material_styles();
   update_slice();
+}
+
+void MeshScene::take(PreviewMade& told) {
+  preview_surface_ = SurfaceBuffers(told.preview.geometry);
+  preview_pass_.set_materials(told.preview.materials);
 }
 
 void MeshScene::take(RelaxBegun& told) {
@@ -216,6 +224,14 @@ void MeshScene::take(MeshTriangulated& told) {
   results_.info = std::move(told.info);
   drawing_ = std::move(told.drawing);
   surface_ = SurfaceBuffers(drawing_.geometry);
+  preview_surface_ = {};
+  if (told.brought_back) {  // its particles are gone
+    counts_ = results_.counts = {};
+    iterations_ = 0;
+    kept_.clear();
+    results_.energy.clear();
+    results_.particles.clear();
+  }
   material_pass_.set_materials(drawing_.materials);
   rays_ = std::move(told.rays);
   stale_ = false;

@@ -54,6 +54,7 @@ class MeshScene : public Scene {
   bool has_legend() const override { return settings_.legend && (particles_drawn() || slice_has_legend()); }
   bool complete() const override { return results_.mesh || counts_.total() > 0; }
   bool settled() const override { return worker_.settled() || (paused() && worker_.waits()); }
+  std::string unit() const override { return results_.volume ? results_.volume->input.unit : ""; }
   std::string title() const override;
   std::string state() const override;
   SceneProgress progress() const override;
@@ -64,6 +65,7 @@ class MeshScene : public Scene {
   SceneTotals totals() const override { return {steps_, copied_bytes(), worker_.timers(), worker_.peak_bytes()}; }
   int steps() const { return steps_; }
   std::uint64_t copied_bytes() const;
+  bool previews() const { return preview_drawn(); }  ///< shows a quick surface
   const MeshResults& results() const { return results_; }
   const Device& device() const override { return worker_.device(); }
   void finish() override { worker_.finish(); }
@@ -72,6 +74,7 @@ class MeshScene : public Scene {
   void take(MeshEvent& event);
   void take(IsovalueProposed& told) { proposal_ = std::move(told.isovalue); }
   void take(VolumeRead& told);
+  void take(PreviewMade& told);
   void take(RelaxBegun& told);
   void take(MeshIterated& told);
   void take(MeshTriangulated& told);
@@ -98,6 +101,10 @@ class MeshScene : public Scene {
   void draw_particles(const View& view) const;
   void draw_triangles(const View& view) const;
   bool particles_drawn() const;
+  /// Until particles lie on the surfaces, or triangles do.
+  bool preview_drawn() const {
+    return settings_.view.preview && preview_surface_ && counts_.surfaces == 0 && !triangles_drawn();
+  }
   bool slice_has_legend() const { return slice_axis(settings_.view) >= 0 && slice_values_; }
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles && !looked_back_at(); }
   /// Between two iterations, for the user; a replay does not wait.
@@ -139,8 +146,10 @@ class MeshScene : public Scene {
   MeshDrawing drawing_;
   SurfaceBuffers surface_;
   bool stale_ = false;
+  std::vector<Color> palette_;  ///< per material
   std::vector<MaterialStyle> material_styles_;
-  MaterialPass material_pass_;
+  MaterialPass material_pass_, preview_pass_;
+  SurfaceBuffers preview_surface_;
   EdgePass edge_pass_;
   SegmentPass segment_pass_;
   Buffer curves_, worst_, outline_;

@@ -54,7 +54,25 @@ void MeshWorker::choose_materials() {
   viewed->volumes = volumes_;
   viewed->material = std::move(volume.material);
   viewed_ = std::move(viewed);
-  tell(VolumeRead{viewed_, viewed_->corners(), pipeline_->voxel_frame()});
+  made_mesh_.volume = viewed_;
+  made_mesh_.corners = viewed_->corners();
+  made_mesh_.frame = pipeline_->voxel_frame();
+  tell(VolumeRead{viewed_, made_mesh_.corners, made_mesh_.frame});
+  if (live_) preview();
+}
+
+void MeshWorker::preview() {
+  {
+    std::scoped_lock lock(mutex_);
+    if (!wanted_.view.preview) return;
+  }
+  note_progress({"preview", -1, 0, 0, 0});
+  PreviewMade told;
+  {
+    StageTimers::Scope scope(pipeline_->timers(), "preview");
+    told.preview = make_mesh_preview(*viewed_, &interrupt_);
+  }
+  tell(std::move(told));
 }
 
 /// Who sits before a live view sees something first, and moves the iso-value then; a replay is told exactly.
@@ -96,6 +114,8 @@ void MeshWorker::triangulate() {
   MeshTriangulated told{mesh, make_mesh_drawing(*mesh), TriangleTree(mesh->points, mesh->triangles), pipeline_->info()};
   if (!await_turn()) throw Interrupted();
   mesh_ = std::move(mesh);
+  made_mesh_.mesh = mesh_;
+  made_mesh_.info = told.info;
   MeshProgress last;
   {
     std::scoped_lock lock(mutex_);
@@ -113,13 +133,32 @@ void MeshWorker::measure() {
     StageTimers::Scope scope(pipeline_->timers(), "quality");
     measures->topology = check_topology(*mesh_, int(viewed_->input.labels.size()));
     measures->quality = surface_quality(*mesh_);
+    measures->area = material_areas(*mesh_, viewed_->input.labels.size());
     measures->worst = worst_triangles(*mesh_, most_worst);
   }
   if (interrupt_) throw Interrupted();
   measures->distance = pipeline_->surface_distance(*mesh_);
   measures->size = pipeline_->field_at(MeshField::size, mesh_->points);
   for (float& size : measures->size) size /= float(viewed_->voxel_length());
+  made_mesh_.measures = measures;
   tell(MeshMeasured{std::move(measures)});
+}
+
+/// The mesh of an earlier time, with what is drawn of it made anew. The pipeline stays as it is.
+void MeshWorker::bring_back() {
+  std::shared_ptr<const KeptMesh> kept;
+  {
+    std::scoped_lock lock(mutex_);
+    kept = std::exchange(back_, nullptr);
+    if (!kept) return;
+    unshown_ = false;
+  }
+  if (viewed_ != kept->volume) tell(VolumeRead{kept->volume, kept->corners, kept->frame});
+  viewed_ = kept->volume;
+  mesh_ = kept->mesh;
+  tell(MeshTriangulated{mesh_, make_mesh_drawing(*mesh_), TriangleTree(mesh_->points, mesh_->triangles), kept->info,
+                        true});
+  tell(MeshMeasured{kept->measures});
 }
 
 void MeshWorker::fill_slice() {

@@ -35,11 +35,13 @@ MeshStage mesh_restart(const Settings& before, const Settings& after) {
   return MeshStage::done;
 }
 
-MeshWorker::MeshWorker(const Session& session, std::unique_ptr<Device> device, bool lockstep, bool low_priority)
+MeshWorker::MeshWorker(const Session& session, std::unique_ptr<Device> device, bool lockstep, bool low_priority,
+                       bool live)
     : input_(session),
       device_(std::move(device)),
       pipeline_(make_mesh_pipeline(*device_)),
       low_priority_(low_priority),
+      live_(live),
       wanted_(session.settings),
       lockstep_(lockstep) {
   pipeline_->watch(&interrupt_);
@@ -90,9 +92,17 @@ void MeshWorker::lend(const LentMemory& memory) {
 void MeshWorker::set_settings(const Settings& settings) {
   {
     std::scoped_lock lock(mutex_);
-    const MeshStage from = mesh_restart(wanted_, settings);
-    wanted_ = settings;
+    MeshStage from = mesh_restart(wanted_, settings);
+    const Settings before = std::exchange(wanted_, settings);
     if (from == MeshStage::done) return;
+    if (find_kept(before)) return;
+    if (computed_) {
+      next_ = computed_->next;
+      from = std::min(next_, mesh_restart(computed_->settings, settings));
+      fields_ = from > MeshStage::fields;
+      computed_.reset();
+      back_.reset();
+    }
     if (doing_ != MeshStage::done && from <= doing_) {
       restart_ = std::min(restart_, from);
       interrupt_ = true;
@@ -103,6 +113,21 @@ void MeshWorker::set_settings(const Settings& settings) {
     if (from <= next_) failed_ = false;
   }
   wake_.notify_all();
+}
+
+/// With the mutex held: the knobs are as they were when there was a mesh, which is brought back. What the pipeline has
+/// computed `before` stays known, for knobs to come.
+bool MeshWorker::find_kept(const Settings& before) {
+  if (!live_) return false;
+  back_ = kept_.find([this](const Settings& kept) { return mesh_restart(kept, wanted_) == MeshStage::done; });
+  if (!back_) return false;
+  if (!computed_) computed_ = Computed{before, std::min({next_, doing_, restart_, MeshStage::triangulate})};
+  interrupt_ = doing_ != MeshStage::done;
+  restart_ = next_ = MeshStage::done;
+  fields_ = computed_->next > MeshStage::fields && mesh_restart(computed_->settings, wanted_) > MeshStage::fields;
+  cancelled_ = failed_ = false;
+  wake_.notify_all();
+  return true;
 }
 
 void MeshWorker::cancel() {
@@ -178,6 +203,7 @@ MeshProgress MeshWorker::progress() const {
 MeshWorker::Task MeshWorker::due() const {
   const bool halted = cancelled_ || failed_, complete = next_ == MeshStage::done;
   if (!lost_.empty()) return file_ ? Task::write : Task::none;
+  if (back_) return Task::bring_back;
   if (slice_due()) return Task::slice;
   if (!complete && !halted) return Task::stage;
   if (file_) return Task::write;
@@ -211,6 +237,9 @@ void MeshWorker::perform(Task task) {
         drop_slice();
         tell(MeshFailed{*failure});
       }
+      break;
+    case Task::bring_back:
+      if (const std::optional<std::string> failure = failure_of([this] { bring_back(); })) tell(MeshFailed{*failure});
       break;
     case Task::show:
       failure_of([this] {
@@ -247,10 +276,15 @@ void MeshWorker::perform_stage() {
   {
     std::scoped_lock lock(mutex_);
     stage = doing_ = next_;
+    made_mesh_.settings = wanted_;
     pipeline_->parameters = wanted_.mesh;
     progress_ = {};
     if (stage <= MeshStage::fields) fields_ = false;
     if (stage <= MeshStage::relax) unshown_ = false;  // what there was is gone
+  }
+  if (stage > MeshStage::materials && viewed_ != made_mesh_.volume) {  // an earlier mesh of another volume was shown
+    viewed_ = made_mesh_.volume;
+    tell(VolumeRead{viewed_, made_mesh_.corners, made_mesh_.frame});
   }
   bool complete = false;
   const std::optional<std::string> failure = failure_of([&] {
@@ -260,10 +294,12 @@ void MeshWorker::perform_stage() {
   {
     std::scoped_lock lock(mutex_);
     if (complete) next_ = MeshStage(int(stage) + 1);
-    if (complete && stage == MeshStage::fields) fields_ = true, slice_filled_ = false;
+    if (complete && stage == MeshStage::fields && !computed_) fields_ = true, slice_filled_ = false;
     if (stage == MeshStage::relax) unshown_ = true;  // brought onto the surfaces since, also where it was interrupted
     next_ = std::min(next_, std::exchange(restart_, MeshStage::done));
+    if (computed_) next_ = MeshStage::done;  // an earlier mesh has been asked for meanwhile
     doing_ = MeshStage::done;
+    if (complete && next_ == MeshStage::done && live_ && !computed_) kept_.keep(made_mesh_);
     failed_ = failure && next_ == stage && !cancelled_;
   }
   if (failure) tell(MeshFailed{*failure});

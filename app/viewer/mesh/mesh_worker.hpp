@@ -12,7 +12,9 @@
 #include <variant>
 #include <vector>
 
+#include "app/viewer/mesh/kept_meshes.hpp"
 #include "app/viewer/mesh/mesh_measures.hpp"
+#include "app/viewer/mesh/mesh_preview.hpp"
 #include "app/viewer/mesh/viewed_volume.hpp"
 #include "app/viewer/scene/worker.hpp"
 #include "compute/device/stage_timers.hpp"
@@ -42,6 +44,11 @@ struct VolumeRead {
   VoxelFrame frame;            ///< of particles and boxes
 };
 
+/// A quick surface of the materials, where the worker makes one.
+struct PreviewMade {
+  MeshPreview preview;
+};
+
 /// Particles are about to be seeded: so much memory holds them all. What was lent before is not written any more.
 struct RelaxBegun {
   MeshInfo info;
@@ -63,6 +70,7 @@ struct MeshTriangulated {
   MeshDrawing drawing;
   TriangleTree rays;
   MeshInfo info;
+  bool brought_back = false;  ///< an earlier result, whose particles are gone
 };
 
 /// And what they are like.
@@ -89,8 +97,8 @@ struct MeshFailed {
   std::string what;
 };
 
-using MeshEvent = std::variant<IsovalueProposed, VolumeRead, RelaxBegun, MeshIterated, MeshTriangulated, MeshMeasured,
-                               SliceFilled, MeshWritten, MeshFailed>;
+using MeshEvent = std::variant<IsovalueProposed, VolumeRead, PreviewMade, RelaxBegun, MeshIterated, MeshTriangulated,
+                               MeshMeasured, SliceFilled, MeshWritten, MeshFailed>;
 
 /// Memory of the device that the renderer does not read, to be filled with particles and boxes.
 struct LentMemory {
@@ -111,8 +119,10 @@ struct SliceRequest {
 /// and the destructor.
 class MeshWorker : public Worker<MeshEvent> {
  public:
-  /// `lockstep`: each iteration, and the triangles, wait for a turn and for memory.
-  MeshWorker(const Session& session, std::unique_ptr<Device> device, bool lockstep, bool low_priority = false);
+  /// `lockstep`: each iteration, and the triangles, wait for a turn and for memory. `live`: what is told may depend on
+  /// what went before: there are previews, and knobs that are as they were bring the mesh back that they had made.
+  MeshWorker(const Session& session, std::unique_ptr<Device> device, bool lockstep, bool low_priority = false,
+             bool live = false);
   ~MeshWorker();
 
   Device& device() { return *device_; }
@@ -154,10 +164,11 @@ class MeshWorker : public Worker<MeshEvent> {
   MeshProgress progress() const;  ///< stage empty: nothing goes on
 
  private:
-  enum class Task { none, slice, write, stage, show };
+  enum class Task { none, bring_back, slice, write, stage, show };
 
   void run();
   Task due() const;
+  bool find_kept(const Settings& before);
   bool slice_due() const { return slice_ && !slice_filled_ && fields_; }
   bool memory_due() const { return lent_ && lent_->lease == lease_; }
   void perform(Task task);
@@ -166,11 +177,13 @@ class MeshWorker : public Worker<MeshEvent> {
   std::optional<std::string> failure_of(const std::function<void()>& work);
   void read();
   void choose_materials();
+  void preview();
   MeshVolume materials_of(MaterialSettings words, MeshInput& input);
   void build_fields();
   void relax();
   void triangulate();
   void measure();
+  void bring_back();
   void fill_slice();
   void write_result();
   void note_progress(const MeshProgress& progress);
@@ -180,15 +193,24 @@ class MeshWorker : public Worker<MeshEvent> {
   const SessionInput input_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<MeshPipeline> pipeline_;
-  const bool low_priority_;
+  const bool low_priority_, live_;
 
   // The worker's own.
   std::shared_ptr<const std::vector<Volume>> volumes_;
   std::shared_ptr<const ViewedVolume> viewed_;
   std::shared_ptr<const SurfaceMesh> mesh_;
+  KeptMesh made_mesh_;  ///< of the stages done so far
 
   // Guarded by the mutex.
   Settings wanted_;
+  KeptMeshes kept_{std::size_t(512) << 20};
+  std::shared_ptr<const KeptMesh> back_;  ///< to be brought back
+  /// What the pipeline has computed, where an earlier result is shown instead: with these knobs, and before this stage.
+  struct Computed {
+    Settings settings;
+    MeshStage next;
+  };
+  std::optional<Computed> computed_;
   MeshStage next_ = MeshStage::read;     ///< all before it are done
   MeshStage restart_ = MeshStage::done;  ///< where to begin when what is under way has been interrupted
   MeshStage doing_ = MeshStage::done;

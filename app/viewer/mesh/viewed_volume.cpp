@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "compute/pipeline/volume_frame.hpp"
-#include "engine/picture/material_colours.hpp"
 
 namespace nacre {
 namespace {
@@ -18,19 +17,9 @@ void put(Image& image, std::size_t pixel, const Color& colour) {
   for (std::size_t k = 0; k < 3; ++k) image.pixels[4 * pixel + k] = std::uint8_t(std::lround(255 * colour[k]));
 }
 
-Color material_pixel(int material) { return material == 0 ? outside_colour : material_colour(material); }
-
-/// Colours of the materials that occur, made once each.
-class MaterialColours {
- public:
-  const Color& operator[](std::uint16_t material) {
-    while (made_.size() <= material) made_.push_back(material_pixel(int(made_.size())));
-    return made_[material];
-  }
-
- private:
-  std::vector<Color> made_;
-};
+const Color& material_pixel(std::span<const Color> palette, std::size_t material) {
+  return material == 0 || material >= palette.size() ? outside_colour : palette[material];
+}
 
 const Color& mapped(const Colormap& map, double value, double low, double high) {
   const double share = high > low ? std::clamp((value - low) / (high - low), 0.0, 1.0) : 0.5;
@@ -157,7 +146,8 @@ int slice_axis(const ViewSettings& look) {
   return look.slice == "x" ? 0 : look.slice == "y" ? 1 : look.slice == "z" ? 2 : -1;
 }
 
-Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colormap& map, double low, double high) {
+Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, std::span<const Color> palette, const Colormap& map,
+                   double low, double high) {
   Image image(plane.width, plane.height);
   const std::size_t stride[] = {1, std::size_t(v.input.dims.x), std::size_t(v.input.dims.x) * v.input.dims.y};
   std::size_t first = 0;
@@ -177,8 +167,7 @@ Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, const Colorma
         },
         v.volumes->front().values);
   } else {
-    MaterialColours colours;
-    each([&](std::size_t i) -> const Color& { return colours[v.material[i]]; });
+    each([&](std::size_t i) -> const Color& { return material_pixel(palette, v.material[i]); });
   }
   return image;
 }
@@ -195,10 +184,10 @@ Image colour_values(const std::vector<float>& values, int width, int height, dou
   return image;
 }
 
-Image colour_materials(const std::vector<float>& materials, int width, int height) {
+Image colour_materials(const std::vector<float>& materials, int width, int height, std::span<const Color> palette) {
   Image image(width, height);
-  MaterialColours colours;
-  for (std::size_t i = 0; i < materials.size(); ++i) put(image, i, colours[std::uint16_t(materials[i])]);
+  for (std::size_t i = 0; i < materials.size(); ++i)
+    put(image, i, material_pixel(palette, std::uint16_t(materials[i])));
   return image;
 }
 

@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/io/mesh_input.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/image.hpp"
+#include "engine/picture/oklab.hpp"
 #include "engine/scene/settings/settings.hpp"
 #include "engine/scene/volume/volume.hpp"
 
@@ -67,14 +69,15 @@ SlicePlane slice_plane(const MeshInput& input, int axis, double at);
 /// What the look asks for: 0..2; -1: none.
 int slice_axis(const ViewSettings& look);
 
-/// A pixel per voxel: materials in their colours, or the values of a scalar volume by the map, which runs from `low` to
-/// `high`. Row 0 is at the corner.
-Image volume_slice(const ViewedVolume& volume, const SlicePlane& plane, const Colormap& map, double low, double high);
+/// A pixel per voxel: materials in the colours of `palette`, or the values of a scalar volume by the map, which runs
+/// from `low` to `high`. Row 0 is at the corner.
+Image volume_slice(const ViewedVolume& volume, const SlicePlane& plane, std::span<const Color> palette,
+                   const Colormap& map, double low, double high);
 
 /// Values as colours; what is no number is transparent, infinity has the last colour.
 Image colour_values(const std::vector<float>& values, int width, int height, double low, double high,
                     const Colormap& map);
 /// Material numbers as colours.
-Image colour_materials(const std::vector<float>& materials, int width, int height);
+Image colour_materials(const std::vector<float>& materials, int width, int height, std::span<const Color> palette);
 
 }  // namespace nacre

@@ -10,6 +10,7 @@
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "app/viewer/panel/ui.hpp"
+#include "app/viewer/scene/marks.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/samples/phantoms.hpp"
@@ -39,6 +40,9 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"b", "turntable or trackball"},
                                    {"space", "pause and play"},
                                    {", .", "pause; one step back, one step forth"},
+                                   {"d", "ruler: distance between points under the cursor; the third gives an angle"},
+                                   {"n", "note at the point under the cursor"},
+                                   {"1 to 9", "camera that was kept"},
                                    {"e", "edges of triangles"},
                                    {"p", "panels"},
                                    {"t", "dark or light"},
@@ -155,14 +159,18 @@ void Ui::view_menu(Session& session, UiRequests& requests) {
   for (const NamedView& v : views)
     if (ImGui::MenuItem(v.name, std::string(1, v.key).c_str())) requests.look_from = v.view;
   if (session.camera) ImGui::MenuItem("Orthographic", "o", &session.camera->orthographic);
+  cameras_menu(session);
   bool ball = look.turning == "trackball";
   if (ImGui::MenuItem("Trackball", "b", &ball)) look.turning = ball ? "trackball" : "turntable";
   ImGui::Separator();
   ImGui::MenuItem("Edges", "e", &look.edges);
+  marks_menu(session);
   ImGui::MenuItem("Legend", nullptr, &session.settings.legend);
   ImGui::MenuItem("Panels", "p", &look.panel);
   bool light = look.theme == "light";
   if (ImGui::MenuItem("Light", "t", &light)) look.theme = light ? "light" : "dark";
+  bool right = look.panel_side == "right";
+  if (ImGui::MenuItem("Panel on the right", nullptr, &right)) look.panel_side = right ? "right" : "left";
   ImGui::EndMenu();
 }
 
@@ -237,6 +245,9 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
   for (const ImWchar key : io.InputQueueCharacters) {
     for (const NamedView& v : views)
       if (ImWchar(v.key) == key) requests.look_from = v.view;
+    if (key >= '1' && key <= '9')
+      if (const auto kept = parse_cameras(look.cameras); std::size_t(key - '1') < kept.size())
+        session.camera = kept[std::size_t(key - '1')].camera;
     switch (key) {
       case 'q': requests.quit = true; break;
       case 'f': requests.fit = true; break;
@@ -247,6 +258,8 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'e': look.edges = !look.edges; break;
       case 'p': look.panel = !look.panel; break;
       case 't': look.theme = look.theme == "dark" ? "light" : "dark"; break;
+      case 'd': measure(session, scene, facts); break;
+      case 'n': ask_note(session, scene, facts); break;
       case '?': help_ = !help_; break;
       case ' ':
         transport_.toggle_play(session, scene.transport());

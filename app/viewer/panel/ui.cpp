@@ -24,9 +24,33 @@ struct Layout {
   float menu, status, panel;
 };
 
-Layout layout(int width) {
+Layout layout(const ViewSettings& look, int width) {
   const float row = ImGui::GetFontSize() + 2 * ImGui::GetStyle().FramePadding.y;
-  return {row, 1.6f * row, std::floor(std::min(27 * ImGui::GetFontSize(), 0.6f * float(width)))};
+  const float wanted = 27 * ImGui::GetFontSize() * float(look.panel_width);
+  return {row, 1.6f * row, std::floor(std::min(wanted, 0.6f * float(width)))};
+}
+
+bool on_the_right(const ViewSettings& look) { return look.panel_side == "right"; }
+
+/// The border between panel and picture, to be pulled.
+void panel_border(ViewSettings& look, int width, const Layout& l, float high) {
+  const float grip = 0.4f * ImGui::GetFontSize(), edge = on_the_right(look) ? float(width) - l.panel : l.panel;
+  ImGui::SetNextWindowPos(ImVec2(edge - 0.5f * grip, l.menu));
+  ImGui::SetNextWindowSize(ImVec2(grip, high));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  const auto bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
+                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing;
+  if (ImGui::Begin("panel border", nullptr, bare)) {
+    ImGui::InvisibleButton("grip", ImVec2(grip, high));
+    if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0) {
+      const float by = on_the_right(look) ? -ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.x;
+      look.panel_width = std::clamp(look.panel_width + double(by) / (27 * ImGui::GetFontSize()), 0.5, 3.0);
+    }
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(2);
 }
 
 /// "12 s", "3:05 min"
@@ -105,19 +129,19 @@ void look_tab(Session& session, ScenePanel& panel) {
   const auto several = [&](std::initializer_list<const char*> names) {
     for (const char* name : names) knob_widget(settings, name);
   };
-  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back"});
+  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back", "backs"});
   if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
   if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
-  if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size"});
+  if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size", "panel_side", "panel_width"});
 }
 
 }  // namespace
 
 FreeArea Ui::free_area(const ViewSettings& look, int width, int height) const {
   if (!look.panel) return {0, 0, width, height};
-  const Layout l = layout(width);
-  const int left = int(l.panel), above = int(l.menu), below = int(l.status) + TransportBar::height();
-  return {left, above, std::max(16, width - left), std::max(16, height - above - below)};
+  const Layout l = layout(look, width);
+  const int beside = int(l.panel), above = int(l.menu), below = int(l.status) + TransportBar::height();
+  return {on_the_right(look) ? 0 : beside, above, std::max(16, width - beside), std::max(16, height - above - below)};
 }
 
 void Ui::show_note(const std::string& line) {
@@ -130,8 +154,12 @@ bool Ui::animates() const {
 }
 
 void Ui::knob_tab(Session& session) {
-  ImGui::SetNextItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
+  const float width = ImGui::GetContentRegionAvail().x;
+  ImGui::SetNextItemWidth(0.42f * width);
   ImGui::InputTextWithHint("##filter", "find a knob", &filter_);
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(0.28f * width);
+  presets_.draw(session.settings, job_of(session));
   ImGui::SameLine();
   if (ImGui::Button("reset all")) reset_knobs(session.settings, job_of(session));
   if (ImGui::BeginChild("knobs")) knob_groups(session.settings, job_of(session), filter_);
@@ -159,15 +187,16 @@ void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
 }
 
 /// At the bottom of the panel, so that nothing above moves under the cursor. Returns its height; 0: nothing failed.
-float Ui::failure_window(const Scene& scene, const UiFacts& facts) {
+float Ui::failure_window(const ViewSettings& look, const Scene& scene, const UiFacts& facts) {
   if (scene.failure().empty()) return 0;
-  const Layout l = layout(facts.width);
+  const Layout l = layout(look, facts.width);
   const ImGuiStyle& style = ImGui::GetStyle();
   const std::string& line = scene.failure();
   const float wrap = l.panel - 2 * style.WindowPadding.x;
   const float high = std::min(ImGui::CalcTextSize(line.c_str(), nullptr, false, wrap).y + 2 * style.WindowPadding.y,
                               0.4f * float(facts.height));
-  ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - l.status - high));
+  ImGui::SetNextWindowPos(
+      ImVec2(on_the_right(look) ? float(facts.width) - l.panel : 0, float(facts.height) - l.status - high));
   ImGui::SetNextWindowSize(ImVec2(l.panel, high));
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -181,10 +210,12 @@ float Ui::failure_window(const Scene& scene, const UiFacts& facts) {
 }
 
 void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
-  const Layout l = layout(facts.width);
-  const float below = l.status + failure_window(scene, facts);
-  ImGui::SetNextWindowPos(ImVec2(0, l.menu));
-  ImGui::SetNextWindowSize(ImVec2(l.panel, std::max(50.0f, float(facts.height) - l.menu - below)));
+  ViewSettings& look = session.settings.view;
+  const Layout l = layout(look, facts.width);
+  const float below = l.status + failure_window(look, scene, facts);
+  const float high = std::max(50.0f, float(facts.height) - l.menu - below);
+  ImGui::SetNextWindowPos(ImVec2(on_the_right(look) ? float(facts.width) - l.panel : 0, l.menu));
+  ImGui::SetNextWindowSize(ImVec2(l.panel, high));
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoBringToFrontOnFocus;
   if (ImGui::Begin("panel", nullptr, fixed)) {
@@ -195,11 +226,12 @@ void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
     tabs(session, scene, facts);
   }
   ImGui::End();
+  panel_border(look, facts.width, l, high);
 }
 
 /// What goes on, how far it is, and a way to end it; what is under the cursor.
-void Ui::status(Scene& scene, const UiFacts& facts, UiRequests& requests) {
-  const float high = layout(facts.width).status;
+void Ui::status(const ViewSettings& look, Scene& scene, const UiFacts& facts, UiRequests& requests) {
+  const float high = layout(look, facts.width).status;
   ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - high));
   ImGui::SetNextWindowSize(ImVec2(float(facts.width), high));
   const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
@@ -278,7 +310,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   if (session.settings.view.panel) {
     menus(session, scene, facts, requests);
     panel(session, scene, facts);
-    status(scene, facts, requests);
+    status(session.settings.view, scene, facts, requests);
     const bool played = session.settings.view.play;
     transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
     if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
@@ -290,6 +322,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   help_windows(facts, area);
   quit_window(requests);
   screenshot_window(facts);
+  note_window(session);
   if (const auto files = dialog_.draw()) then_(*files, session, requests);
   return requests;
 }

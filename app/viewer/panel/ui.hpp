@@ -9,6 +9,7 @@
 
 #include "app/viewer/panel/file_dialog.hpp"
 #include "app/viewer/panel/frame_clock.hpp"
+#include "app/viewer/panel/knob_presets.hpp"
 #include "app/viewer/panel/scene_panel.hpp"
 #include "app/viewer/panel/transport_bar.hpp"
 #include "app/viewer/panel/welcome_card.hpp"
@@ -81,16 +82,23 @@ class Ui {
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void view_menu(Session& session, UiRequests& requests);
   void panel(Session& session, Scene& scene, const UiFacts& facts);
-  float failure_window(const Scene& scene, const UiFacts& facts);
+  float failure_window(const ViewSettings& look, const Scene& scene, const UiFacts& facts);
   void tabs(Session& session, Scene& scene, const UiFacts& facts);
   void knob_tab(Session& session);
-  void status(Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void status(const ViewSettings& look, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void screenshot_window(const UiFacts& facts);
   void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
   void error_window(const FreeArea& area);
   void quit_window(UiRequests& requests);
   void welcome_card(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests);
   void help_windows(const UiFacts& facts, const FreeArea& area);
+  // Marks; in marks_ui.cpp.
+  std::optional<Vec3d> under_cursor(const Session& session, Scene& scene, const UiFacts& facts);
+  void measure(Session& session, Scene& scene, const UiFacts& facts);
+  void ask_note(Session& session, Scene& scene, const UiFacts& facts);
+  void note_window(Session& session);
+  void marks_menu(Session& session);
+  void cameras_menu(Session& session);
   bool close_topmost();
   void ask_open();
   void ask_result(Scene& scene);
@@ -102,6 +110,7 @@ class Ui {
   FileDialog dialog_;
   TransportBar transport_;
   WelcomeCard welcome_;
+  KnobPresets presets_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;
@@ -109,6 +118,9 @@ class Ui {
   bool opens_quit_ = false;
   std::vector<std::string> quit_reasons_;  ///< not empty: it is asked whether to quit
   std::string filter_, told_, error_, drawn_tab_;
+  std::string note_, camera_name_;  ///< being typed
+  std::optional<Vec3d> note_place_;
+  bool opens_note_ = false;
   double told_until_ = 0, work_began_ = -1;  ///< on Dear ImGui's clock; -1: no work goes on
 };
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/viewer/scene/marks.hpp"
 #include "engine/picture/legend.hpp"
 
 namespace nacre {
@@ -18,6 +19,17 @@ Rgba paper_of(const std::string& background) {
 void Captions::draw(Scene& scene, const View& view, const Settings& settings) {
   draw_scene(scene, view);
   if (settings.legend) draw_triad(view, settings.background);
+  draw_marks(view, settings, scene.unit());
+}
+
+void Captions::draw_marks(const View& view, const Settings& settings, const std::string& unit) {
+  const ViewSettings& look = settings.view;
+  if (look.ruler.empty() && look.notes.empty()) return;
+  const Marked wanted{view.width, view.height, view.camera, look.ruler, look.notes, unit, settings.background};
+  if (marked_ != wanted)
+    marks_.set_image(marks_sheet(view, look.ruler, look.notes, unit, paper_of(settings.background)));
+  marked_ = wanted;
+  marks_.draw(view);
 }
 
 void Captions::draw_scene(Scene& scene, const View& view) {

@@ -19,6 +19,7 @@ class Captions {
 
  private:
   void draw_scene(Scene& scene, const View& view);
+  void draw_marks(const View& view, const Settings& settings, const std::string& unit);
   void draw_triad(const View& view, const std::string& background);
 
   /// What an image was made for.
@@ -33,7 +34,14 @@ class Captions {
     std::string background;
     bool operator==(const Seen&) const = default;
   };
-  OverlayPass scene_, triad_;
+  struct Marked {
+    int width = 0, height = 0;
+    Camera camera;
+    std::string ruler, notes, unit, background;
+    bool operator==(const Marked&) const = default;
+  };
+  OverlayPass scene_, triad_, marks_;
+  Marked marked_;
   Made drawn_;
   Seen seen_;
 };

@@ -11,10 +11,11 @@ bool Viewer::opens_beside() const {
   return window_ && !waits() && (!scripted_ || player_->ended()) && !scene().corners().empty();
 }
 
-void Viewer::open_beside(Session wanted, std::optional<SessionPlayer> player, const std::filesystem::path& file) {
+void Viewer::open_beside(Session wanted, std::optional<SessionPlayer> player, const std::filesystem::path& file,
+                         OpenScene again) {
   opening_.reset();
   Opening opening{{}, std::move(wanted), session_, std::move(player), file, {}};
-  opening.open = open_scene(opening.session, scene_options());
+  opening.open = again.scene ? std::move(again) : open_scene(opening.session, scene_options());
   opening_.emplace(std::move(opening));
   redraw_ = true;
 }
@@ -43,6 +44,7 @@ bool Viewer::take_opened() {
   if (next.corners().empty()) return false;  // nothing to see yet
   Opening opened = std::move(*opening_);
   opening_.reset();
+  if (scene().lost_device().empty()) left_.keep(std::move(open_), told_);
   leave_scene();
   open_ = std::move(opened.open);
   const Session asked = opened.session;
@@ -70,6 +72,16 @@ void Viewer::give_opening_up() {
   redraw_ = true;
 }
 
+/// The scene that showed this input before, as it is wanted now; none: it is not kept.
+OpenScene Viewer::left_scene(const Session& wanted) {
+  std::optional<LeftScenes::Left> left = left_.take(wanted);
+  if (!left) return {};
+  const ChangedKnobs changed = changed_knobs(left->session, wanted);
+  if (!changed.empty()) left->open.scene->set_settings(wanted.settings, changed);
+  left->open.scene->resume();
+  return std::move(left->open);
+}
+
 /// Undo and redo of an input: made when that is there, and not at all where it cannot be opened.
 void Viewer::move_in_history(bool back) {
   Session wanted = session_;
@@ -81,7 +93,8 @@ void Viewer::move_in_history(bool back) {
     return;
   }
   attempt([&] {
-    open_beside(std::move(wanted), {}, {});
+    OpenScene again = left_scene(wanted);
+    open_beside(std::move(wanted), {}, {}, std::move(again));
     opening_->history = std::move(moved);
   });
 }

@@ -67,6 +67,7 @@ void Viewer::make_graphics() {
 
 void Viewer::drop_graphics() {
   opening_.reset();
+  left_.clear();
   open_.reset();  // before the context that all of it lives in
   frame_.reset();
   captions_.reset();

@@ -17,6 +17,7 @@
 #include "app/viewer/window/film.hpp"
 #include "app/viewer/window/imgui_layer.hpp"
 #include "app/viewer/window/kept_recording.hpp"
+#include "app/viewer/window/left_scenes.hpp"
 #include "app/viewer/window/recent_files.hpp"
 #include "app/viewer/window/saving.hpp"
 #include "app/viewer/window/session_clock.hpp"
@@ -81,7 +82,10 @@ class Viewer {
   };
   bool opens_beside() const;
   bool divert_input();
-  void open_beside(Session wanted, std::optional<SessionPlayer> player, const std::filesystem::path& file);
+  /// `again`: a scene that has been left and was told to be as wanted; none: it is opened.
+  void open_beside(Session wanted, std::optional<SessionPlayer> player, const std::filesystem::path& file,
+                   OpenScene again = {});
+  OpenScene left_scene(const Session& wanted);
   bool take_opened();
   void give_opening_up();
   void move_in_history(bool back);
@@ -203,6 +207,7 @@ class Viewer {
   std::optional<Framebuffer> frame_;
   OpenScene open_;
   std::optional<Opening> opening_;
+  LeftScenes left_;
   Ui ui_;
   Undo undo_;
   RecentFiles recent_;

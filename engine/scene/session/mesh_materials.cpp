@@ -61,6 +61,13 @@ MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const
   described.axes = volume.axes;
   described.labels = volume.labels;
   described.names = volume.names;
+  described.unit = volumes.front().unit;
+  const LabelColours& colours = volumes.front().label_colours;
+  described.colours.assign(volume.labels.size(), std::nullopt);
+  for (std::size_t m = 1; m < volume.labels.size(); ++m)
+    if (const auto own = colours.find(volume.labels[m]);
+        own != colours.end() && volume.kind == MeshVolume::Kind::labels)
+      described.colours[m] = own->second;
   described.voxels.assign(volume.labels.size(), 0);
   for (const std::uint16_t material : volume.material) ++described.voxels.at(material);
   return volume;

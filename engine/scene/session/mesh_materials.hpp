@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,9 +24,11 @@ struct MeshInput {
   Int3 dims{};
   Vec3d spacing, origin;
   std::array<Vec3d, 3> axes;
-  std::vector<std::int64_t> labels;  ///< per material; [0]: the outside's
-  std::vector<std::string> names;    ///< may be empty
-  std::vector<std::size_t> voxels;   ///< per material
+  std::vector<std::int64_t> labels;                          ///< per material; [0]: the outside's
+  std::vector<std::string> names;                            ///< may be empty
+  std::vector<std::optional<std::array<float, 3>>> colours;  ///< per material: the file's, encoded sRGB
+  std::string unit;                                          ///< of lengths, see Volume; may be empty
+  std::vector<std::size_t> voxels;                           ///< per material
   std::vector<std::string> warnings;
 };
 

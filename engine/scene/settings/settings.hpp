@@ -46,6 +46,16 @@ struct ViewSettings {
   double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
   double ambient = 0.3;                        ///< share of the light that comes from everywhere
   std::string turning = "turntable";           ///< turntable, trackball
+  std::string material_colors;                 ///< L:#rrggbb[,L:...]: of materials, by label
+  std::string opacity;                         ///< L:0..1[,L:...]: of materials, by label
+  std::string backs = "shown";                 ///< sides of a surface seen from behind: shown, neutral, hidden
+  int isolines = 0;                            ///< of a flow, over the colour range
+  std::string ruler;                           ///< x y z;x y z;...: points to measure between
+  std::string notes;                           ///< x y z text;...
+  std::string cameras;                         ///< name:numbers;...: to come back to
+  std::string panel_side = "left";             ///< left, right
+  double panel_width = 1;                      ///< 1: normal
+  bool preview = true;                         ///< of a volume, a quick surface until there is a better one
   bool panel = true;                           ///< over the picture
   std::string tab = "data";                    ///< of the panel
   std::string theme = "dark";                  ///< of the panels: dark, light

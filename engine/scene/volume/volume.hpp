@@ -23,6 +23,8 @@ using VolumeValues =
 
 /// What labels are called; those that are not in it have no name.
 using LabelNames = std::map<std::int64_t, std::string>;
+/// What colours labels have, encoded sRGB, 0..1; those that are not in it have none of their own.
+using LabelColours = std::map<std::int64_t, std::array<float, 3>>;
 
 /// A volume as its file has it, nothing flipped or resampled. Voxel (i, j, k) has its centre in the world at
 /// origin + sum over a of axes[a] * (index[a] * spacing[a]). What the world's axes point to is the file's business:
@@ -30,6 +32,7 @@ using LabelNames = std::map<std::int64_t, std::string>;
 /// follows ITK. Left-handed axes are kept.
 struct Volume {
   std::string name;        ///< the file's name without folder
+  std::string unit;        ///< of lengths: "mm", "m", "um"; empty where the file does not say
   std::string space;       ///< what x, y, z point to, "right-anterior-superior"; empty where the file does not say
   Int3 dims{};             ///< voxels along each axis, at least 2
   Vec3d spacing{1, 1, 1};  ///< > 0, the file's unit
@@ -37,6 +40,7 @@ struct Volume {
   std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};  ///< unit, orthogonal
   VolumeValues values;
   LabelNames label_names;             ///< where the file says what its values stand for
+  LabelColours label_colours;         ///< and what colours they have
   std::vector<std::string> warnings;  ///< what was assumed on opening, each a full sentence
 
   std::size_t voxels() const { return std::size_t(dims.x) * std::size_t(dims.y) * std::size_t(dims.z); }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "app/viewer/panel/imgui_text.hpp"
 #include "engine/picture/material_colours.hpp"
+#include "engine/run/material_palette.hpp"
 
 namespace nacre {
 namespace {
@@ -87,6 +89,12 @@ class MeshPanelTest : public testing::Test {
         const ViewSettings& look = session_.settings.view;
         hidden_.insert(look.hidden);
         ghosts_.insert(look.ghosts);
+        for (const auto& [label, opacity] : parse_label_opacities(look.opacity)) opacities_[label].insert(opacity);
+        if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0) {
+          ++popups_;
+          ImGui::ClosePopupToLevel(0, false);
+          frame(-1, -1, false);
+        }
         if (*session_.camera != *before.camera) {
           cameras_[session_.camera->target.x] = *session_.camera;
           highlighted_[session_.camera->target.x] = look.worst;
@@ -101,6 +109,8 @@ class MeshPanelTest : public testing::Test {
   MeshPanel panel_{results_};
   Session session_;
   std::set<std::string> hidden_, ghosts_;
+  std::map<std::int64_t, std::set<double>> opacities_;  ///< by label
+  int popups_ = 0;
   std::map<double, Camera> cameras_;  ///< by what they look at
   std::map<double, int> highlighted_;
 };
@@ -108,7 +118,13 @@ class MeshPanelTest : public testing::Test {
 TEST_F(MeshPanelTest, MaterialsAreHiddenGhostedAndShownAlone) {
   click_everything();
   EXPECT_EQ(hidden_, (std::set<std::string>{"", "4", "7", "4,7"}));  // "only" hides the other one
-  EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4", "7", "4,7"}));
+  EXPECT_EQ(ghosts_, (std::set<std::string>{"", "4,7"}));
+  for (const std::int64_t label : {4, 7}) {  // by a slider each
+    ASSERT_FALSE(opacities_[label].empty());
+    EXPECT_LT(*opacities_[label].begin(), 0.3);
+    EXPECT_GT(*opacities_[label].rbegin(), 0.7);
+  }
+  EXPECT_GT(popups_, 1);  // swatches that edit
   hidden_.clear(), ghosts_.clear();
   session_.settings.view.hidden = "4";
   session_.settings.view.ghosts = "7";

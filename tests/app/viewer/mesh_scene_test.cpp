@@ -88,6 +88,47 @@ TEST_F(MeshInView, EachCallIsOneIteration) {
   EXPECT_EQ(scene_->failure(), "");
 }
 
+TEST_F(MeshInView, APreviewIsSeenBeforeThereAreParticles) {
+  open(false, 200);
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  int most = 0;
+  bool replaced = false;
+  while (!scene_->settled() && std::chrono::steady_clock::now() < end) {
+    scene_->advance(0);
+    if (scene_->previews()) most = std::max(most, drawn());
+    replaced = replaced || (most > 0 && !scene_->previews());
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_GT(most, 1500);  // both spheres, not the box alone
+  EXPECT_TRUE(replaced);
+}
+
+TEST_F(MeshInView, MaterialsHaveOpacitiesAndColours) {
+  open(true);
+  EXPECT_TRUE(settles());
+  const auto red = [&] {
+    View view = scene_view(session_, scene_->corners(), 0, 120, 120);
+    view.camera = fit_camera("iso", scene_->corners(), 120, 120);
+    const Framebuffer frame(120, 120);
+    frame.bind();
+    frame.clear({1, 1, 1, 1});
+    scene_->draw(view);
+    const Image image = frame.read();
+    int count = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4)
+      count += image.pixels[i] > 2 * image.pixels[i + 1] && image.pixels[i] > 2 * image.pixels[i + 2];
+    return count;
+  };
+  EXPECT_EQ(red(), 0);
+  change([](Settings& s) { s.view.material_colors = "1:#ff0000"; });
+  const int solid = red();
+  EXPECT_GT(solid, 500);
+  change([](Settings& s) { s.view.opacity = "1:0.2"; });
+  EXPECT_LT(red(), solid / 10);  // pale
+  change([](Settings& s) { s.view.opacity = "1:0"; });
+  EXPECT_EQ(red(), 0);
+}
+
 TEST_F(MeshInView, AFilmThatBeginsInTheMiddleGoesOnInLockstep) {
   open(false, 200);
   while (scene_->steps() < 3) scene_->advance(0);

@@ -17,8 +17,8 @@ struct MeshWorkerRun {
   std::atomic<bool> stop{false};
   Session session;
   std::vector<Float4> place, direction;
-  std::string
-      order;  ///< a letter per event: Volume, Begun, Iterated (once), Triangulated, Measured, Slice, Written, Failed
+  /// A letter per event: Volume, Preview, Begun, Iterated (once), Triangulated, Measured, Slice, Written, Failed.
+  std::string order;
   int iterations = 0, lease = 0, turns = 0;
   std::int64_t capacity = 0;
   std::vector<std::int64_t> counts;  ///< of particles, where they were shown
@@ -26,18 +26,21 @@ struct MeshWorkerRun {
   VoxelFrame frame;
   std::vector<Vec3d> corners;
   std::size_t triangles = 0;
+  MeshPreview preview;
+  bool brought_back = false;
   std::string failure, written;
   SliceFilled slice;
   std::unique_ptr<MeshWorker> worker;
 
   explicit MeshWorkerRun(
-      bool lockstep = false, int threads = 2, const std::function<void(Session&)>& preset = [](Session&) {}) {
+      bool lockstep = false, int threads = 2, const std::function<void(Session&)>& preset = [](Session&) {},
+      bool live = false) {
     session.sample = "two-spheres";
     session.detail = 20;
     session.settings.mesh.iterations = 30;
     session.settings.mesh.mend = 1;
     preset(session);
-    worker = std::make_unique<MeshWorker>(session, make_cpu_device(threads), lockstep);
+    worker = std::make_unique<MeshWorker>(session, make_cpu_device(threads), lockstep, false, live);
   }
 
   void note(char letter) {
@@ -59,6 +62,10 @@ struct MeshWorkerRun {
       frame = read->frame;
       corners = read->corners;
     }
+    if (auto* made = std::get_if<PreviewMade>(&event)) {
+      note('P');
+      preview = std::move(made->preview);
+    }
     if (const auto* begun = std::get_if<RelaxBegun>(&event)) {
       note('B');
       capacity = begun->capacity;
@@ -77,6 +84,7 @@ struct MeshWorkerRun {
     if (const auto* made = std::get_if<MeshTriangulated>(&event)) {
       note('T');
       triangles = made->mesh->triangles.size();
+      brought_back = made->brought_back;
     }
     if (std::holds_alternative<MeshMeasured>(event)) note('M');
     if (auto* filled = std::get_if<SliceFilled>(&event)) {
@@ -164,6 +172,79 @@ TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
   EXPECT_EQ(run.rerun("worst", "5"), "");
   EXPECT_EQ(run.rerun("max_cell", "3"), "");
   EXPECT_EQ(run.failure, "");
+}
+
+const auto as_it_is = [](Session&) {};
+
+TEST(MeshWorker, APreviewComesBeforeTheFields) {
+  MeshWorkerRun run(false, 2, as_it_is, true);
+  run.settle([&] { return run.order.ends_with("P"); });
+  EXPECT_EQ(run.order, "VP");
+  EXPECT_GT(run.preview.geometry.triangles.size(), 200u);
+  EXPECT_EQ(run.preview.materials.size(), run.preview.geometry.triangles.size());
+  EXPECT_EQ(run.preview.stride, 1);
+  run.settle();
+  EXPECT_EQ(run.order, "VPBITM");
+  set_knob(run.session.settings, "preview", "false");
+  EXPECT_EQ(run.rerun("merge", "2:1"), "classify materials tighten distance sizing embed seed triangulate quality");
+  EXPECT_EQ(run.order, "VBITM");
+}
+
+TEST(MeshWorker, KnobsAsTheyWereBringTheirMeshBack) {
+  MeshWorkerRun run(false, 2, as_it_is, true);
+  run.settle();
+  const std::size_t first = run.triangles;
+  run.rerun("max_size", "1.6");
+  const std::size_t second = run.triangles;
+  EXPECT_LT(second, first);
+  EXPECT_EQ(run.rerun("max_size", "1"), "");  // undo
+  EXPECT_EQ(run.order, "TM");
+  EXPECT_TRUE(run.brought_back);
+  EXPECT_EQ(run.triangles, first);
+  EXPECT_TRUE(run.worker->settled());
+  EXPECT_EQ(run.rerun("max_size", "1.6"), "");  // redo
+  EXPECT_EQ(run.triangles, second);
+  EXPECT_EQ(run.rerun("merge", "2:1"), "classify materials tighten distance sizing embed seed triangulate quality");
+  EXPECT_EQ(run.rerun("merge", ""), "");  // and the volume that it was made of
+  EXPECT_EQ(run.order, "VTM");
+  EXPECT_EQ(run.triangles, second);
+}
+
+TEST(MeshWorker, AfterAMeshWasBroughtBackOthersAreMadeAsEver) {
+  MeshWorkerRun run(false, 2, as_it_is, true);
+  run.settle();
+  run.rerun("max_size", "1.6");
+  run.rerun("max_size", "1");  // brought back; the pipeline is at 1.6
+  EXPECT_EQ(run.rerun("mend", "0"), "sizing embed seed triangulate quality");
+  MeshWorkerRun fresh(false, 2, [](Session& session) { session.settings.mesh.mend = 0; });
+  fresh.settle();
+  EXPECT_EQ(run.triangles, fresh.triangles);
+  EXPECT_FALSE(run.brought_back);
+}
+
+TEST(MeshWorker, AMeshComesBackWhileAnotherIsMade) {
+  MeshWorkerRun run(false, 2, as_it_is, true);
+  run.settle();
+  const std::size_t first = run.triangles;
+  set_knob(run.session.settings, "theta", "0.9");
+  run.worker->set_settings(run.session.settings);
+  const int before = run.iterations;
+  run.settle([&] { return run.iterations > before + 2; });
+  EXPECT_EQ(run.rerun("theta", "0.5"), "");
+  EXPECT_EQ(run.triangles, first);
+  EXPECT_TRUE(run.worker->settled());
+  EXPECT_EQ(run.rerun("theta", "0.9"), "seed triangulate quality");  // it had not been finished
+  MeshWorkerRun fresh(false, 2, [](Session& session) { session.settings.mesh.theta = 0.9; });
+  fresh.settle();
+  EXPECT_EQ(run.triangles, fresh.triangles);
+}
+
+TEST(MeshWorker, AReplayMakesEverythingAnew) {
+  MeshWorkerRun run(true);
+  run.settle();
+  EXPECT_EQ(run.order, "VBITM");  // no preview
+  run.rerun("theta", "0.9");
+  EXPECT_EQ(run.rerun("theta", "0.5"), "seed triangulate quality");
 }
 
 TEST(MeshWorker, AChangeInterruptsWhatIsUnderWay) {

@@ -34,14 +34,18 @@ class StillScene : public Scene {
   void advance(double) override {}
   bool advance_and_wait(const std::atomic<bool>&, double) override { return true; }
   void set_settings(const Settings&, const ChangedKnobs&) override {}
-  void cancel() override {}
-  void resume() override {}
+  int cancels = 0, resumes = 0;
+  void cancel() override { ++cancels; }
+  void resume() override { ++resumes; }
   bool halted() const override { return false; }
   void draw(const View&) override {}
   Image overlay(int, int) override { return {}; }
   std::uint64_t overlay_version() const override { return 0; }
   std::uint64_t version() const override { return 0; }
-  std::optional<ProbeResult> probe(const Vec3d&, const Vec3d&) override { return {}; }
+  std::optional<Vec3d> under_the_mouse;  ///< wherever that is
+  std::optional<ProbeResult> probe(const Vec3d&, const Vec3d&) override {
+    return under_the_mouse ? std::optional(ProbeResult{*under_the_mouse, {}}) : std::nullopt;
+  }
   void write_result(const std::filesystem::path&) override {}
   void begin_write(const std::filesystem::path&) override {}
   std::optional<std::string> take_written() override { return {}; }
@@ -54,7 +58,8 @@ class StillScene : public Scene {
   const std::string& failure() const override { return what_failed; }
   const std::vector<std::string>& warnings() const override { return none_; }
   std::string remark() const override { return ""; }
-  SceneTotals totals() const override { return {}; }
+  std::size_t bytes = 0;
+  SceneTotals totals() const override { return {0, 0, {}, bytes}; }
   const Device& device() const override { return *device_; }
   void finish() override {}
 

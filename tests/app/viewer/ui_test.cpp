@@ -109,6 +109,70 @@ TEST_F(UiTest, EscapeClosesWhatIsOpenBeforeItCancels) {
   EXPECT_TRUE(cancelled_);
 }
 
+TEST_F(UiTest, TheRulerTakesPointsUnderTheMouse) {
+  session_.camera = Camera();
+  move(600, 300);  // over the view
+  frame();
+  frame();
+  type("d");
+  EXPECT_EQ(session_.settings.view.ruler, "") << "there is nothing under the mouse";
+  for (const Vec3d& point : {Vec3d(0, 0, 0), Vec3d(2, 0, 0), Vec3d(2, 2, 0)}) {
+    scene_.under_the_mouse = point;
+    type("d");
+  }
+  EXPECT_EQ(session_.settings.view.ruler, "0 0 0;2 0 0;2 2 0");
+  type("d");  // begins anew
+  EXPECT_EQ(session_.settings.view.ruler, "2 2 0");
+}
+
+TEST_F(UiTest, ANoteIsTypedAtThePointUnderTheMouse) {
+  session_.camera = Camera();
+  scene_.under_the_mouse = Vec3d(1, 2, 3);
+  move(600, 300);
+  frame();
+  frame();
+  type("n");
+  for (int k = 0; k < 3; ++k) frame();  // the field takes the keys
+  for (const char letter : std::string("wake")) type(std::string(1, letter));
+  press(enter_key);
+  frame();
+  EXPECT_EQ(session_.settings.view.notes, "1 2 3 wake");
+}
+
+TEST_F(UiTest, DigitsGoBackToCamerasThatWereKept) {
+  session_.camera = Camera();
+  session_.settings.view.cameras = "a:0 0 5 0 0 0 0 1 0 2;b:7 0 0 0 0 0 0 0 1 3";
+  move(600, 300);
+  frame();
+  frame();
+  type("2");
+  EXPECT_EQ(session_.camera->eye, Vec3d(7, 0, 0));
+  type("1");
+  EXPECT_EQ(session_.camera->eye, Vec3d(0, 0, 5));
+  type("9");
+  EXPECT_EQ(session_.camera->eye, Vec3d(0, 0, 5));
+}
+
+TEST_F(UiTest, ThePanelStandsOnEitherSideAndIsPulledWider) {
+  const FreeArea left = ui_.free_area(session_.settings.view, width, height);
+  session_.settings.view.panel_side = "right";
+  const FreeArea right = ui_.free_area(session_.settings.view, width, height);
+  EXPECT_GT(left.x, 200);
+  EXPECT_EQ(right.x, 0);
+  EXPECT_EQ(right.width, left.width);
+  for (int k = 0; k < 3; ++k) frame();
+  move(float(right.width), 300);  // the border
+  for (int k = 0; k < 2; ++k) frame();
+  ImGui::GetIO().MouseDown[0] = true;
+  frame();
+  move(float(right.width) - 40, 300);
+  frame();
+  ImGui::GetIO().MouseDown[0] = false;
+  frame();
+  EXPECT_GT(session_.settings.view.panel_width, 1.05);
+  EXPECT_LT(ui_.free_area(session_.settings.view, width, height).width, right.width);
+}
+
 TEST_F(UiTest, ItAsksBeforeItQuits) {
   ui_.ask_quit({"A video is being recorded."});
   frame();

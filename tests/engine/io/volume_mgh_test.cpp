@@ -156,6 +156,17 @@ TEST_F(LabelFile, OfItkSnapFreeSurferAndSlicer) {
             (LabelNames{{-3, "neck"}, {2, "left lung"}, {17, "area 51"}}));
 }
 
+TEST_F(LabelFile, HasTheColours) {
+  const std::string snap = "0 0 0 0 0 0 0 \"Clear\"\n2 255 0 51 1 1 1 \"lung 2\"\n";
+  const LabelTable of_snap = read_label_table(write("a.label", snap));
+  EXPECT_EQ(of_snap.colours, (LabelColours{{0, {0, 0, 0}}, {2, {1, 0, 0.2f}}}));
+  const LabelTable of_freesurfer =
+      read_label_table(write("LUT.txt", "17 Left-Hippocampus 255 51 0 0\n4 area 9 0 0 255\n"));
+  EXPECT_EQ(of_freesurfer.colours.at(17), (std::array{1.0f, 0.2f, 0.0f}));
+  EXPECT_TRUE(read_label_table(write("a.txt", "2 left lung\n")).colours.empty());
+  EXPECT_TRUE(read_label_table(write("a.txt", "2 lung 300 0 0\n")).colours.empty());  // no byte
+}
+
 TEST_F(LabelFile, WhatIsNoTableIsAnError) {
   const auto failed = [&](const std::string& text) {
     try {

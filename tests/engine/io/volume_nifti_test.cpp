@@ -201,11 +201,13 @@ TEST_F(Nifti, LabelsHaveTheNamesOfItsTable) {
   constexpr int caret = 30;
   const std::string table =
       "<?xml version=\"1.0\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>"
-      "<Label Key=\"3\" Red=\"0\"><![CDATA[kidney_left]]></Label><Label Key=\"-2\"> a &amp; b </Label>"
+      "<Label Key=\"3\" Red=\"0\" Green=\"0.5\" Blue=\"1\"><![CDATA[kidney_left]]></Label><Label Key=\"-2\"> a &amp; b "
+      "</Label>"
       "<Label Key=\"x\">no number</Label><Label Key=\"4\"></Label></LabelTable></VolumeInformation></CaretExtension>";
   const Volume volume = read("a.nii", extended(caret, table, shorts));
   EXPECT_EQ(values_of(volume), count_up(12));
   EXPECT_EQ(volume.label_names, (LabelNames{{-2, "a & b"}, {3, "kidney_left"}}));
+  EXPECT_EQ(volume.label_colours, (LabelColours{{3, {0, 0.5f, 1}}}));
   EXPECT_EQ(read("a.nii.gz", gzipped(extended(caret, table, shorts))).label_names.size(), 2u);
   EXPECT_EQ(read("a.nii", extended(0, table, shorts)).label_names.size(), 2u);
   EXPECT_TRUE(read("a.nii", extended(6, table, shorts)).label_names.empty());  // a comment

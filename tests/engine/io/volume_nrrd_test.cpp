@@ -38,10 +38,12 @@ TEST_F(Nrrd, EveryNumericType) {
 TEST_F(Nrrd, LabelsHaveTheNamesOfSegments) {
   const std::string segments =
       "spacings: 1 1 1\nSegment0_LabelValue:=2\nSegment0_Name:=left lung\nSegment1_Name:=liver\n"
-      "Segment1_LabelValue:=7\nSegment2_Name:=no value\nSegment3_LabelValue:=nine\nSegment3_Name:=no number\n"
+      "Segment0_Color:=0.5 0.25 1\nSegment1_Color:=red\nSegment1_LabelValue:=7\nSegment2_Name:=no "
+      "value\nSegment3_LabelValue:=nine\nSegment3_Name:=no number\n"
       "Segment5_LabelValue:=5\nSegment5_Name:=after a gap\n";
   const Volume volume = read("a.seg.nrrd", raw("uchar", segments, counting<std::uint8_t>(12)));
   EXPECT_EQ(volume.label_names, (LabelNames{{2, "left lung"}, {7, "liver"}}));
+  EXPECT_EQ(volume.label_colours, (LabelColours{{2, {0.5f, 0.25f, 1}}}));
   EXPECT_TRUE(read("b.nrrd", raw("uchar", "spacings: 1 1 1\n", counting<std::uint8_t>(12))).label_names.empty());
 }
 

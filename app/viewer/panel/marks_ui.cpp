@@ -1,0 +1,115 @@
+// Nacre: ruler, notes and kept cameras: their keys, menus and fields.
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "app/viewer/panel/ui.hpp"
+#include "app/viewer/scene/marks.hpp"
+#include "engine/render/camera_motion.hpp"
+
+namespace nacre {
+
+/// The point of the scene that the mouse is over; none: it is over a panel, or over nothing.
+std::optional<Vec3d> Ui::under_cursor(const Session& session, Scene& scene, const UiFacts& facts) {
+  const ImGuiIO& io = ImGui::GetIO();
+  std::optional<ProbeResult> probed;
+  if (session.camera && !io.WantCaptureMouse && ImGui::IsMousePosValid()) {
+    const FreeArea area = free_area(session.settings.view, facts.width, facts.height);
+    const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
+    const auto [from, along] = ray_under(facts.camera, x, y, area.aspect());
+    probed = scene.probe(from, along);
+  }
+  if (!probed) show_note("point at the surface with the mouse, then press the key");
+  return probed ? std::optional(probed->position) : std::nullopt;
+}
+
+/// One more point of the ruler; after the third it begins again.
+void Ui::measure(Session& session, Scene& scene, const UiFacts& facts) {
+  const std::optional<Vec3d> point = under_cursor(session, scene, facts);
+  if (!point) return;
+  std::string& ruler = session.settings.view.ruler;
+  std::vector<Vec3d> points = parse_ruler(ruler);
+  if (points.size() >= 3) points.clear();
+  points.push_back(*point);
+  ruler = ruler_words(points);
+  std::string words;
+  for (const std::string& line : ruler_lines(points, scene.unit())) words += (words.empty() ? "" : ", ") + line;
+  show_note(words.empty() ? "ruler: d at the second point" : "ruler: " + words);
+}
+
+void Ui::ask_note(Session& session, Scene& scene, const UiFacts& facts) {
+  note_place_ = under_cursor(session, scene, facts);
+  opens_note_ = note_place_.has_value();
+  note_.clear();
+}
+
+void Ui::note_window(Session& session) {
+  if (!note_place_) return;
+  constexpr const char* title = "note";
+  const bool begins = std::exchange(opens_note_, false);
+  if (begins) ImGui::OpenPopup(title);
+  if (!ImGui::BeginPopup(title)) {
+    note_place_.reset();
+    return;
+  }
+  if (begins) ImGui::SetKeyboardFocusHere();
+  ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
+  if (ImGui::InputTextWithHint("##note", "what is here; enter", &note_, ImGuiInputTextFlags_EnterReturnsTrue)) {
+    std::string& notes = session.settings.view.notes;
+    std::vector<PlacedNote> all = parse_notes(notes);
+    if (note_.find_first_not_of(' ') != std::string::npos) all.push_back({*note_place_, note_});
+    notes = notes_words(all);
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void Ui::marks_menu(Session& session) {
+  ViewSettings& look = session.settings.view;
+  if (!ImGui::BeginMenu("Marks")) return;
+  ImGui::TextDisabled("d: ruler, n: note, at the point under the cursor");
+  if (ImGui::MenuItem("Remove the ruler", nullptr, false, !look.ruler.empty())) look.ruler.clear();
+  if (ImGui::BeginMenu("Remove a note", !look.notes.empty())) {
+    std::vector<PlacedNote> notes = parse_notes(look.notes);
+    for (std::size_t k = 0; k < notes.size(); ++k)
+      if (ImGui::MenuItem(fmt::format("{}##{}", notes[k].text, k).c_str())) {
+        notes.erase(notes.begin() + std::ptrdiff_t(k));
+        look.notes = notes_words(notes);
+        break;
+      }
+    ImGui::EndMenu();
+  }
+  ImGui::EndMenu();
+}
+
+void Ui::cameras_menu(Session& session) {
+  if (!ImGui::BeginMenu("Cameras", session.camera.has_value())) return;
+  std::string& words = session.settings.view.cameras;
+  std::vector<SavedCamera> kept = parse_cameras(words);
+  ImGui::SetNextItemWidth(10 * ImGui::GetFontSize());
+  const std::string usual = fmt::format("view {}", kept.size() + 1);
+  const bool typed =
+      ImGui::InputTextWithHint("##name", usual.c_str(), &camera_name_, ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::SameLine();
+  if (ImGui::Button("keep this one") || typed) {
+    kept.push_back({camera_name_.empty() ? usual : camera_name_, *session.camera});
+    camera_name_.clear();
+    words = cameras_words(kept);
+  }
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const std::string key = k < 9 ? fmt::format("{}", k + 1) : "";
+    if (ImGui::MenuItem(fmt::format("{}##{}", kept[k].name, k).c_str(), key.c_str())) session.camera = kept[k].camera;
+  }
+  if (ImGui::BeginMenu("Forget one", !kept.empty())) {
+    for (std::size_t k = 0; k < kept.size(); ++k)
+      if (ImGui::MenuItem(fmt::format("{}##{}", kept[k].name, k).c_str())) {
+        kept.erase(kept.begin() + std::ptrdiff_t(k));
+        words = cameras_words(kept);
+        break;
+      }
+    ImGui::EndMenu();
+  }
+  ImGui::EndMenu();
+}
+
+}  // namespace nacre
