@@ -98,7 +98,7 @@ void CudaReservation::take(std::size_t piece) {
   if (driver().create(&handle, piece_bytes_, &wanted, 0) != CUDA_SUCCESS)
     throw Error("not enough memory on the GPU",
                 std::to_string(committed_ >> 20) + " MiB are taken, and another program may have the rest",
-                "lower the resolution or use `device` cpu");
+                "lower the resolution, or use `device` cpu");
   const CUdeviceptr address = address_ + piece * piece_bytes_;
   CUmemAccessDesc access{};
   access.location = wanted.location;

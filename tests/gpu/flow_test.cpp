@@ -111,7 +111,8 @@ TEST(CudaDevice, TooLittleMemoryIsAnErrorThatNamesAResolution) {
     pipeline->embed(shape.mesh());
     FAIL() << "embedded in 160 MiB";
   } catch (const Error& error) {
-    EXPECT_NE(error.advice().find("`resolution`"), std::string::npos) << error.what();
+    EXPECT_NE(error.advice().find("use `resolution`"), std::string::npos) << error.what();
+    EXPECT_NE(error.advice().find("`device` cpu"), std::string::npos) << error.what();
   }
   pipeline->parameters.resolution = 128;
   EXPECT_NO_THROW(pipeline->embed(shape.mesh())) << "the pipeline works on";
@@ -145,6 +146,26 @@ TEST(CudaDevice, MemoryThatAnotherTookMeanwhileIsAnError) {
   EXPECT_THROW(runs->random_bits(most), Error);
   other->deallocate(block, taken);
   EXPECT_EQ(runs->random_bits(1000).size(), 1000u) << "it works on";
+}
+
+/// Estimates go by the memory that there is when the work begins, not by what there was when the pipeline was made.
+TEST(CudaDevice, AnEstimateKnowsWhatAnotherTookMeanwhile) {
+  if (cuda_device_count() == 0) GTEST_SKIP() << "no CUDA device on this machine";
+  const auto gpu = make_cuda_device(arena_limit), other = make_cuda_device();
+  const auto pipeline = make_flow_pipeline(*gpu);
+  pipeline->parameters.resolution = 128;
+  const Shape shape = torus(40, 20);
+  const std::size_t taken = other->available_bytes() - (std::size_t(40) << 20);
+  void* const block = other->allocate(taken);
+  try {
+    pipeline->embed(shape.mesh());
+    ADD_FAILURE() << "embedded in 40 MiB";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("`resolution` 128 needs"), std::string::npos) << error.what();
+    EXPECT_NE(error.advice().find("`device` cpu"), std::string::npos) << error.what();
+  }
+  other->deallocate(block, taken);
+  EXPECT_NO_THROW(pipeline->embed(shape.mesh())) << "the pipeline works on";
 }
 
 TEST(NoCudaDevice, IsAnErrorWithAdviceAndAutoTakesTheCpu) {
