@@ -2,6 +2,7 @@
 // header in a build with NACRE_HIP.
 #pragma once
 
+#if defined(__HIPCC__)
 #include <hip/hip_runtime.h>
 
 // After HIP's headers, which would take it for NVIDIA's compiler.
@@ -10,6 +11,9 @@
 #define __CUDA_ARCH__ 900
 #endif
 #define __grid_constant__
+#else
+#include <hip/hip_runtime_api.h>
+#endif
 
 using cudaError_t = hipError_t;
 using cudaStream_t = hipStream_t;
