@@ -91,6 +91,8 @@ class Arena {
   std::size_t mark() const { return head_; }       ///< where the head is now
   void rewind(std::size_t mark) { head_ = mark; }  ///< drops every permanent array made after `mark`
   std::size_t free_bytes() const { return tail_ - head_; }
+  /// As far as the device has memory for it now: for estimates that are made before the work.
+  std::size_t room_bytes() const { return device_.obtainable_bytes(block_, head_, tail_); }
   std::size_t peak_bytes() const { return peak_; }
   Device& device() const { return device_; }
 
@@ -107,7 +109,7 @@ class Arena {
       throw Error("not enough memory on the device",
                   std::to_string((count >> 10) * size >> 10) + " MiB asked, " + std::to_string(free_bytes() >> 20) +
                       " MiB free",
-                  "lower the resolution");
+                  device_.too_small("lower the resolution"));
   }
 
   void note_peak() { peak_ = std::max(peak_, capacity_ - free_bytes()); }

@@ -83,7 +83,7 @@ void* CudaDevice::allocate(std::size_t bytes) {
   if (cudaMalloc(&block, std::max<std::size_t>(bytes, 1)) != cudaSuccess) {
     cudaGetLastError();  // forgets the failure, or the next launch would be blamed for it
     throw Error("not enough memory on the GPU", std::to_string(bytes >> 20) + " MiB asked",
-                "lower the resolution or use `device` cpu");
+                too_small("lower the resolution"));
   }
   count(bytes);
   return block;
@@ -142,6 +142,14 @@ void CudaDevice::commit(void* block, std::size_t from, std::size_t to) {
     throw;
   }
   note();
+}
+
+std::size_t CudaDevice::obtainable_bytes(const void* block, std::size_t from, std::size_t to) const {
+  const std::size_t free = available_bytes();
+  const std::scoped_lock lock(mutex_);
+  const auto found = reservations_.find(block);
+  if (found == reservations_.end()) return to - from;  // it was allocated whole
+  return std::min(to - from, found->second->committed_bytes(from, to) + free);
 }
 
 void CudaDevice::count(std::size_t taken) {

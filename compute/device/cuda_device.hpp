@@ -31,6 +31,8 @@ class CudaDevice final : public Device {
   void* reserve(std::size_t bytes) override;
   void release(void* block, std::size_t bytes) noexcept override;
   void commit(void* block, std::size_t from, std::size_t to) override;
+  std::size_t obtainable_bytes(const void* block, std::size_t from, std::size_t to) const override;
+  std::string too_small(const std::string& advice) const override { return advice + ", or use `device` cpu"; }
   void copy_to_device(void* to, const void* host, std::size_t bytes) override;
   void copy_to_host(void* host, const void* from, std::size_t bytes) override;
   void fill(void* to, unsigned char value, std::size_t bytes) override;
@@ -54,7 +56,7 @@ class CudaDevice final : public Device {
   cudaDeviceProp properties_{};
   cudaStream_t stream_ = nullptr;
   mutable std::mutex mutex_;  ///< guards what follows
-  std::map<void*, std::unique_ptr<CudaReservation>> reservations_;
+  std::map<const void*, std::unique_ptr<CudaReservation>> reservations_;
   std::size_t in_use_ = 0, peak_ = 0;
 };
 

@@ -7,18 +7,24 @@
 
 namespace nacre {
 
-/// kernel(i) for the share of 0 .. n-1 that is this thread's.
+/// Elements first .. end-1 of a launch.
+struct Elements {
+  std::int64_t first, end;
+};
+
+/// kernel(i) for the share of `all` that is this thread's.
 template <class Kernel>
-__device__ __forceinline__ void run_elements(std::int64_t n, const Kernel& kernel) {
+__device__ __forceinline__ void run_elements(const Elements& all, const Kernel& kernel) {
   const std::int64_t stride = std::int64_t(gridDim.x) * blockDim.x;
-  for (std::int64_t i = std::int64_t(blockIdx.x) * blockDim.x + threadIdx.x; i < n; i += stride) kernel(i);
+  for (std::int64_t i = all.first + std::int64_t(blockIdx.x) * blockDim.x + threadIdx.x; i < all.end; i += stride)
+    kernel(i);
 }
 
-/// kernel(team, i) for the share of 0 .. n-1 that is this block's, a team. `scratch`: shared memory.
+/// kernel(team, i) for the share of `all` that is this block's, a team. `scratch`: shared memory.
 template <class Kernel>
-__device__ __forceinline__ void run_teams(std::int64_t n, const Kernel& kernel, unsigned char* scratch) {
+__device__ __forceinline__ void run_teams(const Elements& all, const Kernel& kernel, unsigned char* scratch) {
   Team team(scratch);
-  for (std::int64_t i = blockIdx.x; i < n; i += gridDim.x) {
+  for (std::int64_t i = all.first + blockIdx.x; i < all.end; i += gridDim.x) {
     kernel(team, i);
     __syncthreads();  // the next item has the same scratch
   }

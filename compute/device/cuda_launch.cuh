@@ -5,32 +5,33 @@
 #include <cuda_runtime.h>
 
 #include <cstddef>
-#include <cstdint>
 
 #include "compute/device/cuda_lanes.cuh"
 
 namespace nacre {
 
 template <class Kernel>
-__global__ void for_each_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
-  run_elements(n, kernel);
+__global__ void for_each_kernel(const Elements all, const __grid_constant__ Kernel kernel) {
+  run_elements(all, kernel);
 }
 
 template <class Kernel>
-__global__ void for_each_team_kernel(std::int64_t n, const __grid_constant__ Kernel kernel) {
+__global__ void for_each_team_kernel(const Elements all, const __grid_constant__ Kernel kernel) {
   extern __shared__ __align__(16) unsigned char scratch[];
-  run_teams(n, kernel, scratch);
+  run_teams(all, kernel, scratch);
 }
 
 /// Both leave a failure to cudaGetLastError.
 template <class Kernel>
-void launch_elements(unsigned blocks, unsigned threads, cudaStream_t stream, std::int64_t n, const Kernel& kernel) {
-  for_each_kernel<<<blocks, threads, 0, stream>>>(n, kernel);
+void launch_elements(unsigned blocks, unsigned threads, cudaStream_t stream, const Elements& all,
+                     const Kernel& kernel) {
+  for_each_kernel<<<blocks, threads, 0, stream>>>(all, kernel);
 }
 
 template <class Kernel>
-void launch_teams(unsigned blocks, std::size_t scratch, cudaStream_t stream, std::int64_t n, const Kernel& kernel) {
-  for_each_team_kernel<<<blocks, Team::lanes, scratch, stream>>>(n, kernel);
+void launch_teams(unsigned blocks, std::size_t scratch, cudaStream_t stream, const Elements& all,
+                  const Kernel& kernel) {
+  for_each_team_kernel<<<blocks, Team::lanes, scratch, stream>>>(all, kernel);
 }
 
 }  // namespace nacre

@@ -3,6 +3,22 @@
 
 #include "compute/device/cuda_reservation.hpp"
 
+#if NACRE_HIP
+
+#include "compute/device/error.hpp"
+
+namespace nacre {
+
+CudaReservation::CudaReservation(int device, std::size_t) : device_(device) {
+  throw Error("no addresses without memory", "HIP 5 does not reserve them on every card");
+}
+CudaReservation::~CudaReservation() = default;
+std::size_t CudaReservation::commit(std::size_t, std::size_t) { return 0; }
+
+}  // namespace nacre
+
+#else
+
 #include <cuda.h>
 #include <cuda_runtime_api.h>
 
@@ -98,7 +114,7 @@ void CudaReservation::take(std::size_t piece) {
   if (driver().create(&handle, piece_bytes_, &wanted, 0) != CUDA_SUCCESS)
     throw Error("not enough memory on the GPU",
                 std::to_string(committed_ >> 20) + " MiB are taken, and another program may have the rest",
-                "lower the resolution or use `device` cpu");
+                "lower the resolution, or use `device` cpu");
   const CUdeviceptr address = address_ + piece * piece_bytes_;
   CUmemAccessDesc access{};
   access.location = wanted.location;
@@ -116,4 +132,5 @@ void CudaReservation::take(std::size_t piece) {
 
 }  // namespace nacre
 
+#endif
 #endif

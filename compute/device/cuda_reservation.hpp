@@ -21,6 +21,13 @@ class CudaReservation {
   /// taken. Throws Error, and keeps what it got so far, where the device has no more.
   std::size_t commit(std::size_t from, std::size_t to);
   std::size_t committed_bytes() const { return committed_; }
+  /// In the pieces that lie between bytes `from` and `to` as a whole.
+  std::size_t committed_bytes(std::size_t from, std::size_t to) const {
+    std::size_t bytes = 0;
+    for (std::size_t k = (from + piece_bytes_ - 1) / piece_bytes_; (k + 1) * piece_bytes_ <= to; ++k)
+      bytes += piece_[k] ? piece_bytes_ : 0;
+    return bytes;
+  }
 
  private:
   void take(std::size_t piece);

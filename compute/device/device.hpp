@@ -46,6 +46,12 @@ class Device {
   virtual void release(void* block, std::size_t bytes) noexcept { deallocate(block, bytes); }
   /// Bytes `from` to `to` of a reserved block will be used. Throws Error where there is no memory left.
   virtual void commit(void* /*block*/, std::size_t /*from*/, std::size_t /*to*/) {}
+  /// How much of bytes `from` to `to` of a reserved block there is memory for now: others may have taken it meanwhile.
+  virtual std::size_t obtainable_bytes(const void* /*block*/, std::size_t from, std::size_t to) const {
+    return to - from;
+  }
+  /// `advice` for a user whose work does not fit, and the other device where there is one with more memory.
+  virtual std::string too_small(const std::string& advice) const { return advice; }
 
   virtual void copy_to_device(void* to, const void* host, std::size_t bytes) = 0;
   virtual void copy_to_host(void* host, const void* from, std::size_t bytes) = 0;

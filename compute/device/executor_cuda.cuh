@@ -20,6 +20,7 @@
 #include "compute/device/cuda_device.hpp"
 #include "compute/device/cuda_graph.hpp"
 #include "compute/device/cuda_launch.cuh"
+#include "compute/device/cuda_parts.hpp"
 #include "compute/device/cuda_stage_clock.hpp"
 #include "compute/device/executor.hpp"
 
@@ -32,7 +33,8 @@ class Executor<Cuda> : public ExecutorBase {
       : ExecutorBase(device),
         cuda_(dynamic_cast<CudaDevice&>(device)),
         stream_(cuda_.stream()),
-        device_stream_(stream_) {
+        device_stream_(stream_),
+        parts_(cuda_.number()) {
     cuda_.use();
     const char* graphs = std::getenv("NACRE_GRAPHS");
     graphs_ = !graphs || std::string_view(graphs) != "0";
@@ -115,10 +117,13 @@ class Executor<Cuda> : public ExecutorBase {
     if (n <= 0) return;
     static_assert(sizeof(Kernel) <= 4000, "kernel parameters go through 4 KB of constant memory");
     constexpr int threads = 256;
-    const auto blocks = unsigned(std::min<std::int64_t>((n + threads - 1) / threads, 1 << 20));
     if (capturing_) load(for_each_kernel<Kernel>);
-    launch_elements(blocks, threads, stream_, n, kernel);
-    cuda_check(cudaGetLastError(), "kernel launch");
+    static LaunchPace pace;
+    parts_.run(n, pace, stream_, capturing_, [&](std::int64_t first, std::int64_t end) {
+      const auto blocks = unsigned(std::min<std::int64_t>((end - first + threads - 1) / threads, 1 << 20));
+      launch_elements(blocks, threads, stream_, {first, end}, kernel);
+      cuda_check(cudaGetLastError(), "kernel launch");
+    });
   }
 
   template <class Kernel>
@@ -131,10 +136,13 @@ class Executor<Cuda> : public ExecutorBase {
       cuda_check(
           cudaFuncSetAttribute(for_each_team_kernel<Kernel>, cudaFuncAttributeMaxDynamicSharedMemorySize, int(scratch)),
           "shared memory of a team");
-    const auto blocks = unsigned(std::min<std::int64_t>(n, 1 << 20));
     if (capturing_) load(for_each_team_kernel<Kernel>);
-    launch_teams(blocks, scratch, stream_, n, kernel);
-    cuda_check(cudaGetLastError(), "kernel launch");
+    static LaunchPace pace;
+    parts_.run(n, pace, stream_, capturing_, [&](std::int64_t first, std::int64_t end) {
+      const auto blocks = unsigned(std::min<std::int64_t>(end - first, 1 << 20));
+      launch_teams(blocks, scratch, stream_, {first, end}, kernel);
+      cuda_check(cudaGetLastError(), "kernel launch");
+    });
   }
 
   template <class T>
@@ -303,6 +311,7 @@ class Executor<Cuda> : public ExecutorBase {
   cudaStream_t capture_stream_ = nullptr;
   bool graphs_ = true, strict_ = false, capturing_ = false;
   int failures_ = 0;  ///< graphs that could not be made
+  CudaParts parts_;
   CudaStageClock clock_;
 };
 

@@ -203,11 +203,11 @@ class BrickOctreeBuilder {
   void require_room(const ClusterView& clusters, std::uint32_t count) {
     const std::uint64_t bricks = exec_.reduce(count, std::uint64_t(0), BricksUnder{clusters, tree_.levels}, Add{});
     const std::uint64_t needed = 12 * bricks;  // a pair of brick and cluster
-    if (needed > exec_.arena().free_bytes())
+    const std::size_t room = exec_.arena().room_bytes();
+    if (needed > room)
       throw Error("the band around the surface does not fit into memory",
-                  "over " + std::to_string(needed >> 30) + " GiB needed, " +
-                      std::to_string(exec_.arena().free_bytes() >> 30) + " GiB free",
-                  "lower the resolution");
+                  "over " + std::to_string(needed >> 30) + " GiB needed, " + std::to_string(room >> 30) + " GiB free",
+                  exec_.device().too_small("lower the resolution"));
   }
 
   void find_cells(const ClusterView& clusters, const PlaceLists& lists) {

@@ -231,7 +231,7 @@ inline int subgrid_bits(const Arena& arena, int levels, int edge) {
     while (bits < ThesisSubgrids::most_bits && 1 << bits < edge) ++bits;
   }
   bits = std::min(bits, levels + 3);
-  while (bits > ThesisSubgrids::least_bits && ThesisSubgrids::bytes_per_cell << 3 * bits > arena.free_bytes() / 8)
+  while (bits > ThesisSubgrids::least_bits && ThesisSubgrids::bytes_per_cell << 3 * bits > arena.room_bytes() / 8)
     --bits;
   return bits;
 }

@@ -150,8 +150,9 @@ constexpr int least_resolution = 16;
 
 /// Throws Error with the largest resolution that fits where `estimate` says that the memory will not do.
 template <class Estimate>
-void require(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available, const Estimate& estimate) {
+void require(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena, const Estimate& estimate) {
   const double needed = estimate(mesh, parameters);
+  const std::size_t available = arena.room_bytes();
   if (needed <= double(available)) return;
   FlowParameters smaller = parameters;
   while (smaller.resolution > least_resolution && estimate(mesh, smaller) > double(available))
@@ -160,16 +161,17 @@ void require(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t
   throw Error(
       "`resolution` " + std::to_string(parameters.resolution) + " needs about " + gibibytes(needed),
       gibibytes(double(available)) + " are free" + (fits ? "" : ", too few for these triangles at any resolution"),
-      fits ? "use `resolution` " + std::to_string(smaller.resolution) : "free some, or use fewer triangles");
+      arena.device().too_small(fits ? "use `resolution` " + std::to_string(smaller.resolution)
+                                    : "free some, use fewer triangles"));
 }
 }  // namespace
 
-void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available) {
-  require(mesh, parameters, available, estimate_flow_bytes);
+void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena) {
+  require(mesh, parameters, arena, estimate_flow_bytes);
 }
 
-void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available) {
-  require(mesh, parameters, available, estimate_octree_bytes);
+void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena) {
+  require(mesh, parameters, arena, estimate_octree_bytes);
 }
 
 }  // namespace nacre

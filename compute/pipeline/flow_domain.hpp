@@ -1,6 +1,7 @@
 // Nacre: where the grid of a flow run lies, and how much memory it will take.
 #pragma once
 
+#include "compute/device/arena.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 
 namespace nacre {
@@ -33,9 +34,9 @@ inline constexpr double octree_radius = 2.24;
 /// levels of the octree that covers it (of bricks of 8^3 cells). Throws Error where the resolution is out of the key
 /// range.
 int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain);
-void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available);
+void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena);
 
-/// Throws Error, naming the largest resolution that fits, where the estimate is over `available` bytes.
-void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, std::size_t available);
+/// Throws Error, naming the largest resolution that fits, where the estimate is over the room in `arena`.
+void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena);
 
 }  // namespace nacre

@@ -35,7 +35,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
 
   void embed(const FlowMesh& mesh) override {
     domain_ = make_domain(mesh, parameters_);
-    require_memory(mesh, parameters_, exec_.arena().free_bytes());
+    require_memory(mesh, parameters_, exec_.arena());
     refine_ = parameters_.refine;
     {
       auto stage = exec_.stage("embed");

@@ -41,7 +41,7 @@ class MeshPipelineOf : public MeshPipeline {
     const std::string why =
         parameters.particles > 0 ? "`particles` asks, with the junctions, for " : "the sizing field asks for about ";
     particles_.make(require_room_for(expected_particles(), std::int64_t(fields_.table().junctions.size()),
-                                     exec_.arena().free_bytes(), parameters, why));
+                                     exec_.arena().room_bytes(), exec_.device(), parameters, why));
     relaxation_.run(parameters, tell_, info_);
   }
 
@@ -132,8 +132,8 @@ class MeshPipelineOf : public MeshPipeline {
   void require_room() {
     const double h = std::max(parameters.min_size, parameters.max_size);
     if (parameters.particles == 0)
-      require_room_for(fields_.least_area() * 1.1547 / (h * h), 0, exec_.arena().free_bytes(), parameters,
-                       "the boundaries ask for at least ");
+      require_room_for(fields_.least_area() * 1.1547 / (h * h), 0, exec_.arena().room_bytes(), exec_.device(),
+                       parameters, "the boundaries ask for at least ");
   }
 
   Executor<Backend> exec_;

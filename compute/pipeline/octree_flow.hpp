@@ -115,7 +115,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   void embed(const FlowMesh& mesh) override {
     levels_ = make_octree_domain(mesh, parameters_, domain_);
-    require_octree_memory(mesh, parameters_, exec_.arena().free_bytes());
+    require_octree_memory(mesh, parameters_, exec_.arena());
     auto stage = exec_.stage("embed");
     this->begin_embedding(mesh);
     octree_ = Band::build(exec_, mesh_, triangles_, levels_, domain_, parameters_);

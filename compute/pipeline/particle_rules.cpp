@@ -39,7 +39,7 @@ double solver_bytes(std::int64_t capacity, std::int64_t interfaces, const MeshPa
   return double(solver.bytes()) + double(std::max(control.bytes(), smoothing.bytes()));
 }
 
-std::int64_t require_room_for(double expected, std::int64_t interfaces, std::size_t free,
+std::int64_t require_room_for(double expected, std::int64_t interfaces, std::size_t free, const Device& device,
                               const MeshParameters& parameters, const std::string& why) {
   const double capacity = particle_capacity(expected);
   const bool countable = capacity <= 4e9;
@@ -50,7 +50,8 @@ std::int64_t require_room_for(double expected, std::int64_t interfaces, std::siz
                 why + std::to_string(std::int64_t(expected)) + ", which take " +
                     std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " + std::to_string(free >> 20) +
                     " MiB are free",
-                parameters.particles > 0 ? "lower `particles`" : "raise `max_size` and `min_size`, or `epsilon`");
+                device.too_small(parameters.particles > 0 ? "lower `particles`"
+                                                          : "raise `max_size` and `min_size`, or `epsilon`"));
   return std::int64_t(capacity);
 }
 

@@ -22,9 +22,9 @@ double particle_capacity(double expected);
 /// What the solver and its temporaries take for so many particles, bytes.
 double solver_bytes(std::int64_t capacity, std::int64_t interfaces, const MeshParameters& parameters);
 
-/// The capacity for `expected` particles on `interfaces` interfaces. Throws Error where `free` bytes are too few for
-/// that; `why` goes before their number.
-std::int64_t require_room_for(double expected, std::int64_t interfaces, std::size_t free,
+/// The capacity for `expected` particles on `interfaces` interfaces. Throws Error where `free` bytes of `device` are
+/// too few for that; `why` goes before their number.
+std::int64_t require_room_for(double expected, std::int64_t interfaces, std::size_t free, const Device& device,
                               const MeshParameters& parameters, const std::string& why);
 
 }  // namespace nacre

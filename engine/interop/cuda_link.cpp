@@ -3,7 +3,7 @@
 
 #include "compute/device/error.hpp"
 
-#if NACRE_HAS_CUDA
+#if NACRE_HAS_CUDA && !NACRE_HIP
 
 #include <GL/glew.h>
 #include <cuda_gl_interop.h>

@@ -25,7 +25,7 @@ class EmulatedDevice : public testing::Test {
 
   template <class Kernel>
   void run_team(const Kernel& kernel, std::size_t scratch = Team::sum_bytes) {
-    launch_teams(1, scratch, stream_, 1, kernel);
+    launch_teams(1, scratch, stream_, {0, 1}, kernel);
     cuda_check(cudaGetLastError(), "launch");
     cuda_check(cudaStreamSynchronize(stream_), "wait");
   }
@@ -58,7 +58,7 @@ struct PutIndex {
 };
 
 TEST_F(EmulatedDevice, NothingRunsBeforeSomebodyWaits) {
-  launch_elements(4, 256, stream_, count, PutIndex{numbers_});
+  launch_elements(4, 256, stream_, {0, count}, PutIndex{numbers_});
   EXPECT_EQ(numbers_[7], int(0xcbcbcbcb)) << "new memory holds rubbish";
   std::vector<int> expected(count);
   std::iota(expected.begin(), expected.end(), 0);
@@ -121,7 +121,7 @@ TEST_F(EmulatedDeviceDeathTest, WritesBehindMemoryAreSeen) {
   EXPECT_DEATH(run_team(WritesBehind{}), "behind its shared memory");
   EXPECT_DEATH(
       {
-        launch_elements(1, 256, stream_, 256, WritesPast{numbers_});
+        launch_elements(1, 256, stream_, {0, 256}, WritesPast{numbers_});
         cudaStreamSynchronize(stream_);
       },
       "");
@@ -166,7 +166,7 @@ TEST_F(EmulatedDevice, ACaptureForbidsWhatCannotBeRepeated) {
 
 TEST_F(EmulatedDevice, AGraphRepeatsWhatWasCaptured) {
   begin_capture();
-  launch_elements(4, 256, stream_, count, PutIndex{numbers_});
+  launch_elements(4, 256, stream_, {0, count}, PutIndex{numbers_});
   cudaGraph_t graph = nullptr;
   cuda_check(cudaStreamEndCapture(stream_, &graph), "capture");
   EXPECT_EQ(downloaded()[9], int(0xcbcbcbcb)) << "what is captured does not run";

@@ -109,7 +109,7 @@ unit_tests() {
 
 # Bodies with teams, scans and sorts under the sanitizer's three tools, half a minute each.
 sanitizer_tests() {
-  local tool status sanitizer filter='Team.*:Executor.*:Tree.*:RefinedGrid.*:Distance.*'
+  local tool status sanitizer filter='Team.*:Executor.*:Contrast.*:Tree.*:RefinedGrid.*:Distance.*'
   local time_up=([0]='' [124]=', then time was up') findings='^========= (Invalid|Error|Barrier|Program hit)'
   sanitizer=$(command -v compute-sanitizer || command -v /usr/local/cuda/bin/compute-sanitizer) || {
     say "compute-sanitizer is not installed: not run"

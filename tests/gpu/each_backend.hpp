@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 
 #include "compute/device/device.hpp"
@@ -11,6 +12,9 @@
 namespace nacre::gpu_tests {
 
 inline constexpr std::size_t arena_limit = std::size_t(1) << 30;  // tests take turns: none needs the whole GPU
+
+/// NACRE_TEST_SMALL=1 asks for fewer and smaller cases: for an emulated device, which is slow.
+inline bool small_cases() { return std::getenv("NACRE_TEST_SMALL") != nullptr; }
 
 /// Makes `device` of the backend that the test is instantiated for; the CPU with memory that pretends to be remote.
 class EachBackend : public testing::TestWithParam<std::string> {

@@ -26,8 +26,8 @@ echo '|---|---:|---:|---:|---:|---:|'
 awk '
   /Compiling entry function/ {
     name = ""
-    if (match($0, /for_each(_team)?_kernel<.*>\(long/)) {
-      name = substr($0, RSTART, RLENGTH - 6)
+    if (match($0, /for_each(_team)?_kernel<.*>\(nacre::Elements/)) {
+      name = substr($0, RSTART, RLENGTH - 17)
       sub(/^for_each(_team)?_kernel</, "", name)
       gsub(/nacre::|detail::/, "", name)
       gsub(/ +>/, ">", name)

@@ -147,9 +147,10 @@ TEST(SolverBytes, AreWhatTheSolversTake) {
 TEST(SolverBytes, RoomIsRefusedWhereMemoryIsTooSmall) {
   MeshParameters parameters;
   const std::size_t enough = std::size_t(solver_bytes(36000, 5, parameters));
-  EXPECT_EQ(require_room_for(10000, 5, enough, parameters, "asked for "), 36000);
-  EXPECT_THROW(require_room_for(10000, 5, enough - 1, parameters, "asked for "), Error);
-  EXPECT_THROW(require_room_for(1e12, 5, ~std::size_t(0), parameters, "asked for "), Error);
+  const auto device = make_cpu_device();
+  EXPECT_EQ(require_room_for(10000, 5, enough, *device, parameters, "asked for "), 36000);
+  EXPECT_THROW(require_room_for(10000, 5, enough - 1, *device, parameters, "asked for "), Error);
+  EXPECT_THROW(require_room_for(1e12, 5, ~std::size_t(0), *device, parameters, "asked for "), Error);
 }
 
 }  // namespace

@@ -44,6 +44,11 @@ int rubbish_file() {
   return file;
 }
 
+bool& draws_screen() {
+  static bool draws = settings().screen;
+  return draws;
+}
+
 std::size_t whole_pages(std::size_t bytes) { return (bytes + page - 1) / page * page; }
 
 /// Addresses that cannot be touched, and a page behind them.
@@ -84,6 +89,14 @@ cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int device) {
   std::snprintf(properties->name, sizeof properties->name, "emulated, seed %u", settings().seed);
   properties->major = 9;
   properties->multiProcessorCount = 4;
+  return cudaSuccess;
+}
+
+void emulated::draw_screen(bool draws) { draws_screen() = draws; }
+
+cudaError_t cudaDeviceGetAttribute(int* value, cudaDeviceAttr attribute, int device) {
+  if (device != 0 || attribute != cudaDevAttrKernelExecTimeout) return fail(cudaErrorInvalidValue);
+  *value = draws_screen();
   return cudaSuccess;
 }
 
@@ -189,7 +202,7 @@ std::size_t CudaReservation::commit(std::size_t from, std::size_t to) {
 void CudaReservation::take(std::size_t k) {
   const std::scoped_lock held(lock());
   if (!take_memory(static_cast<char*>(data()) + k * piece_bytes_, piece_bytes_))
-    throw Error("not enough memory on the GPU", "", "lower the resolution or use --device cpu");
+    throw Error("not enough memory on the GPU", "", "lower the resolution, or use `device` cpu");
   piece_[k] = 1;
   committed_ += piece_bytes_;
 }

@@ -17,7 +17,7 @@ long number(const char* name, long otherwise) {
 const Settings& settings() {
   static const Settings read{unsigned(number("NACRE_EMULATED_SEED", 1)), number("NACRE_EMULATED_ORDERED", 0) != 0,
                              std::size_t(number("NACRE_EMULATED_MIB", 1400)) << 20,
-                             number("NACRE_EMULATED_TEAMS_ORDERED", 0) != 0};
+                             number("NACRE_EMULATED_TEAMS_ORDERED", 0) != 0, number("NACRE_EMULATED_SCREEN", 0) != 0};
   return read;
 }
 

@@ -11,6 +11,7 @@ struct Settings {
   bool ordered = false;        ///< NACRE_EMULATED_ORDERED=1: by their numbers, as a check of this emulation itself
   std::size_t memory = 0;      ///< NACRE_EMULATED_MIB: device memory, in bytes; 1400 MiB unless told
   bool teams_ordered = false;  ///< NACRE_EMULATED_TEAMS_ORDERED=1: ThreadSanitizer looks for races within teams alone
+  bool screen = false;         ///< NACRE_EMULATED_SCREEN=1: a screen hangs on it, and kernels have little time
 };
 
 /// Read once.

@@ -18,6 +18,7 @@ std::vector<Stream*> streams;
 thread_local Stream* captured_here = nullptr;
 thread_local cudaStreamCaptureMode mode_here = cudaStreamCaptureModeThreadLocal;
 int captures_to_break = 0;
+long launches_so_far = 0;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -48,6 +49,11 @@ bool this_thread_captures() { return captured_here && mode_here != cudaStreamCap
 void break_captures(int count) {
   const std::scoped_lock held(lock());
   captures_to_break = count;
+}
+
+long launches() {
+  const std::scoped_lock held(lock());
+  return launches_so_far;
 }
 
 void Stream::run_all() {
@@ -106,6 +112,7 @@ void launch(const Launch& launch, cudaStream_t stream, std::function<void()> lan
     fail(cudaErrorInvalidValue);
     return;
   }
+  ++launches_so_far;
   append(stream, {"kernel", [launch, lane = std::move(lane)] { run_grid(launch, lane); }, nullptr});
 }
 
@@ -227,6 +234,17 @@ cudaError_t cudaEventQuery(cudaEvent_t event) {
   const std::scoped_lock held(lock());
   if (this_thread_captures()) return fail(cudaErrorStreamCaptureUnsupported);
   return event->pending > 0 ? fail(cudaErrorNotReady) : cudaSuccess;
+}
+
+cudaError_t cudaEventSynchronize(cudaEvent_t event) {
+  const std::scoped_lock held(lock());
+  if (this_thread_captures()) return fail(cudaErrorStreamCaptureUnsupported);
+  if (event->pending > 0) run_all_streams();
+  return cudaSuccess;
+}
+
+cudaError_t cudaEventRecord(cudaEvent_t event, cudaStream_t stream) {
+  return cudaEventRecordWithFlags(event, stream, cudaEventRecordDefault);
 }
 
 cudaError_t cudaEventRecordWithFlags(cudaEvent_t event, cudaStream_t stream, unsigned flags) {

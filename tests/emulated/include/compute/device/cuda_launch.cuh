@@ -3,34 +3,36 @@
 
 #include <cuda_runtime.h>
 
-#include <cstdint>
+#include <cstddef>
 
 #include "compute/device/cuda_lanes.cuh"
 
 namespace nacre {
 
 template <class Kernel>
-void for_each_kernel(std::int64_t n, const Kernel& kernel) {
-  run_elements(n, kernel);
+void for_each_kernel(const Elements& all, const Kernel& kernel) {
+  run_elements(all, kernel);
 }
 
 template <class Kernel>
-void for_each_team_kernel(std::int64_t n, const Kernel& kernel) {
-  run_teams(n, kernel, emulated::shared_memory());
+void for_each_team_kernel(const Elements& all, const Kernel& kernel) {
+  run_teams(all, kernel, emulated::shared_memory());
 }
 
 template <class Kernel>
-void launch_elements(unsigned blocks, unsigned threads, cudaStream_t stream, std::int64_t n, const Kernel& kernel) {
+void launch_elements(unsigned blocks, unsigned threads, cudaStream_t stream, const Elements& all,
+                     const Kernel& kernel) {
   const auto* function = reinterpret_cast<const void*>(&for_each_kernel<Kernel>);
   emulated::launch({__PRETTY_FUNCTION__, function, false, blocks, threads, 0}, stream,
-                   [n, kernel] { for_each_kernel<Kernel>(n, kernel); });
+                   [all, kernel] { for_each_kernel<Kernel>(all, kernel); });
 }
 
 template <class Kernel>
-void launch_teams(unsigned blocks, std::size_t scratch, cudaStream_t stream, std::int64_t n, const Kernel& kernel) {
+void launch_teams(unsigned blocks, std::size_t scratch, cudaStream_t stream, const Elements& all,
+                  const Kernel& kernel) {
   const auto* function = reinterpret_cast<const void*>(&for_each_team_kernel<Kernel>);
   emulated::launch({__PRETTY_FUNCTION__, function, true, blocks, Team::lanes, scratch}, stream,
-                   [n, kernel] { for_each_team_kernel<Kernel>(n, kernel); });
+                   [all, kernel] { for_each_team_kernel<Kernel>(all, kernel); });
 }
 
 }  // namespace nacre
