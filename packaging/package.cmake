@@ -67,21 +67,21 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "unsteady flow on surfaces, and meshes of segmented volumes
- Nacre shows unsteady flow on surfaces as a moving texture (unsteady flow line
- integral convolution), and makes conformal meshes of several materials,
- triangles and tetrahedra, of segmented volumes such as CT and MRI scans. Both
- rest on the closest point embedding of a surface.
- .
- This package has the program with its window. It needs a processor of the
- level x86-64-v3 (AVX2 and FMA).")
+Nacre shows unsteady flow on surfaces as a moving texture (unsteady flow line
+integral convolution), and makes conformal meshes of several materials,
+triangles and tetrahedra, of segmented volumes such as CT and MRI scans. Both
+rest on the closest point embedding of a surface.
+
+This package has the program with its window. It needs a processor of the
+level x86-64-v3 (AVX2 and FMA).")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libnacre-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libtbb-dev, libfmt-dev, zlib1g-dev, libmpfr-dev, libgmp-dev")
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "library of Nacre: flow on surfaces, and meshes (development files)
- Nacre shows unsteady flow on surfaces as a moving texture, and makes conformal
- meshes of several materials of segmented volumes.
- .
- This package has its headers, a static library, and what find_package(nacre)
- of CMake needs. It needs a processor of the level x86-64-v3 (AVX2 and FMA).")
+Nacre shows unsteady flow on surfaces as a moving texture, and makes conformal
+meshes of several materials of segmented volumes.
+
+This package has its headers, a static library, and what find_package(nacre)
+of CMake needs. It needs a processor of the level x86-64-v3 (AVX2 and FMA).")
 include(CPack)

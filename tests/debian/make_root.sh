@@ -25,7 +25,7 @@ make_debian() {
 in_debian() (
   root=$1
   mount --bind /dev "$root/dev" && mount -t proc proc "$root/proc" || skip "/dev and /proc cannot be mounted in $root"
-  trap 'umount "$root/proc" "$root/dev"' EXIT
+  trap 'umount -l "$root/proc" "$root/dev"' EXIT  # at once, even if a program in there is still ending
   chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
     LIBGL_ALWAYS_SOFTWARE=1 PYTHONPATH=/opt/nacre "${@:2}"
 )

@@ -31,7 +31,7 @@ def test_meshes():
     assert np.array_equal(surface.regular_faces, expected.triangles)
     grid = image().nacre.tetrahedra(max_size=1.5, names=NAMES)
     assert np.array_equal(grid.cell_data["material"], expected.tetrahedra().labels)
-    assert dict(zip(grid.field_data["material_labels"], grid.field_data["material_names"])) == NAMES
+    assert dict(zip(grid.field_data["material_labels"], grid.field_data["material_names"])) == {0: "outside", **NAMES}
     assert [stage.name for stage in image().nacre.meshing(max_size=1.5)] == ["fields", "particles", "triangles"]
 
 
