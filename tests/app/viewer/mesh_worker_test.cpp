@@ -215,7 +215,7 @@ TEST(MeshWorker, AfterAMeshWasBroughtBackOthersAreMadeAsEver) {
   run.settle();
   run.rerun("max_size", "1.6");
   run.rerun("max_size", "1");  // brought back; the pipeline is at 1.6
-  EXPECT_EQ(run.rerun("mend", "0"), "sizing embed seed triangulate quality");
+  EXPECT_EQ(run.rerun("mend", "0"), "distance sizing embed seed triangulate quality");
   MeshWorkerRun fresh(false, 2, [](Session& session) { session.settings.mesh.mend = 0; });
   fresh.settle();
   EXPECT_EQ(run.triangles, fresh.triangles);
