@@ -3,18 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <string>
 
 #include "compute/device/device.hpp"
+#include "tests/compute/small_cases.hpp"
 #include "tests/gpu/backend_runs.hpp"
 
 namespace nacre::gpu_tests {
 
 inline constexpr std::size_t arena_limit = std::size_t(1) << 30;  // tests take turns: none needs the whole GPU
 
-/// NACRE_TEST_SMALL=1 asks for fewer and smaller cases: for an emulated device, which is slow.
-inline bool small_cases() { return std::getenv("NACRE_TEST_SMALL") != nullptr; }
+using test::small_cases;
 
 /// Makes `device` of the backend that the test is instantiated for; the CPU with memory that pretends to be remote.
 class EachBackend : public testing::TestWithParam<std::string> {

@@ -72,9 +72,10 @@ std::vector<float> flow_frames(Device& device, const std::string& embedding, con
   const Graphs chosen(graphs);
   const Shape shape = torus(120, 48);
   const auto pipeline = make_flow_pipeline(device);
-  pipeline->parameters.resolution = 120;
+  const int steps = small_cases() ? 6 : 12;
+  pipeline->parameters.resolution = small_cases() ? 72 : 120;
   test::choose_embedding(pipeline->parameters, embedding);
-  pipeline->parameters.steps = 12;
+  pipeline->parameters.steps = steps;
   pipeline->embed(shape.mesh());
   FlowVectors vectors;
   vectors.at = [&](double t, std::span<Vec3f> out) {
@@ -83,7 +84,7 @@ std::vector<float> flow_frames(Device& device, const std::string& embedding, con
   vectors.end = 2;
   pipeline->flow().start(vectors);
   std::vector<float> all;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < steps; ++k) {
     pipeline->flow().step();
     const std::vector<float> frame = pipeline->flow().shown();
     all.insert(all.end(), frame.begin(), frame.end());

@@ -90,7 +90,8 @@ void LocalContrastIsThatOfTheCellsAround(Executor<Backend>& exec) {
     for (std::size_t s = 0; s < n; ++s)  // darker and plainer to one side
       values[s] = uniform_random(5, std::uint32_t(s), 0) * (0.2f + 0.02f * float(position[s].x) / float(refine));
     const Array<float> value = arena.permanent_copy<float>(values), detail = arena.permanent<float>(n);
-    const Array<Float4> raw = arena.permanent<Float4>(coarse.cells), wide = arena.permanent<Float4>(coarse.cells);
+    const Array<Float4> raw = arena.permanent<Float4>(coarse.cells);
+    Array<Float4> wide = arena.permanent<Float4>(coarse.cells);
     wide.fill_bytes(0);
     const TextureSpread* whole = measure_spread(exec, std::int64_t(n), value.data());
     exec.for_each(coarse.cells, LocalMoments{texture, value.data(), raw.data()});

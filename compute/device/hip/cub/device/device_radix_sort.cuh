@@ -1,7 +1,7 @@
 // Nacre: CUB's radix sort by rocPRIM.
 #pragma once
 
-#include "cub/device/scratch.cuh"
+#include "compute/device/hip/cub/device/scratch.cuh"
 
 namespace cub {
 
