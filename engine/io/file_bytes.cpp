@@ -97,6 +97,12 @@ std::string read_file(const fs::path& path, std::size_t unpacked_ratio) {
   return bytes;
 }
 
+bool begins_as_gzip(const fs::path& path, std::size_t offset) {
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(std::streamoff(offset));
+  return file.get() == 0x1f && file.get() == 0x8b;
+}
+
 std::string format_extension(const fs::path& path) {
   std::string extension = lower_extension(path);
   if (extension == ".gz") extension = lower_extension(path.stem());

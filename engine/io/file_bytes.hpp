@@ -17,6 +17,9 @@ void require_file(const std::filesystem::path& path);
 /// Lower-case extension without the dot; that of the packed file for `.gz`: "obj" for `motorBike.OBJ.gz`.
 std::string format_extension(const std::filesystem::path& path);
 
+/// Whether the file begins like one that is packed with gzip.
+bool begins_as_gzip(const std::filesystem::path& path, std::size_t offset = 0);
+
 /// Throws Error "FILE cannot be read (why); advice".
 [[noreturn]] void fail_reading(const std::filesystem::path& path, const std::string& why,
                                const std::string& advice = "check that the file is complete");

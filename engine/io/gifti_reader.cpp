@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <charconv>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
@@ -72,6 +73,7 @@ std::string gifti_bytes(pugi::xml_node node, std::size_t needed, const fs::path&
   if (needed > stream.at_most()) fail_reading(path, "an array is cut short");
   std::string bytes(needed, '\0');
   if (!stream.read(bytes.data(), needed)) fail_reading(path, "an array is cut short, or is not base64");
+  if (char more = 0; stream.read(&more, 1)) fail_reading(path, "an array has more values than its size says");
   return bytes;
 }
 
@@ -91,12 +93,16 @@ void read_gifti_values(pugi::xml_node node, GiftiArray& array, const fs::path& p
       if (!cursor.number(value)) fail_reading(path, "an array is cut short, or has a word that is not a number");
       array.values.push_back(value);
     }
+    if (!cursor.at_end()) fail_reading(path, "an array has more values than its size says");
     return;
   }
   const std::string type = attribute_of(node, "DataType");
   const std::size_t size = type == "NIFTI_TYPE_UINT8" ? 1 : type == "NIFTI_TYPE_FLOAT64" ? 8 : 4;
   const std::string bytes = gifti_bytes(node, count * size, path);
-  const std::endian order = attribute_of(node, "Endian") == "BigEndian" ? std::endian::big : std::endian::little;
+  const std::string endian = attribute_of(node, "Endian");
+  if (endian != "BigEndian" && endian != "LittleEndian" && size > 1)
+    fail_reading(path, fmt::format("the Endian of an array is '{}'", endian.substr(0, 40)));
+  const std::endian order = endian == "BigEndian" ? std::endian::big : std::endian::little;
   array.values.reserve(count);
   if (type == "NIFTI_TYPE_FLOAT32") return load_gifti_values<float>(bytes, order, array.values);
   if (type == "NIFTI_TYPE_INT32") return load_gifti_values<std::int32_t>(bytes, order, array.values);
@@ -132,7 +138,7 @@ void add_gifti_triangles(RawMesh& mesh, const GiftiArray& array, const fs::path&
     fail_reading(path, fmt::format("its triangles have {} corners", array.columns), "check how it was written");
   for (std::size_t i = 0; i < array.values.size(); ++i) {
     const double corner = array.values[i];
-    mesh.add_corner(corner >= 0 && corner < 4e9 ? std::int64_t(corner) : -1);
+    mesh.add_corner(corner >= 0 && corner < 4e9 && corner == std::floor(corner) ? std::int64_t(corner) : -1);
     if (i % 3 == 2) mesh.close_polygon();
   }
 }
@@ -173,6 +179,10 @@ RawMesh read_gifti(std::string bytes, const fs::path& path) {
       if (array.columns > 0) arrays.push_back({name, int(array.columns), {array.values.begin(), array.values.end()}});
     }
   }
+  const std::string promised = attribute_of(root, "NumberOfDataArrays");
+  const auto found = std::distance(root.children("DataArray").begin(), root.children("DataArray").end());
+  if (!promised.empty() && promised != std::to_string(found))
+    mesh.warnings.push_back(fmt::format("It says that it has {} arrays, and has {}.", promised.substr(0, 20), found));
   name_arrays(arrays);
   for (RawArray& array : arrays) {
     if (!points)

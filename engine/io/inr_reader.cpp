@@ -13,6 +13,7 @@
 #include "engine/io/text_cursor.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -45,14 +46,15 @@ class InrHeader {
   std::int64_t count(const std::string& key, std::int64_t otherwise = -1) const {
     if (!has(key) && otherwise >= 0) return otherwise;
     std::int64_t value = 0;
-    if (TextCursor cursor(text(key)); !cursor.integer(value)) fail(key);
+    TextCursor cursor(text(key));
+    if (!cursor.integer(value) || !(cursor.at_end() || cursor.word() == "bits")) fail(key);
     return value;
   }
 
   double number(const std::string& key, double otherwise) const {
     if (!has(key)) return otherwise;
     double value = 0;
-    if (TextCursor cursor(text(key)); !cursor.number(value)) fail(key);
+    if (TextCursor cursor(text(key)); !cursor.number(value) || !cursor.at_end()) fail(key);
     return value;
   }
 
@@ -141,6 +143,8 @@ Volume read_inr(const fs::path& path) {
   if (bytes.size() < header_size + needed)
     fail_reading(path, fmt::format("it needs {} bytes of values and holds {}", needed,
                                    bytes.size() - std::min(bytes.size(), header_size)));
+  warn_of_rest(volume, bytes.size() > header_size + needed);
+  if (lower_extension(path) == ".gz") warn_unless_packed(volume, begins_as_gzip(path), path, "its name");
   const std::endian order = byte_order(header, bits);
   const double scale = scale_of(header);
   with_number_type(real, is_signed, int(bits / 8), [&](auto zero) {

@@ -26,13 +26,14 @@ std::string in_one_line(std::string_view words) {
   return line;
 }
 
-/// Stores a name; of two names for one label, the first is kept.
-void keep(LabelNames& names, std::string_view number, std::string_view words) {
+/// Stores a name; of two names for one label, the first is kept. False where `number` is no label.
+bool keep(LabelNames& names, std::string_view number, std::string_view words) {
   std::int64_t label = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), label);
-  if (error != std::errc() || end != number.data() + number.size() || names.size() >= most_names) return;
+  if (error != std::errc() || end != number.data() + number.size()) return false;
   std::string name = in_one_line(words);
-  if (!name.empty()) names.try_emplace(label, std::move(name));
+  if (!name.empty() && names.size() < most_names) names.try_emplace(label, std::move(name));
+  return true;
 }
 
 /// Stores a colour, 0..1; of two for one label, the first is kept.
@@ -165,10 +166,9 @@ LabelTable read_label_table(const std::filesystem::path& path) {
     const std::vector<std::string_view> words = words_of_line(line);
     if (words.empty() || words[0][0] == '#') continue;
     const std::string_view name = name_in_line(line, words);
-    if (name.empty() || !is_number(words[0]))
+    if (name.empty() || !keep(labels.names, words[0], name))
       fail_reading(path, fmt::format("line {} is not a number and a name: '{}'", number, in_utf8(line, 60)),
                    "give a label file of ITK-SNAP, a colour table of FreeSurfer, or lines such as `5 liver`");
-    keep(labels.names, words[0], name);
     if (const auto colour = colour_in_line(line, words)) keep(labels.colours, words[0], *colour);
   }
   if (labels.names.empty())

@@ -62,7 +62,12 @@ class MetaImageHeader {
   bool is_true(std::initializer_list<const char*> keys, bool otherwise) const {
     const std::string_view value = text(keys);
     if (value.empty()) return otherwise;
-    return value[0] == 'T' || value[0] == 't' || value[0] == '1';
+    const char first = char(std::tolower(static_cast<unsigned char>(value[0])));
+    const bool yes = first == 't' || first == '1' || first == 'y';
+    if (!yes && first != 'f' && first != '0' && first != 'n')
+      fail_reading(path_, fmt::format("its header says {} = {}", *keys.begin(), value.substr(0, 60)),
+                   "say True or False");
+    return yes;
   }
 
   /// N numbers. False where none of the keys is there. Throws Error where they are not N numbers.
@@ -81,7 +86,7 @@ class MetaImageHeader {
     const std::string_view value = text({key});
     std::int64_t number = otherwise;
     TextCursor cursor(value);
-    if (!value.empty() && !cursor.integer(number))
+    if (!value.empty() && !(cursor.integer(number) && cursor.at_end()))
       fail_reading(path_, fmt::format("its header says {} = {}", key, value.substr(0, 60)));
     return number;
   }
@@ -231,17 +236,20 @@ std::vector<T> parse_values(const std::string& text, std::size_t count, const fs
     value = T(number);
   }
   if (values.size() != count) fail_reading(path, "its text has fewer numbers than voxels");
+  if (!cursor.at_end()) fail_reading(path, "its text has more numbers than voxels");
   return values;
 }
 
 template <class T>
-std::vector<T> read_values(const MetaImageHeader& header, std::size_t count, const fs::path& path) {
+std::vector<T> read_values(const MetaImageHeader& header, Volume& volume, const fs::path& path) {
+  const std::size_t count = volume.voxels();
   const bool packed = header.is_true({"CompressedData"}, false);
   const std::size_t needed = count * sizeof(T);
   const Stored stored = find_values(header, path);
   const std::string bytes = stored_bytes(stored, stored_size(header, packed, needed, stored, path), path);
   if (!header.is_true({"BinaryData"}, true)) return parse_values<T>(bytes, count, path);
   check_stored(bytes.size(), needed, packed ? double(largest_gzip_ratio) : 1.0, path);
+  warn_of_rest(volume, !packed && bytes.size() > needed);
   std::vector<T> values(count);
   if (packed)
     unpack(bytes, reinterpret_cast<char*>(values.data()), needed, path);
@@ -261,7 +269,7 @@ Volume read_metaimage(const fs::path& path) {
   const bool known = with_element_type(type, [&](auto zero) {
     set_dimensions(volume, header, sizeof(zero), path);
     header.integer("NDims", 0) == 3 ? set_place<3>(volume, header, path) : set_place<4>(volume, header, path);
-    volume.values = read_values<decltype(zero)>(header, volume.voxels(), path);
+    volume.values = read_values<decltype(zero)>(header, volume, path);
   });
   if (!known) fail_reading(path, fmt::format("its values are of type '{}'", type), "convert it to integers or floats");
   return volume;

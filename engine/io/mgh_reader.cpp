@@ -11,6 +11,7 @@
 #include "engine/io/packed_file.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -133,6 +134,7 @@ Volume read_mgh(const fs::path& path) {
     if constexpr (std::endian::native == std::endian::little) swap_bytes(values);
     volume.values = std::move(values);
   });
+  if (lower_extension(path) == ".mgz") warn_unless_packed(volume, file.packed(), path, "its name");
   std::string tail(longest_mgh_tail, '\0');
   tail.resize(file.read(tail.data(), tail.size()));
   LabelTable labels = labels_in_mgh_tail(tail);

@@ -50,11 +50,15 @@ struct RawHeader {
   std::array<std::int64_t, 7> dims{};
   std::array<double, 3> spacing{};
   double offset = 0;  ///< of the values; 0 in a file of its own
-  int type = 0;
+  int type = 0, bits = 0;
+  double slope = 0, intercept = 0;
+  std::array<double, 6> quaternion{};  ///< its b, c, d, and the offset that goes with it
+  bool analyze = false;                ///< no NIfTI: its fields for slope and orientation mean something else
 };
 
 RawHeader parse(const char* bytes, int version, std::endian order) {
-  RawHeader header{version, 0, {}, {}, 0, 0};
+  RawHeader header;
+  header.version = version;
   const bool one = version == 1;
   const auto dim = [&](std::size_t i) -> std::int64_t {
     return one ? load_number<std::int16_t>(bytes + 40 + 2 * i, order)
@@ -68,6 +72,15 @@ RawHeader parse(const char* bytes, int version, std::endian order) {
   header.offset =
       one ? double(load_number<float>(bytes + 108, order)) : double(load_number<std::int64_t>(bytes + 168, order));
   header.type = load_number<std::int16_t>(bytes + (one ? 70 : 12), order);
+  header.bits = load_number<std::int16_t>(bytes + (one ? 72 : 14), order);
+  header.analyze = one && (bytes[344] != 'n' || (bytes[345] != 'i' && bytes[345] != '+'));
+  if (header.analyze) return header;
+  const auto real = [&](std::size_t of_one, std::size_t of_two) {
+    return one ? double(load_number<float>(bytes + of_one, order)) : load_number<double>(bytes + of_two, order);
+  };
+  header.slope = real(112, 176);
+  header.intercept = real(116, 184);
+  for (std::size_t i = 0; i < 6; ++i) header.quaternion[i] = real(256 + 4 * i, 352 + 8 * i);
   return header;
 }
 
@@ -141,6 +154,10 @@ void set_orientation(Volume& volume, const nifti_image& image, const RawHeader& 
   const std::array<double, 3>& sizes = header.spacing;
   const std::array<Vec3d, 3> straight{Vec3d(std::abs(sizes[0]), 0, 0), Vec3d(0, std::abs(sizes[1]), 0),
                                       Vec3d(0, 0, std::abs(sizes[2]))};
+  // The library takes 0 for what is no number, and a quaternion that is too long for one of length 1.
+  const auto& [b, c, d, x, y, z] = header.quaternion;
+  if (!by_s && by_q && !(std::isfinite(x + y + z) && b * b + c * c + d * d < 1.001))
+    fail_reading(path, "its qform is not a rotation and a translation", "correct its header");
   if (!by_s) set_steps(volume, straight, path);  // for its errors: the library replaces 0 and non-numbers by 1
   if (by_s || by_q) {
     const nifti_dmat44& to_world = by_s ? image.sto_xyz : image.qto_xyz;
@@ -179,10 +196,16 @@ LabelTable label_table_of(const nifti_image& image) {
   return {};
 }
 
-/// value * slope + intercept, if the file has a slope.
+/// value * slope + intercept, if the file has a slope. A slope that is no number counts as none, as in nibabel; an
+/// intercept that is none, with a slope, leaves the values unknown.
 template <class T>
-void set_values(Volume& volume, std::vector<T> values, double slope, double intercept) {
-  const bool scaled = std::isfinite(slope) && std::isfinite(intercept) && slope != 0 && !(slope == 1 && intercept == 0);
+void set_values(Volume& volume, std::vector<T> values, double slope, double intercept, const fs::path& path) {
+  if (!std::isfinite(slope))
+    volume.warnings.push_back(
+        fmt::format("Its scl_slope is {}, not a number: the values are taken as they are stored.", slope));
+  else if (slope != 0 && !std::isfinite(intercept))
+    fail_reading(path, fmt::format("its scl_inter is {}, not a number", intercept), "correct its header");
+  const bool scaled = std::isfinite(slope) && slope != 0 && !(slope == 1 && intercept == 0);
   if (!scaled) {
     volume.values = std::move(values);
     return;
@@ -229,7 +252,12 @@ Volume read_nifti(const fs::path& path) {
     std::vector<T> values(volume.voxels());
     if (file.read(values.data(), needed) != needed) fail_reading(path, "it ends before its last voxel");
     if (image->byteorder != nifti_short_order()) swap_bytes(values);
-    set_values(volume, std::move(values), image->scl_slope, image->scl_inter);
+    warn_of_rest(volume, file.has_more());
+    if (packed) warn_unless_packed(volume, file.packed(), data, "its name");
+    if (raw.bits != int(8 * sizeof(T)))
+      volume.warnings.push_back(fmt::format("Its header says {} bits per voxel, but its type has {}, which are read.",
+                                            raw.bits, 8 * sizeof(T)));
+    set_values(volume, std::move(values), raw.slope, raw.intercept, path);
   });
   return volume;
 }

@@ -124,6 +124,7 @@ NrrdStorage look_into_nrrd(const fs::path& path) {
     for (const std::string& name : names) add_file(storage, name, path);
   }
   std::error_code code;
+  storage.header_bytes = read;
   if (storage.files.empty())
     storage.bytes = fs::file_size(path, code) - std::min<std::uintmax_t>(read, fs::file_size(path, code));
   return storage;

@@ -43,15 +43,20 @@ std::string complaint() {
   return last.substr(0, 200);
 }
 
+struct NrrdEncoded {
+  const NrrdEncoding* encoding = nullptr;
+  bool skips = false;  ///< something before the values
+};
+
 /// Reads the header and, unless `header_only`, the values.
-std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, const NrrdEncoding** encoding = nullptr) {
+std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, NrrdEncoded* encoded = nullptr) {
   const std::unique_ptr<NrrdIoState, Delete> state(nrrdIoStateNew());
   std::unique_ptr<Nrrd, Delete> nrrd(nrrdNew());
   if (!state || !nrrd) throw std::bad_alloc();
   nrrdStateVerboseIO = 0;
   state->skipData = header_only;
   if (nrrdLoad(nrrd.get(), path.c_str(), state.get()) != 0) fail_reading(path, complaint());
-  if (encoding) *encoding = state->encoding;
+  if (encoded) *encoded = {state->encoding, state->byteSkip != 0 || state->lineSkip != 0};
   if (state->byteSkip < -1)
     fail_reading(path, fmt::format("its byte skip is {}", state->byteSkip), "correct its header");
   return nrrd;
@@ -163,6 +168,17 @@ void set_orientation(Volume& volume, const Nrrd& nrrd, const std::array<unsigned
   set_steps(volume, steps, path);
 }
 
+/// Warns where the stored bytes do not look like what the header says. teem reads raw values under the name of gzip,
+/// and does not look at what follows raw ones.
+void check_encoding(Volume& volume, const NrrdEncoded& encoded, const NrrdStorage& storage, std::size_t needed,
+                    const fs::path& path) {
+  if (encoded.skips) return;
+  if (encoded.encoding == nrrdEncodingRaw) warn_of_rest(volume, storage.bytes > needed);
+  if (encoded.encoding != nrrdEncodingGzip) return;
+  if (storage.files.empty()) warn_unless_packed(volume, begins_as_gzip(path, storage.header_bytes), path, "its header");
+  for (const fs::path& file : storage.files) warn_unless_packed(volume, begins_as_gzip(file), file, "the header");
+}
+
 /// Where the value of a voxel of a layer is.
 class NrrdPlaces {
  public:
@@ -227,8 +243,8 @@ Volume read_nrrd_layer(const fs::path& path, int layer) {
   static std::mutex one_at_a_time;  // teem has only one list of messages
   const std::lock_guard lock(one_at_a_time);
   const NrrdStorage storage = look_into_nrrd(path);
-  const NrrdEncoding* encoding = nullptr;
-  const auto header = load(path, true, &encoding);
+  NrrdEncoded encoded;
+  const auto header = load(path, true, &encoded);
   if (header->type <= nrrdTypeUnknown || header->type >= nrrdTypeBlock)
     fail_reading(path, "its values are blocks of bytes, not numbers", "convert it to a numeric type");
   if (header->spaceDim != 0 && header->spaceDim != 3 && header->spaceDim != 4)
@@ -255,7 +271,8 @@ Volume read_nrrd_layer(const fs::path& path, int layer) {
   volume.label_colours = std::move(labels.colours);
   if (header->spaceDim > 0 && header->spaceUnits[0]) volume.unit = header->spaceUnits[0];
   const std::size_t numbers = volume.voxels() * layers;
-  check_stored(storage.bytes, numbers * bytes_per_voxel, ratio_of(encoding, bytes_per_voxel), path);
+  check_stored(storage.bytes, numbers * bytes_per_voxel, ratio_of(encoded.encoding, bytes_per_voxel), path);
+  check_encoding(volume, encoded, storage, numbers * bytes_per_voxel, path);
 
   const auto nrrd = load(path, false);
   if (!nrrd->data || nrrdElementNumber(nrrd.get()) != numbers) fail_reading(path, "it changed while it was read");

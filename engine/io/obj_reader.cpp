@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <charconv>
+#include <cstdint>
 #include <limits>
 #include <sstream>
 
@@ -24,12 +26,25 @@ struct Prepared {
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
-/// A decimal number with an exponent of at most three digits.
+/// A decimal number with an exponent of at most three digits, and nothing behind it.
 bool is_plain_number(std::string_view word) {
-  if (word.find_first_not_of("0123456789+-.eE") != word.npos || word.find_first_of("0123456789") == word.npos)
+  if (word.find_first_not_of("0123456789+-.eE") != word.npos) return false;
+  if (const std::size_t exponent = word.find_first_of("eE"); exponent != word.npos && word.size() - exponent > 5)
     return false;
-  const std::size_t exponent = word.find_first_of("eE");
-  return exponent == word.npos || word.size() - exponent <= 5;
+  double value = 0;
+  const char* first = word.data() + word.starts_with('+');
+  const auto [end, code] = std::from_chars(first, word.data() + word.size(), value);
+  return code != std::errc::invalid_argument && end == word.data() + word.size();
+}
+
+/// Whether the corner "12", "12/3/4" or "-1//2" begins with an index that tinyobjloader reads as it is: it cuts larger
+/// ones to 32 bits and drops what follows the digits, so that another point would be taken.
+bool has_plain_index(std::string_view corner) {
+  const std::string_view index = corner.substr(0, corner.find('/'));
+  std::int32_t value = 0;
+  const char* first = index.data() + index.starts_with('+');
+  const auto [end, code] = std::from_chars(first, index.data() + index.size(), value);
+  return code == std::errc{} && end == index.data() + index.size();
 }
 
 bool has_three_numbers(std::string_view line) {
@@ -50,6 +65,16 @@ std::string_view without_comment(std::string_view line) {
   return line;
 }
 
+/// The corners of a face; "0", which is no point, in the place of those that are no index.
+void add_corners(std::string& text, std::string_view corners) {
+  for (std::size_t at = corners.find_first_not_of(" \t"); at != corners.npos;) {
+    const std::size_t end = std::min(corners.find_first_of(" \t", at), corners.size());
+    const std::string_view corner = corners.substr(at, end - at);
+    (text += ' ') += has_plain_index(corner) ? corner : "0";
+    at = corners.find_first_not_of(" \t", end);
+  }
+}
+
 void add_line(Prepared& prepared, std::string_view line) {
   line = without_comment(line);
   const std::size_t first = line.find_first_not_of(" \t");
@@ -59,7 +84,12 @@ void add_line(Prepared& prepared, std::string_view line) {
   if (line[0] != 'v' && line[0] != 'f') return;
   if (line[0] == 'v' && !has_three_numbers(line.substr(1))) prepared.bad_points.push_back(prepared.points);
   prepared.points += line[0] == 'v';
-  prepared.text += line;
+  if (line[0] == 'f') {
+    prepared.text += 'f';
+    add_corners(prepared.text, line.substr(1));
+  } else {
+    prepared.text += line;
+  }
   prepared.text += '\n';
 }
 

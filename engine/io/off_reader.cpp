@@ -28,7 +28,9 @@ Counts read_header(TextCursor& text, const std::filesystem::path& path) {
       fail_reading(path, fmt::format("{} has points that are not three-dimensional", magic), "convert it to plain OFF");
     text.word();
     const std::string_view glued = magic.substr(at + 3);
-    if (!glued.empty() && std::from_chars(glued.data(), glued.data() + glued.size(), points).ec != std::errc{})
+    const char* end = glued.data() + glued.size();
+    const auto [last, code] = std::from_chars(glued.data(), end, points);
+    if (!glued.empty() && (code != std::errc{} || last != end))
       fail_reading(path, fmt::format("'{}' is not an OFF header", magic), "check that it is an OFF file");
     probe = text;
     if (probe.word() == "BINARY") fail_reading(path, "it is binary OFF", "convert it to text OFF");
@@ -72,6 +74,9 @@ RawMesh read_off(std::string bytes, const std::filesystem::path& path) {
     mesh.close_polygon();
     text.rest_of_line();  // colours
   }
+  if (!text.at_end())
+    mesh.warnings.push_back(fmt::format("What follows its {} points and {} faces is ignored, from line {} on.",
+                                        counts.points, counts.faces, text.line()));
   return mesh;
 }
 

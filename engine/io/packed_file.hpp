@@ -39,6 +39,12 @@ class PackedFile {
     return done;
   }
 
+  /// Whether bytes follow.
+  bool has_more() {
+    char byte = 0;
+    return read(&byte, 1) == 1;
+  }
+
   void skip(std::size_t size) {
     std::array<char, 4096> bytes{};
     while (size > 0) {

@@ -73,8 +73,11 @@ PlyHeader::Encoding encoding_named(std::string_view name, const std::filesystem:
 void add_element(PlyHeader& header, const std::vector<std::string_view>& words, const std::filesystem::path& path) {
   PlyElement element;
   const auto end = words.size() < 3 ? nullptr : words[2].data() + words[2].size();
-  if (words.size() < 3 || std::from_chars(words[2].data(), end, element.count).ec != std::errc{})
-    fail_reading(path, "an element of its header has no count");
+  const auto is_count = [&] {
+    const auto [last, code] = std::from_chars(words[2].data(), end, element.count);
+    return code == std::errc{} && last == end;
+  };
+  if (words.size() < 3 || !is_count()) fail_reading(path, "an element of its header has no count");
   element.name = words[1];
   header.elements.push_back(std::move(element));
 }

@@ -46,6 +46,12 @@ class PlyBody {
                   : std::size_t(end_ - at_) / std::max<std::size_t>(bytes, 1);
   }
 
+  /// Whether anything but white space follows.
+  bool has_more() {
+    return ascii_ ? !text_.at_end()
+                  : std::string_view(at_, end_).find_first_not_of(" \t\r\n") != std::string_view::npos;
+  }
+
  private:
   double load(PlyType type) const {
     switch (type) {
@@ -82,7 +88,8 @@ bool read_row(PlyBody& body, const PlyElement& element, PlyRow& row) {
       continue;
     }
     double length = 0;
-    if (!body.read(property.count_type, length) || !(length >= 0 && length < 4e9)) return false;
+    if (!body.read(property.count_type, length) || !(length >= 0 && length < 4e9) || length != std::floor(length))
+      return false;
     if (std::size_t(length) > body.room_for(ply_size(property.type), 1)) return false;
     row.lists[i].resize(std::size_t(length));
     for (std::int64_t& entry : row.lists[i]) {
@@ -231,6 +238,7 @@ RawMesh read_ply(std::string bytes, const std::filesystem::path& path) {
     else
       for_each_row(body, element, path, [](const PlyRow&) {});
   }
+  if (body.has_more()) mesh.warnings.push_back("What follows the elements of its header is ignored.");
   return mesh;
 }
 

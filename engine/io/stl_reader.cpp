@@ -90,6 +90,8 @@ RawMesh read_text(const std::string& bytes, const std::filesystem::path& path) {
       if (corners > 0) mesh.close_polygon();
       corners = 0;
     } else if (word == "endfacet") {
+      if (corners > 0) mesh.close_polygon();  // a loop that was not ended
+      corners = 0;
       in_facet = false;
     } else if (word == "solid" || word == "endsolid") {
       text.rest_of_line();  // a name, which may be any text

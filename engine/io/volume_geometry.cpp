@@ -84,6 +84,17 @@ void set_steps(Volume& volume, const std::array<Vec3d, 3>& steps, const std::fil
   if (shear > 1e-12) volume.axes = orthogonalised(volume.axes);
 }
 
+void warn_unless_packed(Volume& volume, bool packed, const std::filesystem::path& file, const char* what_says_so) {
+  if (packed) return;
+  volume.warnings.push_back(
+      fmt::format("{} is not packed with gzip, although {} says so; its bytes are taken as they are.",
+                  file.filename().string(), what_says_so));
+}
+
+void warn_of_rest(Volume& volume, bool more) {
+  if (more) volume.warnings.push_back("Its data go on after the last voxel; what follows is ignored.");
+}
+
 void check_stored(std::uintmax_t stored, std::uintmax_t needed, double ratio, const std::filesystem::path& path) {
   if (double(stored) * ratio < double(needed))
     fail_reading(path,

@@ -25,6 +25,12 @@ double shear_of(const std::array<Vec3d, 3>& steps);
 /// Throws Error if a file of `stored` bytes cannot contain `needed` bytes, packed at most `ratio` to one.
 void check_stored(std::uintmax_t stored, std::uintmax_t needed, double ratio, const std::filesystem::path& path);
 
+/// Warns, unless `packed`, that `file` is not packed although its name or its header (`what_says_so`) says it is.
+void warn_unless_packed(Volume& volume, bool packed, const std::filesystem::path& file, const char* what_says_so);
+
+/// Warns if `more` than the values is stored: perhaps the header gives a wrong size or type.
+void warn_of_rest(Volume& volume, bool more);
+
 /// The best ratio of gzip, for zeros: 1032 bytes from one.
 inline constexpr std::size_t largest_gzip_ratio = 1100;
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -24,20 +25,21 @@ struct Choice {
 };
 
 /// Arrays with one component; those that the file marks as its scalars come first.
-std::vector<pugi::xml_node> scalar_arrays(pugi::xml_node parent) {
+std::vector<pugi::xml_node> scalar_arrays(const VtkXmlFile& file, pugi::xml_node parent) {
   std::vector<pugi::xml_node> arrays;
   const std::string_view marked = parent.attribute("Scalars").value();
   for (const pugi::xml_node array : parent.children("DataArray")) {
     const std::string_view name = array.attribute("Name").value();
-    if (array.attribute("NumberOfComponents").as_int(1) != 1 || name == "vtkGhostType" || name == "vtkValidPointMask")
-      continue;
+    if (file.components_of(array) != 1 || name == "vtkGhostType" || name == "vtkValidPointMask") continue;
     arrays.insert(name == marked && !marked.empty() ? arrays.begin() : arrays.end(), array);
   }
   return arrays;
 }
 
-Choice choose(pugi::xml_node piece, Volume& volume, const fs::path& path) {
-  const auto on_points = scalar_arrays(piece.child("PointData")), on_cells = scalar_arrays(piece.child("CellData"));
+Choice choose(const VtkXmlFile& file, Volume& volume) {
+  const pugi::xml_node piece = file.dataset().child("Piece");
+  const auto on_points = scalar_arrays(file, piece.child("PointData"));
+  const auto on_cells = scalar_arrays(file, piece.child("CellData"));
   std::vector<std::string> others;
   Choice choice;
   for (const auto* arrays : {&on_points, &on_cells})
@@ -46,7 +48,7 @@ Choice choose(pugi::xml_node piece, Volume& volume, const fs::path& path) {
         choice = {array, arrays == &on_cells};
       else
         others.push_back(array.attribute("Name").value());
-  if (!choice.array) fail_reading(path, "it has no array with one value per voxel", "check what it holds");
+  if (!choice.array) fail_reading(file.path(), "it has no array with one value per voxel", "check what it holds");
   if (!others.empty())
     volume.warnings.push_back(fmt::format("Its array {} is used, and {} ignored.",
                                           choice.array.attribute("Name").value(), fmt::join(others, ", ")));
@@ -59,6 +61,11 @@ void take_values(Volume& volume, const VtkXmlFile& file, pugi::xml_node array) {
   if (read.size() < volume.voxels())
     fail_reading(file.path(), fmt::format("array '{}' has {} entries, {} are needed", array.attribute("Name").value(),
                                           read.size(), volume.voxels()));
+  if (read.size() > volume.voxels()) file.warn_of_more(array.attribute("Name").value(), read.size(), volume.voxels());
+  if (std::is_same_v<Read, std::int64_t> && std::string_view(array.attribute("type").value()) == "UInt64" &&
+      std::any_of(read.begin(), read.end(), [](Read value) { return value < 0; }))
+    fail_reading(file.path(), fmt::format("array '{}' has values of 2^63 and above", array.attribute("Name").value()),
+                 "number its labels with smaller numbers");
   volume.values = std::vector<T>(read.begin(), read.begin() + std::ptrdiff_t(volume.voxels()));
 }
 
@@ -83,7 +90,7 @@ Volume read_vti(const fs::path& path) {
   const VtkXmlFile file(read_file(path), path);
   const VtkImage grid = read_vtk_grid(file);
   Volume volume;
-  const Choice choice = choose(file.dataset().child("Piece"), volume, path);
+  const Choice choice = choose(file, volume);
   std::array<std::int64_t, 3> dims{};
   std::array<Vec3d, 3> steps;
   volume.origin = grid.origin;
@@ -97,6 +104,7 @@ Volume read_vti(const fs::path& path) {
   if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
   set_steps(volume, steps, path);
   take_values(volume, file, choice.array);
+  volume.warnings.insert(volume.warnings.end(), file.warnings().begin(), file.warnings().end());
   return volume;
 }
 

@@ -13,12 +13,16 @@
 namespace nacre {
 namespace {
 
-/// Up to N numbers of an attribute; `values` keeps those that the attribute does not give.
+/// The N numbers of an attribute. False where it is missing. Throws Error if they are not N numbers.
 template <std::size_t N>
-bool read_numbers(pugi::xml_node node, const char* name, std::array<double, N>& values) {
-  TextCursor text{std::string_view(node.attribute(name).value())};
+bool read_numbers(pugi::xml_node node, const char* name, std::array<double, N>& values,
+                  const std::filesystem::path& path) {
+  const std::string_view words = node.attribute(name).value();
+  TextCursor text(words);
+  if (text.at_end()) return false;
   for (double& value : values)
-    if (!text.number(value) || !std::isfinite(value)) return false;
+    if (!text.number(value) || !std::isfinite(value))
+      fail_reading(path, fmt::format("its {} is '{}', not {} numbers", name, words.substr(0, 60), N));
   return true;
 }
 
@@ -33,16 +37,18 @@ VtkImage read_vtk_grid(const VtkXmlFile& file) {
   if (piece.next_sibling("Piece")) fail_reading(path, "it is in several pieces", "save it as one piece");
 
   std::array<double, 6> extent{};
-  if (!read_numbers(piece, "Extent", extent) && !read_numbers(grid, "WholeExtent", extent))
-    fail_reading(path, "its extent is damaged");
+  if (!read_numbers(piece, "Extent", extent, path) && !read_numbers(grid, "WholeExtent", extent, path))
+    fail_reading(path, "it has no extent");
   VtkImage image;
   std::array<double, 3> origin{}, spacing{1, 1, 1};
-  read_numbers(grid, "Origin", origin);
-  read_numbers(grid, "Spacing", spacing);
-  read_numbers(grid, "Direction", image.direction);
+  read_numbers(grid, "Origin", origin, path);
+  read_numbers(grid, "Spacing", spacing, path);
+  read_numbers(grid, "Direction", image.direction, path);
   for (int axis = 0; axis < 3; ++axis) {
     const double count = extent[2 * axis + 1] - extent[2 * axis] + 1;
     if (!(count >= 1 && count <= 1 << 20)) fail_reading(path, "its extent is empty or implausibly large");
+    for (const double end : {extent[2 * axis], extent[2 * axis + 1]})
+      if (end != std::floor(end)) fail_reading(path, fmt::format("its extent ends at {}, not at a whole number", end));
     image.dimensions[axis] = int(count);
     image.spacing[axis] = spacing[axis];
     image.origin[axis] = origin[axis];

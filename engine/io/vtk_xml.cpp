@@ -37,10 +37,6 @@ bool is_numeric(pugi::xml_node array) {
   return with_type(array.attribute("type").value(), [](auto) {});
 }
 
-int components_of(pugi::xml_node array) {
-  return std::clamp(array.attribute("NumberOfComponents").as_int(1), 1, max_components);
-}
-
 /// A stored number as T; if T is an integer type, a real number that is not an index becomes -1.
 template <class T, class Stored>
 T convert(Stored value) {
@@ -96,10 +92,28 @@ VtkXmlFile::VtkXmlFile(std::string bytes, std::filesystem::path path) : path_(st
   const pugi::xml_node root = document_.child("VTKFile");
   if (!root) fail_reading(path_, "it has no <VTKFile> element", "check that it is a VTK XML file");
   encoding_.order =
-      std::strcmp(root.attribute("byte_order").value(), "BigEndian") == 0 ? std::endian::big : std::endian::little;
-  encoding_.header_bytes = std::strcmp(root.attribute("header_type").value(), "UInt64") == 0 ? 8 : 4;
+      is_second_of(root, "byte_order", "LittleEndian", "BigEndian") ? std::endian::big : std::endian::little;
+  encoding_.header_bytes = is_second_of(root, "header_type", "UInt32", "UInt64") ? 8 : 4;
   encoding_.compressor = root.attribute("compressor").value();
   if (!dataset()) fail_reading(path_, fmt::format("it has no <{}> element", type()));
+}
+
+bool VtkXmlFile::is_second_of(pugi::xml_node node, const char* name, const char* first, const char* second) const {
+  const std::string_view value = node.attribute(name).value();
+  if (value != first && value != second && !value.empty())
+    fail_reading(path_, fmt::format("its {} is '{}', neither {} nor {}", name, value.substr(0, 40), first, second));
+  return value == second;
+}
+
+int VtkXmlFile::components_of(pugi::xml_node array) const {
+  const std::string_view text = array.attribute("NumberOfComponents").value();
+  if (text.empty()) return 1;
+  int count = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (code != std::errc{} || end != text.data() + text.size() || count < 0 || count > max_components)
+    fail_reading(path_,
+                 fmt::format("array '{}' has {} components", array.attribute("Name").value(), text.substr(0, 40)));
+  return std::max(count, 1);  // VTK takes 0 for 1
 }
 
 std::string VtkXmlFile::type() const { return document_.child("VTKFile").attribute("type").value(); }
@@ -161,10 +175,15 @@ std::vector<RawArray> VtkXmlFile::arrays(pugi::xml_node parent, std::size_t item
     RawArray array{node.attribute("Name").value(), components_of(node), numbers<float>(node)};
     if (array.items() < items)
       fail_reading(path_, fmt::format("array '{}' has {} entries, {} are needed", array.name, array.items(), items));
+    if (array.items() > items) warn_of_more(array.name, array.items(), items);
     array.values.resize(items * array.components);
     result.push_back(std::move(array));
   }
   return result;
+}
+
+void VtkXmlFile::warn_of_more(const std::string& array, std::size_t found, std::size_t used) const {
+  warnings_.push_back(fmt::format("Array '{}' has {} entries, of which the first {} are used.", array, found, used));
 }
 
 std::vector<RawArray> VtkXmlFile::field_arrays() const {
@@ -197,6 +216,7 @@ std::vector<Vec3d> VtkXmlFile::points(pugi::xml_node piece, std::size_t count) c
   const auto values = numbers<double>(node);
   if (values.size() / 3 < count)
     fail_reading(path_, fmt::format("it promises {} points and holds {}", count, values.size() / 3));
+  if (values.size() / 3 > count) warn_of_more("Points", values.size() / 3, count);
   std::vector<Vec3d> points(count);
   for (std::size_t i = 0; i < count; ++i) points[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   return points;
@@ -208,7 +228,8 @@ std::size_t count_attribute(const VtkXmlFile& file, pugi::xml_node node, const c
   std::size_t count = 0;
   // The bound keeps sums and products of counts within 64 bits.
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (code != std::errc{} || end == text.data() || count > std::size_t(1) << 40)
+  const bool whole = text.find_first_not_of(" \t\r\n", std::size_t(end - text.data())) == text.npos;
+  if (code != std::errc{} || !whole || count > std::size_t(1) << 40)
     fail_reading(file.path(), fmt::format("its attribute {}=\"{}\" is not a count", name, text));
   return count;
 }

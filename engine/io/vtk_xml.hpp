@@ -45,8 +45,20 @@ class VtkXmlFile {
   /// Points of a piece. Throws Error if there are fewer than `count`.
   std::vector<Vec3d> points(pugi::xml_node piece, std::size_t count) const;
 
+  /// Of a <DataArray>. Throws Error if its attribute is no number of components.
+  int components_of(pugi::xml_node array) const;
+
+  /// Warns that an array has more entries than belong to the piece.
+  void warn_of_more(const std::string& array, std::size_t found, std::size_t used) const;
+
+  /// What was noticed so far while arrays were decoded: full sentences.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
  private:
   std::string unpack(pugi::xml_node array) const;
+
+  /// Whether an attribute, if there is one, has the second of its two possible values. Throws Error for any other.
+  bool is_second_of(pugi::xml_node node, const char* name, const char* first, const char* second) const;
 
   std::filesystem::path path_;
   std::string xml_;       // the document points into it
@@ -54,6 +66,7 @@ class VtkXmlFile {
   bool appended_base64_ = false;
   VtkEncoding encoding_;
   pugi::xml_document document_;
+  mutable std::vector<std::string> warnings_;
 };
 
 /// A count from an attribute such as NumberOfPoints; 0 if it is missing. Throws Error if it is not a count.

@@ -29,6 +29,7 @@ class Cells {
     ends_ = file.numbers<std::int64_t>(node, "offsets");
     if (ends_.size() < count)
       fail_reading(file.path(), fmt::format("it promises {} cells and holds {}", count, ends_.size()));
+    if (ends_.size() > count) file.warn_of_more("offsets", ends_.size(), count);
     ends_.resize(count);
     std::int64_t last = 0;
     for (const std::int64_t end : ends_) {
@@ -245,6 +246,7 @@ RawMesh read_pieces(const VtkXmlFile& file) {
     append(mesh, poly ? read_poly_piece(file, piece) : read_grid_piece(file, piece));
   mesh.field_arrays = file.field_arrays();
   mesh.time = file.time();
+  mesh.warnings.insert(mesh.warnings.end(), file.warnings().begin(), file.warnings().end());
   return mesh;
 }
 
