@@ -10,6 +10,7 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
+#include "engine/io/vtp_writer.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
@@ -21,6 +22,8 @@
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
+#include "engine/scene/surface/flow_motion.hpp"
+#include "engine/scene/surface/haemodynamics.hpp"
 
 namespace nacre {
 namespace {
@@ -28,7 +31,7 @@ namespace {
 struct FlowOptions {
   CommonOptions common;
   InputOptions input;
-  std::string image, frames, video, out;
+  std::string image, frames, video, out, haemodynamics;
 };
 
 /// Finds unknown names and outputs that cannot be written before the work begins.
@@ -45,9 +48,11 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   if (!options.video.empty()) with_usage_errors([&] { check_video_name(options.video); });
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", ".vtp");
+  check_output(options.haemodynamics, "--haemodynamics", ".vtp");
   check_output(options.common.report, "--report", "");
   check_output(options.common.save_session, "--save-session", "");
-  for (const std::string& output : {options.image, options.frames, options.video, options.out, options.common.report})
+  for (const std::string& output :
+       {options.image, options.frames, options.video, options.out, options.haemodynamics, options.common.report})
     if (!output.empty()) return;
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
@@ -59,6 +64,7 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
                              : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
   FlowLog log;
   log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
+  log.note = [&](const std::string& sentence) { say(options.common, sentence); };
   log.chosen = [&](const VectorChoice& choice) {
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
@@ -67,9 +73,9 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
 
 /// What a close-up is computed on; none: the whole surface.
 std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const Camera& camera,
-                                  const PreparedSurface& surface, const Device& device) {
+                                  const PreparedSurface& surface, bool moves, const Device& device) {
   const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
-  if (!settings.focus || !pictures || settings.orbit != 0) return {};
+  if (!settings.focus || !pictures || settings.orbit != 0 || moves) return {};
   if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
   std::optional<Focus> focus =
       focus_on({camera, settings.width, settings.height}, surface, settings.flow, device.available_bytes());
@@ -110,13 +116,15 @@ Films open_films(const FlowOptions& options, int fps, Progress& progress) {
 }
 
 /// Returns how long each took, seconds.
-std::vector<double> take_steps(FlowPipeline& pipeline, int steps, FlowPainter& painter, Films& films,
-                               Progress& progress) {
+std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, int steps, FlowPainter& painter,
+                               Films& films, Progress& progress) {
   std::vector<double> seconds;
   for (int k = 0; k < steps; ++k) {
     const double before = now();
+    motion.follow();
     pipeline.flow().step();
     seconds.push_back(now() - before);
+    motion.show();
     if (films.any()) {
       const Image image = painter.paint(k);
       StageTimers::Scope scope(pipeline.timers(), "write");
@@ -143,6 +151,17 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   return outputs;
 }
 
+/// The first shape with the means of the vectors over time.
+void write_haemodynamics(const std::string& file, VectorsInTime& input) {
+  input.enter(input.start());
+  input.rebase(input.start());
+  const Haemodynamics all = haemodynamics(input);
+  std::vector<PointArray> arrays;
+  for (const std::string& name : haemodynamic_names()) arrays.push_back({name, 1, haemodynamic_array(all, name)});
+  const PreparedSurface& surface = input.surface();
+  write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays);
+}
+
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const Session session = requested_session(options.common, options.input, knob_options, "flow");
   const Settings& settings = session.settings;
@@ -155,12 +174,18 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   Progress progress(options.common.quiet);
   Films films = open_films(options, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
+  std::vector<std::string> first_outputs;
+  if (!options.haemodynamics.empty()) {
+    StageTimers::Scope scope(pipeline->timers(), "write");
+    write_haemodynamics(options.haemodynamics, input);
+    first_outputs.push_back(options.haemodynamics);
+  }
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 
-  const std::optional<Focus> focus = choose_focus(options, settings, painter.camera(), surface, *device);
+  const std::optional<Focus> focus = choose_focus(options, settings, painter.camera(), surface, input.moves(), *device);
   const SurfacePart* part = focus ? &focus->part : nullptr;
   if (focus) {
     pipeline->parameters.resolution = focus->resolution;
@@ -168,18 +193,27 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   }
   const PreparedSurface& shown = part ? part->surface : surface;
 
+  FlowMotion motion(*pipeline, input, [&](const std::string& sentence) {
+    progress.clear();
+    warn(options.common, sentence);
+  });
   progress.update("embed", 0);
-  pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
+  if (part)
+    pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
+  else
+    motion.embed(span.start);
   const FlowVectors vectors = flow_vectors(input, span.start, span.end, part);
   pipeline->parameters.steps = span.steps;
   progress.update("warm-up", 0.02);
-  pipeline->flow().start(vectors);
-  const std::vector<double> seconds = take_steps(*pipeline, span.steps, painter, films, progress);
-  const std::vector<std::string> outputs = write_outputs(options, *pipeline, span.steps, painter, films);
+  motion.start(vectors);
+  const std::vector<double> seconds = take_steps(*pipeline, motion, span.steps, painter, films, progress);
+  std::vector<std::string> outputs = write_outputs(options, *pipeline, span.steps, painter, films);
+  outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr);
+    if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);
@@ -196,6 +230,8 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");
   command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
+  command->add_option("--haemodynamics", options->haemodynamics,
+                      "write means of wall shear stress over time as .vtp: TAWSS, OSI, RRT on the points");
   add_common_options(*command, options->common);
   add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "flow");
