@@ -11,6 +11,7 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
+#include "engine/io/vtp_writer.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
@@ -22,6 +23,8 @@
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
+#include "engine/scene/surface/flow_motion.hpp"
+#include "engine/scene/surface/haemodynamics.hpp"
 
 namespace nacre {
 namespace {
@@ -29,7 +32,7 @@ namespace {
 struct FlowOptions {
   CommonOptions common;
   InputOptions input;
-  std::string image, frames, video, out;
+  std::string image, frames, video, out, haemodynamics;
   std::string chunk;  ///< I/N: this part of the steps only
   int lead_in = 256;  ///< steps before it
 };
@@ -60,9 +63,11 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   if (!options.video.empty()) with_usage_errors([&] { check_video_name(options.video); });
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", ".vtp");
+  check_output(options.haemodynamics, "--haemodynamics", ".vtp");
   check_output(options.common.report, "--report", "");
   check_output(options.common.save_session, "--save-session", "");
-  for (const std::string& output : {options.image, options.frames, options.video, options.out, options.common.report})
+  for (const std::string& output :
+       {options.image, options.frames, options.video, options.out, options.haemodynamics, options.common.report})
     if (!output.empty()) return;
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
@@ -74,6 +79,7 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
                              : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
   FlowLog log;
   log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
+  log.note = [&](const std::string& sentence) { say(options.common, sentence); };
   log.chosen = [&](const VectorChoice& choice) {
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
@@ -82,9 +88,9 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
 
 /// What a close-up is computed on; none: the whole surface.
 std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const Camera& camera,
-                                  const PreparedSurface& surface, const Device& device) {
+                                  const PreparedSurface& surface, bool moves, const Device& device) {
   const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
-  if (!settings.focus || !pictures || settings.orbit != 0) return {};
+  if (!settings.focus || !pictures || settings.orbit != 0 || moves) return {};
   if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
   std::optional<Focus> focus =
       focus_on({camera, settings.width, settings.height}, surface, settings.flow, device.available_bytes());
@@ -126,13 +132,15 @@ Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, P
 }
 
 /// Returns how long each took, seconds.
-std::vector<double> take_steps(FlowPipeline& pipeline, const FrameRange& steps, FlowPainter& painter, Films& films,
-                               Progress& progress) {
+std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const FrameRange& steps, FlowPainter& painter,
+                               Films& films, Progress& progress) {
   std::vector<double> seconds;
   for (int k = steps.first; k < steps.last; ++k) {
     const double before = now();
+    motion.follow();
     pipeline.flow().step();
     seconds.push_back(now() - before);
+    motion.show();
     if (films.any()) {
       const Image image = painter.paint(k);
       StageTimers::Scope scope(pipeline.timers(), "write");
@@ -159,6 +167,17 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   return outputs;
 }
 
+/// The first shape with the means of the vectors over time.
+void write_haemodynamics(const std::string& file, VectorsInTime& input) {
+  input.enter(input.start());
+  input.rebase(input.start());
+  const Haemodynamics all = haemodynamics(input);
+  std::vector<PointArray> arrays;
+  for (const std::string& name : haemodynamic_names()) arrays.push_back({name, 1, haemodynamic_array(all, name)});
+  const PreparedSurface& surface = input.surface();
+  write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays);
+}
+
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const Session session = requested_session(options.common, options.input, knob_options, "flow");
   const Settings& settings = session.settings;
@@ -172,12 +191,20 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   const FrameRange steps = wanted_steps(options.chunk, remaining_steps(settings));
   Films films = open_films(options, steps, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
+  if (!options.chunk.empty() && input.moves())
+    throw Error("--chunk needs a surface that does not move", "the shape before a part is not known to it");
+  std::vector<std::string> first_outputs;
+  if (!options.haemodynamics.empty()) {
+    StageTimers::Scope scope(pipeline->timers(), "write");
+    write_haemodynamics(options.haemodynamics, input);
+    first_outputs.push_back(options.haemodynamics);
+  }
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 
-  const std::optional<Focus> focus = choose_focus(options, settings, painter.camera(), surface, *device);
+  const std::optional<Focus> focus = choose_focus(options, settings, painter.camera(), surface, input.moves(), *device);
   const SurfacePart* part = focus ? &focus->part : nullptr;
   if (focus) {
     pipeline->parameters.resolution = focus->resolution;
@@ -185,21 +212,30 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   }
   const PreparedSurface& shown = part ? part->surface : surface;
 
+  FlowMotion motion(*pipeline, input, [&](const std::string& sentence) {
+    progress.clear();
+    warn(options.common, sentence);
+  });
   progress.update("embed", 0);
-  pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
+  if (part)
+    pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
+  else
+    motion.embed(span.start);
   const FlowVectors vectors = flow_vectors(input, span.start, span.end, part);
   pipeline->parameters.steps = span.steps;
   pipeline->parameters.first_step = steps.first;
   pipeline->parameters.lead_in = options.lead_in;
   progress.update("warm-up", 0.02);
-  pipeline->flow().start(vectors);
-  const std::vector<double> seconds = take_steps(*pipeline, steps, painter, films, progress);
-  const std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films);
+  motion.start(vectors);
+  const std::vector<double> seconds = take_steps(*pipeline, motion, steps, painter, films, progress);
+  std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films);
+  outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
   progress.clear();
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
+    if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     write_report(options.common, std::move(report), outputs);
   }
   print_outputs(outputs);
@@ -216,6 +252,8 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");
   command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
+  command->add_option("--haemodynamics", options->haemodynamics,
+                      "write means of wall shear stress over time as .vtp: TAWSS, OSI, RRT on the points");
   command->add_option("--chunk", options->chunk,
                       "I/N: only part I of N of the steps, with the frames of the whole run (`nacre join` joins them)");
   command

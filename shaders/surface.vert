@@ -3,6 +3,7 @@
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in uint point;  // of the mesh: several vertices share one at a crease
+layout(location = 4) in vec3 embedded;  // the position where the texture is, of a surface that has moved
 
 uniform samplerBuffer scalar;  // per point
 uniform bool coloured;
@@ -17,6 +18,6 @@ void main() {
   gl_Position = clip_from_model * vec4(position, 1.0);
   seen = (seen_from_model * vec4(position, 1.0)).xyz;
   direction = normal_from_model * normal;
-  place = position * texture_from_model.w + texture_from_model.xyz;
+  place = embedded * texture_from_model.w + texture_from_model.xyz;
   shade = coloured ? texelFetch(scalar, int(point)).r : 0.0;
 }

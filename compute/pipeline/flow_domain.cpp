@@ -29,6 +29,11 @@ Bounds bounds_of(const FlowMesh& mesh) {
 
 double largest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
 
+/// Edge of a texture cell on the grid, where the longest side is so long.
+double texture_cell(const FlowMesh& mesh, const FlowParameters& parameters, double longest) {
+  return mesh.cell_size > 0 ? mesh.cell_size : longest / parameters.resolution;
+}
+
 std::string gibibytes(double bytes) {
   const double g = bytes / (1 << 30);
   std::string text = std::to_string(g);
@@ -43,7 +48,7 @@ FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
   const double longest = largest(b.upper - b.lower);
   if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
   FlowDomain domain;
-  domain.cell_size = longest * parameters.refine / parameters.resolution;
+  domain.cell_size = texture_cell(mesh, parameters, longest) * parameters.refine;
   domain.radius = parameters.radius > 0 ? parameters.radius : stencil_radius;
   domain.margin = int(std::ceil(domain.radius)) + 2;
   // The surface's lower corner lies off the cell faces: an axis-aligned wall on a face would touch two layers of cells.
@@ -67,7 +72,7 @@ FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
 double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameters) {
   const Bounds b = bounds_of(mesh);
   const Vec3d size = b.upper - b.lower;
-  const double h = std::max(largest(size), 1e-300) / parameters.resolution, H = h * parameters.refine;
+  const double h = texture_cell(mesh, parameters, std::max(largest(size), 1e-300)), H = h * parameters.refine;
   double area = 0, edges = 0;
   for (const Triangle& t : mesh.triangles) {
     const Vec3d ab = mesh.points[t.b] - mesh.points[t.a], ac = mesh.points[t.c] - mesh.points[t.a];
@@ -95,18 +100,21 @@ int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, F
   const Bounds b = bounds_of(mesh);
   const double longest = largest(b.upper - b.lower);
   if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
-  const int n = parameters.resolution;
-  if (n > max_octree_resolution)
-    throw Error("`resolution` " + std::to_string(n) + " is too fine", "at most 2^20 cells per axis",
-                "use `resolution` " + std::to_string(max_octree_resolution) + " or less");
   domain.radius = parameters.radius > 0 ? parameters.radius : octree_radius;
   if (domain.radius < 1) throw Error("`radius` is too small for an octree", "", "use 1 or more, or 0");
   domain.margin = int(std::ceil(domain.radius)) + 1;
+  const double asked =
+      mesh.cell_size > 0 ? std::ceil(longest / mesh.cell_size) + 2 * domain.margin + 1 : double(parameters.resolution);
+  const int n = int(std::min(asked, 2.0 * max_octree_resolution));
+  if (n > max_octree_resolution)
+    throw Error("`resolution` " + std::to_string(n) + " is too fine", "at most 2^20 cells per axis",
+                "use `resolution` " + std::to_string(max_octree_resolution) + " or less");
   const int inner = n - 2 * domain.margin - 1;
   if (inner < 1)
     throw Error("`resolution` " + std::to_string(n) + " is too coarse", "the band fills it",
                 "use `resolution` " + std::to_string(2 * domain.margin + 16) + " or more");
-  domain.cell_size = longest / inner;
+  domain.cell_size = mesh.cell_size > 0 ? mesh.cell_size : longest / inner;
+  domain.cells = Int3(n);
   for (int axis = 0; axis < 3; ++axis) {
     const double cells = (b.upper[axis] - b.lower[axis]) / domain.cell_size;
     domain.extent[axis] = std::max(1, int(std::ceil(cells - 1e-9)));
@@ -122,7 +130,7 @@ int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, F
 
 double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& parameters) {
   const Bounds b = bounds_of(mesh);
-  const double h = std::max(largest(b.upper - b.lower), 1e-300) / parameters.resolution;
+  const double h = texture_cell(mesh, parameters, std::max(largest(b.upper - b.lower), 1e-300));
   const double radius = parameters.radius > 0 ? parameters.radius : octree_radius;
   const bool brick = parameters.octree == OctreeKind::brick;
   double cells = 0, surface = 0, edges = 0;

@@ -11,6 +11,7 @@ struct FlowDomain {
   Vec3d origin{};
   double cell_size = 1;  ///< of the closest-point grid
   Int3 bricks{};
+  Int3 cells{};       ///< of an octree's cube
   Int3 extent{};      ///< closest-point cells of the bounding box, without the margin
   int margin = 0;     ///< cells beside it
   double radius = 0;  ///< of the band, in cells

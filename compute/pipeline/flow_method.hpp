@@ -4,14 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/flow/filter.hpp"
 #include "compute/flow/streaks.hpp"
+#include "compute/pipeline/carry.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/pipeline/moved_shape.hpp"
+#include "compute/raycast/moved_target.hpp"
 #include "compute/raycast/render.hpp"
+#include "compute/raycast/triangle_tree.hpp"
 
 namespace nacre {
 
@@ -32,6 +40,17 @@ class FlowMethodOn : public FlowMethod {
 
   double time() const override { return time_of(step_); }
   const EmbeddingInfo& embedding() const override { return info_; }
+
+  void move(const FlowShape& shape) override {
+    require_embedded();
+    if (!shape_.made()) throw std::logic_error("a surface that was embedded as one that does not move");
+    if (shape.points.size() != points_.size() || shape.corner_normals.size() != normals_.size())
+      throw std::logic_error("a shape of another mesh");
+    std::vector<Vec3d> points;
+    points.reserve(shape.points.size());
+    for (const Vec3d& p : shape.points) points.push_back(domain_.to_grid(p));
+    shape_.place(std::move(points), shape.corner_normals, shape.vectors);
+  }
 
  protected:
   /// Moves on by step `k` of the data; those before 0 are the warm-up.
@@ -56,6 +75,7 @@ class FlowMethodOn : public FlowMethod {
     normals_ = arena.permanent_copy<Vec3f>(mesh.corner_normals);
     mesh_ = {device_points_.data(), corners_.data(), normals_.data()};
     triangles_ = std::uint32_t(mesh.triangles.size());
+    if (mesh.moves) shape_.make(exec_, points_, mesh.triangles, mesh.corner_normals);
   }
 
   void end_embedding() {
@@ -103,6 +123,40 @@ class FlowMethodOn : public FlowMethod {
     started_ = true;
   }
 
+  /// In `resume`, after `begin_flow`: time goes on where `before` is. The slots begin with the next step.
+  void go_on_from(const FlowMethodOn& before) {
+    step_ = first_ = before.step_;
+    launched_ = before.launched_;
+  }
+
+  /// The surface cell of the flow before whose value each of the `n` surface cells takes, `no_cell` where there is
+  /// none; the share of those that have one. `texel`, `texel_before`: edges of texture cells in cells of either domain.
+  template <class Surface>
+  double find_sources(const Surface& on, std::int64_t n, double texel, const FlowMethodOn& before,
+                      const Surface& on_before, double texel_before, FlowCarry how, CellIndex* source) {
+    const auto find = [&](const auto& origin) {
+      using Origin = std::remove_cvref_t<decltype(origin)>;
+      for_each_surface_cell_of(exec_, on, n,
+                               FindSource<Surface, Origin>{on, on_before, origin, texel, texel_before, source});
+    };
+    if (how == FlowCarry::material) {
+      if (before.triangles_ != triangles_) throw std::logic_error("a texture carried between other triangles");
+      find(SameMaterial{mesh_, before.mesh_});
+    } else {
+      if (!before.shape_.made()) throw std::logic_error("a texture carried from a surface that does not move");
+      const double cell = before.domain_.cell_size;
+      find(ClosestMaterial{before.shape_.tree(), before.shape_.mesh(before.corners_.data()), before.mesh_,
+                           domain_.cell_size / cell, (domain_.origin - before.domain_.origin) / cell,
+                           carry_reach * texel_before});
+    }
+    return n > 0 ? double(exec_.reduce(n, std::uint64_t(0), HasSource{source}, Add{})) / double(n) : 0;
+  }
+
+  template <class Value>
+  void take(const CellIndex* source, const Array<Value>& from, const Array<Value>& to) {
+    exec_.for_each(std::int64_t(to.size()), TakeFromSource<Value>{source, from.data(), to.data()});
+  }
+
   /// Embeds what comes into sight at step `k`.
   void look_ahead(int k) {
     if (steady_) return;
@@ -127,6 +181,22 @@ class FlowMethodOn : public FlowMethod {
   double time_of(int k) const {
     const double share = std::clamp(double(k) / std::max(1, parameters_.steps), 0.0, 1.0);
     return vectors_.start + (vectors_.end - vectors_.start) * share;
+  }
+
+  /// Draws the surface, where it has moved to if it has. `shown`: its texture; null: none.
+  template <class Target>
+  std::vector<std::uint8_t> draw_target(const Target& target, const float* shown, const RenderOptions& options,
+                                        const Vec3d& dims) {
+    if (!shape_.moved()) {
+      RenderPixel<Target> pixel;
+      pixel.scene.target = target;
+      pixel.scene.shown = shown;
+      return draw(pixel, options, dims);
+    }
+    RenderPixel<MovedTarget<Target>> pixel;
+    pixel.scene.target = {target, mesh_, shape_.tree()};
+    pixel.scene.shown = shown;
+    return draw(pixel, options, dims);
   }
 
   /// Draws what `pixel` casts into: sets its camera, light, colours and background, and runs it on every pixel. `dims`
@@ -154,8 +224,12 @@ class FlowMethodOn : public FlowMethod {
     }
     scene.background = linear(options.background);
     scene.background_alpha = options.transparent ? 0.0f : 1.0f;
-    scene.mesh = mesh_;
+    scene.mesh = shape_.moved() ? shape_.mesh(corners_.data()) : mesh_;
     look(pixel, options, dims);
+    if (shape_.moved()) {  // perhaps out of the domain
+      const Vec3d target = domain_.to_grid(options.camera.target);
+      for (const Vec3d& p : shape_.points()) pixel.reach = std::max(pixel.reach, 1 + length(p - target));
+    }
     const std::size_t n = std::size_t(options.width) * options.height;
     Array<std::uint32_t> pixels = arena.template temporary<std::uint32_t>(n);
     pixel.pixels = pixels.data();
@@ -173,7 +247,10 @@ class FlowMethodOn : public FlowMethod {
           corners_(flow.corners_.download()),
           normals_(flow.normals_.download()),
           mesh_{flow.points_.data(), corners_.data(), normals_.data()},
-          vectors_(flow.points_.size()) {
+          moved_{flow.shape_.points().data(), corners_.data(), flow.shape_.normals().data()},
+          vectors_(flow.shape_.vectors()) {
+      if (!vectors_.empty()) return;
+      vectors_.resize(flow.points_.size());
       flow.vectors_.at(flow.time(), vectors_);
     }
 
@@ -182,9 +259,17 @@ class FlowMethodOn : public FlowMethod {
                     std::uint32_t t) const {
       const Vec3f w(barycentric(mesh_.corners(t), surface));
       const Triangle c = corners_[t];
-      const Vec3f v = vectors_[c.a] * w.x + vectors_[c.b] * w.y + vectors_[c.c] * w.z, normal = mesh_.normal(t, w);
-      values.centre[s] = flow_.domain_.to_world(centre);
-      values.closest_point[s] = flow_.domain_.to_world(surface);
+      const bool moved = flow_.shape_.moved();
+      const Vec3f v = vectors_[c.a] * w.x + vectors_[c.b] * w.y + vectors_[c.c] * w.z;
+      const Vec3f normal = (moved ? moved_ : mesh_).normal(t, w);
+      Vec3d foot = surface, middle = centre;
+      if (moved) {  // the foot goes with the material, and the centre keeps its height over it
+        const Corners now = moved_.corners(t);
+        foot = now.a * double(w.x) + now.b * double(w.y) + now.c * double(w.z);
+        middle = foot + Vec3d(normal) * dot(centre - surface, Vec3d(mesh_.normal(t, w)));
+      }
+      values.centre[s] = flow_.domain_.to_world(middle);
+      values.closest_point[s] = flow_.domain_.to_world(foot);
       values.normal[s] = normal;
       values.velocity[s] = v - normal * dot(normal, v);
     }
@@ -193,9 +278,25 @@ class FlowMethodOn : public FlowMethod {
     const FlowMethodOn& flow_;
     std::vector<Triangle> corners_;
     std::vector<Vec3f> normals_;
-    MeshView mesh_;
+    MeshView mesh_, moved_;
     std::vector<Vec3f> vectors_;
   };
+
+  /// Where the embedded shape has the material that is at `points` (world) now, in cells of the domain.
+  std::vector<Vec3d> embedded_places(std::span<const Vec3d> points) const {
+    std::vector<Vec3d> places;
+    for (const Vec3d& p : points) places.push_back(domain_.to_grid(p));
+    if (!shape_.moved()) return places;
+    const std::vector<Vec3d>& now = shape_.points();
+    const TriangleTree tree(now, shape_.triangles());
+    for (Vec3d& p : places) {
+      const TriangleHit hit = *tree.closest(p);
+      const Triangle& t = shape_.triangles()[hit.triangle];
+      const Vec3d w = barycentric({now[t.a], now[t.b], now[t.c]}, hit.position);
+      p = points_[t.a] * w.x + points_[t.b] * w.y + points_[t.c] * w.z;
+    }
+    return places;
+  }
 
   std::vector<float> download_frame(const float* frame, std::size_t n) const {
     std::vector<float> host(n);
@@ -221,6 +322,10 @@ class FlowMethodOn : public FlowMethod {
   Array<Vec3d> device_points_;
   Array<Triangle> corners_;
   Array<Vec3f> normals_;
+  MovedShape<Backend> shape_;  ///< of a surface that moves
+
+  /// Values come from no farther, in texture cells: as far as the band of the grid knows the surface.
+  static constexpr double carry_reach = 18;
 
  private:
   template <class Pixel>

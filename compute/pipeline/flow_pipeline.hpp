@@ -54,6 +54,21 @@ struct FlowMesh {
   std::span<const Vec3d> points;          ///< world coordinates
   std::span<const Triangle> triangles;    ///< none degenerate, indices in range
   std::span<const Vec3f> corner_normals;  ///< 3 per triangle, unit
+  bool moves = false;                     ///< FlowMethod::move will be called: memory for other shapes
+  double cell_size = 0;                   ///< edge of a texture cell, world units; 0: by `resolution`
+};
+
+/// Where the points of an embedded mesh are at a moment.
+struct FlowShape {
+  std::span<const Vec3d> points;          ///< world coordinates
+  std::span<const Vec3f> corner_normals;  ///< 3 per triangle, unit
+  std::span<const Vec3f> vectors;         ///< one per point, world units per second: what FlowValues has
+};
+
+/// How a texture comes to the surface that is embedded next.
+enum class FlowCarry {
+  material,      ///< the same triangles in another shape: every material point keeps its value
+  closest_point  ///< another surface: a point takes the value of the closest point of the one before
 };
 
 /// Vectors over time, world units per second.
@@ -160,6 +175,12 @@ class FlowMethod {
   /// Writes one Morton code per box, among cubes of its size, to `memory` of the device.
   virtual void show_boxes(std::uint64_t* memory) = 0;
   virtual FlowValues values() const = 0;
+  /// From now on pictures, values and probes show the surface in this shape. The texture stays with the material, and
+  /// the vectors of `start` remain those of the embedded shape. Needs FlowMesh::moves.
+  virtual void move(const FlowShape& shape) = 0;
+  /// Instead of `start`, what FlowPipeline::carry calls: goes on with the texture of `before`, a method of the same
+  /// kind. Returns the share of the cells that found a value there; the others begin with noise.
+  virtual double resume(const FlowVectors& vectors, const FlowMethod& before, FlowCarry how) = 0;
   /// RGBA bytes, row 0 at the top (stage render).
   virtual std::vector<std::uint8_t> render(const RenderOptions& options) = 0;
   /// Shown value at points of the surface (world coordinates); for probes and tests.
@@ -177,7 +198,10 @@ class FlowPipeline {
   FlowParameters parameters;
 
   virtual void embed(const FlowMesh& mesh) = 0;  ///< chooses the method; the surface and flow before it are gone
-  FlowMethod& flow();                            ///< on the embedded surface; throws Error where there is none
+  /// Embeds another shape while a flow goes on, and carries its texture there (stages rebuild, carry); `vectors` are
+  /// those of the new shape, over the same time. What resume says. Where it throws, the flow before goes on.
+  virtual double carry(const FlowMesh& mesh, const FlowVectors& vectors, FlowCarry how) = 0;
+  FlowMethod& flow();  ///< on the embedded surface; throws Error where there is none
   const FlowMethod& flow() const;
 
   virtual StageTimers& timers() = 0;

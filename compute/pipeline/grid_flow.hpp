@@ -52,6 +52,49 @@ class GridFlow final : public FlowMethodOn<Backend> {
   }
 
   void start(const FlowVectors& vectors) override {
+    make_arrays(vectors);
+    this->warm_up();
+    show();
+    ++launched_;
+    for (int k = first_; k < this->step_; ++k) advance(k);
+    exec_.wait();
+  }
+
+  double resume(const FlowVectors& vectors, const FlowMethod& before, FlowCarry how) override {
+    const auto& old = dynamic_cast<const GridFlow&>(before);
+    make_arrays(vectors);
+    this->go_on_from(old);
+    exec_.for_each(fine_.surface_cells, FillNoise{seed_, shown_.data()});
+    Arena::Scope scope(exec_.arena());
+    CellIndex* source = exec_.arena().template temporary<CellIndex>(fine_.surface_cells).data();
+    const GridSurface on{fine_.view(coarse_.view())}, on_old{old.fine_.view(old.coarse_.view())};
+    const double found =
+        this->find_sources(on, fine_.surface_cells, 1.0 / refine_, old, on_old, 1.0 / old.refine_, how, source);
+    this->take(source, old.arrived_[launched_ & 1], arrived_[launched_ & 1]);
+    this->take(source, old.value_, value_);
+    this->take(source, old.carried_, carried_);
+    this->take(source, old.shown_, shown_);
+    frame_ = value_.data();
+    this->warm_up();
+    return found;
+  }
+
+  std::vector<float> shown() const override;
+  void show_into(float* memory) override { output_ = memory; }
+  std::vector<std::uint8_t> render(const RenderOptions& options) override;
+  FlowValues values() const override;
+  std::vector<float> sample_shown(std::span<const Vec3d> points) override;
+  FlowLookup lookup() const override;
+  FlowBoxes boxes() const override { return {domain_.origin, coarse_.sub * domain_.cell_size, box_levels(coarse_)}; }
+  void show_boxes(std::uint64_t* memory) override { write_boxes(exec_, coarse_, memory); }
+
+ private:
+  using Base = FlowMethodOn<Backend>;
+  using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
+  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
+
+  /// What `start` and `resume` need; noise in it.
+  void make_arrays(const FlowVectors& vectors) {
     this->begin_flow(vectors, 1.0 / refine_, 1);
     Arena& arena = exec_.arena();
     const std::size_t n = fine_.surface_cells;
@@ -71,26 +114,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     }
     shown_ = arena.permanent<float>(n);
     for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
-    this->warm_up();
-    show();
-    ++launched_;
-    for (int k = first_; k < this->step_; ++k) advance(k);
-    exec_.wait();
   }
-
-  std::vector<float> shown() const override;
-  void show_into(float* memory) override { output_ = memory; }
-  std::vector<std::uint8_t> render(const RenderOptions& options) override;
-  FlowValues values() const override;
-  std::vector<float> sample_shown(std::span<const Vec3d> points) override;
-  FlowLookup lookup() const override;
-  FlowBoxes boxes() const override { return {domain_.origin, coarse_.sub * domain_.cell_size, box_levels(coarse_)}; }
-  void show_boxes(std::uint64_t* memory) override { write_boxes(exec_, coarse_, memory); }
-
- private:
-  using Base = FlowMethodOn<Backend>;
-  using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
-  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
 
   void describe() {
     info_ = {};
@@ -204,11 +228,9 @@ template <class Backend>
 std::vector<std::uint8_t> GridFlow<Backend>::render(const RenderOptions& options) {
   this->require_embedded();
   auto stage = exec_.stage("render");
-  RenderPixel<GridTarget> pixel;
-  pixel.scene.target.grid = coarse_.view();
-  pixel.scene.target.texels = fine_.view(coarse_.view());
-  pixel.scene.shown = started_ && options.texture ? shown_.data() : nullptr;
-  return this->draw(pixel, options, Vec3d(domain_.bricks * Int3(coarse_.sub)));
+  const GridTarget target{coarse_.view(), fine_.view(coarse_.view())};
+  const float* shown = started_ && options.texture ? shown_.data() : nullptr;
+  return this->draw_target(target, shown, options, Vec3d(domain_.bricks * Int3(coarse_.sub)));
 }
 
 template <class Backend>
@@ -240,7 +262,7 @@ std::vector<float> GridFlow<Backend>::sample_shown(std::span<const Vec3d> points
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<Vec3f> host;
-  for (const Vec3d& p : points) host.push_back(Vec3f(domain_.to_grid(p) * double(refine_)));
+  for (const Vec3d& p : this->embedded_places(points)) host.push_back(Vec3f(p * double(refine_)));
   Array<Vec3f> places = arena.temporary<Vec3f>(host.size());
   places.upload(host);
   Array<float> value = arena.temporary<float>(host.size());

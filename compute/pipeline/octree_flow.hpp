@@ -22,6 +22,7 @@ namespace nacre {
 /// The two-level octree and how flow runs on it: as on the grid, contrast judged in each brick's surroundings.
 struct BrickBand {
   using Octree = BrickOctree;
+  using Surface = BrickSurface;
   static constexpr const char* name = "brick octree";
   static constexpr bool as_thesis = false;
   static constexpr int smallest_box = 8;  ///< texture cells
@@ -38,6 +39,7 @@ struct BrickBand {
 /// centre, whose whole life is computed at once; the texture is shown without streaks.
 struct ThesisBand {
   using Octree = ThesisOctree;
+  using Surface = ThesisSurface;
   static constexpr const char* name = "source octree";
   static constexpr bool as_thesis = true;
   static constexpr int smallest_box = 2;
@@ -124,6 +126,60 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   }
 
   void start(const FlowVectors& vectors) override {
+    make_arrays(vectors);
+    this->warm_up();
+    show();
+    ++launched_;
+    for (int k = first_; k < this->step_; ++k) advance(k);
+    exec_.wait();
+  }
+
+  double resume(const FlowVectors& vectors, const FlowMethod& before, FlowCarry how) override {
+    const auto& old = dynamic_cast<const OctreeFlow&>(before);
+    make_arrays(vectors);
+    this->go_on_from(old);
+    const View view = octree_.view();
+    const std::size_t n = view.surface_cells;
+    Arena::Scope scope(exec_.arena());
+    CellIndex* source = exec_.arena().template temporary<CellIndex>(n).data();
+    const typename Band::Surface on{view}, on_old{old.octree_.view()};
+    const double found = this->find_sources(on, std::int64_t(n), 1.0, old, on_old, 1.0, how, source);
+    if constexpr (Band::as_thesis) {  // deposits for all the steps to come
+      for (int j = 0; j < std::min(ttl_, old.ttl_); ++j)
+        this->take(source, old.sums_[(old.step_ + j - old.first_) % old.ttl_], sums_[j]);
+    } else {
+      this->take(source, old.sums_[1 + (launched_ & 1)], sums_[1 + (launched_ & 1)]);
+    }
+    for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), shown_.data()});
+    this->take(source, old.value_, value_);
+    this->take(source, old.carried_, carried_);
+    this->take(source, old.shown_, shown_);
+    frame_ = value_.data();
+    this->warm_up();
+    return found;
+  }
+
+  std::vector<float> shown() const override {
+    this->require_started();
+    return this->download_frame(shown_.data(), octree_.view().surface_cells);
+  }
+  void show_into(float* memory) override { output_ = memory; }
+  FlowValues values() const override;
+  std::vector<std::uint8_t> render(const RenderOptions& options) override;
+  std::vector<float> sample_shown(std::span<const Vec3d> points) override;
+  FlowLookup lookup() const override;
+  FlowBoxes boxes() const override {
+    return {domain_.origin, Band::smallest_box * domain_.cell_size, box_levels(octree_)};
+  }
+  void show_boxes(std::uint64_t* memory) override { write_boxes(exec_, octree_, memory); }
+
+ private:
+  using Base = FlowMethodOn<Backend>;
+  using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
+  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
+
+  /// What `start` and `resume` need; noise in it.
+  void make_arrays(const FlowVectors& vectors) {
     this->begin_flow(vectors, 1.0, Band::as_thesis ? 0 : 1);
     Arena& arena = exec_.arena();
     const std::size_t mark = arena.mark();
@@ -147,35 +203,11 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     }
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
-    this->warm_up();
-    show();
-    ++launched_;
-    for (int k = first_; k < this->step_; ++k) advance(k);
-    exec_.wait();
   }
-
-  std::vector<float> shown() const override {
-    this->require_started();
-    return this->download_frame(shown_.data(), octree_.view().surface_cells);
-  }
-  void show_into(float* memory) override { output_ = memory; }
-  FlowValues values() const override;
-  std::vector<std::uint8_t> render(const RenderOptions& options) override;
-  std::vector<float> sample_shown(std::span<const Vec3d> points) override;
-  FlowLookup lookup() const override;
-  FlowBoxes boxes() const override {
-    return {domain_.origin, Band::smallest_box * domain_.cell_size, box_levels(octree_)};
-  }
-  void show_boxes(std::uint64_t* memory) override { write_boxes(exec_, octree_, memory); }
-
- private:
-  using Base = FlowMethodOn<Backend>;
-  using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
-  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
 
   void describe() {
     const View view = octree_.view();
-    const int n = parameters_.resolution;
+    const int n = domain_.cells.x;
     info_ = {};
     info_.kind = Band::name;
     info_.dimensions = info_.closest_point_dimensions = Int3(n);
@@ -319,10 +351,9 @@ template <class Backend, class Band>
 std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions& options) {
   this->require_embedded();
   auto stage = exec_.stage("render");
-  RenderPixel<BandTarget<View>> pixel;
-  pixel.scene.target.view = octree_.view();
-  pixel.scene.shown = started_ && options.texture ? shown_.data() : nullptr;
-  return this->draw(pixel, options, Vec3d(Int3(parameters_.resolution)));
+  const BandTarget<View> target{octree_.view()};
+  const float* shown = started_ && options.texture ? shown_.data() : nullptr;
+  return this->draw_target(target, shown, options, Vec3d(domain_.cells));
 }
 
 template <class Backend, class Band>
@@ -368,7 +399,7 @@ std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<BandPoint> host;
-  for (const Vec3d& p : points) host.push_back(band_point(domain_.to_grid(p)));
+  for (const Vec3d& p : this->embedded_places(points)) host.push_back(band_point(p));
   Array<BandPoint> places = arena.template temporary<BandPoint>(host.size());
   places.upload(host);
   Array<float> value = arena.template temporary<float>(host.size());

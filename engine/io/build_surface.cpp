@@ -236,12 +236,14 @@ std::string with_commas(std::size_t number) {
   return digits;
 }
 
-Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings) {
+Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings,
+                      const std::vector<Vec3d>* moved) {
   Triangulation kept = triangulate_all(mesh);
   if (kept.triangles.empty()) fail_without_triangles(mesh, kept.losses, name);
   for (const std::string& warning : mesh.warnings) warnings.push_back(name + ": " + warning);
   kept.losses.report(warnings, name);
   gather_arrays(mesh, kept, name, warnings);
+  if (moved) mesh.points = *moved;
   return compact(mesh, std::move(kept.triangles));
 }
 

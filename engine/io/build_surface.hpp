@@ -14,7 +14,10 @@ namespace nacre {
 /// infinite, triangles without area), moves arrays on cells to the points (mean of the adjacent triangles, weighted by
 /// area), sets NaN and infinite values to 0, and drops points that no triangle uses. Each loss adds one sentence with
 /// counts to `warnings`. Throws Error with `name` (the file) if no triangle is left.
-Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings);
+/// `moved`: positions of the same points at another time; null: none. They become the points of the result, everything
+/// else follows from the mesh's own.
+Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings,
+                      const std::vector<Vec3d>* moved = nullptr);
 
 /// 1234567 as "1,234,567".
 std::string with_commas(std::size_t number);

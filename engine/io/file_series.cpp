@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "compute/device/error.hpp"
 #include "engine/io/build_surface.hpp"
@@ -36,6 +37,8 @@ bool differ(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
 FileSeries::FileSeries(FileSteps files) : files_(std::move(files)), warnings_(files_.warnings) {
   RawMesh mesh = read_step(files_.steps[0], files_.patches);
   file_points_ = mesh.points;
+  file_offsets_ = mesh.offsets;
+  file_corners_ = mesh.connectivity;
   first_ = build_surface(std::move(mesh), name_of(files_.steps[0]), warnings_);
   if (files_.steps.size() > 1) {
     probe_later_steps();
@@ -57,44 +60,45 @@ Surface FileSeries::load(std::size_t k) const {
   assert(k < times().size());
   if (k == 0) return first_;
   bool moved = false;
-  if (families_.times.empty()) return load_file(k, moved);
+  if (families_.times.empty()) {
+    Surface surface = load_file(k, moved);
+    if (moved && !moves_)
+      throw Error(name_of(files_.steps[k]) + " does not fit the first step",
+                  "its points or triangles differ from those of " + name_of(files_.steps[0]) +
+                      ", which those of other steps do not",
+                  "check whether it belongs to the series");
+    return surface;
+  }
   Surface surface = load_file(0, moved);
   select_step(surface, families_, k);
   return surface;
 }
 
+bool FileSeries::has_first_polygons(const RawMesh& mesh) const {
+  return mesh.points.size() == file_points_.size() && mesh.offsets == file_offsets_ &&
+         mesh.connectivity == file_corners_;
+}
+
 Surface FileSeries::load_file(std::size_t k, bool& moved) const {
   const FileStep& step = files_.steps[k];
   RawMesh mesh = read_step(step, files_.patches);
-  const auto fail = [&](const char* what, std::size_t here, std::size_t first) {
-    throw Error(
-        name_of(step) + " does not fit the first step",
-        fmt::format("it has {} {}, {} has {}", with_commas(here), what, name_of(files_.steps[0]), with_commas(first)),
-        "all steps need the same points and triangles");
-  };
-  if (mesh.points.size() != file_points_.size()) fail("points", mesh.points.size(), file_points_.size());
+  std::vector<std::string> warnings;
+  if (!has_first_polygons(mesh)) {
+    moved = true;
+    if (mesh.polygons() == 0) return {};  // for those who look at the motion: it vanishes
+    return build_surface(std::move(mesh), name_of(step), warnings);
+  }
   moved = differ(file_points_, mesh.points);
   // With the points of the first step, the polygons are also triangulated as in the first step.
-  mesh.points = file_points_;
-  std::vector<std::string> warnings;
-  Surface surface = build_surface(std::move(mesh), name_of(step), warnings);
-  if (surface.triangles.size() != first_.triangles.size())
-    fail("usable triangles", surface.triangles.size(), first_.triangles.size());
-  if (surface.triangles != first_.triangles)
-    throw Error(name_of(step) + " does not fit the first step",
-                fmt::format("its {} triangles join other points than those of {}",
-                            with_commas(surface.triangles.size()), name_of(files_.steps[0])),
-                "all steps need the same points and triangles");
-  return surface;
+  const std::vector<Vec3d> points = std::exchange(mesh.points, file_points_);
+  return build_surface(std::move(mesh), name_of(step), warnings, moved ? &points : nullptr);
 }
 
+/// A cycle may end where it began, so the last step alone would not show that a surface moves.
 void FileSeries::probe_later_steps() {
-  // A cycle may end where it began, so the last step alone would not show that a surface moves.
-  bool moves = false;
   const std::size_t last = files_.steps.size() - 1;
-  load_file(1, moves);
-  if (!moves && last > 1) load_file(last, moves);
-  if (moves) warnings_.push_back("The surface moves between the steps; it is shown in the shape of the first step.");
+  for (const std::size_t k : {std::size_t(1), last, (last + 1) / 2})
+    if (!moves_) load_file(k, moves_);
 }
 
 }  // namespace nacre

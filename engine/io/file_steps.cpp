@@ -35,7 +35,7 @@ FileSteps collection_steps(const fs::path& path) {
   const VtkXmlFile file(read_file(path), path);
   if (file.type() != "Collection") fail_reading(path, fmt::format("it holds {}, not a Collection", file.type()));
   FileSteps result;
-  for (CollectionStep& step : read_collection(file)) {
+  for (CollectionStep& step : read_collection(file, &result.warnings)) {
     for (const fs::path& part : step.parts) require_part(part, path);
     result.steps.push_back({step.time, std::move(step.parts)});
   }

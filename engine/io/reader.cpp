@@ -18,7 +18,7 @@ SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths, cons
   try {
     const auto files = std::make_shared<const FileSeries>(find_steps(paths, patches));
     return {paths[0].filename().string(), files->times(), [files](std::size_t k) { return files->load(k); },
-            files->warnings()};
+            files->warnings(), files->moves()};
   } catch (const std::bad_alloc&) {
     fail_reading(paths[0], "it does not fit in memory", "open a smaller file");
   }

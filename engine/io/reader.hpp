@@ -56,10 +56,9 @@ struct FileInfo {
 };
 
 /// Opens one file, a .pvd or .series, or several files of one series in the given order (in the order of their own
-/// TimeValue if all have one). The first step is read at once, and two more to see whether the surface moves; the
-/// others are read on demand. A surface that moves keeps the points of its first step, with a warning. Throws Error if
-/// a file is missing, unreadable, not a surface, or has other points or triangles than the first step. `patches`: names
-/// of the parts to take of a file that VTK reads, as `convert_with_vtk` takes them; empty: all.
+/// TimeValue if all have one). The first step is read at once, and three more to see whether the surface moves; the
+/// others are read on demand. Throws Error if a file is missing, unreadable or not a surface. `patches`: names of the
+/// parts to take of a file that VTK reads, as `convert_with_vtk` takes them; empty: all.
 SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths, const std::string& patches = {});
 
 /// Describes the contents of a file, even if it is not a surface; `choice` for volumes, `patches` for surfaces. Throws

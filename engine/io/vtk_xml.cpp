@@ -7,6 +7,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <set>
+#include <utility>
 
 #include "engine/io/byte_order.hpp"
 #include "engine/io/file_bytes.hpp"
@@ -234,8 +236,9 @@ std::size_t count_attribute(const VtkXmlFile& file, pugi::xml_node node, const c
   return count;
 }
 
-std::vector<CollectionStep> read_collection(const VtkXmlFile& file) {
+std::vector<CollectionStep> read_collection(const VtkXmlFile& file, std::vector<std::string>* warnings) {
   std::vector<CollectionStep> steps;
+  std::set<std::pair<double, std::string>> seen;  // times and parts
   for (const pugi::xml_node entry : file.dataset().children("DataSet")) {
     const std::string name = entry.attribute("file").value();
     if (name.empty()) fail_reading(file.path(), "an entry names no file");
@@ -243,6 +246,11 @@ std::vector<CollectionStep> read_collection(const VtkXmlFile& file) {
     double time = double(steps.size());
     if (entry.attribute("timestep") && (!text.number(time) || !std::isfinite(time)))
       fail_reading(file.path(), fmt::format("the time step of '{}' is not a number", name));
+    const pugi::xml_attribute number = entry.attribute("part");
+    if (number && !seen.emplace(time, number.value()).second && warnings)
+      warnings->push_back(
+          fmt::format("{}: time {:g} repeats; its files, such as '{}', are taken as parts of one surface.",
+                      file.path().string(), time, name));
     const auto same = std::find_if(steps.begin(), steps.end(), [&](const CollectionStep& s) { return s.time == time; });
     const auto part = file.path().parent_path() / name;
     if (same == steps.end())

@@ -78,7 +78,8 @@ struct CollectionStep {
   std::vector<std::filesystem::path> parts;
 };
 
-/// The steps of a .pvd in the order of time, with complete paths. Throws Error if there is none.
-std::vector<CollectionStep> read_collection(const VtkXmlFile& file);
+/// The steps of a .pvd in the order of time, with complete paths. Times that repeat for one part add a sentence each
+/// to `warnings`. Throws Error if there is none.
+std::vector<CollectionStep> read_collection(const VtkXmlFile& file, std::vector<std::string>* warnings = nullptr);
 
 }  // namespace nacre

@@ -23,7 +23,8 @@ class VertexMaker {
     for (std::uint32_t v = newest_[point]; v != none; v = older_[v])
       if (dot(g_.vertices[v].normal, normal) > 1 - 1e-6f || normal == Vec3f{}) return v;
     const std::uint32_t made = std::uint32_t(g_.vertices.size());
-    g_.vertices.push_back({Vec3f((points_[point] - g_.origin) / g_.size), normal, point});
+    const Vec3f position((points_[point] - g_.origin) / g_.size);
+    g_.vertices.push_back({position, normal, point, position});
     older_.push_back(newest_[point]);
     return newest_[point] = made;
   }
@@ -94,6 +95,10 @@ SurfaceGeometry make_surface_geometry(std::span<const Vec3d> points, std::span<c
   return g;
 }
 
+void set_embedded(SurfaceGeometry& geometry, std::span<const Vec3d> embedded) {
+  for (SurfaceVertex& v : geometry.vertices) v.embedded = Vec3f((embedded[v.point] - geometry.origin) / geometry.size);
+}
+
 SurfaceBuffers::SurfaceBuffers(const SurfaceGeometry& g)
     : vertex_(Buffer::of<SurfaceVertex>(g.vertices)),
       triangle_(Buffer::of<Triangle>(g.triangles)),
@@ -115,7 +120,8 @@ SurfaceBuffers::SurfaceBuffers(const SurfaceGeometry& g)
     glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, position));
     glVertexArrayAttribFormat(array, 1, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, normal));
     glVertexArrayAttribIFormat(array, 2, 1, GL_UNSIGNED_INT, offsetof(SurfaceVertex, point));
-    for (GLuint k = 0; k < 3; ++k) {
+    glVertexArrayAttribFormat(array, 4, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, embedded));
+    for (const GLuint k : {0u, 1u, 2u, 4u}) {
       glVertexArrayAttribBinding(array, k, 0);
       glEnableVertexArrayAttrib(array, k);
     }

@@ -17,6 +17,7 @@ struct SurfaceVertex {
   Vec3f position;  ///< model coordinates, 0..1 along the longest side of the bounding box
   Vec3f normal;
   std::uint32_t point;  ///< of the mesh
+  Vec3f embedded{};     ///< where the point is in the shape that is embedded, in the same coordinates
 };
 
 /// Triangles prepared on the host, on any thread.
@@ -33,6 +34,9 @@ struct SurfaceGeometry {
 /// `corner_normals`: three per triangle, or none (for flat shading).
 SurfaceGeometry make_surface_geometry(std::span<const Vec3d> points, std::span<const Triangle> triangles,
                                       std::span<const Vec3f> corner_normals);
+
+/// The vertices of a surface that has moved find their texture where `embedded` has their points.
+void set_embedded(SurfaceGeometry& geometry, std::span<const Vec3d> embedded);
 
 /// The same on the graphics device; immutable. Several passes draw from it.
 class SurfaceBuffers {

@@ -15,7 +15,7 @@ FlowPainter::FlowPainter(FlowPipeline& pipeline, VectorsInTime& input, const Ses
       frame_time_(frame_time),
       map_(colormap(settings_.colormap)),
       colours_(input.colored() ? shown_colours(settings_, map_, input.color_spread()) : ShownColours()),
-      camera_(read_camera(session, triangle_corners(input.surface()), settings_.legend && input.colored())) {
+      camera_(read_camera(session, corners_of_all_steps(input), settings_.legend && input.colored())) {
   if (settings_.background == "transparent")
     transparent_ = true;
   else

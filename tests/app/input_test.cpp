@@ -48,7 +48,7 @@ TEST_P(EverySample, Runs) {
 
 INSTANTIATE_TEST_SUITE_P(Samples, EverySample,
                          ::testing::Values("sphere", "sphere-rotation", "torus", "train", "aircraft", "cylinder",
-                                           "delta-wing"));
+                                           "delta-wing", "pulse"));
 
 TEST_F(Input, MeshesWithoutVectorsTakeAnalyticOnes) {
   Surface surface = octahedron(1);

@@ -16,6 +16,8 @@ auto of_start(const Settings& s) {
   return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power);
 }
 
+auto of_motion(const Settings& s) { return std::tie(s.relative, s.surface_velocity, s.period); }
+
 auto of_steps(const FlowParameters& p) { return std::tie(p.sharpen, p.jitter, p.equalise, p.streaks, p.contrast); }
 
 auto of_arrows(const ViewSettings& l) { return std::tie(l.arrows, l.arrow_count); }
@@ -30,7 +32,7 @@ FlowRerun flow_rerun(const Settings& before, const Settings& after) {
   using enum FlowStage;
   FlowRerun rerun;
   if (before.crease_angle != after.crease_angle || before.patch != after.patch) rerun.add({surface, embed, start});
-  if (before.vectors != after.vectors) rerun.add({vectors, start});
+  if (before.vectors != after.vectors || of_motion(before) != of_motion(after)) rerun.add({vectors, start});
   if (before.color != after.color) rerun.add(colours);
   if (of_arrows(before.view) != of_arrows(after.view)) rerun.add(arrows);
   if (of_embedding(before.flow) != of_embedding(after.flow)) rerun.add({embed, start});

@@ -281,17 +281,22 @@ void FlowScene::take(FlowStepped& told) {
   results_.step_seconds.push_back(float(told.seconds));
   if (results_.step_seconds.size() > 240) results_.step_seconds.erase(results_.step_seconds.begin());
   newest_ = position_after(told.number);
-  kept_.keep(newest_, shown_->values.shown(), told.time, told.scalar, told.vectors);
+  kept_.keep(newest_, shown_->values.shown(), told.time, told.scalar, told.vectors, told.shape);
   shown_->values.drawn();
   if (looks_back_) return;  // at another time; this one is at hand from now on
   position_ = newest_;
   warming_ = false;
-  show_moment(told.time, told.scalar, std::move(told.vectors));
+  show_moment(told.time, told.scalar, std::move(told.vectors), told.shape);
 }
 
-/// Colours, arrows and the stamp of a time.
+/// Colours, arrows and the stamp of a time, and the shape of a surface that moves.
 void FlowScene::show_moment(double time, const std::vector<float>& scalar,
-                            std::shared_ptr<const std::vector<Vec3f>> vectors) {
+                            std::shared_ptr<const std::vector<Vec3f>> vectors,
+                            const std::shared_ptr<const MovedSurface>& shape) {
+  if (shape) {
+    surface_ = SurfaceBuffers(shape->geometry);
+    results_.tree = std::shared_ptr<const TriangleTree>(shape, &shape->tree);
+  }
   results_.time = time;
   show_colours(scalar);
   vectors_ = std::move(vectors);
@@ -340,9 +345,12 @@ void FlowScene::move_arrows() {
   const double speed = std::max(results_.data.statistics.percentile_98, 1e-300), spacing = arrow_spacing();
   for (std::size_t k = 0; k < arrows_.places.size() && vectors_ && results_.tree; ++k) {
     const SurfacePoint& place = arrows_.places[k];
+    // Places on other triangles: new ones are on their way.
+    if (place.triangle >= results_.tree->triangles().size()) continue;
     const Triangle& t = results_.tree->triangles()[place.triangle];
     Vec3d point{};
     Vec3f vector{};
+    if (std::max({t.a, t.b, t.c}) >= vectors_->size()) continue;
     for (int c = 0; c < 3; ++c) {
       point += results_.tree->points()[t[c]] * double(place.weights[c]);
       vector += (*vectors_)[t[c]] * place.weights[c];

@@ -111,7 +111,8 @@ class FlowScene : public Scene {
   /// That of the newest embedding; null: there is none.
   Texture* written() const { return !no_texture_.empty() ? nullptr : next_ ? next_.get() : shown_.get(); }
   void show_colours(const std::vector<float>& scalar);
-  void show_moment(double time, const std::vector<float>& scalar, std::shared_ptr<const std::vector<Vec3f>> vectors);
+  void show_moment(double time, const std::vector<float>& scalar, std::shared_ptr<const std::vector<Vec3f>> vectors,
+                   const std::shared_ptr<const MovedSurface>& shape = {});
   void find_range();
   FlowCaption caption() const;
   void draw_arrows(const View& view);

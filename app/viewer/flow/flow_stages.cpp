@@ -27,7 +27,10 @@ SurfaceRead describe(const VectorsInTime& vectors) {
   SurfaceRead told;
   told.name = vectors.series().name;
   told.geometry = make_surface_geometry(surface.points, surface.triangles, surface.corner_normals);
-  for (const SurfaceVertex& v : told.geometry.vertices) told.corners.push_back(surface.points[v.point]);
+  if (vectors.moves())
+    told.corners = corners_of_all_steps(vectors);
+  else
+    for (const SurfaceVertex& v : told.geometry.vertices) told.corners.push_back(surface.points[v.point]);
   told.tree = std::make_shared<TriangleTree>(surface.points, surface.triangles);
   told.area = surface_area(surface.points, surface.triangles);
   return told;
@@ -53,6 +56,9 @@ void FlowWorker::read() {
     if (read_patch_ != settings_.patch) vectors_.reset();  // another surface
     read_patch_ = settings_.patch;
     if (vectors_) {
+      MotionChoice motion = vectors_->motion();
+      motion.crease_degrees = settings_.crease_angle;
+      if (vectors_->moves()) vectors_->set_motion(motion);
       vectors_->set_surface(prepare(vectors_->series().load(0), settings_.crease_angle));
     } else {
       SurfaceSeries series = input_.sample.empty() ? open_surface(input_.inputs, settings_.patch)
@@ -71,7 +77,7 @@ void FlowWorker::read() {
       vectors_ = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings_, news, &interrupt_));
       shown_time_ = vectors_->start();
     }
-    if (!told_surface) tell(describe(*vectors_));
+    if (!told_surface || vectors_->moves()) tell(describe(*vectors_));
   }
   tell_data(reason, std::move(warnings));
 }
@@ -83,11 +89,14 @@ void FlowWorker::choose() {
   {
     StageTimers::Scope scope(pipeline_->timers(), "read");
     if (doing_ == FlowStage::vectors) {
-      const VectorChoice choice = choose_vectors(vectors_->series().load(0), settings_.vectors);
-      vectors_->set_vectors(choice.name);
-      reason = choice.reason;
+      const Surface first = vectors_->series().load(0);
+      const VectorChoice choice = choose_vectors(first, settings_.vectors);
       FlowLog news;
       news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
+      const MotionChoice motion = choose_motion(vectors_->series(), first, choice.name, settings_, news);
+      vectors_->set_vectors(choice.name);
+      if (!(motion == vectors_->motion())) vectors_->set_motion(motion);
+      reason = choice.reason;
       warn_of_vectors(*vectors_, news);
     } else {
       vectors_->set_color(settings_.color);
@@ -134,10 +143,16 @@ void FlowWorker::embed() {
   has_values_ = false;
   ++embeddings_;
   pipeline_->parameters = settings_.flow;
-  const PreparedSurface& surface = vectors_->surface();
-  pipeline_->embed({surface.points, surface.triangles, surface.corner_normals});
+  const auto warn = [this](const std::string& sentence) { tell_data("", {sentence}); };
+  motion_ = std::make_unique<FlowMotion>(*pipeline_, *vectors_, warn, [this](double t) { return wrapped(t); });
+  span_ = {};
+  motion_->embed(vectors_->moves() ? flow_span(settings_, {vectors_->start(), vectors_->end()}).start : 0);
   take_timers(*pipeline_);
   check_device();
+  tell_embedded();
+}
+
+void FlowWorker::tell_embedded() {
   const FlowMethod& flow = pipeline_->flow();
   FlowEmbedded told{flow.lookup(), {}, flow.embedding(), flow.boxes(), embeddings_};
   if (told.lookup.kind == FlowLookup::Kind::grid) told.rimmed = with_rims(sparse_lookup(told.lookup));
@@ -150,13 +165,16 @@ void FlowWorker::start() {
   const int n = rounds(settings_.flow.steps, loop_);
   const double end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
   FlowVectors vectors = flow_vectors(*vectors_, span_.start, end);
-  vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->vectors(wrapped(t), out); };
+  vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->material_vectors(wrapped(t), out); };
   steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
   pipeline_->parameters = settings_.flow;
   pipeline_->parameters.steps = steps_in_all_;
   const double first = wrapped(span_.start + span_.frame_time);  // of the first frame
   tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first)});
-  pipeline_->flow().start(vectors);
+  if (motion_->start(vectors)) {
+    ++embeddings_;
+    tell_embedded();
+  }
   has_values_ = true;
   steps_made_ = 0;
   {
@@ -171,17 +189,35 @@ void FlowWorker::make_step() {
   const auto before = std::chrono::steady_clock::now();
   pipeline_->parameters = settings_.flow;
   pipeline_->parameters.steps = steps_in_all_;
+  if (motion_->follow()) {  // there are other values from now on: they need other memory
+    ++embeddings_;
+    tell_embedded();
+    place_arrows();
+    return tell(FlowInterrupted{});
+  }
   pipeline_->flow().show_into(memory_);
   pipeline_->flow().step();
+  motion_->show();
   FlowStepped told;
   told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   told.number = ++steps_made_;
   told.time = shown_time_ = wrapped(pipeline_->flow().time());
   told.scalar = scalar(*vectors_, told.time);
   told.vectors = vectors_at(*vectors_, told.time);
+  told.shape = moved_surface(told.time);
   take_timers(*pipeline_);
   check_device();
   tell(std::move(told));
+}
+
+std::shared_ptr<const MovedSurface> FlowWorker::moved_surface(double time) {
+  if (!vectors_->moves()) return nullptr;
+  const PreparedSurface shape = vectors_->shape(time);
+  auto moved = std::make_shared<MovedSurface>();
+  moved->geometry = make_surface_geometry(shape.points, shape.triangles, shape.corner_normals);
+  set_embedded(moved->geometry, vectors_->surface().points);
+  moved->tree = TriangleTree(shape.points, shape.triangles);
+  return moved;
 }
 
 void FlowWorker::answer_sample(const Vec3d& place) {

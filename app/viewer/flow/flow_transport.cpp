@@ -71,7 +71,7 @@ void FlowScene::show_kept(int position) {
   position_ = position;
   looks_back_ = position != newest_;
   warming_ = stale_ = false;
-  show_moment(frame.time, frame.scalar, frame.vectors);
+  show_moment(frame.time, frame.scalar, frame.vectors, frame.shape);
   ++version_;
 }
 

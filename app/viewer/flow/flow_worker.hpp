@@ -20,6 +20,7 @@
 #include "engine/render/sparse_texture.hpp"
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/settings/ranges.hpp"
+#include "engine/scene/surface/flow_motion.hpp"
 #include "engine/scene/surface/spread_points.hpp"
 #include "engine/scene/surface/vectors_in_time.hpp"
 
@@ -35,6 +36,17 @@ struct SurfaceRead {
   std::vector<Vec3d> corners;  ///< points that triangles use
   std::shared_ptr<const TriangleTree> tree;
   double area = 0;
+};
+
+/// A surface that moves, at the time of a frame.
+struct MovedSurface {
+  SurfaceGeometry geometry;
+  TriangleTree tree;
+
+  std::size_t bytes() const {
+    return geometry.vertices.size() * sizeof(SurfaceVertex) + geometry.triangles.size() * 4 * sizeof(Triangle) +
+           tree.points().size_bytes() + tree.triangles().size_bytes() * 4;
+  }
 };
 
 /// Where arrows stand; none: they are off.
@@ -76,6 +88,7 @@ struct FlowStepped {
   int number = 0;                ///< steps since the start
   std::vector<float> scalar;
   std::shared_ptr<const std::vector<Vec3f>> vectors;  ///< one per point, at that time
+  std::shared_ptr<const MovedSurface> shape;          ///< at that time; null: it does not move
 };
 
 /// Shown values at the places that were asked for.
@@ -164,6 +177,8 @@ class FlowWorker : public Worker<FlowEvent> {
   void tell_data(VectorsInTime& vectors, const Range& time, std::string reason, std::vector<std::string> warnings);
   void place_arrows();
   void embed();
+  void tell_embedded();
+  std::shared_ptr<const MovedSurface> moved_surface(double time);
   void start();
   void make_step();
   void answer_sample(const Vec3d& place);
@@ -182,6 +197,7 @@ class FlowWorker : public Worker<FlowEvent> {
   Settings settings_;       ///< of what it does
   std::string read_patch_;  ///< of which `vectors_` are
   std::unique_ptr<VectorsInTime> vectors_;
+  std::unique_ptr<FlowMotion> motion_;  ///< since the last embedding
   FlowSpan span_;
   int steps_made_ = 0, steps_in_all_ = 0;
   double shown_time_ = 0;

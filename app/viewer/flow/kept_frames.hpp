@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/viewer/flow/flow_worker.hpp"
 #include "compute/math/vec.hpp"
 #include "engine/gl/buffer.hpp"
 #include "engine/gl/texture.hpp"
@@ -20,6 +21,7 @@ struct KeptFrame {
   double time = 0;
   std::vector<float> scalar;
   std::shared_ptr<const std::vector<Vec3f>> vectors;
+  std::shared_ptr<const MovedSurface> shape;  ///< null: the surface does not move
   std::size_t bytes = 0;
   std::uint64_t age = 0;  ///< larger than that of all before
 };
@@ -31,7 +33,7 @@ class KeptFrames {
 
   /// Copies `shown` on the graphics device.
   void keep(int position, const Buffer& shown, double time, const std::vector<float>& scalar,
-            std::shared_ptr<const std::vector<Vec3f>> vectors);
+            std::shared_ptr<const std::vector<Vec3f>> vectors, std::shared_ptr<const MovedSurface> shape = {});
   /// Null: there is none.
   const KeptFrame* find(int position) const {
     const auto found = frames_.find(position);

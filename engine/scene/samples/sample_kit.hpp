@@ -26,6 +26,8 @@ struct SampleDefinition {
   int steps = 1;
   std::function<SampleShape(int detail)> shape;
   std::function<SampleField(double time)> flow;  ///< of period 1 in time
+  /// Of a shape that moves with period 1: where a point near `shape` is at a time. Then `flow` is that of the material.
+  std::function<Vec3d(const Vec3d& point, double time)> place = {};
 };
 
 SampleDefinition sphere_sample();
@@ -35,6 +37,10 @@ SampleDefinition train_sample();
 SampleDefinition aircraft_sample();
 SampleDefinition cylinder_sample();
 SampleDefinition delta_wing_sample();
+SampleDefinition pulse_sample();
+
+/// The unit sphere without poles, of triangles of nearly equal size.
+SampleShape unit_sphere_shape(int detail);
 
 /// The definition of that name; throws Error if there is none.
 const SampleDefinition& sample_definition(const std::string& name);

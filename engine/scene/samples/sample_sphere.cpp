@@ -52,6 +52,8 @@ SampleField sphere_flow(double time) {
 
 }  // namespace
 
+SampleShape unit_sphere_shape(int detail) { return sphere_shape(detail); }
+
 SampleDefinition sphere_sample() {
   return {{"sphere", "drifting vortices, sources and sinks on the unit sphere"}, 140, 4, 20, sphere_shape, sphere_flow};
 }

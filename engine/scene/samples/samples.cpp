@@ -19,9 +19,9 @@ namespace {
 constexpr int kMaxDetail = 1024;  // millions of triangles: more would only fill memory
 
 const std::vector<SampleDefinition>& definitions() {
-  static const std::vector<SampleDefinition> all{sphere_sample(),    sphere_rotation_sample(), torus_sample(),
-                                                 train_sample(),     aircraft_sample(),        cylinder_sample(),
-                                                 delta_wing_sample()};
+  static const std::vector<SampleDefinition> all{
+      sphere_sample(),   sphere_rotation_sample(), torus_sample(),      train_sample(),
+      aircraft_sample(), cylinder_sample(),        delta_wing_sample(), pulse_sample()};
   return all;
 }
 
@@ -45,6 +45,24 @@ PointArray velocity_array(const SampleShape& shape, const SampleField& field) {
     for (int axis = 0; axis < 3; ++axis) velocity.values[3 * i + axis] = float(v[axis]);
   });
   return velocity;
+}
+
+/// A step of a shape that moves: the material's flow as it is there, and the velocity of the material itself.
+Surface moved_surface(const SampleShape& shape, const SampleDefinition& definition, double time) {
+  constexpr double dt = 1e-5, ds = 1e-5;
+  const SampleField field = definition.flow(time);
+  const std::size_t n = shape.points.size();
+  Surface surface{std::vector<Vec3d>(n), shape.triangles, {}};
+  PointArray velocity{"velocity", 3, std::vector<float>(3 * n)};
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
+    const Vec3d p = shape.points[i], v = tangential(field(p, shape.normals[i]), shape.normals[i]);
+    surface.points[i] = definition.place(p, time);
+    const Vec3d own = (definition.place(p, time + dt) - definition.place(p, time - dt)) / (2 * dt);
+    const Vec3d along = (definition.place(p + v * ds, time) - definition.place(p - v * ds, time)) / (2 * ds);
+    for (int axis = 0; axis < 3; ++axis) velocity.values[3 * i + axis] = float((own + along)[axis]);
+  });
+  surface.arrays.push_back(std::move(velocity));
+  return surface;
 }
 
 }  // namespace
@@ -73,10 +91,12 @@ SurfaceSeries make_sample(const std::string& name, int detail) {
   SurfaceSeries series;
   series.name = name;
   for (int k = 0; k < definition.steps; ++k) series.times.push_back(double(k) / definition.steps);
-  series.load = [shape, flow = definition.flow, times = series.times, name](std::size_t step) {
+  series.moves = bool(definition.place);
+  series.load = [shape, &definition, flow = definition.flow, times = series.times, name](std::size_t step) {
     if (step >= times.size())
       throw Error(fmt::format("the sample '{}' has no time step {}", name, step),
                   fmt::format("it has {}, counted from 0", times.size()));
+    if (definition.place) return moved_surface(*shape, definition, times[step]);
     return Surface{shape->points, shape->triangles, {velocity_array(*shape, flow(times[step]))}};
   };
   return series;

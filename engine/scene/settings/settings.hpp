@@ -70,11 +70,14 @@ struct Settings {
   ViewSettings view;
   double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
-  std::string patch;         ///< names of the parts of a case to show; empty: all
-  std::string vectors;       ///< array name or @field; empty: chosen
-  double crease_angle = 40;  ///< degrees
-  std::string time;          ///< LO:HI of the data; empty: all of it
-  double begin_at = 0;       ///< share of that time at which the first frame is
+  std::string patch;              ///< names of the parts of a case to show; empty: all
+  std::string vectors;            ///< array name or @field; empty: chosen
+  double crease_angle = 40;       ///< degrees
+  std::string time;               ///< LO:HI of the data; empty: all of it
+  double begin_at = 0;            ///< share of that time at which the first frame is
+  std::string relative = "auto";  ///< auto, on, off: less the velocity of the surface
+  std::string surface_velocity;   ///< an array that has it; empty: from the positions
+  double period = 0;              ///< of the data's time; 0: it does not come round
   std::string color = "speed";
   std::string colormap = "sea";
   std::string color_range;               ///< LO:HI, or percentiles A%:B%; empty: of the data

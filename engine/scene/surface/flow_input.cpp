@@ -6,11 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "compute/device/error.hpp"
+#include "engine/scene/surface/series_motion.hpp"
+
 namespace nacre {
 
 VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowLog& log,
                               const std::atomic<bool>* stop) {
   for (const std::string& warning : series.warnings) log.warn(warning);
+  if (series.moves) series = examine_motion(std::move(series), log.warn, stop);
   const Surface first = series.load(0);
   if (log.read) log.read(first);
   std::vector<std::string> warnings;
@@ -26,13 +30,67 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
     VectorsInTime seen(std::move(alone), surface, choice.name, settings.color, stop);
     log.first_step(seen);
   }
-  VectorsInTime vectors(std::move(series), std::move(surface), choice.name, settings.color, stop);
+  MotionChoice motion = choose_motion(series, first, choice.name, settings, log);
+  VectorsInTime vectors(std::move(series), std::move(surface), choice.name, settings.color, stop, std::move(motion));
   warn_of_vectors(vectors, log);
   return vectors;
 }
 
+MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, const std::string& vectors,
+                           const Settings& settings, const FlowLog& log) {
+  const auto& tell = log.note ? log.note : log.warn;
+  MotionChoice choice{false, settings.surface_velocity, settings.period, settings.crease_angle};
+  const std::size_t groups = series.motion ? series.motion->groups : 0;
+  if (groups == 1)
+    tell(fmt::format("the surface moves: {} shapes of the same triangles; the texture stays with the material",
+                     series.steps()));
+  if (groups > 1)
+    tell(
+        fmt::format("the triangles of the surface change {} times in {} steps: there, values go along the normal to "
+                    "the closest point of the new surface",
+                    groups - 1, series.steps()));
+  if (!choice.surface_velocity.empty()) {
+    const PointArray* array = first.find(choice.surface_velocity);
+    if (!array || array->components != 3)
+      throw Error("`surface_velocity`: the surface has no vectors \"" + choice.surface_velocity + "\"");
+  }
+  const bool from_positions = groups > 0 && groups < series.steps();
+  const bool known = !choice.surface_velocity.empty() || from_positions;
+  const std::string source =
+      choice.surface_velocity.empty() ? "from its positions" : "the array " + choice.surface_velocity;
+  const bool analytic = vectors.starts_with('@');
+  const VectorKind kind = analytic ? VectorKind::other : vector_kind(vectors);
+  if (settings.relative == "on" && !known)
+    throw Error("`relative` on: the velocity of the surface is not known", "its points do not move",
+                "name an array with `surface_velocity`");
+  if (settings.relative == "off" || !known) {
+    if (known && kind == VectorKind::velocity) tell(vectors + " is shown as it is, not relative to the surface");
+    if (groups > 1 && !known)
+      tell(
+          "the velocity of the surface is not known where all steps have other triangles: vectors are shown as they "
+          "are");
+    return choice;
+  }
+  if (kind == VectorKind::wall_shear)
+    tell(vectors + " is wall shear stress: it is never changed by the motion of the surface");
+  else if (analytic)
+    tell(vectors + " flows on the material, whatever the motion of the surface");
+  else if (settings.relative == "on" || kind == VectorKind::velocity)
+    choice.relative = true;
+  else
+    tell(vectors +
+         " is shown as it is: by its name it is no velocity (relative on shows it less the surface's velocity)");
+  if (choice.relative) tell(fmt::format("{} is shown relative to the surface, whose velocity is {}", vectors, source));
+  return choice;
+}
+
 void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log) {
   const VectorStatistics& s = vectors.statistics();
+  if (vectors.surface_speed() > 0 &&
+      s.percentile_98 <= vectors.surface_speed() * vectors.least_relative_speed * (1 + 1e-9))
+    log.warn(
+        fmt::format("{} moves with the surface: relative to it, it is slower than a hundredth of the surface itself",
+                    vectors.array()));
   if (s.percentile_98 <= 0)
     log.warn("the vectors are zero everywhere: the texture will remain noise");
   else if (s.normal_share > 0.5)
@@ -44,7 +102,7 @@ void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log) {
 
 FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const SurfacePart* part) {
   FlowVectors vectors;
-  vectors.at = [&input](double t, std::span<Vec3f> out) { input.vectors(t, out); };
+  vectors.at = [&input](double t, std::span<Vec3f> out) { input.material_vectors(t, out); };
   if (part)
     vectors.at = [&input, part, whole = std::vector<Vec3f>(input.surface().points.size())](
                      double t, std::span<Vec3f> out) mutable {
@@ -56,6 +114,20 @@ FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const S
   const double speed = input.statistics().percentile_98;
   vectors.reference_speed = speed > 0 ? speed : 1;
   return vectors;
+}
+
+std::vector<Vec3d> corners_of_all_steps(const VectorsInTime& input) {
+  std::vector<Vec3d> corners = triangle_corners(input.surface());
+  if (!input.moves()) return corners;
+  const SeriesMotion& motion = *input.series().motion;
+  for (std::size_t k = 0; k < motion.low.size(); ++k)
+    for (int corner = 0; corner < 8; ++corner) {
+      Vec3d p = motion.low[k];
+      for (int axis = 0; axis < 3; ++axis)
+        if (corner >> axis & 1) p[axis] = motion.high[k][axis];
+      corners.push_back(p);
+    }
+  return corners;
 }
 
 std::vector<Vec3d> triangle_corners(const PreparedSurface& surface) {

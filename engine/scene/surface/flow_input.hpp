@@ -16,8 +16,9 @@ namespace nacre {
 /// Receives what a user should know, in the order in which it is found; full sentences.
 struct FlowLog {
   std::function<void(const std::string& sentence)> warn;
-  std::function<void(const VectorChoice& choice)> chosen;  ///< which vectors, and why
-  std::function<void(const Surface& first)> read = {};     ///< the first step, before a choice is made; may be empty
+  std::function<void(const VectorChoice& choice)> chosen;      ///< which vectors, and why
+  std::function<void(const std::string& sentence)> note = {};  ///< what was decided; empty: to `warn`
+  std::function<void(const Surface& first)> read = {};  ///< the first step, before a choice is made; may be empty
   /// The first step alone, as it can be shown before all others are looked at: its own statistics and range of colours.
   /// Not told where there is only one; may be empty.
   std::function<void(VectorsInTime& first)> first_step = {};
@@ -28,12 +29,21 @@ struct FlowLog {
 VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowLog& log,
                               const std::atomic<bool>* stop = nullptr);
 
+/// By the knobs `relative`, `surface_velocity`, `period` and `crease_angle`; tells the log what is decided. Velocities
+/// are taken relative to a surface whose own velocity is known, wall shear stress never is, other vectors only where
+/// that is asked for. Throws Error where it is and no velocity is known.
+MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, const std::string& vectors,
+                           const Settings& settings, const FlowLog& log);
+
 /// Warns where the vectors show little: all zero, mostly normal to the surface, zero in many places.
 void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log);
 
 /// The vectors of `input` between two times of the data, as the flow pipeline takes them: on the whole surface or, if
 /// `part` is given, on that. Both must outlive them. Where nothing moves, the reference speed is 1.
 FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const SurfacePart* part = nullptr);
+
+/// What a camera must see of all steps: `triangle_corners`, and the corners of the boxes around later shapes.
+std::vector<Vec3d> corners_of_all_steps(const VectorsInTime& input);
 
 /// The corners of all triangles, one after the other: what a camera must see. Points that no triangle uses do not
 /// count.

@@ -166,6 +166,10 @@ void require_triangles(const PreparedSurface& surface, std::string_view why) {
 
 }  // namespace
 
+void update_normals(PreparedSurface& surface, std::span<const std::uint32_t> same, double crease_degrees) {
+  add_corner_normals(surface, same, shapes_of(surface), crease_degrees);
+}
+
 PreparedSurface prepare(const Surface& surface, double crease_degrees, std::vector<std::string>* warnings) {
   if (surface.triangles.size() > 0xfffffffdu / 3)
     throw Error("the surface has too many triangles", fmt::format("{}", surface.triangles.size()),

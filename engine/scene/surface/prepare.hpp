@@ -27,6 +27,14 @@ struct PreparedSurface {
 PreparedSurface prepare(const Surface& surface, double crease_degrees = 40.0,
                         std::vector<std::string>* warnings = nullptr);
 
+/// The corner normals of other positions of the same points, by the same rule. `same[point]`: the first point at its
+/// position in the shape that was prepared (first_at_position), so that parts which only touch stay apart.
+void update_normals(PreparedSurface& surface, std::span<const std::uint32_t> same, double crease_degrees);
+
+/// What a name says about the motion of a surface.
+enum class VectorKind { other, wall_shear, velocity };
+VectorKind vector_kind(const std::string& name);
+
 /// The array to show, and a phrase that says why it is this one.
 struct VectorChoice {
   std::string name;

@@ -189,6 +189,13 @@ std::string describe(const Candidate& best, const std::vector<Candidate>& all) {
 
 }  // namespace
 
+VectorKind vector_kind(const std::string& name) {
+  const Kind kind = kind_of(name);
+  return kind == Kind::wall_shear ? VectorKind::wall_shear
+         : kind == Kind::velocity ? VectorKind::velocity
+                                  : VectorKind::other;
+}
+
 VectorChoice choose_vectors(const Surface& surface, const std::string& request) {
   if (!request.empty()) return request[0] == '@' ? choose_analytic(request) : choose_named(surface, request);
   const std::vector<Candidate> all = candidates(surface);

@@ -1,6 +1,7 @@
 // Nacre: vectors and colours of a series at any time.
 #include "engine/scene/surface/vectors_in_time.hpp"
 
+#include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -8,20 +9,12 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/surface/haemodynamics.hpp"
+#include "engine/scene/surface/material_map.hpp"
+#include "engine/scene/surface/winding.hpp"
 
 namespace nacre {
 namespace {
-
-constexpr std::size_t largest_sample = 1 << 16;  ///< about; of the values that percentiles are taken of
-
-/// Mean corner normal of each point: what speed on the surface is measured against.
-std::vector<Vec3f> point_normals(const PreparedSurface& surface) {
-  std::vector<Vec3f> normals(surface.points.size());
-  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) normals[surface.triangles[t][k]] += surface.corner_normals[3 * t + k];
-  for (Vec3f& n : normals) n = normalized(n);
-  return normals;
-}
 
 const PointArray& array_of(const Surface& surface, const std::string& name, std::size_t points, std::size_t step) {
   const PointArray* array = surface.find(name);
@@ -37,35 +30,82 @@ const PointArray& array_of(const Surface& surface, const std::string& name, std:
 
 }  // namespace
 
+std::vector<Vec3f> point_normals(const PreparedSurface& surface) {
+  std::vector<Vec3f> normals(surface.points.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) normals[surface.triangles[t][k]] += surface.corner_normals[3 * t + k];
+  for (Vec3f& n : normals) n = normalized(n);
+  return normals;
+}
+
 VectorsInTime::VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color,
-                             const std::atomic<bool>* stop)
+                             const std::atomic<bool>* stop, MotionChoice motion)
     : series_(std::move(series)),
-      surface_(std::move(surface)),
-      point_normals_(point_normals(surface_)),
       start_(series_.times.front()),
+      steps_(std::size_t(series_.motion ? 4 : 2)),
+      motion_(std::move(motion)),
       stop_(stop) {
+  check_period();
+  begin_group(std::move(surface));
   choose(vectors, color);
   survey();
+}
+
+/// The time of the data is not longer than a period.
+void VectorsInTime::check_period() const {
+  const double length = series_.times.back() - series_.times.front();
+  if (motion_.period > 0 && length > motion_.period * (1 + 1e-9))
+    throw Error(fmt::format("`period` {:g} is shorter than the time of the data", motion_.period),
+                fmt::format("that goes from {:g} to {:g}", series_.times.front(), series_.times.back()),
+                fmt::format("use {:g} or more", length));
+}
+
+void VectorsInTime::begin_group(PreparedSurface surface) {
+  surface_ = std::move(surface);
+  point_normals_ = point_normals(surface_);
+  first_ = 0;
+  last_ = series_.steps() - 1;
+  if (!series_.motion) return;
+  const std::vector<std::size_t>& group = series_.motion->group;
+  first_ = std::size_t(std::lower_bound(group.begin(), group.end(), group_) - group.begin());
+  last_ = std::size_t(std::upper_bound(group.begin(), group.end(), group_) - group.begin()) - 1;
+  same_ = first_at_position(surface_.points);
+  began_ = surface_;
+  for (Step& step : steps_) step = {};
 }
 
 void VectorsInTime::choose(const std::string& vectors, const std::string& color) {
   vectors_ = vectors;
   color_ = color;
   analytic_ = !vectors_.empty() && vectors_[0] == '@';
-  end_ = series_.times.back();
-  if (analytic_ && series_.steps() == 1) end_ = vectors_ == "@swirl" ? start_ + 1 : start_;
+  end_ = motion_.period > 0 ? start_ + motion_.period : series_.times.back();
+  if (analytic_ && motion_.period == 0 && series_.steps() == 1) end_ = vectors_ == "@swirl" ? start_ + 1 : start_;
   for (Step& step : steps_) step = {};
+  derived_ = is_haemodynamic(color_) && !series_.load(0).find(color_);
 }
 
 void VectorsInTime::set_surface(PreparedSurface surface) {
-  std::swap(surface_, surface);
-  std::vector<Vec3f> normals = point_normals(surface_);
-  std::swap(point_normals_, normals);
+  PreparedSurface before = surface_;
+  const std::size_t group = std::exchange(group_, 0);
+  begin_group(std::move(surface));
   try {
     survey();
   } catch (...) {
-    surface_ = std::move(surface);
-    point_normals_ = std::move(normals);
+    group_ = group;
+    begin_group(std::move(before));
+    throw;
+  }
+}
+
+void VectorsInTime::set_motion(const MotionChoice& motion) {
+  const MotionChoice before = std::exchange(motion_, motion);
+  try {
+    check_period();
+    choose(vectors_, color_);
+    survey();
+  } catch (...) {
+    motion_ = before;
+    choose(vectors_, color_);
     throw;
   }
 }
@@ -96,16 +136,21 @@ VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
   Step step;
   step.number = number;
   const std::size_t n = surface_.points.size();
-  const bool needs_file = !analytic_ || (color_ != "speed" && color_ != "none");
+  const bool needs_file = moves() || !analytic_ || colours_by_array();
   const Surface surface = needs_file ? series_.load(number) : Surface{};
-  if (!analytic_) {
-    const PointArray& array = array_of(surface, vectors_, n, number);
-    if (array.components != 3) throw Error("array '" + vectors_ + "' does not have three components");
-    step.vectors.resize(n);
+  const auto vectors_of = [&](const std::string& name) {
+    const PointArray& array = array_of(surface, name, n, number);
+    if (array.components != 3) throw Error("array '" + name + "' does not have three components");
+    std::vector<Vec3f> vectors(n);
     for (std::size_t i = 0; i < n; ++i)
-      step.vectors[i] = {array.values[3 * i], array.values[3 * i + 1], array.values[3 * i + 2]};
-  }
-  if (color_ != "speed" && color_ != "none") {
+      vectors[i] = {array.values[3 * i], array.values[3 * i + 1], array.values[3 * i + 2]};
+    return vectors;
+  };
+  if (!analytic_) step.vectors = vectors_of(vectors_);
+  if (motion_.relative && !motion_.surface_velocity.empty())
+    step.surface_velocity = vectors_of(motion_.surface_velocity);
+  if (moves()) step.points = surface.points;
+  if (colours_by_array()) {
     const PointArray& array = array_of(surface, color_, n, number);
     step.scalar.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
@@ -118,26 +163,42 @@ VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
 }
 
 const VectorsInTime::Step& VectorsInTime::step(std::size_t number) {
-  for (std::size_t k = 0; k < 2; ++k)
-    if (steps_[k].number == number) {
-      oldest_ = 1 - k;  // who asks for two holds on to the first
-      return steps_[k];
+  for (Step& step : steps_)
+    if (step.number == number) {
+      step.used = ++uses_;
+      return step;
     }
-  Step& place = steps_[oldest_];
-  place = load(number);
-  oldest_ = 1 - oldest_;
-  return place;
+  Step& oldest =
+      *std::min_element(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) { return a.used < b.used; });
+  oldest = load(number);
+  oldest.used = ++uses_;
+  return oldest;
+}
+
+double VectorsInTime::time_in_period(double t) const {
+  if (!(motion_.period > 0)) return t;
+  const double since = std::fmod(t - start_, motion_.period);
+  return start_ + (since < 0 ? since + motion_.period : since);
 }
 
 VectorsInTime::Between VectorsInTime::around(double t) const {
   const std::vector<double>& times = series_.times;
+  t = time_in_period(t);
   const auto after = std::size_t(std::upper_bound(times.begin(), times.end(), t) - times.begin());
-  if (after == 0) return {0, 0, 0};
-  if (after == times.size()) return {after - 1, after - 1, 0};
+  if (after == times.size() && motion_.period > 0 && first_ == 0 && last_ + 1 == times.size()) {  // to the first again
+    const double gap = start_ + motion_.period - times.back();
+    return gap > 1e-9 * motion_.period ? Between{last_, 0, float((t - times.back()) / gap)} : Between{last_, last_, 0};
+  }
+  if (after <= first_) return {first_, first_, 0};
+  if (after > last_) return {last_, last_, 0};
   return {after - 1, after, float((t - times[after - 1]) / (times[after] - times[after - 1]))};
 }
 
 void VectorsInTime::vectors(double t, std::span<Vec3f> out) {
+  if (analytic_ && moves()) {  // a flow on the material
+    const std::vector<Vec3f> values = analytic_vectors(vectors_, began_, t);
+    return transfer_vectors(began_.points, points(t), surface_.triangles, values, out);
+  }
   if (analytic_) {
     const std::vector<Vec3f> values = analytic_vectors(vectors_, surface_, t);
     std::copy(values.begin(), values.end(), out.begin());
@@ -147,6 +208,7 @@ void VectorsInTime::vectors(double t, std::span<Vec3f> out) {
   const std::vector<Vec3f>& a = step(at.before).vectors;
   const std::vector<Vec3f>& b = step(at.after).vectors;
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = a[i] + (b[i] - a[i]) * at.share;
+  if (motion_.relative) add_surface_velocity(at, -1, out);
 }
 
 std::vector<float> VectorsInTime::scalar(double t) {
@@ -154,9 +216,11 @@ std::vector<float> VectorsInTime::scalar(double t) {
   if (color_ == "speed") {
     std::vector<Vec3f> v(result.size());
     vectors(t, v);
+    if (moves()) return speeds(shape(t), v);
     for (std::size_t i = 0; i < v.size(); ++i) result[i] = speed_of(v[i], i);
     return result;
   }
+  if (derived_) return derived_scalar_;
   const Between at = around(t);
   const std::vector<float>& a = step(at.before).scalar;
   const std::vector<float>& b = step(at.after).scalar;
@@ -170,6 +234,8 @@ float VectorsInTime::speed_of(const Vec3f& vector, std::size_t point) const {
 }
 
 void VectorsInTime::survey(bool vectors_too) {
+  if (derived_) derived_scalar_ = haemodynamic_array(haemodynamics(*this), color_);
+  if (moves()) return survey_motion(vectors_too);
   ColourSurvey speeds, values;
   const bool scalars = color_ != "none" && color_ != "speed";
   VectorStatistics all = statistics_;

@@ -186,7 +186,7 @@ TEST(SampleList, EveryNameCanBeMade) {
     names.push_back(info.name);
   }
   EXPECT_EQ(names, (std::vector<std::string>{"sphere", "sphere-rotation", "torus", "train", "aircraft", "cylinder",
-                                             "delta-wing"}));
+                                             "delta-wing", "pulse"}));
 }
 
 TEST(SampleList, DefaultsShowNoFacets) {
@@ -220,6 +220,18 @@ TEST(SampleSphereRotation, TurnsRigidlyAboutZ) {
     const Vec3d& p = surface.points[i];
     ASSERT_LT(length(velocity_at(surface, i) - Vec3d{-p.y, p.x, 0}), 1e-6);
   }
+}
+
+TEST(SamplePulse, MovesWithPeriodOneAndItsVelocityHasThatOfTheSurface) {
+  const SurfaceSeries series = make_sample("pulse", 12);
+  EXPECT_TRUE(series.moves);
+  const Surface a = series.load(0), b = series.load(1);
+  EXPECT_EQ(a.triangles, b.triangles);
+  EXPECT_GT(length(a.points[0] - b.points[0]), 1e-3);
+  const auto& place = sample_definition("pulse").place;
+  const Vec3d p(0.6, 0, 0.8);
+  EXPECT_LT(length(place(p, 0.2) - place(p, 1.2)), 1e-12);
+  EXPECT_EQ(check_mesh(b.points, b.triangles).open_half_edges, 0u);
 }
 
 TEST(SampleDeltaWing, WindsCloselyButNeverMeetsItself) {
