@@ -36,7 +36,7 @@ void check_options(const MeshOptions& options, const Session& session) {
   check_picture_size(settings.width, settings.height, !options.image.empty(), false);
   check_mesh_outputs(options);
   if (wants_cells(options) && settings.mesh.triangles == "stars")
-    throw UsageError("tetrahedra need `triangulation` to be delaunay; leave it so, or write a surface");
+    throw UsageError("tetrahedra need `triangulation` to be auto or delaunay; leave it so, or write a surface");
 }
 
 /// Reads the volumes and makes materials of them; `input` is told what the report wants to know.
@@ -69,6 +69,7 @@ void check_interrupt(bool kept) {
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
                    const MeshVolume& volume, MeshPipeline& pipeline, Progress& bar) {
   MeshResult result;
+  if (wants_cells(options) && pipeline.parameters.triangles == "auto") pipeline.parameters.triangles = "delaunay";
   pipeline.load(volume);
   pipeline.build_fields();
   bar.clear();

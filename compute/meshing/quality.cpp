@@ -117,6 +117,19 @@ SurfaceQuality surface_quality(const SurfaceMesh& mesh) {
   return {all.result(), away.result()};
 }
 
+std::vector<std::uint32_t> triangles_short_of(const SurfaceMesh& mesh, double angle, double ratio) {
+  const std::vector<std::uint8_t> at_junction = junction_points(mesh);
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    if (at_junction[t.a] || at_junction[t.b] || at_junction[t.c]) continue;
+    const Vec3d &a = mesh.points[t.a], &b = mesh.points[t.b], &c = mesh.points[t.c];
+    const auto angles = triangle_angles(a, b, c);
+    if (radius_ratio(a, b, c) < ratio || *std::min_element(angles.begin(), angles.end()) < angle) found.push_back(i);
+  }
+  return found;
+}
+
 CellQuality cell_quality(const TetrahedralMesh& mesh, int materials) {
   CellQuality q;
   q.volume.resize(std::size_t(materials));

@@ -40,6 +40,10 @@ struct SurfaceQuality {
 /// Shape of the triangles of `mesh`, whose corners are points.
 SurfaceQuality surface_quality(const SurfaceMesh& mesh);
 
+/// The triangles without a corner on a junction that have an angle under `angle` degrees or a radius ratio under
+/// `ratio`, ascending.
+std::vector<std::uint32_t> triangles_short_of(const SurfaceMesh& mesh, double angle, double ratio);
+
 /// Of all cells of a tetrahedral mesh; zeros where it is empty. Angles in degrees.
 struct CellQuality {
   std::int64_t cells = 0;

@@ -7,17 +7,18 @@ namespace nacre {
 
 /// Of one mesh.
 struct StarCounts {
-  std::int64_t stars = 0;        ///< a particle has one on each of its surfaces
-  std::int64_t disagreeing = 0;  ///< of these, with a triangle that another corner does not have
-  std::int64_t holes = 0;        ///< between agreed triangles, filled one by one
-  std::int64_t filled = 0;       ///< triangles in them
-  std::int64_t left_out = 0;     ///< particles that no triangle has
+  std::int64_t stars = 0;       ///< a particle has one on each of its surfaces
+  std::int64_t unsettled = 0;   ///< of these, with a triangle that another corner does not have, after all rounds
+  std::int64_t holes = 0;       ///< between agreed triangles, filled one by one
+  std::int64_t filled = 0;      ///< triangles in them
+  std::int64_t left_out = 0;    ///< particles that no triangle has
+  std::int64_t in_patches = 0;  ///< particles whose triangles are facets of Delaunay cells of what is around them
 };
 
 /// Of all meshes that an improvement made.
 struct StarUse {
   std::int64_t meshes = 0;     ///< from stars
-  std::int64_t fallbacks = 0;  ///< by the Delaunay triangulation, since the stars' mesh was not sound
+  std::int64_t fallbacks = 0;  ///< by the Delaunay triangulation of all particles
   StarCounts last;             ///< of the last mesh that was tried
 };
 

@@ -89,7 +89,7 @@ void add_orphans(StarHoles& found, const StarItems& items, const std::vector<Sta
     if (best != votes.end() && best->second >= 2)
       found.holes[best->first].within.push_back(i);
     else if (unused_neighbours(stars, star) >= 3)
-      ++found.alone;  // else it stands beside a surface that does without it, or for a speck of one
+      found.alone.push_back(i);  // else it stands beside a surface that does without it, or for a speck of one
   }
 }
 
@@ -244,7 +244,7 @@ StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars) {
       side = follow(sides, *side, items);
     }
     if (!side)
-      ++found.open;
+      found.open.insert(found.open.end(), hole.loop.begin(), hole.loop.end());
     else
       found.holes.push_back(std::move(hole));
   }

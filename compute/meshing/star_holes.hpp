@@ -16,8 +16,9 @@ struct StarHole {
 
 struct StarHoles {
   std::vector<StarHole> holes;
-  std::int64_t alone = 0;  ///< items in no hole without a triangle, among others such: maybe a body of its own
-  std::int64_t open = 0;   ///< chains of edges that do not close: a rim is broken there
+  std::vector<std::uint32_t>
+      alone;                        ///< items in no hole without a triangle, among others such: maybe a body of its own
+  std::vector<std::uint32_t> open;  ///< items of chains of edges that do not close: a rim is broken there
 };
 
 /// All holes, ascending by their smallest items.

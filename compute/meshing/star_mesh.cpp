@@ -11,11 +11,12 @@
 namespace nacre {
 namespace {
 
-constexpr double most_disagreeing = 0.12;  // share of the stars: beyond, the surfaces are too coarsely sampled
-constexpr std::size_t largest_hole = 40;   // sides: beyond, its shape is no longer given by what is around it
+constexpr std::size_t largest_hole = 12;  // sides: beyond, its shape is no longer given by what is around it
 
+/// Whether a star does without a hole: all its triangles are agreed, or it has none, as a particle beyond a rim has.
 bool agrees(const StarItems& items, const Star& star, std::uint32_t i) {
   if (star.count < 2 || (!star.closed && items.next[i] == none)) return false;
+  if (star.gaps != 0 && star.agreed == 0) return true;
   for (int k = 0; k < star.count; ++k)
     if ((star.closed || k + 1 < star.count) && !(star.agreed >> k & 1)) return false;
   return true;
@@ -34,24 +35,28 @@ std::vector<Triangle> agreed_triangles(const std::vector<Star>& stars) {
   return triangles;
 }
 
-/// Whether edges of filled holes are passed once each way, counting the agreed triangles beside them.
-bool edges_match(const StarItems& items, const std::vector<Star>& stars, std::span<const Triangle> filled) {
+/// Items at edges of filled holes that are not passed once each way, counting the agreed triangles beside them.
+std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vector<Star>& stars,
+                                        std::span<const Triangle> filled) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const Triangle& t : filled)
     for (int k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
   std::sort(edges.begin(), edges.end());
-  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
   const auto agreed = [&](std::uint32_t a, std::uint32_t b) {
     const Star& star = stars[a];
     for (int k = 0; k < star.count; ++k)
       if (star.ring[std::size_t(k)] == b) return (star.agreed >> k & 1) != 0;
     return false;
   };
-  return std::all_of(edges.begin(), edges.end(), [&](const auto& e) {
-    if (agreed(e[0], e[1])) return false;
-    if (items.next[e[0]] == e[1]) return true;  // the surface ends here
-    return agreed(e[1], e[0]) || std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]});
-  });
+  std::vector<std::uint32_t> odd;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const auto& e = edges[i];
+    const bool twice = i + 1 < edges.size() && edges[i + 1] == e;
+    const bool ends = items.next[e[0]] == e[1];  // the surface ends here
+    const bool back = agreed(e[1], e[0]) || std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]});
+    if (twice || agreed(e[0], e[1]) || (!ends && !back)) odd.insert(odd.end(), e.begin(), e.end());
+  }
+  return odd;
 }
 
 /// Of two triangles with the same corners, what is left without the material between them: one triangle or, where the
@@ -97,50 +102,63 @@ void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_it
   made.triangles.resize(kept), made.materials.resize(kept);
 }
 
-/// Fills the holes; false where one cannot be filled.
-bool fill(const StarItems& items, const std::vector<Star>& stars, const std::vector<StarHole>& holes,
-          std::vector<Triangle>& triangles) {
+/// Fills the holes; returns the items of those that cannot be filled.
+std::vector<std::uint32_t> fill(const StarItems& items, const std::vector<Star>& stars,
+                                const std::vector<StarHole>& holes, std::vector<Triangle>& triangles) {
   std::vector<std::vector<Triangle>> fillings(holes.size());
   tbb::parallel_for(std::size_t(0), holes.size(), [&](std::size_t i) {
     if (holes[i].loop.size() <= largest_hole) fillings[i] = fill_hole(items, stars, holes[i]);
   });
-  for (const std::vector<Triangle>& filling : fillings) {
-    if (filling.empty()) return false;
-    triangles.insert(triangles.end(), filling.begin(), filling.end());
+  std::vector<std::uint32_t> open;
+  for (std::size_t i = 0; i < holes.size(); ++i) {
+    triangles.insert(triangles.end(), fillings[i].begin(), fillings[i].end());
+    if (!fillings[i].empty()) continue;
+    open.insert(open.end(), holes[i].loop.begin(), holes[i].loop.end());
+    open.insert(open.end(), holes[i].within.begin(), holes[i].within.end());
   }
-  return true;
+  return open;
 }
 
-/// Whether each material that has an interface has triangles.
-bool has_all_materials(const StarItems& items, const StarMesh& made) {
+/// Items on the surfaces of materials that have no triangle.
+std::vector<std::uint32_t> of_lost_materials(const StarItems& items, const StarMesh& made) {
   std::vector<std::uint8_t> there(0x10000, 0);
   for (const auto& [low, high] : made.materials) there[low] = there[high] = 1;
-  return std::all_of(items.materials.begin(), items.materials.end(),
-                     [&](const auto& pair) { return there[pair[0]] && there[pair[1]]; });
+  std::vector<std::uint32_t> lost;
+  for (std::uint32_t s = 0; s < items.materials.size(); ++s)
+    if (!there[items.materials[s][0]] || !there[items.materials[s][1]])
+      for (std::uint32_t i = items.first[s]; i < items.first[s + 1]; ++i) lost.push_back(i);
+  return lost;
 }
 
 }  // namespace
 
 StarMesh mesh_from_stars(const StarParticles& particles) {
+  StarFinder finder;
+  return mesh_from_stars(particles, finder);
+}
+
+StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   StarMesh made;
   const StarItems items = star_items(particles);
   made.counts.stars = std::int64_t(items.count());
-  if (items.open_rims > 0) return made;
-  const std::vector<Star> stars = find_stars(items);
-  for (std::uint32_t i = 0; i < items.count(); ++i) made.counts.disagreeing += !agrees(items, stars[i], i);
-  if (double(made.counts.disagreeing) > most_disagreeing * double(items.count())) return made;
+  made.unsettled = items.broken;
+  const auto unsettle = [&](std::span<const std::uint32_t> some) {
+    for (const std::uint32_t i : some) made.unsettled.push_back(items.particle[i]);
+  };
+  const std::vector<Star> stars = finder.find(items);
+  for (std::uint32_t i = 0; i < items.count(); ++i) made.counts.unsettled += !agrees(items, stars[i], i);
   const StarHoles found = find_holes(items, stars);
   made.counts.holes = std::int64_t(found.holes.size());
-  if (found.open > 0 || found.alone > 0) return made;
+  unsettle(found.alone);
+  unsettle(found.open);
 
   std::vector<Triangle> triangles = agreed_triangles(stars);
   const std::size_t agreed = triangles.size();
-  if (!fill(items, stars, found.holes, triangles)) return made;
+  unsettle(fill(items, stars, found.holes, triangles));
   const std::span<const Triangle> filled = std::span(triangles).subspan(agreed);
   made.counts.filled = std::int64_t(filled.size());
-  if (!edges_match(items, stars, filled)) return made;
+  unsettle(at_odd_edges(items, stars, filled));
 
-  std::vector<std::uint8_t> used(particles.count(), 0);
   made.triangles.reserve(triangles.size());
   made.materials.reserve(triangles.size());
   for (const Triangle& t : triangles) {
@@ -148,10 +166,13 @@ StarMesh mesh_from_stars(const StarParticles& particles) {
     made.materials.push_back(items.materials[items.surface[t.a]]);
   }
   remove_doubles(items, triangles, made);
+  unsettle(of_lost_materials(items, made));
+  std::sort(made.unsettled.begin(), made.unsettled.end());
+  made.unsettled.erase(std::unique(made.unsettled.begin(), made.unsettled.end()), made.unsettled.end());
+  std::vector<std::uint8_t> used(particles.count(), 0);
   for (const Triangle& t : made.triangles)
     for (int k = 0; k < 3; ++k) used[t[k]] = 1;
   made.counts.left_out = std::count(used.begin(), used.end(), 0);
-  made.sound = !made.triangles.empty() && has_all_materials(items, made);
   return made;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compute/meshing/star_counts.hpp"
-#include "compute/meshing/stars.hpp"
+#include "compute/meshing/star_finder.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
@@ -14,13 +14,18 @@ struct StarMesh {
   std::vector<Triangle> triangles;  ///< corners are particles; counter-clockwise seen from the lower material
   std::vector<std::array<std::uint16_t, 2>> materials;  ///< per triangle, ascending
   StarCounts counts;
-  /// Every rim is whole, every hole is filled, nothing that may be a body is left out, and few stars disagree. Only
-  /// then is the mesh closed around every material, and fit for use.
-  bool sound = false;
+  /// Particles around which triangles are missing, or overlap, ascending: a rim is broken, a hole is too large or
+  /// cannot be filled, or what may be a body is left out. Where there are none, the mesh is closed around every
+  /// material.
+  std::vector<std::uint32_t> unsettled;
+
+  bool sound() const { return unsettled.empty() && !triangles.empty(); }
 };
 
-/// The surfaces between all materials as one mesh. In parallel; the result depends on the particles alone. Where
-/// stars disagree beyond what filling mends, the mesh is not sound, and the Delaunay triangulation is to be used.
+/// The surfaces between all materials as one mesh. In parallel; the result depends on the particles alone.
 StarMesh mesh_from_stars(const StarParticles& particles);
+
+/// The same, of particles that are much as they were at the last call with this finder.
+StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder);
 
 }  // namespace nacre

@@ -5,10 +5,9 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <tuple>
-
-#include "compute/meshing/point_tree.hpp"
 
 namespace nacre {
 namespace {
@@ -16,6 +15,7 @@ namespace {
 constexpr double first_reach = 2.1;  // sizes within which neighbours are looked for at first,
 constexpr double last_reach = 5;     // and at last
 constexpr double same_side = -0.4;   // neighbours' normals differ by no more (cosine)
+constexpr double bent = 0.5;         // cosine under which a neighbour is unfolded into the plane
 constexpr double tie = 1e-7;         // weight of a particle at most, squares of its size
 constexpr double coincident = 1e-5;  // sizes: nearer ones count as one
 
@@ -62,7 +62,7 @@ std::uint32_t find_item(const StarItems& items, std::uint32_t low, std::uint32_t
 /// curve, the two others to its right.
 void add_rims(StarItems& items, const std::vector<CurveNode>& nodes) {
   for (const CurveNode& node : nodes) {
-    items.open_rims += node.is_broken();
+    if (node.is_broken()) items.broken.push_back(node.particle);
     if (node.next == none || node.is_idle()) continue;
     Junction curve;
     curve.packed = node.curve;
@@ -76,11 +76,14 @@ void add_rims(StarItems& items, const std::vector<CurveNode>& nodes) {
         items.previous[along ? there : here] = along ? here : there;
       }
   }
+  std::sort(items.broken.begin(), items.broken.end());
 }
 
-/// A number in [0, 1) that looks random, by a particle's number alone.
-double hash(std::uint32_t i) {
-  std::uint64_t x = (i + 1) * 0x9e3779b97f4a7c15ull;
+/// A number in [0, 1) that looks random, by the place alone.
+double hash(const Vec3d& place) {
+  std::uint64_t x = 0;
+  for (const double c : {place.x, place.y, place.z})
+    x = (std::rotl(x, 21) ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15ull;  // -0 is 0
   x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9ull;
   return double((x ^ x >> 29) >> 11) * 0x1p-53;
 }
@@ -98,16 +101,20 @@ class Cutter {
     v_ = cross(normal_, u_);
     next_ = items_.next[item], previous_ = items_.previous[item];
     const bool rim = next_ != none && previous_ != none;
+    reach_ = 0;
     if (rim != (next_ != none || previous_ != none)) return {};
     if (rim) set_sector();
     const double size = items_.size[item];
     for (double reach = first_reach * size;;) {
+      reach_ = reach;
       if (!cut_within(reach, rim)) return hidden_star();
       const double needed = 2 * std::sqrt(farthest2(rim));
       if (needed <= reach || reach >= last_reach * size) break;
       reach = std::min(std::max(1.001 * needed, 1.3 * reach), last_reach * size);
     }
-    return rim ? rim_star() : closed_star();
+    Star star = rim ? rim_star() : closed_star();
+    star.reach = float(1.001 * reach_);
+    return star;
   }
 
  private:
@@ -158,7 +165,11 @@ class Cutter {
         continue;
       }
       if (dot(normal_, items_.normal[q]) < same_side) continue;
-      const auto [u, v] = in_plane(items_.place[q] - here);
+      auto [u, v] = in_plane(items_.place[q] - here);
+      if (const double across2 = u * u + v * v; dot(normal_, items_.normal[q]) < bent && across2 > 0) {
+        const double unfold = std::sqrt(distance2 / across2);
+        u *= unfold, v *= unfold;
+      }
       if (rim && q != next_ && q != previous_ && !in_sector(u, v)) continue;
       if (clip(u, v, 0.5 * (distance2 + weight - weight_of(q)), q)) far2 = farthest2(rim);
     }
@@ -166,7 +177,7 @@ class Cutter {
   }
 
   double weight_of(std::uint32_t item) const {
-    return tie * hash(items_.particle[item]) * items_.size[item] * items_.size[item];
+    return tie * hash(items_.place[item]) * items_.size[item] * items_.size[item];
   }
 
   double farthest2(bool rim) const {
@@ -201,9 +212,10 @@ class Cutter {
     return true;
   }
 
-  static Star hidden_star() {
+  Star hidden_star() const {
     Star star;
     star.hidden = true;
+    star.reach = float(1.001 * reach_);
     return star;
   }
 
@@ -256,6 +268,7 @@ class Cutter {
   Vec3d normal_, u_, v_;
   double next_u_ = 0, next_v_ = 0, previous_u_ = 0, previous_v_ = 0;
   bool reflex_ = false;
+  double reach_ = 0;
   std::vector<PointTree::Found> found_;
   std::vector<Corner> cell_, cut_;
   std::vector<double> beyond_;
@@ -288,23 +301,14 @@ StarItems star_items(const StarParticles& particles) {
   return items;
 }
 
-std::vector<Star> find_stars(const StarItems& items) {
-  const PointTree tree(items.place, items.first);
-  std::vector<Star> stars(items.count());
+void cut_stars(const StarItems& items, const PointTree& tree, std::span<const std::uint8_t> wanted,
+               std::vector<Star>& stars) {
   tbb::enumerable_thread_specific<Cutter> cutters([&] { return Cutter(items, tree); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, items.count(), 256), [&](const auto& range) {
     Cutter& cutter = cutters.local();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) stars[i] = cutter.cut(std::uint32_t(i));
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      if (wanted[i]) stars[i] = cutter.cut(std::uint32_t(i));
   });
-  tbb::parallel_for(std::size_t(0), items.count(), [&](std::size_t i) {
-    Star& star = stars[i];
-    for (int k = 0; k < star.count; ++k) {
-      if (!star.has_triangle(k)) continue;
-      const std::uint32_t a = star.ring[std::size_t(k)], b = star.ring[std::size_t(star.after(k))];
-      if (stars[a].has(b, std::uint32_t(i)) && stars[b].has(std::uint32_t(i), a)) star.agreed |= 1u << k;
-    }
-  });
-  return stars;
 }
 
 }  // namespace nacre

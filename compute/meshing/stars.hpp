@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compute/math/vec.hpp"
 #include "compute/meshing/curve_links.hpp"
+#include "compute/meshing/point_tree.hpp"
 
 namespace nacre {
 
@@ -22,7 +24,7 @@ struct StarItems {
                                               ///< of the rim, seen against the normal; `none` off the rims
   std::vector<std::array<std::uint16_t, 2>> materials;  ///< per surface, ascending
   std::vector<std::uint32_t> first;                     ///< per surface and one more: its first item
-  std::int64_t open_rims = 0;                           ///< items at which a rim begins or ends
+  std::vector<std::uint32_t> broken;                    ///< particles at which a rim begins or ends; ascending
 
   std::size_t count() const { return place.size(); }
 };
@@ -37,6 +39,7 @@ struct Star {
   std::uint8_t count = 0;
   bool closed = false;
   bool hidden = false;       ///< another item is in the same place; it has no neighbours
+  float reach = 0;           ///< nothing farther away was looked at, the items beside it on a rim excepted
   std::uint32_t gaps = 0;    ///< bit k: ring[k] and the one after it are no neighbours of each other
   std::uint32_t agreed = 0;  ///< bit k: triangle (item, ring[k], the one after it) is in the stars of all its corners
 
@@ -50,7 +53,9 @@ struct Star {
   }
 };
 
-/// The stars of all items, with what is agreed marked.
-std::vector<Star> find_stars(const StarItems& items);
+/// Puts the stars of the items that `wanted` marks into `stars`, one for each item; what is agreed is not known yet. A
+/// star depends on the items within its reach alone, and not on their numbers. In parallel.
+void cut_stars(const StarItems& items, const PointTree& tree, std::span<const std::uint8_t> wanted,
+               std::vector<Star>& stars);
 
 }  // namespace nacre

@@ -19,8 +19,10 @@ constexpr std::array<Word<Solver>, 3> solvers{
     {{"tree", Solver::tree}, {"redblack", Solver::redblack}, {"serial", Solver::serial}}};
 constexpr std::array<Word<CubicKernel>, 2> kernels{
     {{"catmull-rom", CubicKernel::catmull_rom}, {"b-spline", CubicKernel::b_spline}}};
-constexpr std::array<Word<TriangleSource>, 2> triangle_sources{
-    {{"delaunay", TriangleSource::delaunay}, {"stars", TriangleSource::stars}}};
+constexpr std::array<Word<TriangleSource>, 3> triangle_sources{
+    {{"auto", TriangleSource::automatic}, {"delaunay", TriangleSource::delaunay}, {"stars", TriangleSource::stars}}};
+constexpr std::array<Word<MeshQuality>, 3> qualities{
+    {{"draft", MeshQuality::draft}, {"standard", MeshQuality::standard}, {"best", MeshQuality::best}}};
 enum class Seeds { automatic, embedding, marching_cubes };
 constexpr std::array<Word<Seeds>, 3> seed_words{
     {{"auto", Seeds::automatic}, {"embedding", Seeds::embedding}, {"marching-cubes", Seeds::marching_cubes}}};
@@ -51,6 +53,7 @@ CubicKernel kernel_from_string(std::string_view word) { return choice_of<CubicKe
 TriangleSource triangles_from_string(std::string_view word) {
   return choice_of<TriangleSource>(triangle_sources, "triangulation", word);
 }
+MeshQuality quality_from_string(std::string_view word) { return choice_of<MeshQuality>(qualities, "quality", word); }
 
 SeedOrigin seeds_from_string(std::string_view word, Solver solver) {
   switch (choice_of<Seeds>(seed_words, "seeds", word)) {
@@ -60,10 +63,31 @@ SeedOrigin seeds_from_string(std::string_view word, Solver solver) {
   }
 }
 
+MeshParameters at_quality(const MeshParameters& parameters) {
+  MeshParameters p = parameters;
+  switch (quality_from_string(parameters.quality)) {
+    case MeshQuality::draft:
+      p.subcells = std::min(p.subcells, 1);
+      p.iterations = std::min(p.iterations, 8);
+      p.smooth = std::min(p.smooth, 1);
+      p.mend = std::min(p.mend, 6);
+      if (triangles_from_string(p.triangles) == TriangleSource::automatic) p.triangles = "stars";
+      break;
+    case MeshQuality::best:
+      p.iterations = std::max(p.iterations, 120);
+      p.smooth = std::max(p.smooth, 4);
+      p.mend = std::max(p.mend, 40);
+      break;
+    case MeshQuality::standard: break;
+  }
+  return p;
+}
+
 MeshChoices::MeshChoices(const MeshParameters& parameters)
     : solver(solver_from_string(parameters.solver)),
       kernel(kernel_from_string(parameters.kernel)),
       seeds(seeds_from_string(parameters.seeds, solver)),
-      triangles(triangles_from_string(parameters.triangles)) {}
+      triangles(triangles_from_string(parameters.triangles)),
+      quality(quality_from_string(parameters.quality)) {}
 
 }  // namespace nacre

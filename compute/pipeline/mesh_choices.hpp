@@ -20,10 +20,18 @@ enum class Solver {
 /// Where the particles of surfaces begin; those of curves always begin in the embedding.
 enum class SeedOrigin { embedding, marching_cubes };
 
+/// How much work a mesh is worth.
+enum class MeshQuality {
+  draft,     ///< for looking, and for turning knobs
+  standard,  ///< the parameters as they are
+  best,      ///< more rounds of everything
+};
+
 /// What triangles are made of.
 enum class TriangleSource {
-  delaunay,  ///< facets between Delaunay cells of different materials
-  stars,     ///< each particle's neighbours on its surfaces
+  automatic,  ///< stars for a draft, else delaunay
+  delaunay,   ///< facets between Delaunay cells of different materials
+  stars,      ///< each particle's neighbours on its surfaces
 };
 
 std::string to_string(Solver solver);
@@ -33,8 +41,15 @@ std::string to_string(CubicKernel kernel);
 Solver solver_from_string(std::string_view word);
 CubicKernel kernel_from_string(std::string_view word);
 TriangleSource triangles_from_string(std::string_view word);
+MeshQuality quality_from_string(std::string_view word);
 /// "auto" is the embedding for the tree solver and marching cubes for the others, as in ch. 4 and ch. 3.
 SeedOrigin seeds_from_string(std::string_view word, Solver solver);
+
+/// The parameters that a run with these works with. A draft has one closest-point cell per voxel and axis, 8
+/// iterations, one round of smoothing and six of mending, or fewer where `parameters` say so, triangles of stars unless
+/// told otherwise, and does not measure the energy at the end; the best has at least 120 iterations, four rounds of
+/// smoothing and 40 of mending. Standard changes nothing.
+MeshParameters at_quality(const MeshParameters& parameters);
 
 /// All choices of a set of parameters.
 struct MeshChoices {
@@ -42,6 +57,7 @@ struct MeshChoices {
   CubicKernel kernel;
   SeedOrigin seeds;
   TriangleSource triangles;
+  MeshQuality quality;
 
   /// Throws Error where one of the words is unknown.
   explicit MeshChoices(const MeshParameters& parameters);

@@ -8,6 +8,7 @@
 #include "compute/embedding/build_interface_grid.hpp"
 #include "compute/embedding/junction_table.hpp"
 #include "compute/field/boundary_area.hpp"
+#include "compute/field/thin_materials.hpp"
 #include "compute/field/tighten.hpp"
 #include "compute/particles/embedding_seeds.hpp"
 #include "compute/particles/projectors.hpp"
@@ -86,8 +87,13 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
   info = {};
   arena.rewind(0);
   frame_ = VolumeFrame(volume);
+  std::vector<std::uint16_t> thinned;
+  if (volume.kind == MeshVolume::Kind::labels && volume.materials() > max_block_materials) {
+    thinned = volume.material;
+    info.thinned_voxels = thin_materials(volume.dims, thinned, max_block_materials);
+  }
   bricks_ = lay_out_bricks(exec_, volume.dims, frame_.relative_spacing(), kernel_from_string(parameters.kernel),
-                           volume.material);
+                           thinned.empty() ? std::span(volume.material) : std::span<const std::uint16_t>(thinned));
   if (bricks_.bricks == 2)
     throw Error("one material only", "every voxel of the volume is of the same material",
                 "choose others with `materials` or `isovalue`");

@@ -7,6 +7,7 @@
 #include "compute/device/error.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/star_mesh.hpp"
+#include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 
 namespace nacre {
@@ -46,7 +47,13 @@ std::vector<std::uint8_t> bad_points(const SurfaceMesh& mesh, std::span<const st
 
 MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTable& table, const VolumeFrame& frame,
                                  const ImprovementRule& rule, const TellStage& tell)
-    : particles_(particles), table_(table), frame_(frame), rule_(rule), tell_(tell), delaunay_(rule.threads) {}
+    : particles_(particles),
+      table_(table),
+      frame_(frame),
+      rule_(rule),
+      tell_(tell),
+      delaunay_(rule.threads),
+      patch_delaunay_(rule.threads) {}
 
 ImprovedMesh MeshImprovement::run() {
   std::optional<Triangulated> best;
@@ -106,15 +113,26 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   std::vector<JunctionGradients> gradient(particles.count());
   for (std::size_t i = 0, next = 0; i < particles.count(); ++i)
     if (junction[i].order() < 2) gradient[i] = on_rims[next++];
-  StarMesh stars = mesh_from_stars({particles.position, particles.direction, junction, gradient});
+  StarMesh stars = mesh_from_stars({particles.position, particles.direction, junction, gradient}, star_finder_);
   check_stop(rule_.stop);
-  star_use_.last = stars.counts;
-  ++(stars.sound ? star_use_.meshes : star_use_.fallbacks);
-  if (!stars.sound) return false;
+  std::vector<double> size;
+  for (const Float4& p : particles.position) size.push_back(p.w * frame_.unit);
   const auto& axes = frame_.axes;
-  if (dot(axes[0], cross(axes[1], axes[2])) < 0)  // the world is a mirror image
-    for (Triangle& t : stars.triangles) std::swap(t.b, t.c);
+  const bool mirrored = dot(axes[0], cross(axes[1], axes[2])) < 0;
+  const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
+  std::vector<std::array<std::uint32_t, 2>> touching;
+  const bool settled =
+      settle_by_cells(stars, {points, size, mirrored, material_at}, patch_delaunay_, touching, rule_.stop);
+  star_use_.last = stars.counts;
+  ++(settled ? star_use_.meshes : star_use_.fallbacks);
+  if (!settled) return false;
   made.mesh = mesh_of_triangles(points, std::move(stars.triangles), std::move(stars.materials), &made.point_of);
+  std::erase_if(touching, [&](const auto& place) {  // of particles that no triangle has
+    return !std::all_of(place.begin(), place.end(), [&](std::uint32_t p) {
+      return std::binary_search(made.point_of.begin(), made.point_of.end(), p);
+    });
+  });
+  made.touching = points_of_places(std::move(touching), made.point_of);
   return true;
 }
 

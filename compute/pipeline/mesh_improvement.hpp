@@ -21,6 +21,7 @@
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/repair.hpp"
 #include "compute/meshing/star_counts.hpp"
+#include "compute/meshing/star_finder.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 #include "compute/pipeline/movable_particles.hpp"
 #include "compute/pipeline/stage_progress.hpp"
@@ -83,7 +84,9 @@ class MeshImprovement {
   const VolumeFrame& frame_;
   ImprovementRule rule_;
   const TellStage& tell_;
-  Delaunay delaunay_;
+  Delaunay delaunay_;  ///< of all particles,
+  StarFinder star_finder_;
+  Delaunay patch_delaunay_;  ///< and of those where stars do not settle
   StarUse star_use_;
   int smoothed_ = 0, mended_ = 0;             ///< rounds so far
   std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began

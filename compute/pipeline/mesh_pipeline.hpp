@@ -44,7 +44,8 @@ struct MeshParameters {
   int control_every = 10;              ///< iterations between two controls of the population
   int smooth = 2;                      ///< rounds of moving particles within the triangles around them
   int mend = 12;                       ///< rounds of mending bad triangles after the first triangulation, at most
-  std::string triangles = "delaunay";  ///< cells of the Delaunay triangulation, or stars, where these are sound
+  std::string triangles = "auto";      ///< stars, or delaunay: facets of cells; auto: stars for a draft
+  std::string quality = "standard";    ///< draft, standard, best: see at_quality
   std::string seeds = "auto";          ///< embedding, marching-cubes; auto: the former for tree, the latter for others
   int particles = 0;                   ///< seed so many on surfaces, add none (sec. 3.4.3); 0: as the sizing field says
   std::uint32_t seed = 1;
@@ -83,8 +84,9 @@ struct MeshInfo {
   int crowded_points = 0;        ///< of these, where more than four materials meet
   /// Materials that meet (0xffff: none) on each surface and curve, ascending, then at each kind of junction point.
   std::vector<std::array<std::uint16_t, 4>> junctions;
-  std::int64_t constrained_voxels = 0;         ///< where tightening was held back to keep a voxel on its side
-  std::int64_t ridge_voxels = 0;               ///< of a signed distance, where a ridge near the interface was taken out
+  std::int64_t thinned_voxels = 0;      ///< of labels, whose material gave way where too many meet (thin_materials)
+  std::int64_t constrained_voxels = 0;  ///< where tightening was held back to keep a voxel on its side
+  std::int64_t ridge_voxels = 0;        ///< of a signed distance, where a ridge near the interface was taken out
   double smallest_size = 0, largest_size = 0;  ///< of the sizing field on the interfaces, voxels
   double expected_particles = 0;               ///< from area and sizing field
   std::int64_t seeded = 0, final = 0;
@@ -95,7 +97,7 @@ struct MeshInfo {
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
   StarUse stars;                    ///< of the improvement, where `triangles` is stars
-  double final_energy = 0;          ///< mean on surfaces, measured alike for all solvers: by the tree, with theta 0
+  double final_energy = 0;          ///< mean on surfaces, by the tree with theta 0, alike for all solvers; 0: a draft
 };
 
 /// Where the particles are, world coordinates.

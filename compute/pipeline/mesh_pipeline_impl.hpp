@@ -22,15 +22,16 @@ class MeshPipelineOf : public MeshPipeline {
     auto stage = exec_.stage("materials");
     drop_particles();
     tell_("materials", 0, 0, 0);
-    fields_.load(volume, parameters, info_);
+    fields_.load(volume, at_quality(parameters), info_);
   }
 
   bool build_fields() override {
     if (!fields_.loaded()) throw Error("no volume loaded");
-    if (!fields_.drop_outdated(parameters)) return false;
+    const MeshParameters used = at_quality(parameters);
+    if (!fields_.drop_outdated(used)) return false;
     drop_particles();
     require_room();
-    fields_.build(parameters, tell_, info_);
+    fields_.build(used, tell_, info_);
     return true;
   }
 
@@ -38,23 +39,25 @@ class MeshPipelineOf : public MeshPipeline {
     require_fields();
     drop_particles();
     exec_.arena().rewind(fields_.end());
+    const MeshParameters used = at_quality(parameters);
     const std::string why =
-        parameters.particles > 0 ? "`particles` asks, with the junctions, for " : "the sizing field asks for about ";
+        used.particles > 0 ? "`particles` asks, with the junctions, for " : "the sizing field asks for about ";
     particles_.make(require_room_for(expected_particles(), std::int64_t(fields_.table().junctions.size()),
-                                     exec_.arena().room_bytes(), exec_.device(), parameters, why));
-    relaxation_.run(parameters, tell_, info_);
+                                     exec_.arena().room_bytes(), exec_.device(), used, why));
+    relaxation_.run(used, tell_, info_);
   }
 
   /// The first mesh after `relax` is made of what it left, and so are all others: improvement changes the particles.
   SurfaceMesh triangulate() override {
     if (!particles_.made()) throw Error("no particles");
-    relaxation_.finish(parameters, info_);
+    const MeshParameters used = at_quality(parameters);
+    relaxation_.finish(used, info_);
     if (relaxed_)
       particles_.upload(*relaxed_);
     else
       relaxed_ = particles_.download();
-    const bool stars = triangles_from_string(parameters.triangles) == TriangleSource::stars;
-    const ImprovementRule rule{parameters.smooth, parameters.mend, stars, exec_.device().threads(), stop_};
+    const bool stars = triangles_from_string(used.triangles) == TriangleSource::stars;
+    const ImprovementRule rule{used.smooth, used.mend, stars, exec_.device().threads(), stop_};
     ImprovedMesh made = MeshImprovement(particles_, fields_.table(), fields_.frame(), rule, tell_).run();
     info_.points_final = made.particles[0], info_.curves_final = made.particles[1];
     info_.surfaces_final = made.particles[2];

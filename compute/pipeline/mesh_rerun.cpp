@@ -23,7 +23,8 @@ auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.mend, p
 
 }  // namespace
 
-MeshRerun mesh_rerun(const MeshParameters& before, const MeshParameters& after) {
+MeshRerun mesh_rerun(const MeshParameters& asked_before, const MeshParameters& asked_after) {
+  const MeshParameters before = at_quality(asked_before), after = at_quality(asked_after);
   if (of_fields(before) != of_fields(after)) return MeshRerun::fields;
   if (of_relax(before) != of_relax(after)) return MeshRerun::relax;
   const bool tree = after.solver == to_string(Solver::tree);

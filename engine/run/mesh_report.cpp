@@ -66,6 +66,7 @@ json fields_json(const MeshInput& input, const MeshInfo& info) {
           {"junctions", junctions_json(input, info)},
           {"crowded_points", info.crowded_points},
           {"crowded_cells", info.crowded_cells},
+          {"thinned_voxels", info.thinned_voxels},
           {"constrained_voxels", info.constrained_voxels},
           {"creased_voxels", info.ridge_voxels},
           {"smallest_size_voxels", info.smallest_size},
@@ -89,10 +90,10 @@ json particles_json(const MeshInfo& info, bool interrupted) {
 }
 
 json stars_json(const StarUse& use) {
-  return {{"meshes", use.meshes},         {"fallbacks", use.fallbacks},
-          {"stars", use.last.stars},      {"disagreeing", use.last.disagreeing},
-          {"holes", use.last.holes},      {"filled_triangles", use.last.filled},
-          {"left_out", use.last.left_out}};
+  return {{"meshes", use.meshes},          {"fallbacks", use.fallbacks},
+          {"stars", use.last.stars},       {"unsettled", use.last.unsettled},
+          {"holes", use.last.holes},       {"filled_triangles", use.last.filled},
+          {"left_out", use.last.left_out}, {"in_patches", use.last.in_patches}};
 }
 
 json angles_json(const TriangleQuality& q) {
@@ -128,6 +129,22 @@ json distance_json(const MeshResult& r) {
           {"vertex_max", d.vertex_max},
           {"facet_mean", d.facet_mean},
           {"facet_max", d.facet_max}};
+}
+
+/// Where the best quality was not reached: an angle under 30 degrees or a ratio under 0.5 away from junctions.
+json short_of_best_json(const SurfaceMesh& mesh) {
+  constexpr std::size_t most_named = 100;
+  const std::vector<std::uint32_t> found = triangles_short_of(mesh, 30, 0.5);
+  json places = json::array();
+  for (std::size_t i = 0; i < std::min(found.size(), most_named); ++i) {
+    const Triangle& t = mesh.triangles[found[i]];
+    const Vec3d &a = mesh.points[t.a], &b = mesh.points[t.b], &c = mesh.points[t.c], middle = (a + b + c) / 3;
+    const auto angles = triangle_angles(a, b, c);
+    places.push_back({{"at", {middle.x, middle.y, middle.z}},
+                      {"radius_ratio", radius_ratio(a, b, c)},
+                      {"angle_degrees", *std::min_element(angles.begin(), angles.end())}});
+  }
+  return {{"triangles", found.size()}, {"places", places}};
 }
 
 json mesh_json(const MeshInput& input, const MeshResult& r) {
@@ -181,7 +198,8 @@ void add_mesh_report(json& report, const MeshInput& input, const Settings& setti
   report["fields"] = fields_json(input, info);
   report["particles"] = particles_json(info, result.interrupted);
   report["mesh"] = mesh_json(input, result);
-  if (settings.mesh.triangles == "stars") report["mesh"]["stars"] = stars_json(info.stars);
+  if (settings.mesh.quality == "best") report["mesh"]["short_of_best"] = short_of_best_json(result.mesh);
+  if (info.stars.meshes + info.stars.fallbacks > 0) report["mesh"]["stars"] = stars_json(info.stars);
   if (result.cells) report["tetrahedra"] = cells_json(input, result);
 }
 

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
 
@@ -20,14 +23,23 @@ FieldRemarks remarks_on_fields(const MeshInfo& info, const MeshParameters& param
         fmt::format("in {} cells of the embedding more than 8 materials or 64 junctions meet: "
                     "some junctions are left out; choose fewer materials with --merge or --materials",
                     crowded));
+  if (const std::int64_t thinned = info.thinned_voxels; thinned > 0)
+    said.warnings.push_back(fmt::format(
+        "more than 64 labels meet within a few voxels: {} voxels of the rarest there took labels beside them",
+        thinned));
   // Thin structures everywhere (the cortex of a head, between skull and white matter) need small particles everywhere.
-  // A user who did not expect that should know before the long part begins.
-  constexpr double many = 3e6;
-  if (parameters.particles == 0 && info.expected_particles >= many)
+  // A user who did not expect that should know before the long part begins, and what would take a minute.
+  constexpr double many = 1e6, seconds_each = 85e-6;  // on two cores: docs/performance/meshing.md
+  if (const double count = info.expected_particles; parameters.particles == 0 && count >= many) {
+    const double minutes = count * seconds_each / 60;
     said.remarks.push_back(fmt::format(
-        "about {:.1f} million particles are needed, {:.2g} to {:.2g} voxels apart, since materials are thin; their "
-        "number falls with the square of --min-size (now {:.2g})",
-        info.expected_particles / 1e6, info.smallest_size, info.largest_size, parameters.min_size));
+        "about {:.1f} million particles are needed, {:.2g} to {:.2g} voxels apart: some {:.0f} minutes on two "
+        "processor "
+        "cores, and about one with --min-size, --max-size and --epsilon {:.2g} times as large (now {:.2g}, {:.2g}, "
+        "{:.2g}), or with --quality draft for a first look",
+        count / 1e6, info.smallest_size, info.largest_size, std::max(1.0, minutes), std::sqrt(std::max(1.0, minutes)),
+        parameters.min_size, parameters.max_size, parameters.epsilon));
+  }
   return said;
 }
 

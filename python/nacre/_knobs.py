@@ -26,6 +26,7 @@ class MeshKnobs(TypedDict, total=False):
     min_size: float  #: smallest distance between particles, at most max_size [voxels]
     max_size: float  #: largest distance between particles, at least min_size [voxels]
     curvature: bool  #: also bound the sizing field by epsilon / largest curvature
+    quality: Literal["draft", "standard", "best"]  #: draft: quick, for looking and for turning knobs; best: more rounds of everything
     solver: Literal["tree", "redblack", "serial"]  #: how particles are moved
     theta: float  #: tree solver: a node smaller than theta times its distance counts as one particle
     iterations: int  #: most iterations per junction order
@@ -39,7 +40,7 @@ class MeshKnobs(TypedDict, total=False):
     by_density: bool  #: serial and redblack solvers: control the population by estimated density, not by the thesis's rule
     smooth: int  #: how often vertices are moved within the triangles around them [rounds]
     mend: int  #: how often, at most, bad triangles are repaired after triangulation [rounds]
-    triangulation: Literal["delaunay", "stars"]  #: what triangles are made of: cells of the Delaunay triangulation, or each particle's neighbours (stars), which is quicker; where these do not fit together, cells again
+    triangulation: Literal["auto", "delaunay", "stars"]  #: what triangles are made of: cells of the Delaunay triangulation, or each particle's neighbours (stars), which is quicker; auto: stars for a draft of a surface, else cells
     seeds: Literal["auto", "embedding", "marching-cubes"]  #: where particles on surfaces begin; auto: with the tree solver on the embedding, else at vertices of marching cubes
     particles: int  #: seed this many on surfaces (junctions as usual) and add none; 0: as many as the sizing field asks for
     max_cell: float  #: longest edge of the tetrahedra; 0: they grow with the distance from the surface [voxels]

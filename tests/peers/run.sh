@@ -4,7 +4,8 @@
 # Environment: NACRE_BUILD (build folder; else build/release or build/cpu), PEERS_PYTHON (a python that has the wheel vtk),
 # PVPYTHON (ParaView's), PEERS_PHANTOMS (surfaces of which, as torso:64), PEERS_RUNS (pairs of each, default 3),
 # PEERS_THREADS (default 2), PEERS_PREFIX (words before each command that is timed, such as "chrt -f 1"), PEERS_SECONDS
-# (limit of each command, default 300), OUT (keeps reports, meshes and peers.json).
+# (limit of each command, default 300), PEERS_QUALITY (of our meshes: draft, standard or best, default standard), OUT (keeps
+# reports, meshes and peers.json).
 set -euo pipefail
 here=$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")
 source "$here/../bench/report.sh"
@@ -44,7 +45,7 @@ sample() {
 
 # ours OUTPUT REPORT INPUT [words of nacre mesh]: one timed run of ours.
 ours() {
-  "${prefix[@]}" "$nacre" mesh "$3" --labels --quiet --threads "$threads" "${@:4}" --out "$1" --report "$2" >/dev/null
+  "${prefix[@]}" "$nacre" mesh "$3" --labels --quiet --threads "$threads" --quality "${PEERS_QUALITY:-standard}" "${@:4}" --out "$1" --report "$2" >/dev/null
 }
 
 # our_seconds REPORT [STAGE..]: computing time of a run: the stages that make the surface, or those named.

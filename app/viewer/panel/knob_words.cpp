@@ -55,12 +55,25 @@ std::string mesh_cost(MeshStage stage) {
 
 std::string plain_name(const std::string& knob) {
   static const std::map<std::string, std::string> names{
-      {"resolution", "Texture detail"},  {"ttl", "Streak length"},           {"streaks", "Smoothing"},
-      {"contrast", "Contrast"},          {"step_cells", "Motion per step"},  {"speed_power", "True speeds"},
-      {"steps", "Steps over all times"}, {"time", "Part of the time"},       {"crease_angle", "Sharp edges above"},
-      {"isovalue", "Iso-value"},         {"labels", "Values are labels"},    {"materials", "Labels to keep"},
-      {"max_size", "Largest triangles"}, {"min_size", "Smallest triangles"}, {"epsilon", "Follow thin parts"},
-      {"tighten", "Smooth the voxels"},  {"mend", "Repair bad triangles"},   {"iterations", "Most iterations"},
+      {"resolution", "Texture detail"},
+      {"ttl", "Streak length"},
+      {"streaks", "Smoothing"},
+      {"contrast", "Contrast"},
+      {"step_cells", "Motion per step"},
+      {"speed_power", "True speeds"},
+      {"steps", "Steps over all times"},
+      {"time", "Part of the time"},
+      {"crease_angle", "Sharp edges above"},
+      {"isovalue", "Iso-value"},
+      {"labels", "Values are labels"},
+      {"materials", "Labels to keep"},
+      {"quality", "Quality"},
+      {"max_size", "Largest triangles"},
+      {"min_size", "Smallest triangles"},
+      {"epsilon", "Follow thin parts"},
+      {"tighten", "Smooth the voxels"},
+      {"mend", "Repair bad triangles"},
+      {"iterations", "Most iterations"},
   };
   const auto found = names.find(knob);
   return found == names.end() ? "" : found->second;
@@ -69,8 +82,8 @@ std::string plain_name(const std::string& knob) {
 const std::vector<std::string>& basic_knobs(const std::string& job) {
   static const std::vector<std::string> flow{"resolution", "ttl",   "streaks", "contrast",
                                              "step_cells", "steps", "time",    "speed_power"};
-  static const std::vector<std::string> mesh{"labels",  "isovalue", "materials", "max_size",  "min_size",
-                                             "epsilon", "tighten",  "mend",      "iterations"};
+  static const std::vector<std::string> mesh{"quality",  "labels",  "isovalue", "materials", "max_size",
+                                             "min_size", "epsilon", "tighten",  "mend",      "iterations"};
   return job == "mesh" ? mesh : flow;
 }
 

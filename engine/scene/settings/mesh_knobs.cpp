@@ -122,6 +122,11 @@ std::vector<Knob> particle_knobs(Settings& s) {
   MeshParameters& m = s.mesh;
   const std::string group = "particles";
   return {
+      {.name = "quality",
+       .group = group,
+       .help = "draft: quick, for looking and for turning knobs; best: more rounds of everything",
+       .value = &m.quality,
+       .choices = {"draft", "standard", "best"}},
       {.name = "solver",
        .group = group,
        .help = "how particles are moved",
@@ -203,9 +208,9 @@ std::vector<Knob> particle_knobs(Settings& s) {
        .group = group,
        .help =
            "what triangles are made of: cells of the Delaunay triangulation, or each particle's neighbours (stars), "
-           "which is quicker; where these do not fit together, cells again",
+           "which is quicker; auto: stars for a draft of a surface, else cells",
        .value = &m.triangles,
-       .choices = {"delaunay", "stars"}},
+       .choices = {"auto", "delaunay", "stars"}},
       {.name = "seeds",
        .group = group,
        .help = "where particles on surfaces begin; auto: with the tree solver on the embedding, else at vertices of "

@@ -4,6 +4,7 @@
 #include "compute/device/error.hpp"
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
+#include "compute/pipeline/mesh_choices.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 
 namespace nacre::test {
@@ -54,7 +55,7 @@ TEST(MeshStars, InAMirroredWorldTooNormalsPointOutwards) {
 }
 
 /// Cubes of three voxels, with particles as far apart: more junctions than anything else.
-TEST(MeshStars, WhatTheyCannotMeshIsLeftToCells) {
+TEST(MeshStars, WhatTheyCannotMeshIsMadeOfCellsInPatchesOrAltogether) {
   MeshParameters coarse;
   coarse.min_size = coarse.max_size = 3;
   const MeshVolume volume = label_volume({30, 30, 30}, 3, [](const Vec3d& p) {
@@ -63,8 +64,45 @@ TEST(MeshStars, WhatTheyCannotMeshIsLeftToCells) {
                : (int(p.x) / 3 + int(p.y) / 3 + int(p.z) / 3) % 3;
   });
   const MeshRun stars = run_with("stars", volume, 0, coarse);
-  EXPECT_GT(stars.info.stars.fallbacks, 0);
+  EXPECT_GT(stars.info.stars.fallbacks + stars.info.stars.last.in_patches, 0);
   EXPECT_GT(stars.mesh.triangles.size(), 0);
+  EXPECT_EQ(check_topology(stars.mesh, 3).boundary_edges, 0);
+}
+
+/// A draft is a closed mesh of the same bodies, with triangles that are good to look at.
+TEST(MeshStars, ADraftIsSound) {
+  MeshParameters draft;
+  draft.quality = "draft";
+  for (const MeshVolume& volume : {three_materials(), three_balls(), label_balls()}) {
+    const auto device = make_cpu_device();
+    const MeshRun run = run_mesh(*device, volume, draft);
+    EXPECT_GT(run.info.stars.meshes, 0);
+    EXPECT_LE(run.info.iterations, 8);
+    const int materials = int(volume.labels.size());
+    const TopologyReport topology = check_topology(run.mesh, materials);
+    EXPECT_TRUE(topology.sound());
+    for (int m = 1; m < materials; ++m) EXPECT_TRUE(topology.materials[std::size_t(m)].closed) << m;
+    EXPECT_GT(surface_quality(run.mesh).all.radius_ratio_mean, 0.93);
+  }
+}
+
+TEST(MeshStars, ADraftTakesLessOnlyAndTheBestMore) {
+  MeshParameters p;
+  p.quality = "draft";
+  const MeshParameters draft = at_quality(p);
+  EXPECT_EQ(draft.triangles, "stars");
+  EXPECT_LT(draft.iterations, p.iterations);
+  EXPECT_LT(draft.smooth, p.smooth);
+  p.iterations = 3, p.mend = 0, p.triangles = "delaunay";  // said so
+  EXPECT_EQ(at_quality(p).iterations, 3);
+  EXPECT_EQ(at_quality(p).mend, 0);
+  EXPECT_EQ(at_quality(p).triangles, "delaunay");
+  p.quality = "best";
+  EXPECT_GT(at_quality(p).iterations, MeshParameters().iterations);
+  p.quality = "standard";
+  EXPECT_EQ(at_quality(p).iterations, 3);
+  p.quality = "good";
+  EXPECT_THROW(at_quality(p), Error);
 }
 
 }  // namespace

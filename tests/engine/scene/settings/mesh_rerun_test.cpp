@@ -28,6 +28,7 @@ const std::map<std::string, MeshRerun>& begins() {
       {"seed", MeshRerun::relax},          {"seeds", MeshRerun::relax},
       {"by_density", MeshRerun::nothing},  {"mend", MeshRerun::triangulate},
       {"smooth", MeshRerun::triangulate},  {"triangulation", MeshRerun::triangulate},
+      {"quality", MeshRerun::fields},
   };
   return list;
 }

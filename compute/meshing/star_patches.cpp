@@ -1,0 +1,290 @@
+// Nacre: where stars do not settle, the Delaunay triangulation of the particles around decides.
+#include "compute/meshing/star_patches.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "compute/meshing/interface_facets.hpp"
+#include "compute/meshing/point_tree.hpp"
+#include "compute/meshing/repair.hpp"
+#include "compute/meshing/vertex_fans.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int patch_rounds = 12;
+constexpr int slow_rounds = 3;       // then a patch grows by whole rings
+constexpr double around = 4;         // sizes: as far as the particles are that a patch is made of
+constexpr double label_reach = 1.5;  // sizes: as far from a facet the material of its cell is looked up
+constexpr double most_within = 0.5;  // share of the particles: beyond, the cells of all cost little more
+
+/// The circumcentre of a triangle.
+Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d u = b - a, v = c - a, n = cross(u, v);
+  const double n2 = dot(n, n);
+  if (!(n2 > 0)) return (a + b + c) / 3;
+  return a + cross(dot(u, u) * v - dot(v, v) * u, n) / (2 * n2);
+}
+
+/// Delaunay cells of some of the particles, and the facets between materials.
+class Patch {
+ public:
+  Patch(const PatchWorld& world, const std::atomic<bool>* stop) : world_(world), stop_(stop) {}
+
+  /// Of `members`, ascending.
+  void make(std::span<const std::uint32_t> members, Delaunay& delaunay) {
+    places_.clear();
+    size_.clear();
+    for (const std::uint32_t i : members) places_.push_back(world_.points[i]), size_.push_back(world_.size[i]);
+    add_guards();
+    cells_ = delaunay.cells(places_, stop_);
+    label_ = world_.material_at(label_points());
+    facets_ = interface_facets(cells_, label_);
+    places_of_defects_.clear();
+  }
+
+  /// Most of what this changes lies between the parts of the patch, where particles are missing: only where it is
+  /// needed.
+  void repair() {
+    places_of_defects_ = repair_labels(places_, cells_, label_, stop_).places;
+    facets_ = interface_facets(cells_, label_);
+  }
+
+  const InterfaceFacets& facets() const { return facets_; }
+  const std::vector<std::array<std::uint32_t, 2>>& places_of_defects() const { return places_of_defects_; }
+
+ private:
+  /// Corners of a box far around: no facet at a particle is on the hull.
+  void add_guards() {
+    Vec3d low = places_[0], high = places_[0];
+    for (const Vec3d& p : places_) low = min(low, p), high = max(high, p);
+    const Vec3d middle = 0.5 * (low + high);
+    const double half = 0.5 * length(high - low) + *std::max_element(size_.begin(), size_.end());
+    for (int k = 0; k < 8; ++k) {
+      // At no corner of a cube exactly, so that no four lie in a plane with others.
+      const double far = (6 + 0.37 * k) * half;
+      places_.push_back(middle + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
+      size_.push_back(half);
+    }
+  }
+
+  /// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
+  /// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
+  std::vector<Vec3d> label_points() const {
+    std::vector<Vec3d> at(cells_.circumcentres);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const auto& cell = cells_.vertices[i];
+      double least = 0;
+      Vec3d foot;
+      double size = 0;
+      for (const auto& [a, b, c] : facet_corners) {
+        const Vec3d centre = circumcentre(places_[cell[a]], places_[cell[b]], places_[cell[c]]);
+        const double radius = length(centre - places_[cell[a]]);
+        if (size > 0 && radius >= least) continue;
+        least = radius, foot = centre;
+        size = std::max({size_[cell[a]], size_[cell[b]], size_[cell[c]]});
+      }
+      const Vec3d away = at[i] - foot;
+      const double far = length(away);
+      if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
+    }
+    return at;
+  }
+
+  const PatchWorld& world_;
+  const std::atomic<bool>* stop_;
+  std::vector<Vec3d> places_;
+  std::vector<double> size_;
+  DelaunayCells cells_;
+  std::vector<std::uint16_t> label_;
+  InterfaceFacets facets_;
+  std::vector<std::array<std::uint32_t, 2>> places_of_defects_;
+};
+
+/// One side of a triangle as a material passes it.
+struct Pass {
+  std::uint32_t low, high;
+  std::uint16_t material;
+  std::int8_t sign;
+  friend bool operator<(const Pass& s, const Pass& t) {
+    return std::tie(s.low, s.high, s.material) < std::tie(t.low, t.high, t.material);
+  }
+};
+
+/// Ends of edges, both marked, that a material passes more often one way than the other, or that have more than two
+/// triangles between the same two materials.
+std::vector<std::uint32_t> at_open_edges(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
+  std::vector<Pass> passes;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t from = mesh.triangles[i][k], to = mesh.triangles[i][(k + 1) % 3];
+      if (!marked[from] || !marked[to]) continue;
+      const auto sign = std::int8_t(from < to ? 1 : -1);
+      passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][0], sign});
+      passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][1], std::int8_t(-sign)});
+    }
+  std::sort(passes.begin(), passes.end());
+  std::vector<std::uint32_t> open;
+  for (std::size_t i = 0, k = 0; i < passes.size(); i = k) {
+    int sum = 0;
+    for (k = i; k < passes.size() && !(passes[i] < passes[k]); ++k) sum += passes[k].sign;
+    if (sum != 0 || k - i > 2) open.push_back(passes[i].low), open.push_back(passes[i].high);
+  }
+  return open;
+}
+
+/// Marked particles off the junctions that the surface of a material passes more than once.
+std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
+  struct Use {
+    std::uint32_t vertex;
+    VertexFanCounter::Facet facet;
+  };
+  std::vector<Use> uses;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    for (int k = 0; k < 3; ++k)
+      if (marked[t[k]]) uses.push_back({t[k], {t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[i]}});
+  }
+  std::stable_sort(uses.begin(), uses.end(), [](const Use& s, const Use& t) { return s.vertex < t.vertex; });
+  std::vector<std::uint32_t> pinched;
+  std::vector<VertexFanCounter::Facet> facets;
+  VertexFanCounter counter;
+  for (std::size_t i = 0, k = 0; i < uses.size(); i = k) {
+    facets.clear();
+    for (k = i; k < uses.size() && uses[k].vertex == uses[i].vertex; ++k) facets.push_back(uses[k].facet);
+    const std::vector<MaterialCount>& fans = counter.vertex_fans(facets);
+    if (fans.size() == 2 && (fans[0].count > 1 || fans[1].count > 1)) pinched.push_back(uses[i].vertex);
+  }
+  return pinched;
+}
+
+class Settling {
+ public:
+  Settling(const StarMesh& stars, const PatchWorld& world)
+      : stars_(stars), world_(world), bad_(world.points.size(), 0) {
+    for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
+    const std::uint32_t first[2] = {0, std::uint32_t(world.points.size())};
+    tree_.emplace(world.points, first);
+  }
+
+  /// The particles within reach of bad ones, ascending.
+  std::vector<std::uint32_t> members() const {
+    std::vector<std::uint8_t> near(bad_.size(), 0);
+    std::vector<PointTree::Found> found;
+    for (std::size_t i = 0; i < bad_.size(); ++i) {
+      if (!bad_[i]) continue;
+      found.clear();
+      tree_->within(0, world_.points[i], around * world_.size[i], found);
+      for (const PointTree::Found& f : found) near[f.point] = 1;
+    }
+    std::vector<std::uint32_t> members;
+    for (std::uint32_t i = 0; i < near.size(); ++i)
+      if (near[i]) members.push_back(i);
+    return members;
+  }
+
+  /// Triangles of stars away from bad particles, facets at these.
+  StarMesh join(std::span<const std::uint32_t> members, const InterfaceFacets& facets) const {
+    StarMesh joined;
+    const auto is_bad = [&](const Triangle& t) { return bad_[t.a] || bad_[t.b] || bad_[t.c]; };
+    for (std::size_t i = 0; i < stars_.triangles.size(); ++i)
+      if (!is_bad(stars_.triangles[i])) {
+        joined.triangles.push_back(stars_.triangles[i]);
+        joined.materials.push_back(stars_.materials[i]);
+      }
+    for (std::size_t i = 0; i < facets.triangles.size(); ++i) {
+      const Triangle& f = facets.triangles[i];
+      if (std::max({f.a, f.b, f.c}) >= members.size()) continue;  // a guard
+      const Triangle t{members[f.a], members[f.b], members[f.c]};
+      if (is_bad(t)) joined.triangles.push_back(t), joined.materials.push_back(facets.materials[i]);
+    }
+    return joined;
+  }
+
+  /// Adds what lies at edges that do not match; false where all do.
+  bool grow(const StarMesh& joined) {
+    std::vector<std::uint8_t> marked = bad_;
+    for (const Triangle& t : joined.triangles)
+      if (bad_[t.a] || bad_[t.b] || bad_[t.c]) marked[t.a] = marked[t.b] = marked[t.c] = 1;
+    // A triangle of a star that is gone leaves its edges to facets that may not be there.
+    for (const Triangle& t : stars_.triangles)
+      if (bad_[t.a] || bad_[t.b] || bad_[t.c]) marked[t.a] = marked[t.b] = marked[t.c] = 1;
+    const std::vector<std::uint32_t> open = at_open_edges(joined, marked);
+    bool any = false;
+    for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
+    if (++grown_ > slow_rounds) add_around(joined, open);
+    stuck_ = !open.empty() && !any;
+    if (!open.empty()) return any;
+    pinched_ = false;
+    for (const std::uint32_t i : at_pinched_vertices(joined, marked)) {
+      pinched_ = pinched_ || bad_[i];
+      any = any || !bad_[i], bad_[i] = 1;
+    }
+    return any;
+  }
+
+  /// The neighbours of `some`, too.
+  void add_around(const StarMesh& joined, std::span<const std::uint32_t> some) {
+    std::vector<std::uint8_t> there(bad_.size(), 0);
+    for (const std::uint32_t i : some) there[i] = 1;
+    for (const Triangle& t : joined.triangles)
+      if (there[t.a] || there[t.b] || there[t.c]) bad_[t.a] = bad_[t.b] = bad_[t.c] = 1;
+  }
+
+  bool stuck() const { return stuck_; }  ///< edges do not match where all is of cells
+  bool touches() const { return stuck_ || pinched_; }
+  bool is_bad(std::uint32_t i) const { return bad_[i]; }
+  std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
+
+ private:
+  const StarMesh& stars_;
+  const PatchWorld& world_;
+  std::vector<std::uint8_t> bad_;
+  std::optional<PointTree> tree_;
+  bool stuck_ = false, pinched_ = false;
+  int grown_ = 0;
+};
+
+}  // namespace
+
+bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay,
+                     std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
+  touching.clear();
+  if (world.mirrored)
+    for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
+  if (mesh.unsettled.empty()) return !mesh.triangles.empty();
+  Settling settling(mesh, world);
+  Patch patch(world, stop);
+  bool repairs = false;
+  for (int round = 0; round < patch_rounds; ++round) {
+    const std::vector<std::uint32_t> members = settling.members();
+    if (double(members.size()) > most_within * double(world.points.size()) && world.points.size() > 1000) return false;
+    patch.make(members, delaunay);
+    if (repairs) patch.repair();
+    StarMesh joined = settling.join(members, patch.facets());
+    if (settling.grow(joined)) continue;
+    if (settling.touches() && !repairs) {
+      repairs = true;
+      patch.repair();
+      joined = settling.join(members, patch.facets());
+      if (settling.grow(joined)) continue;
+    }
+    if (settling.stuck() || joined.triangles.empty()) return false;
+    for (const auto& place : patch.places_of_defects()) {
+      if (std::max(place[0], place[1]) >= members.size()) continue;
+      const std::array<std::uint32_t, 2> particles = {members[place[0]], members[place[1]]};
+      if (settling.is_bad(particles[0]) || settling.is_bad(particles[1])) touching.push_back(particles);
+    }
+    mesh.triangles = std::move(joined.triangles);
+    mesh.materials = std::move(joined.materials);
+    mesh.counts.in_patches = settling.count();
+    mesh.unsettled.clear();
+    return true;
+  }
+  return false;
+}
+
+}  // namespace nacre

@@ -1,0 +1,33 @@
+// Nacre: where stars do not settle, the Delaunay triangulation of the particles around decides.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "compute/meshing/delaunay.hpp"
+#include "compute/meshing/star_mesh.hpp"
+
+namespace nacre {
+
+/// What patches know of the particles: where they are in the world, how far apart (world units), and the material at
+/// any point.
+struct PatchWorld {
+  std::span<const Vec3d> points;
+  std::span<const double> size;
+  bool mirrored = false;  ///< the particles' own coordinates are left-handed in the world
+  std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)> material_at;
+};
+
+/// Replaces the triangles at the mesh's unsettled particles by the facets that the Delaunay triangulation of the
+/// particles within four sizes has there, between cells of different materials and after `repair_labels`. Where the
+/// two kinds of triangles do not meet edge to edge, the particles there are added, and it is done again.
+/// `mesh.unsettled` becomes empty; false where edges still do not match after some rounds, or too much is unsettled for
+/// this to be worth it: the mesh is then to be made of all cells. `touching` receives where the surface touches itself
+/// in a patch (two particles, or one twice). Triangles are turned as in the world. Depends on its arguments alone.
+bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay,
+                     std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop = nullptr);
+
+}  // namespace nacre

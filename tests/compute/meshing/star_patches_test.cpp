@@ -1,0 +1,93 @@
+// Nacre: what stars leave open is settled by cells, with known materials.
+#include "compute/meshing/star_patches.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/compute/meshing/star_clouds.hpp"
+
+namespace nacre::test {
+namespace {
+
+/// The materials of `halves`.
+std::vector<std::uint16_t> material_in_halves(double radius, std::span<const Vec3d> points) {
+  std::vector<std::uint16_t> material;
+  for (const Vec3d& p : points) material.push_back(length(p) > radius ? 0 : p.z > 0 ? 1 : 2);
+  return material;
+}
+
+struct Settled {
+  StarMesh mesh;
+  bool sound = false;
+  std::vector<std::array<std::uint32_t, 2>> touching;
+};
+
+Settled settle(const Cloud& cloud, double radius, const std::vector<std::uint32_t>& more = {}) {
+  Settled settled{mesh_from_stars(cloud.view()), false, {}};
+  std::vector<std::uint32_t>& unsettled = settled.mesh.unsettled;
+  unsettled.insert(unsettled.end(), more.begin(), more.end());
+  std::vector<Vec3d> points;
+  std::vector<double> size;
+  for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
+  Delaunay delaunay;
+  const PatchWorld world{points, size, false,
+                         [&](std::span<const Vec3d> at) { return material_in_halves(radius, at); }};
+  settled.sound = settle_by_cells(settled.mesh, world, delaunay, settled.touching);
+  return settled;
+}
+
+void expect_halves(const Cloud& cloud, const Settled& settled, double radius) {
+  ASSERT_TRUE(settled.sound);
+  EXPECT_TRUE(settled.mesh.unsettled.empty());
+  EXPECT_TRUE(settled.touching.empty());
+  const TopologyReport topology = cloud.topology(settled.mesh, 3);
+  EXPECT_TRUE(topology.sound());
+  for (const std::size_t m : {1, 2}) {
+    EXPECT_TRUE(topology.materials[m].closed);
+    EXPECT_EQ(topology.materials[m].euler, 2);
+    EXPECT_NEAR(topology.materials[m].volume, 2 * M_PI * std::pow(radius, 3) / 3, 12);
+  }
+}
+
+TEST(StarPatches, WhereAllIsSettledNothingChanges) {
+  const Cloud cloud = halves(6, 0.8);
+  const StarMesh stars = mesh_from_stars(cloud.view());
+  const Settled settled = settle(cloud, 6);
+  expect_halves(cloud, settled, 6);
+  EXPECT_EQ(settled.mesh.triangles, stars.triangles);
+  EXPECT_EQ(settled.mesh.counts.in_patches, 0);
+}
+
+TEST(StarPatches, CellsAndStarsMeetEdgeToEdge) {
+  const Cloud cloud = halves(6, 0.8);
+  for (const std::uint32_t at : {0U, 60U, 200U, 500U}) {  // on the rim, and away from it
+    const Settled settled = settle(cloud, 6, {at});
+    expect_halves(cloud, settled, 6);
+    EXPECT_GT(settled.mesh.counts.in_patches, 0);
+    EXPECT_LT(settled.mesh.counts.in_patches, 20);
+  }
+}
+
+/// A rim that lacks particles has no chain around it; the cells close it.
+TEST(StarPatches, ABrokenRimIsClosedByCells) {
+  Cloud cloud = halves(6, 0.8);
+  const int missing = 7;
+  cloud.position.erase(cloud.position.begin(), cloud.position.begin() + missing);
+  cloud.direction.erase(cloud.direction.begin(), cloud.direction.begin() + missing);
+  cloud.junction.erase(cloud.junction.begin(), cloud.junction.begin() + missing);
+  cloud.gradient.erase(cloud.gradient.begin(), cloud.gradient.begin() + missing);
+  ASSERT_FALSE(mesh_from_stars(cloud.view()).sound());
+  const Settled settled = settle(cloud, 6);
+  expect_halves(cloud, settled, 6);
+  EXPECT_LT(settled.mesh.counts.in_patches, std::int64_t(cloud.position.size() / 3));
+}
+
+TEST(StarPatches, WhereTooMuchIsOpenItIsLeftToTheCellsOfAll) {
+  const Cloud cloud = halves(9, 0.8);
+  ASSERT_GT(cloud.position.size(), 1000U);
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < cloud.position.size(); i += 2) all.push_back(i);
+  EXPECT_FALSE(settle(cloud, 9, all).sound);
+}
+
+}  // namespace
+}  // namespace nacre::test
