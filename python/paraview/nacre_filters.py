@@ -199,6 +199,10 @@ class NacreSurfaceFlow(_Filter):
         info.Set(self.INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData")
         return 1
 
+    @smproperty.doublevector(name="TimestepValues", information_only="1", si_class="vtkSITimeStepsProperty")
+    def GetTimestepValues(self):
+        return self._frame_times()
+
     def _frame_times(self):
         if len(self._times) > 1:
             first, last = self._times[0], self._times[-1]

@@ -19,6 +19,7 @@ print("ParaView", simple.GetParaViewVersion(), "with Python", sys.version.split(
 def write(writer, data, name):
     writer.SetFileName(f"{folder}/{name}")
     writer.SetInputData(data)
+    writer.SetDataModeToBinary()
     assert writer.Write()
     return f"{folder}/{name}"
 
@@ -93,6 +94,13 @@ points = vtk_to_numpy(surface.GetPoints().GetData())
 assert np.array_equal(points, expected.points), "other points than nacre.mesh gives"
 sides = vtk_to_numpy(surface.GetCellData().GetArray("material_1"))
 assert np.array_equal(sides, expected.materials[:, 1])
+expected.save(f"{folder}/mesh.vtp")
+expected.save(f"{folder}/mesh.vtu")
+for kind, name, count in ((simple.XMLPolyDataReader, "mesh.vtp", len(expected.triangles)),
+                          (simple.XMLUnstructuredGridReader, "mesh.vtu", len(expected.tetrahedra().cells))):
+    read = data_of(kind(FileName=[f"{folder}/{name}"]))
+    assert read.GetNumberOfCells() == count, f"{name}: {read.GetNumberOfCells()} cells, not {count}"
+print("mesh.vtp and mesh.vtu, as Nacre writes them, are read")
 mesh.Tetrahedra = 1
 mesh.UpdatePipeline()
 grid = data_of(mesh)
@@ -100,8 +108,10 @@ kinds = vtk_to_numpy(grid.GetCellData().GetArray("material"))
 assert grid.GetClassName() == "vtkUnstructuredGrid" and set(kinds) == {1, 2}
 view = simple.CreateView("RenderView")
 view.ViewSize = [640, 480]
+view.UseColorPaletteForBackground = 0
 view.Background = [1, 1, 1]
 cut = simple.Clip(Input=mesh, Crinkleclip=1)
+cut.Invert = 0
 cut.ClipType.Normal = [0, 1, 0]
 cut.ClipType.Origin = [6.75, 6.75, 6.75]
 shown = simple.Show(cut, view)
@@ -117,6 +127,7 @@ print(f"Nacre Mesh: {surface.GetNumberOfPolys()} triangles, {grid.GetNumberOfCel
 
 flow_view = simple.CreateView("RenderView")
 flow_view.ViewSize = [640, 480]
+flow_view.UseColorPaletteForBackground = 0
 flow_view.Background = [1, 1, 1]
 reader = simple.PVDReader(FileName=torus_in_time([0.0, 0.5, 1.0]))
 flow = NacreSurfaceFlow(Input=reader, Vectors="wind", Steps=6, Resolution=160)  # noqa: F821

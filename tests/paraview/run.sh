@@ -23,8 +23,12 @@ fi
 rm -rf "$work/debian/opt/nacre" "$work/debian/opt/out"
 mkdir -p "$work/debian/opt/nacre" "$work/debian/opt/out"
 python3 -m zipfile -e "$wheel" "$work/debian/opt/nacre"
+# ParaView 5.11 calls a function that Python 3.11 no longer has, so that Debian's loads no plugin of Python without this.
+printf 'import inspect\n\nif not hasattr(inspect, "getargspec"):\n    inspect.getargspec = inspect.getfullargspec\n' \
+  >"$work/debian/opt/nacre/sitecustomize.py"
 cp "$nacre/python/paraview/nacre_filters.py" "$here/check.py" "$work/debian/opt/"
 
-in_debian "$work/debian" xvfb-run -a -s "-screen 0 1280x1024x24" pvpython /opt/check.py /opt/nacre_filters.py /opt/out
+# Displays of the machine itself cannot be seen from there, but take numbers.
+in_debian "$work/debian" xvfb-run -a -n $((1000 + $$ % 50000)) -s "-screen 0 1280x1024x24" pvpython /opt/check.py /opt/nacre_filters.py /opt/out
 cp "$work"/debian/opt/out/*.png "$work/"
 echo "pictures: $(ls "$work"/*.png | xargs)"

@@ -56,7 +56,7 @@ void FlowPanel::data_tab(Session& session) {
 }
 
 void FlowPanel::look_tab(Session& session) {
-  for (const char* name : {"fps", "contrast", "edges", "boxes", "arrows", "arrow_count", "arrow_length"})
+  for (const char* name : {"fps", "contrast", "edges", "boxes", "isolines", "arrows", "arrow_count", "arrow_length"})
     knob_widget(session.settings, name);
 }
 

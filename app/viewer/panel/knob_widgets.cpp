@@ -203,8 +203,8 @@ void knob_groups(Settings& settings, const std::string& job, const std::string& 
 
 void reset_knobs(Settings& settings, const std::string& job) {
   for (const Knob& knob : knobs(settings)) {
-    const bool data =
-        knob.name == "vectors" || knob.name == "color" || knob.group == "materials" || knob.group == "labels";
+    const bool data = knob.name == "vectors" || knob.name == "color" || knob.group == "case" ||
+                      knob.group == "materials" || knob.group == "labels";
     if (knob.concerns(job) && knob.group != "picture" && !data) set_knob(settings, knob.name, default_text(knob));
   }
 }

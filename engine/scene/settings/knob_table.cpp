@@ -67,15 +67,15 @@ std::vector<Knob> flow_knobs(Settings& s) {
   FlowParameters& f = s.flow;
   const std::string group = "flow";
   return {
-      {.name = "vectors",
-       .group = group,
-       .help = "vector array to show, or @swirl or @rotation; empty: the most likely one",
-       .value = &s.vectors},
       {.name = "patch",
        .group = "case",
        .help = "NAME[,NAME...]: patches of an OpenFOAM case, or blocks of another file, to show; * and ? stand for "
                "letters; empty: all",
        .value = &s.patch},
+      {.name = "vectors",
+       .group = group,
+       .help = "vector array to show, or @swirl or @rotation; empty: the most likely one",
+       .value = &s.vectors},
       {.name = "time",
        .group = group,
        .help = "T0:T1: part of the data's time range to show; empty: all of it",

@@ -25,6 +25,7 @@ const std::map<std::string, FlowRerun>& expected() {
       {"subcells", {embed, start}},
       {"radius", {embed, start}},
       {"crease_angle", {surface, embed, start}},
+      {"patch", {surface, embed, start}},
       {"vectors", {vectors, start}},
       {"relative", {vectors, start}},
       {"surface_velocity", {vectors, start}},
