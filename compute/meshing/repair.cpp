@@ -1,6 +1,4 @@
 // Nacre: labels of Delaunay cells changed where the surface between them would touch itself.
-#include "compute/meshing/repair.hpp"
-
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -16,6 +14,7 @@
 #include "compute/meshing/cell_rings.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/interface_facets.hpp"
+#include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
@@ -46,8 +45,14 @@ struct Change {
 class Repair {
  public:
   Repair(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label,
-         const std::atomic<bool>* stop)
-      : points_(points), cells_(cells), label_(label), stop_(stop), rings_(cells), left_(std::size_t(0x10000)) {
+         const std::atomic<bool>* stop, std::span<const std::uint8_t> there)
+      : points_(points),
+        cells_(cells),
+        label_(label),
+        stop_(stop),
+        there_(there),
+        rings_(cells),
+        left_(std::size_t(0x10000)) {
     for (const std::uint16_t m : label) ++left_[m];
   }
 
@@ -361,6 +366,8 @@ class Repair {
         ->second;
   }
 
+  bool is_there(std::size_t point) const { return there_.empty() || there_[point]; }
+
   /// Edges and vertices that touch themselves.
   std::vector<Place> find_places() {
     const InterfaceFacets facets = interface_facets(cells_, label_);
@@ -368,11 +375,13 @@ class Repair {
     const EdgeTable edges(facets.triangles, points_.size());
     for (std::size_t e = 0; e < edges.size(); ++e) {
       if (edges.uses(e).size() < 4) continue;
+      if (!is_there(edges.a(e)) && !is_there(edges.b(e))) continue;
       const Place place{edges.a(e), edges.b(e), facets.cell[edges.uses(e)[0] / 3]};
       if (edge_excess(place) > 0) places.push_back(place);
     }
     const VertexTable vertices(facets.triangles, points_.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) {
+      if (!is_there(v)) continue;
       facets_.clear();
       for (const std::uint32_t corner : vertices.corners(v)) {
         const Triangle& t = facets.triangles[corner / 3];
@@ -389,6 +398,7 @@ class Repair {
   const DelaunayCells& cells_;
   std::vector<std::uint16_t>& label_;
   const std::atomic<bool>* stop_;
+  std::span<const std::uint8_t> there_;  // points that are looked at; empty: all
   CellRings rings_;
   VertexFanCounter counter_;
   std::vector<VertexFanCounter::Facet> facets_;
@@ -403,7 +413,13 @@ class Repair {
 
 LabelRepair repair_labels(std::span<const Vec3d> points, const DelaunayCells& cells, std::vector<std::uint16_t>& label,
                           const std::atomic<bool>* stop) {
-  return Repair(points, cells, label, stop).run();
+  return Repair(points, cells, label, stop, {}).run();
+}
+
+LabelRepair repair_labels_at(std::span<const std::uint8_t> there, std::span<const Vec3d> points,
+                             const DelaunayCells& cells, std::vector<std::uint16_t>& label,
+                             const std::atomic<bool>* stop) {
+  return Repair(points, cells, label, stop, there).run();
 }
 
 }  // namespace nacre

@@ -9,7 +9,7 @@
 
 #include "compute/meshing/interface_facets.hpp"
 #include "compute/meshing/point_tree.hpp"
-#include "compute/meshing/repair.hpp"
+#include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
@@ -19,7 +19,8 @@ constexpr int patch_rounds = 12;
 constexpr int slow_rounds = 3;       // then a patch grows by whole rings
 constexpr double around = 4;         // sizes: as far as the particles are that a patch is made of
 constexpr double label_reach = 1.5;  // sizes: as far from a facet the material of its cell is looked up
-constexpr double most_within = 0.5;  // share of the particles: beyond, the cells of all cost little more
+constexpr double most_work =
+    0.5;  // particles of all rounds, by those that there are: beyond, cells of all cost little more
 
 /// The circumcentre of a triangle.
 Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
@@ -46,10 +47,11 @@ class Patch {
     places_of_defects_.clear();
   }
 
-  /// Most of what this changes lies between the parts of the patch, where particles are missing: only where it is
-  /// needed.
-  void repair() {
-    places_of_defects_ = repair_labels(places_, cells_, label_, stop_).places;
+  /// At the members that `there` marks: between the parts of the patch, where particles are missing, labels mean
+  /// nothing.
+  void repair(std::vector<std::uint8_t> there) {
+    there.resize(places_.size(), 0);
+    places_of_defects_ = repair_labels_at(there, places_, cells_, label_, stop_).places;
     facets_ = interface_facets(cells_, label_);
   }
 
@@ -236,6 +238,11 @@ class Settling {
 
   bool stuck() const { return stuck_; }  ///< edges do not match where all is of cells
   bool touches() const { return stuck_ || pinched_; }
+  std::vector<std::uint8_t> marks(std::span<const std::uint32_t> members) const {
+    std::vector<std::uint8_t> marks;
+    for (const std::uint32_t i : members) marks.push_back(bad_[i]);
+    return marks;
+  }
   bool is_bad(std::uint32_t i) const { return bad_[i]; }
   std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
 
@@ -259,16 +266,18 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
   Settling settling(mesh, world);
   Patch patch(world, stop);
   bool repairs = false;
+  double work = 0;  // particles of all rounds
   for (int round = 0; round < patch_rounds; ++round) {
     const std::vector<std::uint32_t> members = settling.members();
-    if (double(members.size()) > most_within * double(world.points.size()) && world.points.size() > 1000) return false;
+    work += double(members.size());
+    if (work > most_work * double(world.points.size()) && world.points.size() > 1000) return false;
     patch.make(members, delaunay);
-    if (repairs) patch.repair();
+    if (repairs) patch.repair(settling.marks(members));
     StarMesh joined = settling.join(members, patch.facets());
     if (settling.grow(joined)) continue;
     if (settling.touches() && !repairs) {
       repairs = true;
-      patch.repair();
+      patch.repair(settling.marks(members));
       joined = settling.join(members, patch.facets());
       if (settling.grow(joined)) continue;
     }

@@ -84,7 +84,9 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
   particles_.in_stage("triangulate", [&] {
     const HostParticles particles = particles_.download();
     const std::vector<Vec3d> points = world_positions(particles.position, frame_);
-    if (!rule_.stars || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
+    // Once cells were needed, all later meshes are of cells, too: triangles good in one kind may be bad in the other.
+    const bool stars = rule_.stars && star_use_.fallbacks == 0;
+    if (!stars || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
     check_stop(rule_.stop);
     for (const std::uint32_t i : made.point_of) {
       made.order.push_back(table_.order[particles.interface[i]]);

@@ -89,19 +89,19 @@ TEST(ThinMaterials, TheRarestGiveWayAndNoMoreThanMustBe) {
   EXPECT_NE(std::find(all.begin(), all.end(), largest), all.end());
 }
 
-/// An atlas of 300 labels in a cube of 24 voxels.
+/// An atlas of 90 labels in a cube of 16 voxels.
 TEST(ThinMaterials, ACrowdedAtlasIsMeshedAndCounted) {
-  const Int3 dims{24, 24, 24};
-  MeshVolume volume = label_volume(dims, 301, [](const Vec3d&) { return 0; });
-  volume.material = cells_of(dims, 300, 3);
+  const Int3 dims{16, 16, 16};
+  MeshVolume volume = label_volume(dims, 91, [](const Vec3d&) { return 0; });
+  volume.material = cells_of(dims, 90, 3);
   const auto device = make_cpu_device();
   MeshParameters coarse;
   coarse.quality = "draft";
   coarse.min_size = coarse.max_size = 1.5;
   const MeshRun run = run_mesh(*device, volume, coarse);
   EXPECT_GT(run.info.thinned_voxels, 0);
-  EXPECT_GT(run.mesh.triangles.size(), 1000U);
-  EXPECT_EQ(check_topology(run.mesh, 301).boundary_edges, 0);
+  EXPECT_GT(run.mesh.triangles.size(), 500U);
+  EXPECT_EQ(check_topology(run.mesh, 91).boundary_edges, 0);
 }
 
 }  // namespace
