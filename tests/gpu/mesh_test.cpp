@@ -148,7 +148,7 @@ TEST(MeshAgreement, SoDoesRedBlackAndSerialIsRefused) {
   const auto cpu = make_cpu_device(), gpu = make_cuda_device(arena_limit);
   Case c = cases()[0];
   c.parameters.solver = "redblack";
-  c.parameters.iterations = 30;
+  c.parameters.iterations = small_cases() ? 6 : 30;
   c.parameters.control_every = 5;
   expect_alike("redblack", run(*cpu, c.volume, c.parameters), run(*gpu, c.volume, c.parameters), c.volume.materials());
   c.parameters.solver = "serial";  // on the CPU only

@@ -56,17 +56,19 @@ void acquire(void*) {}
 #endif
 
 void Fiber::start(void (*entry)()) {
-  if (!stack_) {
-    void* block = mmap(nullptr, stack_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (block == MAP_FAILED) std::perror("emulated device: a fiber's stack"), std::abort();
-    mprotect(block, 4096, PROT_NONE);  // who needs more shall not write elsewhere
-    stack_ = static_cast<char*>(block);
+  if (stack_) return;
+  void* block = mmap(nullptr, stack_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (block == MAP_FAILED) std::perror("emulated device: a fiber's stack"), std::abort();
+  mprotect(block, 4096, PROT_NONE);  // who needs more shall not write elsewhere
+  stack_ = static_cast<char*>(block);
 #if defined(__SANITIZE_THREAD__)
-    sanitizer_ = __tsan_create_fiber(0);
+  sanitizer_ = __tsan_create_fiber(0);
 #endif
-  }
+  // Not all at the same place of their stacks: these would share a few lines of the caches.
+  static std::size_t made = 0;
+  const std::size_t colour = made++ % 64 * 17 * 64;
   constexpr int kept_registers = 6;
-  void** top = reinterpret_cast<void**>(stack_ + stack_bytes - 64);
+  void** top = reinterpret_cast<void**>(stack_ + stack_bytes - 64 - colour);
   *--top = nullptr;  // the stack as it is after a call: entry has nowhere to return to
   *--top = reinterpret_cast<void*>(entry);
   for (int k = 0; k < kept_registers; ++k) *--top = nullptr;

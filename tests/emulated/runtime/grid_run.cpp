@@ -78,10 +78,12 @@ struct Loner {
   static inline const std::function<void()>* work = nullptr;
 
   static void entry() {
-    acquire(&launch_begins);
-    (*work)();
-    release(&launch_ends);
-    running->fiber.pause();
+    for (;;) {
+      acquire(&launch_begins);
+      (*work)();
+      release(&launch_ends);
+      running->fiber.pause();
+    }
   }
 };
 void run_thread(const std::function<void()>& lane) {

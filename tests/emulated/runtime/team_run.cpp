@@ -19,13 +19,14 @@ char launch_begins, launch_ends;
 TeamRun* TeamRun::current() { return running_team; }
 
 void TeamRun::lane_entry() {
-  TeamRun& team = *running_team;
-  acquire(&launch_begins);
-  (*team.work_)();
-  release(&launch_ends);
-  team.lane_[team.running_].state = State::done;
-  team.lane_[team.running_].fiber.pause();
-  broken("a lane went on after its end", team.kernel_);
+  for (;;) {  // each time for another item
+    TeamRun& team = *running_team;
+    acquire(&launch_begins);
+    (*team.work_)();
+    release(&launch_ends);
+    team.lane_[team.running_].state = State::done;
+    team.lane_[team.running_].fiber.pause();
+  }
 }
 
 void TeamRun::run(const std::function<void()>& lane, const char* kernel, std::mt19937& random) {
