@@ -6,7 +6,9 @@
 #include <CLI/Formatter.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <new>
 
 #include "app/commands.hpp"
@@ -83,9 +85,22 @@ Status run(int argc, char** argv) {
   return done;
 }
 
+/// Some destructors, such as that of JSON, ask for memory themselves; where there is none, nothing can be caught.
+[[noreturn]] void leave_without_memory() noexcept {
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    std::fputs("nacre: out of memory\n", stderr);
+    nacre::leave_without_unfinished_files(failed);
+  } catch (...) {
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::set_terminate(leave_without_memory);
   nacre::catch_interrupts();
   nacre::watch_import_children(&nacre::interrupt_flag());
   try {

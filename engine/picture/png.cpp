@@ -8,9 +8,16 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <new>
 
 #include "compute/device/error.hpp"
 #include "engine/system/output_file.hpp"
+
+/// stb does not ask whether it gets the memory that it asks for.
+static void* checked_memory(void* place) {
+  if (!place) throw std::bad_alloc();
+  return place;
+}
 
 #if defined(__GNUC__)
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -18,6 +25,9 @@
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
+#define STBIW_MALLOC(size) checked_memory(std::malloc(size))
+#define STBIW_REALLOC(place, size) checked_memory(std::realloc(place, size))
+#define STBIW_FREE(place) std::free(place)
 #include <stb_image_write.h>
 
 namespace nacre {
