@@ -13,17 +13,20 @@ uniform vec3 below;  // of values beyond it
 uniform vec3 above;
 uniform vec3 no_number;
 uniform sampler1D colours;
+uniform bool neutral;  // these faces are grey
 
 #if defined(OCTREE)
 #include "octree_texture.glsl"
+#include "footprint.glsl"
 #elif defined(TEXTURED)
 #include "sparse_texture.glsl"
+#include "footprint.glsl"
 #endif
 
 void main() {
   if (is_cut(seen)) discard;
   vec3 base = vec3(0.62);
-  if (coloured) {
+  if (coloured && !neutral) {
     float x = (shade - range.x) / (range.y - range.x);
     if (!(x >= 0.0) && !(x < 0.0))
       base = no_number;
@@ -36,7 +39,7 @@ void main() {
   }
   float light_here = brightness(direction, seen);
 #ifdef TEXTURED
-  light_here *= 0.04 + 1.52 * shown_at(place);
+  if (!neutral) light_here *= 0.04 + 1.52 * shown_at(place);
 #endif
   pixel = vec4(to_encoded(base * light_here), 1.0);
 }

@@ -11,6 +11,8 @@
 #include "compute/flow/streaks.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/pipeline/separate_sheets.hpp"
+#include "compute/raycast/build_triangle_boxes.hpp"
 #include "compute/raycast/render.hpp"
 
 namespace nacre {
@@ -46,16 +48,45 @@ class FlowMethodOn : public FlowMethod {
     if (!started_) throw Error("no flow started");
   }
 
-  /// Empties the arena and takes the mesh up, in cells of the domain.
-  void begin_embedding(const FlowMesh& mesh) {
+  /// The surface as it is embedded: second sheets apart from all others by more than `reach` cells of the domain, which
+  /// are `cell` wide.
+  FlowMesh separate(const FlowMesh& mesh, double cell, double reach) {
+    sheets_ = separate_sheets(mesh, cell * (2 * std::ceil(reach) + 6));
+    if (!sheets_) return mesh;
+    return {sheets_.points, sheets_.triangles, mesh.corner_normals, mesh.second_sheet};
+  }
+
+  /// Empties the arena and takes the mesh up, in cells of the domain: `embedded`, and `seen` where that is another.
+  void begin_embedding(const FlowMesh& embedded, const FlowMesh& seen) {
     points_.clear();
-    for (const Vec3d& p : mesh.points) points_.push_back(domain_.to_grid(p));
+    for (const Vec3d& p : embedded.points) points_.push_back(domain_.to_grid(p));
     Arena& arena = exec_.arena();
     device_points_ = arena.permanent_copy<Vec3d>(points_);
-    corners_ = arena.permanent_copy<Triangle>(mesh.triangles);
-    normals_ = arena.permanent_copy<Vec3f>(mesh.corner_normals);
-    mesh_ = {device_points_.data(), corners_.data(), normals_.data()};
-    triangles_ = std::uint32_t(mesh.triangles.size());
+    corners_ = arena.permanent_copy<Triangle>(embedded.triangles);
+    normals_ = arena.permanent_copy<Vec3f>(embedded.corner_normals);
+    mesh_ = seen_ = {device_points_.data(), corners_.data(), normals_.data()};
+    triangles_ = std::uint32_t(embedded.triangles.size());
+    boxes_ = {};
+    second_sheet_.assign(seen.second_sheet.begin(), seen.second_sheet.end());
+    if (!sheets_) return;
+    // Points that are not moved are the first ones of both.
+    seen_corners_ = arena.permanent_copy<Triangle>(seen.triangles);
+    device_second_sheet_ = arena.permanent_copy<std::uint8_t>(second_sheet_);
+    seen_.triangles = seen_corners_.data();
+  }
+
+  /// A tree for the rays of pictures. `triangles_met`: how many the list of a cell has, in the mean, where a ray looks
+  /// for the surface; `most`: with how many of them lists are as fast.
+  void build_boxes(double triangles_met, double most, const Vec3d& dims) {
+    if (sheets_ || triangles_met > most) boxes_ = build_triangle_boxes(exec_, seen_, triangles_, dims);
+  }
+
+  /// What finds the surface if there is such a tree.
+  NearestTriangles nearest_triangles() const {
+    NearestTriangles nearest;
+    if (boxes_.leaves > 0) nearest.boxes = boxes_.view();
+    if (sheets_) nearest.sheets = {device_second_sheet_.data(), sheets_.shift / domain_.cell_size};
+    return nearest;
   }
 
   void end_embedding() {
@@ -79,7 +110,7 @@ class FlowMethodOn : public FlowMethod {
     present_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
     step_ = launched_ = 0;
     first_ = parameters_.warmup >= 0 ? -parameters_.warmup : -ttl_;
-    output_ = nullptr;
+    output_ = output_means_ = nullptr;
   }
 
   /// Number of slots that hold displacements: those that a path can see.
@@ -152,7 +183,9 @@ class FlowMethodOn : public FlowMethod {
     }
     scene.background = linear(options.background);
     scene.background_alpha = options.transparent ? 0.0f : 1.0f;
-    scene.mesh = mesh_;
+    scene.mesh = seen_;
+    scene.neutral_backs = options.back_faces == BackFaces::neutral;
+    scene.hidden_backs = options.back_faces == BackFaces::hidden;
     look(pixel, options, dims);
     const std::size_t n = std::size_t(options.width) * options.height;
     Array<std::uint32_t> pixels = arena.template temporary<std::uint32_t>(n);
@@ -171,9 +204,7 @@ class FlowMethodOn : public FlowMethod {
           corners_(flow.corners_.download()),
           normals_(flow.normals_.download()),
           mesh_{flow.points_.data(), corners_.data(), normals_.data()},
-          vectors_(flow.points_.size()) {
-      flow.vectors_.at(flow.time(), vectors_);
-    }
+          vectors_(flow.vectors_at(flow.time())) {}
 
     /// Entry `s`: a cell's centre and the point of triangle `t` closest to it, both in cells of the domain.
     void operator()(FlowValues& values, std::size_t s, const Vec3d& centre, const Vec3d& surface,
@@ -181,8 +212,10 @@ class FlowMethodOn : public FlowMethod {
       const Vec3f w(barycentric(mesh_.corners(t), surface));
       const Triangle c = corners_[t];
       const Vec3f v = vectors_[c.a] * w.x + vectors_[c.b] * w.y + vectors_[c.c] * w.z, normal = mesh_.normal(t, w);
-      values.centre[s] = flow_.domain_.to_world(centre);
-      values.closest_point[s] = flow_.domain_.to_world(surface);
+      const bool moved = flow_.sheets_ && flow_.second_sheet_[t];
+      const Vec3d back = moved ? flow_.sheets_.shift : Vec3d();
+      values.centre[s] = flow_.domain_.to_world(centre) - back;
+      values.closest_point[s] = flow_.domain_.to_world(surface) - back;
       values.normal[s] = normal;
       values.velocity[s] = v - normal * dot(normal, v);
     }
@@ -194,6 +227,13 @@ class FlowMethodOn : public FlowMethod {
     MeshView mesh_;
     std::vector<Vec3f> vectors_;
   };
+
+  /// One vector for each embedded point.
+  std::vector<Vec3f> vectors_at(double time) const {
+    std::vector<Vec3f> vectors(points_.size());
+    fill_vectors(time, vectors);
+    return vectors;
+  }
 
   std::vector<float> download_frame(const float* frame, std::size_t n) const {
     std::vector<float> host(n);
@@ -220,6 +260,12 @@ class FlowMethodOn : public FlowMethod {
   Array<Triangle> corners_;
   Array<Vec3f> normals_;
 
+  SeparatedSheets sheets_;
+  std::vector<std::uint8_t> second_sheet_;
+  MeshView seen_{};  ///< what pictures show: as `mesh_`, but all triangles where they are
+  TriangleBoxes boxes_;
+  float* output_means_ = nullptr;  ///< where the means of blocks of shown values go; null: nowhere
+
  private:
   template <class Pixel>
   void look(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) const {
@@ -241,24 +287,32 @@ class FlowMethodOn : public FlowMethod {
     pixel.samples = std::max(1, options.samples);
   }
 
+  void fill_vectors(double time, std::vector<Vec3f>& vectors) const {
+    const std::size_t own = points_.size() - sheets_.source.size();
+    vectors_.at(time, std::span(vectors).first(own));
+    for (std::size_t i = own; i < vectors.size(); ++i) vectors[i] = vectors[sheets_.source[i - own]];
+  }
+
   /// The vectors at the time of the frame that step `k` makes.
   void load_present(int k) {
     auto stage = exec_.stage("velocity");
     host_vectors_.resize(points_.size());
-    vectors_.at(time_of(k + 1), host_vectors_);
+    fill_vectors(time_of(k + 1), host_vectors_);
     present_vectors_.upload(host_vectors_);
   }
 
   void fill(int k) {
     auto stage = exec_.stage("velocity");
     host_vectors_.resize(points_.size());
-    vectors_.at(time_of(k), host_vectors_);
+    fill_vectors(time_of(k), host_vectors_);
     point_vectors_.upload(host_vectors_);
     const SpeedScale scale{float(vectors_.reference_speed), float(parameters_.step_cells * texel_),
                            float(parameters_.speed_power), 2.0f};
     fill_slot(point_vectors_, scale, slot(k));
   }
 
+  Array<Triangle> seen_corners_;
+  Array<std::uint8_t> device_second_sheet_;
   Array<Vec3f> point_vectors_, present_vectors_;
   std::vector<Vec3f> host_vectors_;
 };

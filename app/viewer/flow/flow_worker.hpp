@@ -164,6 +164,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void tell_data(VectorsInTime& vectors, const Range& time, std::string reason, std::vector<std::string> warnings);
   void place_arrows();
   void embed();
+  FlowParameters parameters() const;
   void start();
   void make_step();
   void answer_sample(const Vec3d& place);
@@ -187,6 +188,8 @@ class FlowWorker : public Worker<FlowEvent> {
   bool has_values_ = false;
   float* memory_ = nullptr;  ///< of the step that it makes
   int embeddings_ = 0;       ///< begun so far
+  int resolution_ = 0;       ///< of the embedding
+  std::uint64_t means_ = 0;  ///< where means of blocks begin behind the shown values; 0: there are none
 
   // Guarded by the mutex.
   FlowRerun due_;

@@ -102,7 +102,7 @@ void FlowPanel::colours(Session& session) {
   if (percentiles) knob_widget(settings, "color_range");
   ImGui::PopItemWidth();
   ImGui::PopID();
-  for (const char* name : {"color_symmetric", "color_scale", "color_below", "color_above", "color_nan"})
+  for (const char* name : {"color_symmetric", "color_scale", "color_below", "color_above", "color_nan", "back_faces"})
     knob_widget(settings, name);
 }
 
