@@ -14,6 +14,7 @@
 #include "engine/picture/png.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
+#include "engine/run/focus.hpp"
 #include "engine/run/picture_settings.hpp"
 #include "engine/run/report.hpp"
 #include "engine/scene/settings/ranges.hpp"
@@ -76,7 +77,8 @@ struct Flow::State {
   int done = 0;   ///< frames made
   int begun = 0;  ///< the frame with which the present texture began
   bool embedded = false, started = false;
-  std::string color;  ///< whose numbers a step has to load
+  int resolution = 0;  ///< of the embedding
+  std::string color;   ///< whose numbers a step has to load
   mutable std::mutex mutex;
 
   Settings& settings() { return session.settings; }
@@ -114,12 +116,17 @@ struct Flow::State {
   /// Embeds the surface and starts the flow where that has not been done with the knobs as they are.
   void prepare() {
     pipeline->parameters = settings().flow;
+    pipeline->parameters.resolution = resolution;
     pipeline->parameters.steps = std::max(1, span.steps - begun);
     if (!embedded) {
       announce("embed", 0);
       started = false;
       const PreparedSurface& surface = input->surface();
-      pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
+      const FlowView view{fit_camera("iso", triangle_corners(surface), settings().width, settings().height),
+                          settings().width, settings().height};
+      resolution = picture_resolution(view, surface, settings().flow, device->available_bytes());
+      pipeline->parameters.resolution = resolution;
+      pipeline->embed(flow_mesh(surface));
       embedded = true;
     }
     if (!started) {

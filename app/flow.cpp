@@ -86,14 +86,23 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
 }
 
+/// What the knob `resolution` leaves to the picture.
+int choose_resolution(const FlowOptions& options, const FlowView& view, const PreparedSurface& surface,
+                      const FlowParameters& parameters, const Device& device) {
+  const int resolution = picture_resolution(view, surface, parameters, device.available_bytes());
+  if (parameters.resolution == 0)
+    say(options.common, fmt::format("resolution: {} cells along the longest side, for a picture of {} x {} pixels",
+                                    resolution, view.width, view.height));
+  return resolution;
+}
+
 /// What a close-up is computed on; none: the whole surface.
-std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const Camera& camera,
+std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const FlowView& view,
                                   const PreparedSurface& surface, bool moves, const Device& device) {
   const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
   if (!settings.focus || !pictures || settings.orbit != 0 || moves) return {};
   if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
-  std::optional<Focus> focus =
-      focus_on({camera, settings.width, settings.height}, surface, settings.flow, device.available_bytes());
+  std::optional<Focus> focus = focus_on(view, surface, settings.flow, device.available_bytes());
   if (!focus) return {};
   if (!options.out.empty()) {
     say(options.common,
@@ -179,8 +188,8 @@ void write_haemodynamics(const std::string& file, VectorsInTime& input) {
 }
 
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
-  const Session session = requested_session(options.common, options.input, knob_options, "flow");
-  const Settings& settings = session.settings;
+  Session session = requested_session(options.common, options.input, knob_options, "flow");
+  Settings& settings = session.settings;
   check_options(options, settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   const std::unique_ptr<Device> device = open_device(options.common);
@@ -204,7 +213,10 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 
-  const std::optional<Focus> focus = choose_focus(options, settings, painter.camera(), surface, input.moves(), *device);
+  const FlowView view{painter.camera(), settings.width, settings.height};
+  settings.flow.resolution = choose_resolution(options, view, surface, settings.flow, *device);
+  pipeline->parameters.resolution = settings.flow.resolution;
+  const std::optional<Focus> focus = choose_focus(options, settings, view, surface, input.moves(), *device);
   const SurfacePart* part = focus ? &focus->part : nullptr;
   if (focus) {
     pipeline->parameters.resolution = focus->resolution;
@@ -218,7 +230,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   });
   progress.update("embed", 0);
   if (part)
-    pipeline->embed({shown.points, shown.triangles, shown.corner_normals});
+    pipeline->embed(flow_mesh(shown));
   else
     motion.embed(span.start);
   const FlowVectors vectors = flow_vectors(input, span.start, span.end, part);

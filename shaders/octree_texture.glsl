@@ -1,6 +1,7 @@
 // The shown value at a position of the surface, from an octree. LEVELS, the tables and their fetches are in the
 // prelude.
-uniform samplerBuffer shown;
+uniform samplerBuffer shown;  // a value per cell, then a mean per brick
+uniform int values;           // how many cells have a value; -1: no means follow
 
 const uint nothing = 0xffffffffu;
 
@@ -55,8 +56,8 @@ uint number_at(ivec3 cell) {
 }
 #endif
 
-// Linear among the cells around `place` (in texture cells) that have a value; 1/2 if there is none.
-float shown_at(vec3 place) {
+// Linear among the cells around `place` (in texture cells) that have a value; -1 if there is none.
+float fine_at(vec3 place) {
   vec3 corner = floor(place - 0.5);
   vec3 f = place - 0.5 - corner;
   float sum = 0.0, weight = 0.0;
@@ -69,5 +70,28 @@ float shown_at(vec3 place) {
     sum += w * texelFetch(shown, int(number)).r;
     weight += w;
   }
-  return weight > 0.0 ? sum / weight : 0.5;
+  return weight > 0.0 ? sum / weight : -1.0;
 }
+
+#ifdef SOURCE_OCTREE
+const float mean_width = 0.0;  // there are none
+float mean_at(vec3) { return -1.0; }
+#else
+const float mean_width = 8.0;  // texture cells
+
+// The same among the means of bricks.
+float mean_at(vec3 place) {
+  vec3 at = place / mean_width - 0.5, corner = floor(at), f = at - corner;
+  float sum = 0.0, weight = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    ivec3 bit = ivec3(k & 1, k >> 1 & 1, k >> 2);
+    uint found = brick_at(ivec3(corner) + bit);
+    float mean = found == nothing ? -1.0 : texelFetch(shown, values + int(found)).r;
+    vec3 share = mix(1.0 - f, f, bvec3(bit));
+    float w = mean < 0.0 ? 0.0 : share.x * share.y * share.z;
+    sum += w * mean;
+    weight += w;
+  }
+  return weight > 1e-3 ? sum / weight : -1.0;
+}
+#endif

@@ -1,6 +1,5 @@
 // A surface with the texture of the flow and a colour map, with the appearance of compute/raycast/render.hpp.
 #include "view.glsl"
-#include "backs.glsl"
 
 in vec3 seen;
 in vec3 direction;
@@ -15,18 +14,20 @@ uniform vec3 below;  // of values beyond it
 uniform vec3 above;
 uniform vec3 no_number;
 uniform sampler1D colours;
+uniform bool neutral;  // these faces are grey
 
 #if defined(OCTREE)
 #include "octree_texture.glsl"
+#include "footprint.glsl"
 #elif defined(TEXTURED)
 #include "sparse_texture.glsl"
+#include "footprint.glsl"
 #endif
 
 void main() {
-  bool behind = is_back();
-  if (is_cut(seen) || (behind && backs == 2)) discard;
+  if (is_cut(seen)) discard;
   vec3 base = vec3(0.62);
-  if (coloured) {
+  if (coloured && !neutral) {
     float x = (shade - range.x) / (range.y - range.x);
     float pixel_step = max(fwidth(x) * isolines, 1e-6);
     if (!(x >= 0.0) && !(x < 0.0))
@@ -43,11 +44,8 @@ void main() {
     }
   }
   float light_here = brightness(direction, seen);
-  if (behind)
-    base = neutral_back;
 #ifdef TEXTURED
-  else
-    light_here *= 0.04 + 1.52 * shown_at(place);
+  if (!neutral) light_here *= 0.04 + 1.52 * shown_at(place);
 #endif
   pixel = vec4(to_encoded(base * light_here), 1.0);
 }

@@ -59,7 +59,7 @@ VectorsInTime& FlowRuns::sample(const FlowJob& job) {
 
 FlowMesh FlowRuns::mesh(const FlowJob& job) {
   const PreparedSurface& surface = sample(job).surface();
-  return {surface.points, surface.triangles, surface.corner_normals};
+  return flow_mesh(surface);
 }
 
 std::size_t FlowRuns::triangles(const FlowJob& job) { return sample(job).surface().triangles.size(); }

@@ -17,13 +17,17 @@ struct Bounds {
   Vec3d lower{1e300, 1e300, 1e300}, upper{-1e300, -1e300, -1e300};
 };
 
-Bounds bounds_of(const FlowMesh& mesh) {
+enum class Sheets { all, first };
+
+Bounds bounds_of(const FlowMesh& mesh, Sheets which = Sheets::all) {
   Bounds b;
-  for (const Triangle& t : mesh.triangles)
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (which == Sheets::first && !mesh.second_sheet.empty() && mesh.second_sheet[t]) continue;
     for (int k = 0; k < 3; ++k) {
-      b.lower = min(b.lower, mesh.points[t[k]]);
-      b.upper = max(b.upper, mesh.points[t[k]]);
+      b.lower = min(b.lower, mesh.points[mesh.triangles[t][k]]);
+      b.upper = max(b.upper, mesh.points[mesh.triangles[t][k]]);
     }
+  }
   return b;
 }
 
@@ -44,8 +48,9 @@ std::string gibibytes(double bytes) {
 
 FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
   if (mesh.triangles.empty()) throw Error("no triangles", "", "give a surface");
-  const Bounds b = bounds_of(mesh);
-  const double longest = largest(b.upper - b.lower);
+  // Second sheets that stand aside (separate_sheets) make the domain larger, and not its cells.
+  const Bounds b = bounds_of(mesh), first = bounds_of(mesh, Sheets::first);
+  const double longest = largest(first.upper - first.lower);
   if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
   FlowDomain domain;
   domain.cell_size = texture_cell(mesh, parameters, longest) * parameters.refine;

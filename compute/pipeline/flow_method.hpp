@@ -17,6 +17,8 @@
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/pipeline/moved_shape.hpp"
+#include "compute/pipeline/separate_sheets.hpp"
+#include "compute/raycast/build_triangle_boxes.hpp"
 #include "compute/raycast/moved_target.hpp"
 #include "compute/raycast/render.hpp"
 #include "compute/raycast/triangle_tree.hpp"
@@ -65,17 +67,49 @@ class FlowMethodOn : public FlowMethod {
     if (!started_) throw Error("no flow started");
   }
 
-  /// Empties the arena and takes the mesh up, in cells of the domain.
-  void begin_embedding(const FlowMesh& mesh) {
+  /// The surface as it is embedded: second sheets apart from all others by more than `reach` cells of the domain, which
+  /// are `cell` wide.
+  FlowMesh separate(const FlowMesh& mesh, double cell, double reach) {
+    sheets_ = {};
+    if (mesh.moves) return mesh;  // the sheets of a surface that moves share their cells
+    sheets_ = separate_sheets(mesh, cell * (2 * std::ceil(reach) + 6));
+    if (!sheets_) return mesh;
+    return {sheets_.points, sheets_.triangles, mesh.corner_normals, mesh.second_sheet};
+  }
+
+  /// Empties the arena and takes the mesh up, in cells of the domain: `embedded`, and `seen` where that is another.
+  void begin_embedding(const FlowMesh& embedded, const FlowMesh& seen) {
     points_.clear();
-    for (const Vec3d& p : mesh.points) points_.push_back(domain_.to_grid(p));
+    for (const Vec3d& p : embedded.points) points_.push_back(domain_.to_grid(p));
     Arena& arena = exec_.arena();
     device_points_ = arena.permanent_copy<Vec3d>(points_);
-    corners_ = arena.permanent_copy<Triangle>(mesh.triangles);
-    normals_ = arena.permanent_copy<Vec3f>(mesh.corner_normals);
-    mesh_ = {device_points_.data(), corners_.data(), normals_.data()};
-    triangles_ = std::uint32_t(mesh.triangles.size());
-    if (mesh.moves) shape_.make(exec_, points_, mesh.triangles, mesh.corner_normals);
+    corners_ = arena.permanent_copy<Triangle>(embedded.triangles);
+    normals_ = arena.permanent_copy<Vec3f>(embedded.corner_normals);
+    mesh_ = seen_ = {device_points_.data(), corners_.data(), normals_.data()};
+    triangles_ = std::uint32_t(embedded.triangles.size());
+    boxes_ = {};
+    second_sheet_.assign(seen.second_sheet.begin(), seen.second_sheet.end());
+    if (seen.moves) shape_.make(exec_, points_, seen.triangles, seen.corner_normals);
+    if (!sheets_) return;
+    // Points that are not moved are the first ones of both.
+    seen_corners_ = arena.permanent_copy<Triangle>(seen.triangles);
+    device_second_sheet_ = arena.permanent_copy<std::uint8_t>(second_sheet_);
+    seen_.triangles = seen_corners_.data();
+  }
+
+  /// A tree for the rays of pictures. `triangles_met`: how many the list of a cell has, in the mean, where a ray looks
+  /// for the surface; `most`: with how many of them lists are as fast.
+  void build_boxes(double triangles_met, double most, const Vec3d& dims) {
+    if (shape_.made()) return;  // it has a tree of its own
+    if (sheets_ || triangles_met > most) boxes_ = build_triangle_boxes(exec_, seen_, triangles_, dims);
+  }
+
+  /// What finds the surface if there is such a tree.
+  NearestTriangles nearest_triangles() const {
+    NearestTriangles nearest;
+    if (boxes_.leaves > 0) nearest.boxes = boxes_.view();
+    if (sheets_) nearest.sheets = {device_second_sheet_.data(), sheets_.shift / domain_.cell_size};
+    return nearest;
   }
 
   void end_embedding() {
@@ -101,7 +135,7 @@ class FlowMethodOn : public FlowMethod {
     const int whole = parameters_.warmup >= 0 ? -parameters_.warmup : -ttl_;  // where a whole run begins
     first_ = step_ > 0 ? std::max(whole, step_ - parameters_.lead_in) : whole;
     launched_ = first_ - whole;  // noise and rounding are those of the whole run
-    output_ = nullptr;
+    output_ = output_means_ = nullptr;
   }
 
   /// Number of slots that hold displacements: those that a path can see.
@@ -194,7 +228,7 @@ class FlowMethodOn : public FlowMethod {
       return draw(pixel, options, dims);
     }
     RenderPixel<MovedTarget<Target>> pixel;
-    pixel.scene.target = {target, mesh_, shape_.tree()};
+    pixel.scene.target = {target, mesh_, shape_.mesh(corners_.data()), shape_.tree()};
     pixel.scene.shown = shown;
     return draw(pixel, options, dims);
   }
@@ -224,7 +258,9 @@ class FlowMethodOn : public FlowMethod {
     }
     scene.background = linear(options.background);
     scene.background_alpha = options.transparent ? 0.0f : 1.0f;
-    scene.mesh = shape_.moved() ? shape_.mesh(corners_.data()) : mesh_;
+    scene.mesh = shape_.moved() ? shape_.mesh(corners_.data()) : seen_;
+    scene.neutral_backs = options.back_faces == BackFaces::neutral;
+    scene.hidden_backs = options.back_faces == BackFaces::hidden;
     look(pixel, options, dims);
     if (shape_.moved()) {  // perhaps out of the domain
       const Vec3d target = domain_.to_grid(options.camera.target);
@@ -249,9 +285,7 @@ class FlowMethodOn : public FlowMethod {
           mesh_{flow.points_.data(), corners_.data(), normals_.data()},
           moved_{flow.shape_.points().data(), corners_.data(), flow.shape_.normals().data()},
           vectors_(flow.shape_.vectors()) {
-      if (!vectors_.empty()) return;
-      vectors_.resize(flow.points_.size());
-      flow.vectors_.at(flow.time(), vectors_);
+      if (vectors_.empty()) vectors_ = flow.vectors_at(flow.time());
     }
 
     /// Entry `s`: a cell's centre and the point of triangle `t` closest to it, both in cells of the domain.
@@ -268,8 +302,9 @@ class FlowMethodOn : public FlowMethod {
         foot = now.a * double(w.x) + now.b * double(w.y) + now.c * double(w.z);
         middle = foot + Vec3d(normal) * dot(centre - surface, Vec3d(mesh_.normal(t, w)));
       }
-      values.centre[s] = flow_.domain_.to_world(middle);
-      values.closest_point[s] = flow_.domain_.to_world(foot);
+      const Vec3d back = flow_.sheets_ && flow_.second_sheet_[t] ? flow_.sheets_.shift : Vec3d();
+      values.centre[s] = flow_.domain_.to_world(middle) - back;
+      values.closest_point[s] = flow_.domain_.to_world(foot) - back;
       values.normal[s] = normal;
       values.velocity[s] = v - normal * dot(normal, v);
     }
@@ -296,6 +331,13 @@ class FlowMethodOn : public FlowMethod {
       p = points_[t.a] * w.x + points_[t.b] * w.y + points_[t.c] * w.z;
     }
     return places;
+  }
+
+  /// One vector for each embedded point.
+  std::vector<Vec3f> vectors_at(double time) const {
+    std::vector<Vec3f> vectors(points_.size());
+    fill_vectors(time, vectors);
+    return vectors;
   }
 
   std::vector<float> download_frame(const float* frame, std::size_t n) const {
@@ -327,6 +369,12 @@ class FlowMethodOn : public FlowMethod {
   /// Values come from no farther, in texture cells: as far as the band of the grid knows the surface.
   static constexpr double carry_reach = 18;
 
+  SeparatedSheets sheets_;
+  std::vector<std::uint8_t> second_sheet_;
+  MeshView seen_{};  ///< what pictures show: as `mesh_`, but all triangles where they are
+  TriangleBoxes boxes_;
+  float* output_means_ = nullptr;  ///< where the means of blocks of shown values go; null: nowhere
+
  private:
   template <class Pixel>
   void look(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) const {
@@ -348,24 +396,32 @@ class FlowMethodOn : public FlowMethod {
     pixel.samples = std::max(1, options.samples);
   }
 
+  void fill_vectors(double time, std::vector<Vec3f>& vectors) const {
+    const std::size_t own = points_.size() - sheets_.source.size();
+    vectors_.at(time, std::span(vectors).first(own));
+    for (std::size_t i = own; i < vectors.size(); ++i) vectors[i] = vectors[sheets_.source[i - own]];
+  }
+
   /// The vectors at the time of the frame that step `k` makes.
   void load_present(int k) {
     auto stage = exec_.stage("velocity");
     host_vectors_.resize(points_.size());
-    vectors_.at(time_of(k + 1), host_vectors_);
+    fill_vectors(time_of(k + 1), host_vectors_);
     present_vectors_.upload(host_vectors_);
   }
 
   void fill(int k) {
     auto stage = exec_.stage("velocity");
     host_vectors_.resize(points_.size());
-    vectors_.at(time_of(k), host_vectors_);
+    fill_vectors(time_of(k), host_vectors_);
     point_vectors_.upload(host_vectors_);
     const SpeedScale scale{float(vectors_.reference_speed), float(parameters_.step_cells * texel_),
                            float(parameters_.speed_power), 2.0f};
     fill_slot(point_vectors_, scale, slot(k));
   }
 
+  Array<Triangle> seen_corners_;
+  Array<std::uint8_t> device_second_sheet_;
   Array<Vec3f> point_vectors_, present_vectors_;
   std::vector<Vec3f> host_vectors_;
 };

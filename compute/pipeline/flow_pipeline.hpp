@@ -54,8 +54,10 @@ struct FlowMesh {
   std::span<const Vec3d> points;          ///< world coordinates
   std::span<const Triangle> triangles;    ///< none degenerate, indices in range
   std::span<const Vec3f> corner_normals;  ///< 3 per triangle, unit
-  bool moves = false;                     ///< FlowMethod::move will be called: memory for other shapes
-  double cell_size = 0;                   ///< edge of a texture cell, world units; 0: by `resolution`
+  /// Per triangle: 1 for those of a second sheet, which lie where others do and face the other way; empty: none.
+  std::span<const std::uint8_t> second_sheet{};
+  bool moves = false;    ///< FlowMethod::move will be called: memory for other shapes
+  double cell_size = 0;  ///< edge of a texture cell, world units; 0: by `resolution`
 };
 
 /// Where the points of an embedded mesh are at a moment.
@@ -113,6 +115,8 @@ struct FlowLookup {
   };
   Kind kind = Kind::grid;
   std::uint64_t values = 0;  ///< how many are shown
+  std::uint64_t means = 0;   ///< of each block (grid) or brick (octree) of cells, after the values; 0: none
+  Vec3d sheet_shift{};       ///< world; values of a second sheet's points are found so far away from them
   Vec3d origin{};            ///< world
   double cell_size = 1;      ///< of the grid: of a closest-point cell; of an octree: of a texture cell; world units
 
@@ -153,6 +157,7 @@ struct RenderOptions {
   std::array<float, 3> no_number{0.5f, 0.5f, 0.5f};  ///< where the scalar is NaN, sRGB
   std::array<float, 3> background{1, 1, 1};          ///< sRGB
   bool transparent = false;
+  BackFaces back_faces = BackFaces::shown;
 };
 
 /// An embedded surface and the texture that moves on it: all that can be asked of it. Its implementations are GridFlow
@@ -168,8 +173,9 @@ class FlowMethod {
   /// One value per surface cell (octree of cells: per cell), 0..1, contrast stretched.
   virtual std::vector<float> shown() const = 0;
   /// From the next step on, shown values also go to `memory` of the device, for whoever draws them: one float per value
-  /// of `shown`; null: no longer, as after `start`. Nothing is read from there.
-  virtual void show_into(float* memory) = 0;
+  /// of `shown`; null: no longer, as after `start`. Nothing is read from there. The same for `means`: one float per
+  /// mean of `lookup` (-1 where a block holds no surface cell).
+  virtual void show_into(float* memory, float* means = nullptr) = 0;
   virtual FlowLookup lookup() const = 0;
   virtual FlowBoxes boxes() const = 0;
   /// Writes one Morton code per box, among cubes of its size, to `memory` of the device.

@@ -18,6 +18,12 @@
 namespace nacre {
 
 namespace detail {
+/// Whether triangles touch a cell.
+struct ListsTriangles {
+  const std::uint32_t* touch_start;
+  NACRE_HD std::uint64_t operator()(std::int64_t cell) const { return touch_start[cell + 1] > touch_start[cell]; }
+};
+
 /// Shown values at points given in texture cells.
 struct SampleShown {
   RefinedGridView texture;
@@ -35,13 +41,19 @@ class GridFlow final : public FlowMethodOn<Backend> {
 
   void embed(const FlowMesh& mesh) override {
     domain_ = make_domain(mesh, parameters_);
-    require_memory(mesh, parameters_, exec_.arena());
+    const FlowMesh embedded = this->separate(mesh, domain_.cell_size, domain_.radius);
+    if (this->sheets_) domain_ = make_domain(embedded, parameters_);
+    require_memory(embedded, parameters_, exec_.arena());
     refine_ = parameters_.refine;
     {
       auto stage = exec_.stage("embed");
-      this->begin_embedding(mesh);
+      this->begin_embedding(embedded, mesh);
       coarse_ = build_closest_point_grid(exec_, mesh_, triangles_, domain_.bricks, parameters_.subcells,
                                          float(domain_.radius));
+      const std::uint64_t listing = exec_.reduce(std::int64_t(coarse_.cells), std::uint64_t(0),
+                                                 detail::ListsTriangles{coarse_.touch_start.data()}, Add());
+      const double mean_list = double(coarse_.touch_triangle.size()) / std::max(1.0, double(listing));
+      this->build_boxes(mean_list, longest_lists, Vec3d(domain_.bricks * Int3(coarse_.sub)));
     }
     {
       auto stage = exec_.stage("refine");
@@ -80,7 +92,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   }
 
   std::vector<float> shown() const override;
-  void show_into(float* memory) override { output_ = memory; }
+  void show_into(float* memory, float* means) override { output_ = memory, this->output_means_ = means; }
   std::vector<std::uint8_t> render(const RenderOptions& options) override;
   FlowValues values() const override;
   std::vector<float> sample_shown(std::span<const Vec3d> points) override;
@@ -115,6 +127,8 @@ class GridFlow final : public FlowMethodOn<Backend> {
     shown_ = arena.permanent<float>(n);
     for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
   }
+
+  static constexpr double longest_lists = 6;  ///< triangles in a cell, above which a tree is faster
 
   void describe() {
     info_ = {};
@@ -190,6 +204,8 @@ class GridFlow final : public FlowMethodOn<Backend> {
     frame_ = parameters_.streaks > 0 ? streaks_.data() : value_.data();
     equalise(frame_);
     exec_.for_each(n, Show{detail_.data(), float(parameters_.contrast), shown_.data(), output_});
+    if (this->output_means_)
+      exec_.for_each(fine_.block_cell.size(), BlockMeans{texture, shown_.data(), this->output_means_});
   }
 
   /// Local moments of `value` over a window of about a dozen texture cells, in one of two buffers.
@@ -228,8 +244,15 @@ template <class Backend>
 std::vector<std::uint8_t> GridFlow<Backend>::render(const RenderOptions& options) {
   this->require_embedded();
   auto stage = exec_.stage("render");
-  const GridTarget target{coarse_.view(), fine_.view(coarse_.view())};
+  const RefinedGridView texture = fine_.view(coarse_.view());
+  GridTarget target{coarse_.view(), texture, this->nearest_triangles()};
   const float* shown = started_ && options.texture ? shown_.data() : nullptr;
+  Arena::Scope scope(exec_.arena());
+  if (shown) {
+    Array<float> means = exec_.arena().template temporary<float>(fine_.block_cell.size());
+    exec_.for_each(fine_.block_cell.size(), BlockMeans{texture, shown_.data(), means.data()});
+    target.means = means.data();
+  }
   return this->draw_target(target, shown, options, Vec3d(domain_.bricks * Int3(coarse_.sub)));
 }
 
@@ -277,6 +300,8 @@ FlowLookup GridFlow<Backend>::lookup() const {
   FlowLookup lookup;
   lookup.kind = FlowLookup::Kind::grid;
   lookup.values = fine_.surface_cells;
+  lookup.means = fine_.block_cell.size();
+  lookup.sheet_shift = this->sheets_.shift;
   lookup.bricks = coarse_.bricks;
   lookup.subcells = coarse_.sub;
   lookup.refine = refine_;

@@ -27,6 +27,8 @@ struct BrickBand {
   static constexpr bool as_thesis = false;
   static constexpr int smallest_box = 8;  ///< texture cells
   static std::uint64_t touched(const Octree& tree) { return tree.surface_cells; }
+  /// Triangles of a brick that lists some.
+  static double mean_list(const Octree& tree) { return double(tree.list.size()) / std::max(1u, tree.brick_count); }
 
   template <class Backend>
   static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
@@ -44,6 +46,7 @@ struct ThesisBand {
   static constexpr bool as_thesis = true;
   static constexpr int smallest_box = 2;
   static std::uint64_t touched(const Octree& tree) { return tree.touched_cells; }
+  static double mean_list(const Octree&) { return 0; }  // it lists none
 
   template <class Backend>
   static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
@@ -117,10 +120,13 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   void embed(const FlowMesh& mesh) override {
     levels_ = make_octree_domain(mesh, parameters_, domain_);
-    require_octree_memory(mesh, parameters_, exec_.arena());
+    const FlowMesh embedded = this->separate(mesh, domain_.cell_size, domain_.radius);
+    if (this->sheets_) levels_ = make_octree_domain(embedded, parameters_, domain_);
+    require_octree_memory(embedded, parameters_, exec_.arena());
     auto stage = exec_.stage("embed");
-    this->begin_embedding(mesh);
+    this->begin_embedding(embedded, mesh);
     octree_ = Band::build(exec_, mesh_, triangles_, levels_, domain_, parameters_);
+    this->build_boxes(Band::mean_list(octree_), longest_lists, Vec3d(domain_.cells));
     describe();
     this->end_embedding();
   }
@@ -163,7 +169,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     this->require_started();
     return this->download_frame(shown_.data(), octree_.view().surface_cells);
   }
-  void show_into(float* memory) override { output_ = memory; }
+  void show_into(float* memory, float* means) override { output_ = memory, this->output_means_ = means; }
   FlowValues values() const override;
   std::vector<std::uint8_t> render(const RenderOptions& options) override;
   std::vector<float> sample_shown(std::span<const Vec3d> points) override;
@@ -204,6 +210,8 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
   }
+
+  static constexpr double longest_lists = 48;  ///< triangles in a brick, above which a tree of them is faster
 
   void describe() {
     const View view = octree_.view();
@@ -316,6 +324,12 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     }
     equalise(frame_, detail);
     exec_.for_each(n, Show{detail, float(parameters_.contrast), shown_.data(), output_});
+    if (this->output_means_) find_means(view, this->output_means_);
+  }
+
+  /// Of the shown values in each brick.
+  void find_means(const View& view, float* means) {
+    if constexpr (!Band::as_thesis) exec_.for_each(view.items(), BrickMeans{view, shown_.data(), means});
   }
 
   void equalise(const float* value, float* detail) {
@@ -351,8 +365,15 @@ template <class Backend, class Band>
 std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions& options) {
   this->require_embedded();
   auto stage = exec_.stage("render");
-  const BandTarget<View> target{octree_.view()};
+  const View view = octree_.view();
+  BandTarget<View> target{view, this->nearest_triangles()};
   const float* shown = started_ && options.texture ? shown_.data() : nullptr;
+  Arena::Scope scope(exec_.arena());
+  if (shown && !Band::as_thesis) {
+    Array<float> means = exec_.arena().template temporary<float>(std::size_t(view.items()));
+    find_means(view, means.data());
+    target.means = means.data();
+  }
   return this->draw_target(target, shown, options, Vec3d(domain_.cells));
 }
 
@@ -361,6 +382,8 @@ FlowLookup OctreeFlow<Backend, Band>::lookup() const {
   this->require_embedded();
   FlowLookup lookup;
   lookup.values = octree_.view().surface_cells;
+  lookup.means = Band::as_thesis ? 0 : std::uint64_t(octree_.view().items());
+  lookup.sheet_shift = this->sheets_.shift;
   lookup.origin = domain_.origin;
   lookup.cell_size = domain_.cell_size;
   lookup.levels = levels_;

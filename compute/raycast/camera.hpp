@@ -50,4 +50,11 @@ Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& uppe
 /// Turns the camera about the vertical axis through its target.
 Camera orbit(const Camera& camera, double degrees);
 
+/// What is drawn of triangles that face away from the camera.
+enum class BackFaces {
+  shown,    ///< the same as of their fronts
+  neutral,  ///< grey
+  hidden    ///< nothing: what lies behind them is seen
+};
+
 }  // namespace nacre

@@ -46,7 +46,7 @@ NACRE_HD inline Hit meet_plane(const ThesisOctreeView& tree, CellIndex cell, con
   const Corners c = mesh.corners(triangle);
   const Vec3d n = plane_normal(c);
   const double along = dot(n, ray.direction);
-  if (along == 0) return {};
+  if (along == 0 || (ray.fronts_only && along > 0)) return {};
   const double t = dot(n, c.a - ray.origin) / along;
   return {t, triangle, Vec3f(barycentric(c, ray.at(t)))};
 }

@@ -11,6 +11,7 @@ namespace nacre {
 /// A ray in cells; `direction` need not be a unit vector. Double, since the domain of an octree may be 2^20 cells wide.
 struct Ray {
   Vec3d origin, direction;
+  bool fronts_only = false;  ///< passes through triangles that face away from where it begins
 
   NACRE_HD_INLINE Vec3d at(double t) const { return origin + direction * t; }
 };
@@ -19,9 +20,6 @@ struct Hit {
   double t = 1e300;
   std::uint32_t triangle = none;
   Vec3f weights{};  ///< barycentric coordinates
-
-  /// The position on the surface, exact to 1e-6 cells wherever it is.
-  NACRE_HD_INLINE BandPoint point(const Ray& ray) const { return band_point(ray.at(t)); }
 };
 
 namespace detail {
@@ -57,7 +55,7 @@ NACRE_HD inline void intersect(const MeshView& mesh, std::uint32_t t, const Ray&
   if (detail::surely_misses(Vec3f(a), Vec3f(ab), Vec3f(ac), Vec3f(ray.direction))) return;
   const Vec3d p = cross(ray.direction, ac), q = cross(ab, a);
   const double determinant = dot(ab, p);
-  if (determinant == 0) return;
+  if (determinant == 0 || (ray.fronts_only && determinant < 0)) return;
   const double inverse = 1 / determinant, slack = -detail::edge_slack;
   const double v = -dot(a, p) * inverse;
   if (!(v >= slack)) return;

@@ -4,7 +4,9 @@
 #include "compute/embedding/refined_grid.hpp"
 #include "compute/flow/sample_band.hpp"
 #include "compute/raycast/cast.hpp"
+#include "compute/raycast/footprint.hpp"
 #include "compute/raycast/octree_cast.hpp"
+#include "compute/raycast/sheets.hpp"
 
 namespace nacre {
 
@@ -36,32 +38,60 @@ struct Shading {
   Vec3f no_number{};                ///< of NaN
   Vec3f light{};                    ///< unit, towards the light
   float ambient = 0.3f;
-  Vec3f background{};  ///< linear light
+  bool neutral_backs = false;  ///< faces that look away are grey
+  bool hidden_backs = false;   ///< ... or not there
+  Vec3f background{};          ///< linear light
   float background_alpha = 1;
 };
 
-// What rays traverse. A target has find(mesh, ray, hit), which tells whether the ray meets the surface, and
-// texture(shown, ray, hit), the shown value there.
+// What rays traverse. A target has find(mesh, ray, hit), which returns whether the ray meets the surface, and
+// texture(shown, ray, hit, footprint), the shown value at a hit. `at` of the targets below gives it at a position of the
+// embedded surface, in cells. `nearest` holds the tree of triangles, where there is one, and the sheets.
 
 /// The two-level grid with its refined grid.
 struct GridTarget {
   ClosestPointGridView grid;
   RefinedGridView texels;
+  NearestTriangles nearest{};
+  const float* means = nullptr;  ///< of the shown values in each block
 
-  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const { return cast(grid, mesh, ray, hit); }
-  NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit) const {
-    return sample(texels, shown, Vec3f(ray.at(hit.t)) * float(texels.refine), 0.5f);
+  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const {
+    return nearest.boxes ? nearest.find(mesh, ray, hit) : cast(grid, mesh, ray, hit);
+  }
+
+  NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit, const Footprint& footprint) const {
+    return at(shown, nearest.sheets.place(ray, hit), footprint);
+  }
+
+  NACRE_HD float at(const float* shown, const Vec3d& place, const Footprint& footprint) const {
+    const auto refine = float(texels.refine);
+    const Vec3f p = Vec3f(place) * refine;
+    const auto fine = [&](const Vec3f& off) { return sample(texels, shown, p + off, no_value); };
+    const auto coarse = [&](const Vec3f& off) { return sample_means(texels, means, Vec3f(place) + off / refine); };
+    return filtered(footprint * refine, refine, fine, coarse);
   }
 };
 
-/// A band: either octree.
+/// A band: either octree. That of the thesis has no means.
 template <class View>
 struct BandTarget {
   View view;
+  NearestTriangles nearest{};
+  const float* means = nullptr;  ///< of the shown values in each brick
 
-  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const { return cast(view, mesh, ray, hit); }
-  NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit) const {
-    return sample_band(view, shown, hit.point(ray), 0.5f);
+  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const {
+    return nearest.boxes ? nearest.find(mesh, ray, hit) : cast(view, mesh, ray, hit);
+  }
+
+  NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit, const Footprint& footprint) const {
+    return at(shown, nearest.sheets.place(ray, hit), footprint);
+  }
+
+  NACRE_HD float at(const float* shown, const Vec3d& place, const Footprint& footprint) const {
+    const BandPoint p = band_point(place);
+    const auto fine = [&](const Vec3f& off) { return sample_band(view, shown, p + off, no_value); };
+    const auto coarse = [&](const Vec3f& off) { return sample_brick_means(view, means, p + off); };
+    return filtered(footprint, means ? brick_means_width : 0.0f, fine, coarse);
   }
 };
 
@@ -89,17 +119,18 @@ NACRE_HD inline Vec3f colour_of(const Shading& shading, float scalar) {
 /// Colour of a point of the surface in linear light. `value` is that of the texture, if there is one.
 NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const Hit& hit, float value) {
   Vec3f base(0.62f, 0.62f, 0.62f);
-  if (shading.scalar) {
+  const Vec3f n = shading.mesh.normal(hit.triangle, hit.weights);
+  const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
+  const bool neutral = shading.neutral_backs && faces_away(shading.mesh, hit.triangle, ray);
+  if (shading.scalar && !neutral) {
     const Triangle t = shading.mesh.triangles[hit.triangle];
     const float s =
         shading.scalar[t.a] * hit.weights.x + shading.scalar[t.b] * hit.weights.y + shading.scalar[t.c] * hit.weights.z;
     base = colour_of(shading, s);
   }
-  const Vec3f n = shading.mesh.normal(hit.triangle, hit.weights);
-  const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
   const float diffuse = dot(n, shading.light) * facing;
   float brightness = shading.ambient + (1 - shading.ambient) * (diffuse > 0 ? diffuse : 0);
-  if (shading.shown) brightness *= 0.04f + 1.52f * value;
+  if (shading.shown && !neutral) brightness *= 0.04f + 1.52f * value;
   return base * brightness;
 }
 
@@ -120,20 +151,32 @@ struct RenderPixel {
     for (int k = 0; k < samples * samples; ++k) {
       const double x = (px + (k % samples + 0.5) / samples) / width * 2 - 1;
       const double y = 1 - (py + (k / samples + 0.5) / samples) / height * 2;
-      const Ray ray = camera.ray(x, y, reach);
+      Ray ray = camera.ray(x, y, reach);
+      ray.fronts_only = shading.hidden_backs;
       Hit hit;
       if (!scene.target.find(shading.mesh, ray, hit)) {
         sum += shading.background;
         alpha += shading.background_alpha;
         continue;
       }
-      const float value = shading.shown ? scene.target.texture(shading.shown, ray, hit) : 0;
+      float value = 0;
+      if (shading.shown) value = scene.target.texture(shading.shown, ray, hit, footprint(ray, hit));
       sum += shade(shading, ray, hit, value);
       alpha += 1;
     }
     const float n = 1.0f / float(samples * samples);
     pixels[i] = channel(std::sqrt(sum.x * n)) | channel(std::sqrt(sum.y * n)) << 8 |
                 channel(std::sqrt(sum.z * n)) << 16 | channel(alpha * n) << 24;
+  }
+
+  /// What the hit of a ray stands for on the surface, in cells: what lies between it and the rays beside it.
+  NACRE_HD Footprint footprint(const Ray& ray, const Hit& hit) const {
+    const double depth = dot(ray.at(hit.t) - camera.eye, camera.forward);
+    const double scale = camera.orthographic || camera.distance == 0 ? 1 : depth / camera.distance;
+    const Vec3f across(camera.right * (2 * scale / (double(width) * samples)));
+    const Vec3f up(camera.up * (2 * scale / (double(height) * samples)));
+    const Vec3f along(ray.direction);
+    return Footprint{across, up}.on_surface(along, scene.mesh.normal(hit.triangle, hit.weights));
   }
 
   NACRE_HD static std::uint32_t channel(float v) { return std::uint32_t((v < 0 ? 0 : v > 1 ? 1 : v) * 255.0f + 0.5f); }

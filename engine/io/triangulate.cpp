@@ -1,4 +1,5 @@
-// Nacre: triangulates quads by the better diagonal, convex polygons as fans, others by ear clipping.
+// Nacre: triangulates quads by the better diagonal, convex polygons as fans, round ones by halves, others by ear
+// clipping.
 #include "engine/io/triangulate.hpp"
 
 #include <algorithm>
@@ -75,6 +76,34 @@ bool is_convex(const Corners& corners, const std::vector<Vec3d>& points, const V
   return true;
 }
 
+// A fan of very many triangles is slivers from rim to rim, which every cell and every ray on their way has to look at.
+constexpr std::size_t many_corners = 64, few_corners = 16;
+
+/// Whether the rim from corner `first` to `last` bulges outwards at every scale, down to a few corners: then it can be
+/// halved. Rims with straight parts would lose the corners on these.
+bool is_round(const Corners& corners, std::size_t first, std::size_t last, const std::vector<Vec3d>& points,
+              const Vec3d& unit_normal) {
+  if (last - first <= few_corners) return true;
+  const std::size_t middle = (first + last) / 2;
+  const Vec3d &a = points[corners[first]], &b = points[corners[middle]], &c = points[corners[last]];
+  constexpr double least_height = 1e-6;  // of the base
+  return turn(a, b, c, unit_normal) > least_height * dot(c - a, c - a) &&
+         is_round(corners, first, middle, points, unit_normal) && is_round(corners, middle, last, points, unit_normal);
+}
+
+/// The triangle between the ends and the middle of a part of the rim, and so on with both halves: all but few triangles
+/// are small.
+void cut_by_halves(const Corners& corners, std::size_t first, std::size_t last, std::vector<Triangle>& out) {
+  if (last - first <= few_corners) {
+    for (std::size_t i = first + 1; i < last; ++i) out.push_back({corners[first], corners[i], corners[i + 1]});
+    return;
+  }
+  const std::size_t middle = (first + last) / 2;
+  out.push_back({corners[first], corners[middle], corners[last]});
+  cut_by_halves(corners, first, middle, out);
+  cut_by_halves(corners, middle, last, out);
+}
+
 }  // namespace
 
 void triangulate(std::span<const std::uint32_t> polygon, const std::vector<Vec3d>& points, std::vector<Triangle>& out) {
@@ -93,6 +122,8 @@ void triangulate(std::span<const std::uint32_t> polygon, const std::vector<Vec3d
     out.push_back({corners[0], corners[1], corners[2]});
   else if (corners.size() == 4)
     cut_quad(corners, points, normal, out);
+  else if (corners.size() > many_corners && is_round(corners, 0, corners.size() - 1, points, normalized(normal)))
+    cut_by_halves(corners, 0, corners.size() - 1, out);
   else if (corners.size() > max_clipped_corners || is_convex(corners, points, normal))
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) out.push_back({corners[0], corners[i], corners[i + 1]});
   else

@@ -19,12 +19,13 @@ class VertexMaker {
   VertexMaker(SurfaceGeometry& geometry, std::span<const Vec3d> points)
       : g_(geometry), points_(points), newest_(points.size(), none) {}
 
-  std::uint32_t vertex(std::uint32_t point, const Vec3f& normal) {
+  std::uint32_t vertex(std::uint32_t point, const Vec3f& normal, float sheet) {
     for (std::uint32_t v = newest_[point]; v != none; v = older_[v])
-      if (dot(g_.vertices[v].normal, normal) > 1 - 1e-6f || normal == Vec3f{}) return v;
+      if (g_.vertices[v].sheet == sheet && (dot(g_.vertices[v].normal, normal) > 1 - 1e-6f || normal == Vec3f{}))
+        return v;
     const std::uint32_t made = std::uint32_t(g_.vertices.size());
     const Vec3f position((points_[point] - g_.origin) / g_.size);
-    g_.vertices.push_back({position, normal, point, position});
+    g_.vertices.push_back({position, normal, point, position, sheet});
     older_.push_back(newest_[point]);
     return newest_[point] = made;
   }
@@ -79,16 +80,20 @@ void find_edges(SurfaceGeometry& g, std::span<const Vec3d> points, std::span<con
 }  // namespace
 
 SurfaceGeometry make_surface_geometry(std::span<const Vec3d> points, std::span<const Triangle> triangles,
-                                      std::span<const Vec3f> corner_normals) {
+                                      std::span<const Vec3f> corner_normals,
+                                      std::span<const std::uint8_t> second_sheet) {
   SurfaceGeometry g;
   find_box(g, points, triangles);
   VertexMaker maker(g, points);
   g.triangles.reserve(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     std::array<std::uint32_t, 3> v;
+    const bool second = !second_sheet.empty() && second_sheet[t] != 0;
+    g.sheets = g.sheets || second;
     for (int k = 0; k < 3; ++k)
       v[std::size_t(k)] =
-          maker.vertex(triangles[t][k], corner_normals.empty() ? Vec3f{} : corner_normals[3 * t + std::size_t(k)]);
+          maker.vertex(triangles[t][k], corner_normals.empty() ? Vec3f{} : corner_normals[3 * t + std::size_t(k)],
+                       second ? 1.0f : 0.0f);
     g.triangles.push_back({v[0], v[1], v[2]});
   }
   find_edges(g, points, triangles);
@@ -104,6 +109,7 @@ SurfaceBuffers::SurfaceBuffers(const SurfaceGeometry& g)
       triangle_(Buffer::of<Triangle>(g.triangles)),
       edge_(Buffer::of<std::array<std::uint32_t, 2>>(g.edges)),
       closed_(g.closed),
+      sheets_(g.sheets),
       mean_edge_(g.mean_edge),
       origin_(g.origin),
       size_(g.size) {
@@ -120,8 +126,9 @@ SurfaceBuffers::SurfaceBuffers(const SurfaceGeometry& g)
     glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, position));
     glVertexArrayAttribFormat(array, 1, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, normal));
     glVertexArrayAttribIFormat(array, 2, 1, GL_UNSIGNED_INT, offsetof(SurfaceVertex, point));
+    glVertexArrayAttribFormat(array, 3, 1, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, sheet));
     glVertexArrayAttribFormat(array, 4, 3, GL_FLOAT, GL_FALSE, offsetof(SurfaceVertex, embedded));
-    for (const GLuint k : {0u, 1u, 2u, 4u}) {
+    for (GLuint k = 0; k < 5; ++k) {
       glVertexArrayAttribBinding(array, k, 0);
       glEnableVertexArrayAttrib(array, k);
     }
@@ -146,6 +153,7 @@ SurfaceBuffers& SurfaceBuffers::operator=(SurfaceBuffers&& other) noexcept {
   std::swap(triangles_, other.triangles_);
   std::swap(edges_, other.edges_);
   std::swap(closed_, other.closed_);
+  std::swap(sheets_, other.sheets_);
   std::swap(mean_edge_, other.mean_edge_);
   std::swap(origin_, other.origin_);
   std::swap(size_, other.size_);

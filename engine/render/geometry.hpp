@@ -18,6 +18,7 @@ struct SurfaceVertex {
   Vec3f normal;
   std::uint32_t point;  ///< of the mesh
   Vec3f embedded{};     ///< where the point is in the shape that is embedded, in the same coordinates
+  float sheet = 0;      ///< 1 in a second sheet, which lies where another does
 };
 
 /// Triangles prepared on the host, on any thread.
@@ -25,15 +26,17 @@ struct SurfaceGeometry {
   std::vector<SurfaceVertex> vertices;
   std::vector<Triangle> triangles;                  ///< of vertices
   std::vector<std::array<std::uint32_t, 2>> edges;  ///< each once, of vertices
+  bool sheets = false;                              ///< some are second sheets
   bool closed = false;                              ///< every edge has two triangles: backs are never seen
   double mean_edge = 0;                             ///< world units
   Vec3d origin{};                                   ///< world = origin + model * size
   double size = 1;
 };
 
-/// `corner_normals`: three per triangle, or none (for flat shading).
+/// `corner_normals`: three per triangle, or none (for flat shading). `second_sheet`: one per triangle, or none.
 SurfaceGeometry make_surface_geometry(std::span<const Vec3d> points, std::span<const Triangle> triangles,
-                                      std::span<const Vec3f> corner_normals);
+                                      std::span<const Vec3f> corner_normals,
+                                      std::span<const std::uint8_t> second_sheet = {});
 
 /// The vertices of a surface that has moved find their texture where `embedded` has their points.
 void set_embedded(SurfaceGeometry& geometry, std::span<const Vec3d> embedded);
@@ -54,6 +57,7 @@ class SurfaceBuffers {
   void draw_edges() const;
 
   bool closed() const { return closed_; }
+  bool sheets() const { return sheets_; }
   double mean_edge() const { return mean_edge_; }
   const Vec3d& origin() const { return origin_; }
   double size() const { return size_; }
@@ -64,7 +68,7 @@ class SurfaceBuffers {
   Buffer vertex_, triangle_, edge_;
   GLuint triangle_array_ = 0, edge_array_ = 0;
   GLsizei triangles_ = 0, edges_ = 0;
-  bool closed_ = false;
+  bool closed_ = false, sheets_ = false;
   double mean_edge_ = 0;
   Vec3d origin_{};
   double size_ = 1;

@@ -6,6 +6,27 @@
 #include <vector>
 
 namespace nacre {
+namespace {
+
+/// Triangles that face the camera, and those that do not; the former lie before the latter where both are in one place.
+void draw_sides(const Program& program, const SurfaceBuffers& surface, bool one_sided, BackFaces back_faces) {
+  program.set("neutral", 0);
+  const bool alike = !one_sided && !surface.sheets() && back_faces == BackFaces::shown;
+  if (!alike) glEnable(GL_CULL_FACE);
+  surface.draw_triangles();
+  if (!alike && !one_sided && back_faces != BackFaces::hidden) {
+    program.set("neutral", back_faces == BackFaces::neutral ? 1 : 0);
+    glCullFace(GL_FRONT);
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(-0.5f, -2);  // larger depths are nearer
+    surface.draw_triangles();
+    glDisable(GL_POLYGON_OFFSET_FILL);
+    glCullFace(GL_BACK);
+  }
+  glDisable(GL_CULL_FACE);
+}
+
+}  // namespace
 
 void SurfaceColours::set_map(std::span<const std::array<float, 3>> colours) {
   std::vector<std::array<float, 3>> linear(colours.begin(), colours.end());
@@ -56,15 +77,16 @@ int SurfaceColours::bind(const Program& program, int unit) const {
   return unit + 2;
 }
 
-void SurfacePass::set_texture(SurfaceTexture texture) {
+void SurfacePass::set_texture(SurfaceTexture texture, const TextureLayout& layout) {
   texture_ = std::move(texture);
+  layout_ = layout;
   textured_ = textured() ? Program("surface.vert", "surface.frag",
                                    std::visit([](const auto& t) { return t.prelude(); }, texture_))
                          : Program();
 }
 
 void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
-                       const BufferTexture* shown) const {
+                       const BufferTexture* shown, BackFaces back_faces) const {
   const bool looks_up = shown && textured();
   const Program& program = looks_up ? textured_ : plain_;
   set_view(program, view, surface.placement());
@@ -75,15 +97,16 @@ void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const Su
       const Vec3d offset = (surface.origin() - texture.origin()) / texture.texture_cell();
       program.set("texture_from_model", std::array<float, 4>{float(offset.x), float(offset.y), float(offset.z),
                                                              float(surface.size() / texture.texture_cell())});
+      const Vec3f shift(layout_.sheet_shift / texture.texture_cell());
+      program.set("sheet_shift", std::array<float, 3>{shift.x, shift.y, shift.z});
+      program.set("values", int(layout_.values));
     };
     std::visit(bind, texture_);
   }
+  program.use();
   glEnable(GL_DEPTH_TEST);
   const bool one_sided = surface.closed() && !view.clip;
-  if (one_sided) glEnable(GL_CULL_FACE);
-  program.use();
-  surface.draw_triangles();
-  if (one_sided) glDisable(GL_CULL_FACE);
+  draw_sides(program, surface, one_sided, back_faces);
 }
 
 }  // namespace nacre

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <variant>
 
+#include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/gl/texture.hpp"
 #include "engine/render/geometry.hpp"
 #include "engine/render/octree_texture.hpp"
@@ -39,6 +41,13 @@ class SurfaceColours {
   std::array<float, 3> below_{}, above_{}, no_number_{0.25f, 0.25f, 0.25f};  ///< as the shader sees them
 };
 
+/// What a texture's look-up does not say: how many values there are if means of blocks follow them (-1: none do), and
+/// how far from the points of a second sheet its values are found, in world units.
+struct TextureLayout {
+  std::int64_t values = -1;
+  Vec3d sheet_shift{};
+};
+
 /// How shown values are looked up.
 using SurfaceTexture = std::variant<SparseTexture, OctreeTexture>;
 
@@ -48,18 +57,20 @@ class SurfacePass {
   SurfacePass() : plain_("surface.vert", "surface.frag") {}
 
   /// From now on looks values up in `texture`; an empty one leaves the surface plain.
-  void set_texture(SurfaceTexture texture);
+  void set_texture(SurfaceTexture texture, const TextureLayout& layout = {});
   bool textured() const {
     return std::visit([](const auto& texture) { return bool(texture); }, texture_);
   }
 
-  /// `shown`: one value per surface cell; null: plain.
-  void draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
-            const BufferTexture* shown) const;
+  /// `shown`: one value per surface cell, and the means that the layout says; null: plain. Of two sheets in one place
+  /// the one that faces the camera is seen.
+  void draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours, const BufferTexture* shown,
+            BackFaces back_faces = BackFaces::shown) const;
 
  private:
   Program plain_, textured_;
   SurfaceTexture texture_;
+  TextureLayout layout_;
 };
 
 }  // namespace nacre

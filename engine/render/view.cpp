@@ -99,7 +99,7 @@ void set_view(const Program& program, const View& view, const Placement& world_f
     plane = {float(n.x), float(n.y), float(n.z), float(dot(n, view.camera.eye) - offset)};
   }
   program.set("clip_plane", plane);
-  program.set("backs", int(view.backs));
+  program.set("backs", int(view.back_faces));
 }
 
 }  // namespace nacre

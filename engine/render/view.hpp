@@ -15,9 +15,6 @@ struct ClipPlane {
   double offset = 0;
 };
 
-/// Sides of a surface that are seen from behind.
-enum class Backs { shown, neutral, hidden };
-
 /// What all passes of one frame share.
 struct View {
   Camera camera;
@@ -26,7 +23,7 @@ struct View {
   float ambient = 0.3f;
   double extent = 0;  ///< radius of a ball around the eye that contains the scene, for orthographic cameras
   std::optional<ClipPlane> clip;
-  Backs backs = Backs::shown;
+  BackFaces back_faces = BackFaces::shown;
 
   /// From world coordinates relative to the eye to the clip space of a Framebuffer: depth 1 near, 0 infinitely far (0
   /// at the far end of an orthographic camera).

@@ -32,6 +32,7 @@ Image FlowPainter::paint(int frame) {
   options.colours = map_.table;
   options.background = background_;
   options.transparent = transparent_;
+  options.back_faces = settings_.back_faces;
   std::vector<float> scalar;
   if (input_.colored()) {
     scalar = input_.scalar(pipeline_.flow().time());

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include "compute/device/error.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
 namespace {
@@ -12,8 +16,9 @@ namespace {
 constexpr int least_resolution = 16;
 constexpr int finest_grid = 12000;  // cells along an axis that the two-level grid can number
 constexpr int finest_octree = 1 << 20;
-constexpr double cells_per_pixel = 4;  // of the picture, at most: hidden sheets and slanted ones count, too
-constexpr double nearest = 1e-3;       // of the distance to the target: what is nearer to the eye is not drawn
+constexpr double cells_per_pixel = 4;      // of the picture, at most: hidden sheets and slanted ones count, too
+constexpr double cells_along_pixel = 1.1;  // where a whole surface fills the picture
+constexpr double nearest = 1e-3;           // of the distance to the target: what is nearer to the eye is not drawn
 
 /// The view's axes, and where points lie in its picture.
 class Projection {
@@ -122,7 +127,7 @@ double area_of(const PreparedSurface& surface) {
 /// The finest resolution, at most `wanted`, that the method can number and the memory holds; 0: none does.
 int affordable(const PreparedSurface& part, FlowParameters parameters, double wanted, double available) {
   const bool grid = parameters.method == EmbeddingKind::grid;
-  const FlowMesh mesh{part.points, part.triangles, part.corner_normals};
+  const FlowMesh mesh = flow_mesh(part);
   parameters.resolution = int(std::min<double>(wanted, grid ? finest_grid : finest_octree));
   while (parameters.resolution >= least_resolution) {
     const double bytes = grid ? estimate_flow_bytes(mesh, parameters) : estimate_octree_bytes(mesh, parameters);
@@ -133,6 +138,21 @@ int affordable(const PreparedSurface& part, FlowParameters parameters, double wa
 }
 
 }  // namespace
+
+int picture_resolution(const FlowView& view, const PreparedSurface& surface, const FlowParameters& parameters,
+                       std::size_t available) {
+  if (parameters.resolution >= least_resolution) return parameters.resolution;
+  if (parameters.resolution > 0)
+    throw Error("`resolution` " + std::to_string(parameters.resolution) + " is too coarse", "",
+                "use " + std::to_string(least_resolution) + " or more, or 0");
+  const Camera fitted = fit_camera(view.camera, triangle_corners(surface), view.width, view.height);
+  const double longest = longest_side(surface), pixels = double(view.width) * view.height;
+  const double cell = std::max(fitted.height / view.height / cells_along_pixel,
+                               std::sqrt(area_of(surface) / (cells_per_pixel * pixels)));
+  if (!(longest > 0) || !(cell > 0)) return least_resolution;
+  return std::max(least_resolution,
+                  affordable(surface, parameters, std::ceil(longest / cell), 0.5 * double(available)));
+}
 
 std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
                               std::size_t available) {

@@ -26,6 +26,13 @@ struct Focus {
 /// Larger cells than this many pixels are seen as such.
 inline constexpr double coarsest_cell = 1.5;
 
+/// The resolution for a picture of the whole surface, where the knob leaves it open (`parameters.resolution` 0): cells
+/// a little smaller than pixels where the surface fills the picture (seen from the camera's direction), or larger ones
+/// where half of the memory (`available` bytes) or four cells a pixel would not do. Any other resolution is returned as
+/// it is; below 16, Error.
+int picture_resolution(const FlowView& view, const PreparedSurface& surface, const FlowParameters& parameters,
+                       std::size_t available);
+
 /// The focus for a view; none where the whole surface is in view, nothing is, or where the whole's cells are fine
 /// enough. Cells are a pixel, or larger where the memory (`available` bytes), the picture's budget of four cells a
 /// pixel, or the limits of the method ask for it.

@@ -51,7 +51,7 @@ class FlowKnobs(TypedDict, total=False):
     method: Literal["grid", "octree"]  #: embedding that the flow is computed on
     octree: Literal["brick", "source"]  #: kind of octree: brick (bricks of cells, fast) or source (a tree of cells, as in the thesis)
     neighbour_index: bool  #: store the neighbours of every cell (octree source only)
-    resolution: int  #: texture cells along the longest side; with an octree, cells of its cube per axis [cells]
+    resolution: int  #: texture cells along the longest side (octree: of its cube per axis); 0: about one to a pixel [cells]
     refine: int  #: texture cells per closest-point cell and axis
     subcells: int  #: closest-point cells per coarse cell and axis
     radius: float  #: half width of the band around the surface, in closest-point cells; 0: the least that the stencils need [cells]
@@ -77,6 +77,7 @@ class FlowKnobs(TypedDict, total=False):
     color_below: str  #: #rrggbb for values below the colour range; empty: the lower end of the map
     color_above: str  #: #rrggbb for values above the colour range; empty: the upper end of the map
     color_nan: str  #: #rrggbb where the data have no number (NaN)
+    back_faces: Literal["shown", "neutral", "hidden"]  #: what is drawn of faces seen from behind: shown, neutral (grey) or hidden
     camera: str  #: direction of view: iso, +x, -x, +y, -y, +z or -z; or a JSON file with a camera
     orbit: float  #: angle by which the camera turns from frame to frame [degrees]
     width: int  #: width of the picture [pixels]

@@ -33,7 +33,7 @@ struct FlowRun {
     pipeline = make_flow_pipeline(*device);
     pipeline->parameters = parameters;
     const PreparedSurface& s = vectors->surface();
-    pipeline->embed({s.points, s.triangles, s.corner_normals});
+    pipeline->embed(flow_mesh(s));
     pipeline->flow().start(flow_vectors(*vectors, vectors->start(), vectors->end()));
   }
 

@@ -28,10 +28,11 @@ constexpr std::array<float, 4> box_colour{0.1f, 0.25f, 0.5f, 0.25f};
 
 FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
     : lookup(surface_texture(told)),
+      layout{told.lookup.means > 0 ? std::int64_t(told.lookup.values) : -1, told.lookup.sheet_shift},
       info(told.info),
       boxes(told.boxes),
       number(told.number),
-      values(device, told.lookup.values * sizeof(float), GL_R32F) {}
+      values(device, (told.lookup.values + told.lookup.means) * sizeof(float), GL_R32F) {}
 
 FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority)
     : worker_(session, std::move(device), loop, low_priority),
@@ -273,7 +274,7 @@ void FlowScene::take(FlowStepped& told) {
     if (shown_) copied_ += shown_->copied_bytes();
     shown_ = std::move(next_);
     forget_frames();
-    surface_pass_.set_texture(std::move(shown_->lookup));
+    surface_pass_.set_texture(std::move(shown_->lookup), shown_->layout);
     results_.embedding = shown_->info;
   }
   results_.steps = told.number;
@@ -315,7 +316,11 @@ void FlowScene::draw(const View& view) {
   if (!surface_) return;
   const KeptFrame* const kept = looked_back_at();
   colours_.set_isolines(settings_.view.isolines);
-  surface_pass_.draw(view, surface_, colours_, kept ? &kept->texture : shown_ ? &shown_->values.texture() : nullptr);
+  surface_pass_.draw(view, surface_, colours_,
+                     kept     ? &kept->texture
+                     : shown_ ? &shown_->values.texture()
+                              : nullptr,
+                     settings_.back_faces);
   if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.view.arrows) draw_arrows(view);
   if (settings_.view.boxes && shown_ && shown_->boxed) draw_boxes(view);

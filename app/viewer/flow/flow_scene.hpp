@@ -67,6 +67,7 @@ class FlowScene : public Scene {
   /// shown.
   struct Texture {
     SurfaceTexture lookup;
+    TextureLayout layout;
     EmbeddingInfo info;
     FlowBoxes boxes;
     int number;  ///< of the embedding

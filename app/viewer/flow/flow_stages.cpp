@@ -8,6 +8,7 @@
 #include "compute/device/error.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
+#include "engine/run/focus.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 
@@ -26,7 +27,8 @@ SurfaceRead describe(const VectorsInTime& vectors) {
   const PreparedSurface& surface = vectors.surface();
   SurfaceRead told;
   told.name = vectors.series().name;
-  told.geometry = make_surface_geometry(surface.points, surface.triangles, surface.corner_normals);
+  told.geometry =
+      make_surface_geometry(surface.points, surface.triangles, surface.corner_normals, surface.second_sheet);
   if (vectors.moves())
     told.corners = corners_of_all_steps(vectors);
   else
@@ -139,10 +141,21 @@ void FlowWorker::place_arrows() {
   tell(std::move(told));
 }
 
+/// As the knobs say, with the resolution that there is.
+FlowParameters FlowWorker::parameters() const {
+  FlowParameters parameters = settings_.flow;
+  parameters.resolution = resolution_;
+  return parameters;
+}
+
 void FlowWorker::embed() {
   has_values_ = false;
   ++embeddings_;
-  pipeline_->parameters = settings_.flow;
+  const PreparedSurface& surface = vectors_->surface();
+  const FlowView view{fit_camera("iso", triangle_corners(surface), settings_.width, settings_.height), settings_.width,
+                      settings_.height};
+  resolution_ = picture_resolution(view, surface, settings_.flow, device_->available_bytes());
+  pipeline_->parameters = parameters();
   const auto warn = [this](const std::string& sentence) { tell_data("", {sentence}); };
   motion_ = std::make_unique<FlowMotion>(*pipeline_, *vectors_, warn, [this](double t) { return wrapped(t); });
   span_ = {};
@@ -155,6 +168,7 @@ void FlowWorker::embed() {
 void FlowWorker::tell_embedded() {
   const FlowMethod& flow = pipeline_->flow();
   FlowEmbedded told{flow.lookup(), {}, flow.embedding(), flow.boxes(), embeddings_};
+  means_ = told.lookup.means > 0 ? told.lookup.values : 0;
   if (told.lookup.kind == FlowLookup::Kind::grid) told.rimmed = with_rims(sparse_lookup(told.lookup));
   tell(std::move(told));
 }
@@ -167,7 +181,7 @@ void FlowWorker::start() {
   FlowVectors vectors = flow_vectors(*vectors_, span_.start, end);
   vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->material_vectors(wrapped(t), out); };
   steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
-  pipeline_->parameters = settings_.flow;
+  pipeline_->parameters = parameters();
   pipeline_->parameters.steps = steps_in_all_;
   const double first = wrapped(span_.start + span_.frame_time);  // of the first frame
   tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first)});
@@ -187,7 +201,7 @@ void FlowWorker::start() {
 
 void FlowWorker::make_step() {
   const auto before = std::chrono::steady_clock::now();
-  pipeline_->parameters = settings_.flow;
+  pipeline_->parameters = parameters();
   pipeline_->parameters.steps = steps_in_all_;
   if (motion_->follow()) {  // there are other values from now on: they need other memory
     ++embeddings_;
@@ -195,7 +209,7 @@ void FlowWorker::make_step() {
     place_arrows();
     return tell(FlowInterrupted{});
   }
-  pipeline_->flow().show_into(memory_);
+  pipeline_->flow().show_into(memory_, memory_ && means_ ? memory_ + means_ : nullptr);
   pipeline_->flow().step();
   motion_->show();
   FlowStepped told;

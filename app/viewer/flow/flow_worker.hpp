@@ -179,6 +179,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void embed();
   void tell_embedded();
   std::shared_ptr<const MovedSurface> moved_surface(double time);
+  FlowParameters parameters() const;
   void start();
   void make_step();
   void answer_sample(const Vec3d& place);
@@ -204,6 +205,8 @@ class FlowWorker : public Worker<FlowEvent> {
   bool has_values_ = false;
   float* memory_ = nullptr;  ///< of the step that it makes
   int embeddings_ = 0;       ///< begun so far
+  int resolution_ = 0;       ///< of the embedding
+  std::uint64_t means_ = 0;  ///< where means of blocks begin behind the shown values; 0: there are none
 
   // Guarded by the mutex.
   FlowRerun due_;

@@ -45,7 +45,7 @@ void whole_widget(int& value, const Knob& knob) {
     else
       ImGui::InputInt("##value", &shown, 0);
   });
-  value = int(std::clamp(double(value), knob.min, knob.max));
+  if (!(knob.or_zero && value == 0)) value = int(std::clamp(double(value), knob.min, knob.max));
 }
 
 void real_widget(double& value, const Knob& knob) {

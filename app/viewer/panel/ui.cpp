@@ -129,7 +129,7 @@ void look_tab(Session& session, ScenePanel& panel) {
   const auto several = [&](std::initializer_list<const char*> names) {
     for (const char* name : names) knob_widget(settings, name);
   };
-  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back", "backs"});
+  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back", "back_faces"});
   if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
   if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
   if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size", "panel_side", "panel_width"});

@@ -22,7 +22,7 @@ View scene_view(const Session& session, std::span<const Vec3d> corners, double t
   view.height = height;
   view.light = turned_light(flow_light(view.camera), view.camera, look.light_azimuth, look.light_height);
   view.clip = clip_plane(look, corners);
-  view.backs = look.backs == "neutral" ? Backs::neutral : look.backs == "hidden" ? Backs::hidden : Backs::shown;
+  view.back_faces = settings.back_faces;
   view.ambient = float(look.ambient);
   view.extent = diameter_of(corners) + length(view.camera.eye - view.camera.target);
   return view;

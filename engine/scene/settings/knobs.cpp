@@ -19,7 +19,7 @@ std::string range_of(const Knob& knob) {
   if (!knob.choices.empty()) return fmt::format("{}", fmt::join(knob.choices, "|"));
   if (std::holds_alternative<bool*>(knob.value)) return "true|false";
   if (std::holds_alternative<std::string*>(knob.value)) return "text";
-  return fmt::format("{:.10g}..{:.10g}", knob.min, knob.max);
+  return fmt::format("{}{:.10g}..{:.10g}", knob.or_zero ? "0 or " : "", knob.min, knob.max);
 }
 
 [[noreturn]] void out_of_range(const Knob& knob, const std::string& text) {
@@ -34,7 +34,8 @@ T parse_number(const Knob& knob, const std::string& text) {
   if (error != std::errc() || end != text.data() + text.size())
     throw Error(
         fmt::format("{} takes a{} number, not '{}'", knob.option(), std::is_integral_v<T> ? " whole" : "", text));
-  if (!(double(value) >= knob.min && double(value) <= knob.max)) out_of_range(knob, text);
+  const bool chosen = knob.or_zero && value == T(0);
+  if (!chosen && !(double(value) >= knob.min && double(value) <= knob.max)) out_of_range(knob, text);
   return value;
 }
 

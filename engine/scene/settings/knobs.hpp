@@ -34,6 +34,7 @@ struct Knob {
   std::string help;       ///< one line
   std::variant<int*, double*, std::uint32_t*, bool*, std::string*, KnobChoice> value;
   double min = 0, max = 0;                  ///< of a number
+  bool or_zero = false;                     ///< 0 is allowed besides: the program chooses
   std::vector<std::string> choices = {};    ///< of an enumeration, or of a string (empty: any)
   std::uint32_t* also = nullptr;            ///< a second place with the same value
   std::vector<std::string> old_names = {};  ///< former names: still read from sessions and command lines

@@ -48,7 +48,6 @@ struct ViewSettings {
   std::string turning = "turntable";           ///< turntable, trackball
   std::string material_colors;                 ///< L:#rrggbb[,L:...]: of materials, by label
   std::string opacity;                         ///< L:0..1[,L:...]: of materials, by label
-  std::string backs = "shown";                 ///< sides of a surface seen from behind: shown, neutral, hidden
   int isolines = 0;                            ///< of a flow, over the colour range
   std::string ruler;                           ///< x y z;x y z;...: points to measure between
   std::string notes;                           ///< x y z text;...
@@ -62,9 +61,15 @@ struct ViewSettings {
   double text_size = 1;                        ///< of the panels
 };
 
+inline FlowParameters default_flow() {
+  FlowParameters flow;
+  flow.resolution = 0;  // as the picture asks: engine/run/focus.hpp
+  return flow;
+}
+
 /// Values of all knobs; the defaults are the members' initial values. The table is in knobs.hpp.
 struct Settings {
-  FlowParameters flow;
+  FlowParameters flow = default_flow();
   MeshParameters mesh;
   MaterialSettings materials;
   ViewSettings view;
@@ -85,11 +90,12 @@ struct Settings {
   std::string color_scale = "linear";    ///< linear, log
   std::string color_below, color_above;  ///< #rrggbb beyond the range; empty: the ends of the map
   std::string color_nan = "#808080";     ///< #rrggbb where there is no number
-  std::string camera = "iso";            ///< a view or a JSON file
-  bool focus = true;                     ///< close-ups are computed at the picture's resolution
-  double orbit = 0;                      ///< degrees per frame
-  int width = 1024, height = 768;        ///< of the picture
-  int samples = 2;                       ///< rays per pixel and axis
+  BackFaces back_faces = BackFaces::shown;
+  std::string camera = "iso";      ///< a view or a JSON file
+  bool focus = true;               ///< close-ups are computed at the picture's resolution
+  double orbit = 0;                ///< degrees per frame
+  int width = 1024, height = 768;  ///< of the picture
+  int samples = 2;                 ///< rays per pixel and axis
   std::string background = "#ffffff";
   int fps = 25;
   bool legend = true, time_stamp = true;

@@ -38,6 +38,11 @@ MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, co
 /// Warns where the vectors show little: all zero, mostly normal to the surface, zero in many places.
 void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log);
 
+/// A prepared surface as the flow pipeline takes it; the surface must outlive it.
+inline FlowMesh flow_mesh(const PreparedSurface& surface) {
+  return {surface.points, surface.triangles, surface.corner_normals, surface.second_sheet};
+}
+
 /// The vectors of `input` between two times of the data, as the flow pipeline takes them: on the whole surface or, if
 /// `part` is given, on that. Both must outlive them. Where nothing moves, the reference speed is 1.
 FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const SurfacePart* part = nullptr);

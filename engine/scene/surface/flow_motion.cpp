@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/material_map.hpp"
 
 namespace nacre {
@@ -83,7 +84,7 @@ bool FlowMotion::is_stretched(double t) {
 /// texture is as fine everywhere in time.
 FlowMesh FlowMotion::mesh() const {
   const PreparedSurface& surface = input_.surface();
-  FlowMesh mesh{surface.points, surface.triangles, surface.corner_normals};
+  FlowMesh mesh = flow_mesh(surface);
   mesh.moves = input_.moves();
   if (cell_size_ > 0) {
     const double growth = longest_side(surface) / longest_;

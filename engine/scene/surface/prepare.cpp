@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/surface/sheets.hpp"
 #include "engine/scene/surface/winding.hpp"
 
 namespace nacre {
@@ -57,12 +58,52 @@ void drop_unusable(PreparedSurface& surface, std::vector<std::string>* warnings)
       "triangle", "dropped because their coordinates are not finite");
 }
 
-void orient(PreparedSurface& surface, std::span<const std::uint32_t> same, std::vector<std::string>* warnings) {
-  const WindingReport report = make_winding_consistent(surface.points, same, surface.triangles);
+void say(std::vector<std::string>* warnings, const WindingReport& report) {
   say(warnings, report.duplicates, "triangle", "dropped because an earlier one has the same three points");
   say(warnings, report.flipped, "triangle", "turned over to be wound like their neighbours");
   say(warnings, report.turned_parts, "closed part", "turned over to face outwards");
   say(warnings, report.contradictions, "edge", "left with contradicting triangles: the surface is one-sided there");
+}
+
+void turn_over(Triangle& t) { std::swap(t.b, t.c); }
+
+/// Winds the first sheets consistently, as if there were no others. What lies on them is turned over with them.
+void orient_with_second_sheets(PreparedSurface& surface, std::span<const std::uint32_t> same,
+                               const SecondSheets& sheets, std::vector<std::string>* warnings) {
+  std::vector<Triangle> firsts, seconds;
+  std::vector<std::uint32_t> number(surface.triangles.size(), none);  // among the first ones
+  for (std::size_t t = 0, s = 0; t < surface.triangles.size(); ++t) {
+    const bool second = s < sheets.triangles.size() && sheets.triangles[s] == t;
+    if (!second) number[t] = std::uint32_t(firsts.size());
+    (second ? seconds : firsts).push_back(surface.triangles[t]);
+    s += second ? 1 : 0;
+  }
+  const std::vector<Triangle> before = firsts;
+  std::vector<std::uint8_t> open;
+  const WindingReport report = make_winding_consistent(surface.points, same, firsts, &open);
+  say(warnings, report);
+  const bool inwards = 2 * report.turned_triangles > report.closed_triangles;
+  std::vector<char> turned(before.size(), 0);
+  for (std::size_t i = 0, k = 0; i < before.size() && k < firsts.size(); ++i) {
+    const Triangle over{before[i].a, before[i].c, before[i].b};
+    if (!(firsts[k] == before[i]) && !(firsts[k] == over)) continue;  // it was dropped
+    if (inwards && open[k]) turn_over(firsts[k]);
+    turned[i] = !(firsts[k++] == before[i]);
+  }
+  for (std::size_t s = 0; s < seconds.size(); ++s)
+    if (const std::uint32_t first = number[sheets.backing[s]]; first != none && turned[first]) turn_over(seconds[s]);
+  surface.triangles = std::move(firsts);
+  surface.second_sheet.assign(surface.triangles.size(), 0);
+  surface.triangles.insert(surface.triangles.end(), seconds.begin(), seconds.end());
+  surface.second_sheet.resize(surface.triangles.size(), 1);
+}
+
+void orient(PreparedSurface& surface, std::span<const std::uint32_t> same, bool with_arrays,
+            std::vector<std::string>* warnings) {
+  const SecondSheets sheets =
+      with_arrays ? find_second_sheets(surface.points, same, surface.triangles) : SecondSheets();
+  if (!sheets.triangles.empty()) return orient_with_second_sheets(surface, same, sheets, warnings);
+  say(warnings, make_winding_consistent(surface.points, same, surface.triangles));
 }
 
 /// Triangle corners by the point (first at its position) that they stand on.
@@ -151,10 +192,12 @@ std::size_t drop_flat(PreparedSurface& surface, std::vector<Shape>& shapes) {
   for (std::size_t t = 0; t < shapes.size(); ++t)
     if (shapes[t].flatness > zero_height) {
       surface.triangles[kept] = surface.triangles[t];
+      if (!surface.second_sheet.empty()) surface.second_sheet[kept] = surface.second_sheet[t];
       shapes[kept++] = shapes[t];
     }
   const std::size_t dropped = shapes.size() - kept;
   surface.triangles.resize(kept);
+  surface.second_sheet.resize(surface.second_sheet.empty() ? 0 : kept);
   shapes.resize(kept);
   return dropped;
 }
@@ -174,7 +217,7 @@ PreparedSurface prepare(const Surface& surface, double crease_degrees, std::vect
   if (surface.triangles.size() > 0xfffffffdu / 3)
     throw Error("the surface has too many triangles", fmt::format("{}", surface.triangles.size()),
                 "at most 1.4 billion are supported");
-  PreparedSurface result{surface.points, surface.triangles, {}};
+  PreparedSurface result{surface.points, surface.triangles, {}, {}};
   require_triangles(result, "the file lists none");
   drop_unusable(result, warnings);
   const std::vector<std::uint32_t> same = first_at_position(result.points);
@@ -182,7 +225,7 @@ PreparedSurface prepare(const Surface& surface, double crease_degrees, std::vect
   std::size_t flat = std::erase_if(result.triangles, [&](const Triangle& t) {
     return same[t.a] == same[t.b] || same[t.b] == same[t.c] || same[t.c] == same[t.a];
   });
-  orient(result, same, warnings);
+  orient(result, same, !surface.arrays.empty(), warnings);
   std::vector<Shape> shapes = shapes_of(result);
   flat += drop_flat(result, shapes);
   say(warnings, flat, "triangle", "dropped because they have no area");

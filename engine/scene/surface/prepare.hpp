@@ -15,6 +15,8 @@ struct PreparedSurface {
   std::vector<Vec3d> points;          ///< as in the file, one to one with its arrays (unused where not finite: moved)
   std::vector<Triangle> triangles;    ///< indices in range, area above zero, none twice, winding consistent
   std::vector<Vec3f> corner_normals;  ///< three per triangle, unit length: `corner_normals[3 * triangle + corner]`
+  /// Per triangle 1 for those of a second sheet (engine/scene/surface/sheets.hpp); empty: there is none.
+  std::vector<std::uint8_t> second_sheet;
 };
 
 /// Cleans and orients `surface`. Triangles with indices out of range, coordinates that are not finite, no area, or the
@@ -23,6 +25,9 @@ struct PreparedSurface {
 /// same position count as one for this, so a seam does not show. A corner's normal is the angle-weighted mean over the
 /// triangles around its point whose normals lie within `crease_degrees` of its own triangle's. Points that are not
 /// finite are moved onto a used point, so that a bounding box of all points stays finite.
+/// Where two sheets lie in one place and face opposite ways, as thin walls do in files of flow simulations, both stay,
+/// if they have points of their own and the file has arrays on these. The second ones come last. Either sheet is what
+/// one sees from the side that it faces; open parts face inwards where most closed ones of the file did.
 /// Each kind of repair adds one sentence with its count to `warnings`. Throws Error where no triangle is left.
 PreparedSurface prepare(const Surface& surface, double crease_degrees = 40.0,
                         std::vector<std::string>* warnings = nullptr);

@@ -60,6 +60,7 @@ class Cutter {
     if (side == Side::in) {
       part_.surface.triangles.push_back({point(corners.a), point(corners.b), point(corners.c)});
       for (int k = 0; k < 3; ++k) part_.surface.corner_normals.push_back(whole_.corner_normals[3 * t + k]);
+      keep_sheet(t);
       ++part_.whole_triangles;
     }
     if (side != Side::across) return;
@@ -81,7 +82,12 @@ class Cutter {
       part_.surface.corner_normals.push_back(normalized(normal[0] * w.x + normal[1] * w.y + normal[2] * w.z));
     }
     part_.surface.triangles.push_back(triangle);
+    keep_sheet(t);
     ++part_.cut_triangles;
+  }
+
+  void keep_sheet(std::uint32_t t) {
+    if (!whole_.second_sheet.empty()) part_.surface.second_sheet.push_back(whole_.second_sheet[t]);
   }
 
   /// Number of a point of the whole in the part.

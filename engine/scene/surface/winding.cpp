@@ -116,7 +116,8 @@ class Orientation {
         triangles_(triangles),
         twin_(twin),
         report_(report),
-        state_(triangles.size(), State::unseen) {}
+        state_(triangles.size(), State::unseen),
+        open_(triangles.size(), 1) {}
 
   void run(const std::vector<char>& duplicate) {
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
@@ -126,6 +127,8 @@ class Orientation {
       }
     report_.contradictions /= 2;  // met from both sides
   }
+
+  const std::vector<std::uint8_t>& open() const { return open_; }
 
  private:
   enum class State : char { kept, flipped, unseen };
@@ -160,7 +163,12 @@ class Orientation {
         std::count_if(part_.begin(), part_.end(), [&](auto t) { return state_[t] == State::flipped; });
     const bool majority_flipped = 2 * flipped > part_.size();
     bool turn = majority_flipped;
-    if (const double volume = closed_ ? signed_volume() : 0.0; volume != 0) turn = volume < 0;
+    if (const double volume = closed_ ? signed_volume() : 0.0; volume != 0) {
+      turn = volume < 0;
+      report_.closed_triangles += part_.size();
+      if (turn != majority_flipped) report_.turned_triangles += part_.size();
+      for (const std::uint32_t t : part_) open_[t] = 0;
+    }
     report_.flipped += std::min(flipped, part_.size() - flipped);
     report_.turned_parts += turn != majority_flipped;
     for (const std::uint32_t t : part_)
@@ -187,6 +195,7 @@ class Orientation {
   const std::vector<std::uint32_t>& twin_;
   WindingReport& report_;
   std::vector<State> state_;
+  std::vector<std::uint8_t> open_;
   std::vector<std::uint32_t> part_;
   bool closed_ = true;
 };
@@ -211,15 +220,20 @@ std::vector<std::uint32_t> first_at_position(std::span<const Vec3d> points) {
 }
 
 WindingReport make_winding_consistent(std::span<const Vec3d> points, std::span<const std::uint32_t> same,
-                                      std::vector<Triangle>& triangles) {
+                                      std::vector<Triangle>& triangles, std::vector<std::uint8_t>* open) {
   WindingReport report;
   const SideTable table = list_sides(same, triangles);
   const std::vector<char> duplicate = find_duplicates(table, triangles.size());
   const std::vector<std::uint32_t> twin = pair_sides(table, duplicate);
-  Orientation(points, same, triangles, twin, report).run(duplicate);
+  Orientation orientation(points, same, triangles, twin, report);
+  orientation.run(duplicate);
+  if (open) open->clear();
   std::size_t kept = 0;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    if (!duplicate[t]) triangles[kept++] = triangles[t];
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (duplicate[t]) continue;
+    triangles[kept++] = triangles[t];
+    if (open) open->push_back(orientation.open()[t]);
+  }
   report.duplicates = triangles.size() - kept;
   triangles.resize(kept);
   return report;

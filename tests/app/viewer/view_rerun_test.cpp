@@ -54,6 +54,7 @@ const std::map<std::string, FlowRerun>& expected() {
       {"color_below", {}},
       {"color_above", {}},
       {"color_nan", {}},
+      {"back_faces", {}},
       {"legend", {}},
       {"time_stamp", {}},
       {"focus", {}},

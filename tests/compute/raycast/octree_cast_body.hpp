@@ -113,7 +113,7 @@ inline void expect_first_hits(const Mesh& mesh, const std::vector<Ray>& rays, co
     const Corners c = mesh.corners(hits[i].triangle);
     const Vec3f w = hits[i].weights;
     const Vec3d p = c.a + (c.b - c.a) * double(w.y) + (c.c - c.a) * double(w.z);
-    const BandPoint at = hits[i].point(rays[i]);
+    const BandPoint at = band_point(rays[i].at(hits[i].t));
     ASSERT_LT(length(Vec3d(at.base) + Vec3d(at.local) - p), 1e-3) << what << ", ray " << i;
   }
   EXPECT_GT(seen, rays.size() / 10) << what;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -66,6 +67,40 @@ TEST(Triangulate, LargePolygonsEnd) {
   std::vector<Triangle> triangles;
   triangulate(corners, points, triangles);
   EXPECT_EQ(triangles.size(), 49998u);
+}
+
+/// The cap of a cylinder, in the precision of files: a fan of it would be 60,000 slivers as long as it is wide.
+TEST(Triangulate, RoundFacesHaveFewLongTriangles) {
+  std::vector<Vec3d> points;
+  std::vector<std::uint32_t> corners;
+  constexpr std::uint32_t n = 60000;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double angle = i * 2 * std::numbers::pi / n;
+    points.push_back(Vec3d(Vec3f(Vec3d(std::cos(angle), std::sin(angle), 0))));
+    corners.push_back(i);
+  }
+  std::vector<Triangle> triangles;
+  triangulate(corners, points, triangles);
+  ASSERT_EQ(triangles.size(), n - 2);
+  EXPECT_NEAR(signed_area(triangles, points), std::numbers::pi, 1e-6);
+  double lengths = 0;
+  for (const Triangle& t : triangles) lengths += length(points[t.c] - points[t.a]);
+  EXPECT_LT(lengths, 120) << "a fan's are 76,000";
+  std::vector<Triangle> square;
+  std::vector<Vec3d> rim;
+  for (std::uint32_t i = 0; i < 400; ++i) {
+    const double along = (i % 100) / 100.0;
+    rim.push_back(i < 100   ? Vec3d(along, 0, 0)
+                  : i < 200 ? Vec3d(1, along, 0)
+                  : i < 300 ? Vec3d(1 - along, 1, 0)
+                            : Vec3d(0, 1 - along, 0));
+  }
+  triangulate(std::span(corners).first(400), rim, square);
+  std::vector<char> used(400, 0);
+  for (const Triangle& t : square)
+    if (signed_area({t}, rim) > 1e-12)
+      for (int k = 0; k < 3; ++k) used[t[k]] = 1;
+  EXPECT_GT(std::count(used.begin(), used.end(), 1), 200) << "corners on straight sides keep triangles";
 }
 
 TEST(BuildSurface, CellArraysBecomeMeansWeightedByArea) {

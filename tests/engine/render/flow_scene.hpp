@@ -7,6 +7,7 @@
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/render/surface_pass.hpp"
 #include "engine/scene/samples/samples.hpp"
+#include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/prepare.hpp"
 #include "tests/compute/pipeline/choose_embedding.hpp"
 
@@ -17,7 +18,8 @@ struct FlowScene {
   PreparedSurface surface;
   std::unique_ptr<Device> device = make_cpu_device();
   std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
-  std::unique_ptr<SharedBuffer> shown;
+  std::unique_ptr<SharedBuffer> shown;  ///< values, and means behind them
+  TextureLayout layout;
 
   explicit FlowScene(const std::string& sample, int detail, int resolution, int refine = 4,
                      const std::string& embedding = "grid") {
@@ -25,19 +27,22 @@ struct FlowScene {
     choose_embedding(pipeline->parameters, embedding);
     pipeline->parameters.resolution = resolution;
     pipeline->parameters.refine = refine;
-    pipeline->embed({surface.points, surface.triangles, surface.corner_normals});
+    pipeline->embed(flow_mesh(surface));
     FlowVectors vectors;
     vectors.at = [this](double t, std::span<Vec3f> out) {
       const std::vector<Vec3f> field = analytic_vectors("@swirl", surface, t);
       std::copy(field.begin(), field.end(), out.begin());
     };
     pipeline->flow().start(vectors);
-    shown = std::make_unique<SharedBuffer>(*device, pipeline->flow().lookup().values * sizeof(float), GL_R32F);
+    const FlowLookup l = pipeline->flow().lookup();
+    layout.values = l.means > 0 ? std::int64_t(l.values) : -1;
+    shown = std::make_unique<SharedBuffer>(*device, (l.values + l.means) * sizeof(float), GL_R32F);
     step();
   }
 
   void step() {
-    pipeline->flow().show_into(static_cast<float*>(shown->begin_write(true)));
+    auto* const memory = static_cast<float*>(shown->begin_write(true));
+    pipeline->flow().show_into(memory, layout.values >= 0 ? memory + layout.values : nullptr);
     pipeline->flow().step();
     shown->end_write();
   }

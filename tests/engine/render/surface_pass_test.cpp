@@ -76,7 +76,7 @@ class TwoPictures {
   void draw(test::FlowScene& scene, const std::vector<float>& scalar, std::size_t page) {
     const SurfaceBuffers surface(scene.geometry());
     SurfacePass pass;
-    pass.set_texture(scene.texture(page));
+    pass.set_texture(scene.texture(page), scene.layout);
     SurfaceColours colours;
     colours.set_map(colormap("sea").table);
     if (!scalar.empty()) colours.set_scalar(scalar, 0, 1);
