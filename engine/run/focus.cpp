@@ -147,7 +147,7 @@ int picture_resolution(const FlowView& view, const PreparedSurface& surface, con
                 "use " + std::to_string(least_resolution) + " or more, or 0");
   const Camera fitted = fit_camera(view.camera, triangle_corners(surface), view.width, view.height);
   const double longest = longest_side(surface), pixels = double(view.width) * view.height;
-  const double cell = std::max(fitted.height / view.height / cells_along_pixel,
+  const double cell = std::max(std::max(fitted.height, view.camera.height) / view.height / cells_along_pixel,
                                std::sqrt(area_of(surface) / (cells_per_pixel * pixels)));
   if (!(longest > 0) || !(cell > 0)) return least_resolution;
   return std::max(least_resolution,

@@ -27,9 +27,9 @@ struct Focus {
 inline constexpr double coarsest_cell = 1.5;
 
 /// The resolution for a picture of the whole surface, where the knob leaves it open (`parameters.resolution` 0): cells
-/// a little smaller than pixels where the surface fills the picture (seen from the camera's direction), or larger ones
-/// where half of the memory (`available` bytes) or four cells a pixel would not do. Any other resolution is returned as
-/// it is; below 16, Error.
+/// a little smaller than the pixels of the view, or of one that the surface fills where the view is nearer; or larger
+/// ones where half of the memory (`available` bytes) or four cells a pixel would not do. Any other resolution is
+/// returned as it is; below 16, Error.
 int picture_resolution(const FlowView& view, const PreparedSurface& surface, const FlowParameters& parameters,
                        std::size_t available);
 
