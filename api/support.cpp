@@ -17,7 +17,7 @@ namespace {
 
 const char* command_of(Job job) { return job == Job::mesh ? "mesh" : "flow"; }
 
-/// Knobs that a program reads from its command line and a library is told otherwise.
+/// Knobs that belong to a command line; library users set these in other ways.
 bool is_offered(const Knob& knob, Job job) {
   if (!knob.concerns(command_of(job))) return false;
   if (job == Job::mesh) return knob.group != "picture" && knob.name != "names" && knob.name != "layer";

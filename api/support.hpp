@@ -1,4 +1,4 @@
-// Nacre: what all parts of the public library share: words of errors, knobs, one caller at a time.
+// Nacre: what all parts of the public library share: error messages, knobs, one caller at a time.
 #pragma once
 
 #include <tbb/global_control.h>
@@ -19,7 +19,7 @@ namespace nacre {
 /// "give --max-size 2" and "raise `max_size`" as "max_size": in a program of somebody else there is no command line.
 std::string with_knob_names(const std::string& text);
 
-/// What `action` returns. An Error that it throws gets the words of the library, and so does lack of memory.
+/// What `action` returns. An Error that it throws is reworded for library users; lack of memory becomes an Error.
 template <class Action>
 auto library_call(const Action& action) {
   try {

@@ -141,8 +141,8 @@ Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, P
 }
 
 /// Returns how long each took, seconds.
-std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const FrameRange& steps, FlowPainter& painter,
-                               Films& films, Progress& progress) {
+std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const FrameRange& steps,
+                               FlowPainter& painter, Films& films, Progress& progress) {
   std::vector<double> seconds;
   for (int k = steps.first; k < steps.last; ++k) {
     const double before = now();

@@ -39,7 +39,7 @@ void check_options(const MeshOptions& options, const Session& session) {
     throw UsageError("tetrahedra need `triangulation` to be auto or delaunay; leave it so, or write a surface");
 }
 
-/// Reads the volumes and makes materials of them; `input` is told what the report wants to know.
+/// Reads the volumes and makes materials of them; `input` receives what the report contains about it.
 MeshVolume read_input(const MeshOptions& options, const Session& session, StageTimers& timers, MeshInput& input) {
   StageTimers::Scope scope(timers, "read");
   const auto say_warning = [&](const std::string& warning) { warn(options.common, warning); };

@@ -1,4 +1,4 @@
-// Nacre: `nacre view`: the words of the viewer. OpenGL begins in app/viewer, which a headless build leaves out.
+// Nacre: `nacre view`: the options of the viewer. OpenGL begins in app/viewer, which a headless build leaves out.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -185,8 +185,7 @@ void add_bench_command(CLI::App& program, std::function<void()>& run) {
                       "3.1 3.2 3.3 3.4 4.1 4.2 4.3 5.1 6.1 6.2 gathering arena grid-octree methods (all)");
   command->add_flag("--small", options->small, "smaller data: two minutes on two cores");
   command->add_flag("--tiny", options->tiny, "for tests: smaller still, figures mean nothing")->group("");  // not shown
-  command->add_option("--plots", options->plots,
-                      "write the thesis's plots (SVG) and pictures (PNG) into a folder");
+  command->add_option("--plots", options->plots, "write the thesis's plots (SVG) and pictures (PNG) into a folder");
   command->add_option("--against", options->against,
                       "JSON of an earlier run: fail if a ratio between methods has lost 30% or is missing");
   add_common_options(*command, options->common,

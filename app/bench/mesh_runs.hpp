@@ -47,7 +47,7 @@ struct MeshFields {
 struct MeshRun {
   std::int64_t seeded = 0, final = 0;
   int iterations = 0;
-  double seconds = 0;  ///< to place the particles: seed, relax, population
+  double seconds = 0;  ///< for seed, relax and population
   double relax = 0;    ///< of these, relax
   double moves = 0;    ///< particles moved, summed over iterations (of the surfaces)
   double extract = 0;  ///< triangulate, and mend where it was asked for

@@ -61,7 +61,7 @@ constexpr const char* own_settings =
 
 std::string particle_cost(const Solver& s) { return fmt::format("{}: us per particle and iteration", s.name); }
 
-/// Seconds, particles and cost of each solver, then the ratios that --against looks at.
+/// Seconds, particles and cost of each solver, then the ratios that --against compares.
 void add_solvers(BenchTable& table, BenchRow& row, const std::array<MeshRun, 3>& runs) {
   for (std::size_t k = 0; k < solvers.size(); ++k) {
     table.add(row, fmt::format("{}: s", solvers[k].name), runs[k].seconds);

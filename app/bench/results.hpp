@@ -8,7 +8,7 @@
 
 namespace nacre {
 
-/// Which way a quantity is a gain, where it is a ratio between methods that two runs can be compared by.
+/// Whether more or less of a quantity is better, if it is a ratio between methods that two runs can be compared by.
 enum class Better { neither, higher, lower };
 
 struct BenchValue {

@@ -1,5 +1,5 @@
 // Nacre: how kernels are launched on CUDA: all that nvcc alone can compile. The tests on an emulated device have a file
-// of their own in its place (tests/emulated/include).
+// of their own instead (tests/emulated/include).
 #pragma once
 
 #include <cuda_runtime.h>

@@ -1,4 +1,4 @@
-// Nacre: a place where memory lives and kernels run.
+// Nacre: where memory is allocated and kernels run.
 #pragma once
 
 #include <cstddef>

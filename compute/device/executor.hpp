@@ -58,7 +58,7 @@ class ExecutorBase {
 ///   scan(in, out, n)                 the same without the sum, which the host would have to wait for
 /// sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those
 /// below
-///                                    need not be looked at where they ascend before
+///                                    need not be sorted where they ascend before
 ///   sort_pairs(keys, values, n, bits = 64)  the same by the lowest `bits`, the others being alike; values go with keys
 /// reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if
 /// merge

@@ -175,7 +175,7 @@ class Executor<Cpu> : public ExecutorBase {
     check_stop();
   }
 
-  static constexpr std::int64_t piece = 1 << 10;  // elements between two looks at the stop flag
+  static constexpr std::int64_t piece = 1 << 10;  // elements between two checks of the stop flag
 
   CpuDevice& cpu_;
 };

@@ -76,7 +76,7 @@ struct BrickStart {
 /// Exact closest points of an octet (2^3 cells) among the clusters of its brick, of which it keeps the few that can
 /// hold one of any of its cells.
 struct ClosestOfOctet {
-  static constexpr int room = 96;  // clusters kept; with more than that the octet looks at the whole list
+  static constexpr int room = 96;  // clusters kept; with more than that the octet searches the whole list
 
   ClosestPointGridView grid;
   ClusterView clusters;

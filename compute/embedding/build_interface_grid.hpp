@@ -21,7 +21,7 @@ struct InterfaceGrid {
   std::vector<Float4> points;       ///< junction points: position in voxels, sizing field
   std::vector<Junction> point_junction;
   int crowded_points = 0;  ///< of the points, those where more than four materials meet
-  int crowded_cells = 0;   ///< coarse cells with more junctions than were told apart
+  int crowded_cells = 0;   ///< coarse cells with more junctions than could be distinguished
   std::int64_t bricks = 0;
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
   Array<EmbeddedCell> cell;

@@ -26,12 +26,13 @@ struct JunctionSearch {
   Array<FoundJunction> found;
   std::int64_t count = 0;
   std::vector<Junction> table;
-  int crowded_cells = 0;  ///< coarse cells with more materials or junctions than are told apart: some are left out
+  int crowded_cells =
+      0;  ///< coarse cells with more materials or junctions than can be distinguished: some are left out
 };
 
 namespace detail {
 
-/// The junctions of one coarse cell: no more than this many different ones are told apart.
+/// The junctions of one coarse cell: at most this many different ones are distinguished.
 struct CellJunctions {
   static constexpr int capacity = 64;
   Junction junction[capacity];

@@ -38,7 +38,7 @@ struct ClusterView {
   const TriangleFrame* frame;  // in `order`
   float rounding;              // how far a point of the domain may be off in single precision
 
-  /// Asks for a triangle that will be looked at soon: what the search waited for was memory, since an octet takes
+  /// Prefetches a triangle that will be measured soon: the search waited for memory, since an octet takes
   /// triangles from many clusters.
   NACRE_HD_INLINE void fetch([[maybe_unused]] std::uint32_t j) const {
 #if !defined(__CUDACC__)
@@ -146,7 +146,7 @@ class OctetSearch {
  private:
   static constexpr int room = 32;
 
-  /// Puts the triangles of `n` clusters aside, and looks at them when there is no more room.
+  /// Collects the triangles of `n` clusters, and measures them when the list is full.
   NACRE_HD void take(const std::uint32_t* cluster, int n) {
     for (int i = 0; i < n; ++i) {
       const std::uint32_t last = clusters_.start[cluster[i] + 1];

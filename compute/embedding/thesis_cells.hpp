@@ -83,7 +83,7 @@ struct SubgridStart {
 
 /// A cube of cells and the triangles near it: a range of TrianglesNear::triangle.
 struct Subgrid {
-  std::uint64_t code;  // Morton code of its place among cubes of its size
+  std::uint64_t code;  // Morton code of its position among cubes of its size
   int bits;            // log2 of its edge
   std::uint64_t first, last;
 
@@ -237,7 +237,7 @@ inline int subgrid_bits(const Arena& arena, int levels, int edge) {
 }
 
 /// The sub-grids of 2^bits cells per axis near triangles, in Morton order. The thesis goes over all sub-grids,
-/// which at 4096^3 would write 825 GB of counters; those that no triangle comes near are not even looked at here.
+/// which at 4096^3 would write 825 GB of counters; those that no triangle comes near are never visited here.
 /// `triangle` becomes the list that their ranges are in, temporary.
 template <class Backend>
 std::vector<Subgrid> subgrids_near(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,

@@ -73,7 +73,7 @@ struct DistanceSamples {
   }
 };
 
-/// How far the sheet that faces a voxel's own is from it: the width of the gap or wall between the two, at this place.
+/// How far the sheet that faces a voxel's own is from it: the width of the gap or wall between the two, at this voxel.
 struct FacingSheet {
   float width = 0;
   float opposed = 0;  ///< minus the cosine of the angle between the gradients

@@ -29,7 +29,7 @@ struct OneLane {
 
 namespace detail {
 
-/// How the step leaves J, where the equations of the junction do not say: down its gradient (Eq. 3.5, sign mended).
+/// How the step leaves J, where the equations of the junction do not say: down its gradient (Eq. 3.5 with the sign corrected).
 NACRE_HD inline bool indicator_step(const FieldSample& j, Vec3f& step) {
   const float gg = dot(j.gradient, j.gradient);
   if (!(gg > 1e-12f)) return false;
@@ -37,8 +37,8 @@ NACRE_HD inline bool indicator_step(const FieldSample& j, Vec3f& step) {
   return true;
 }
 
-/// The materials that matter at a place: the junction's first, then the other ones of the block. When there are too
-/// many, the one-lane way keeps the strongest.
+/// The materials that matter at a position: the junction's first, then the other ones of the block. When there are too
+/// many, the version with one lane keeps the strongest.
 class MaterialMix {
  public:
   NACRE_HD MaterialMix(const MaterialBricksView& field, const Junction& junction, const Vec3f& p)
@@ -113,7 +113,7 @@ NACRE_HD inline void inside_outside_at(Group& group, FieldSample* shared, const 
 
 /// Newton's method onto the junction from `p`, by inside/outside functions: up to 10 steps of at most half a voxel
 /// along the projection vectors (Eq. 3.12) until the cell indicator J is below 1e-5 (2 or 3 materials) or 1e-4 (4).
-/// Unlike `project` of interface.hpp this looks at the other materials, too: false where one of them covers the place,
+/// Unlike `project` of interface.hpp this also tests the other materials: false where one of them covers the position,
 /// or where the junction is not within `reach` voxels of `p`. All lanes of the group get the same answer.
 template <class Group>
 NACRE_HD inline bool project_by_indicator(Group& group, FieldSample* shared, const MaterialBricksView& field,

@@ -103,7 +103,7 @@ NACRE_HD inline bool junction_step(const FieldSample* f, int count, Vec3f& step,
 inline constexpr int newton_steps = 10;
 inline constexpr float newton_stride = 0.5f;
 
-/// Newton's method onto the junction from `p` (Eq. 3.5 with its sign mended, for differences of indicator functions),
+/// Newton's method onto the junction from `p` (Eq. 3.5 with its sign corrected, for differences of indicator functions),
 /// until a step is shorter than `last_step` (what is left is about its square times the curvature). False where it does
 /// not arrive within `reach` voxels of `p`.
 NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& junction, const Vec3f& p, float reach,
@@ -129,7 +129,7 @@ NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& ju
 }
 
 /// How far the junction's materials are ahead of all others at `p`, in voxels (divided by `steepness`): negative where
-/// another material covers the place, so that the junction does not exist there.
+/// another material covers the position, so that the junction does not exist there.
 NACRE_HD inline float junction_margin(const MaterialBricksView& field, const Junction& junction, const Vec3f& p,
                                       float steepness) {
   const std::int64_t block = field.block_at(p);

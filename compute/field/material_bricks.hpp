@@ -192,7 +192,7 @@ class CubicStencil {
     const float *low_[4], *high_[4];  ///< per brick along y and z: four voxels of it, and the next four
   };
 
-  Int3 local_, block_;  ///< the lowest voxel: its place in its block
+  Int3 local_, block_;  ///< the lowest voxel: its position in its block
   CubicWeights x_;
   float wy_[4], sy_[4], cy_[4], wz_[4], sz_[4], cz_[4];
 };

@@ -182,7 +182,7 @@ struct HoldVoxels {
     const float share = 0.5f * gain * (1.2f * wanted - lead);  // a little more, so that rounds come to an end
     correction[std::size_t(mine) * brick_voxels + position] = share;
     relaxed_store(changed + mine, 1);
-    // Others may lower the same rival's brick at this place only for this voxel: the place is the voxel's own.
+    // Nobody else writes to this voxel of the rival's brick: it is processed once.
     correction[std::size_t(rival) * brick_voxels + position] = -share;
     relaxed_store(changed + rival, 1);
     return true;

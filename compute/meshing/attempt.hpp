@@ -1,4 +1,4 @@
-// Nacre: a change of the points in the bad places of a mesh, which is kept where it helped and taken back elsewhere.
+// Nacre: changes the points around bad triangles, and undoes the change where it did not help.
 #pragma once
 
 #include <array>

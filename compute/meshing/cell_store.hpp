@@ -31,7 +31,7 @@ class CellStore {
     return rings_.around_vertex(vertex, cell_at_[vertex]);
   }
 
-  /// Puts `fresh` in the place of `old`: cells of one material that fill the same room, with the same facets around it.
+  /// Replaces `old` by `fresh`: cells of one material that fill the same room, with the same facets around it.
   void replace(std::span<const std::int32_t> old, std::span<const Cell> fresh);
 
   /// Drops dead cells; the others keep their order. Nothing may be asked afterwards.
@@ -42,7 +42,7 @@ class CellStore {
   struct Facet {
     std::array<std::uint32_t, 3> corners;
     std::int32_t cell;
-    int k;  ///< its place in `cell`; -1: `cell` is beyond, or the hull
+    int k;  ///< its index in `cell`; -1: `cell` is beyond, or the hull
   };
   static std::array<std::uint32_t, 3> corners_of(const Cell& cell, int k);
   void link(std::vector<Facet>& facets);

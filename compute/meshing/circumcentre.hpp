@@ -9,7 +9,7 @@
 namespace nacre {
 
 /// Where circumcentres end, in longest edges of the cell, measured from its first corner. A farther one is put there,
-/// in the right direction: the cell is all but flat, and its true centre lies beyond what doubles can tell.
+/// in the right direction: the cell is all but flat, and its true centre lies beyond the precision of doubles.
 inline constexpr double circumcentre_reach = 64;
 
 /// Circumcentre of the tetrahedron (a, b, c, d), whose exact volume is positive; always finite for finite corners.

@@ -59,7 +59,7 @@ void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& orde
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
                         const DefectRule& rule);
 
-/// The largest fitness: triangles that are better still are not told apart.
+/// The largest fitness: better triangles are not distinguished.
 inline double best_fitness(const DefectRule& rule) { return wanted_ratio / rule.ratio; }
 
 /// The least fitness of all triangles.

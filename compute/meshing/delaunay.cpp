@@ -137,7 +137,7 @@ class PlaceTable {
   std::uint32_t find(const Vec3d& position) const { return slots_[slot_of(position)]; }
 
  private:
-  /// That of the place, or the empty one where it would go.
+  /// The slot of the position, or the empty one where it would go.
   std::size_t slot_of(const Vec3d& position) const {
     std::uint64_t key = 0;
     for (const double x : {position.x, position.y, position.z})

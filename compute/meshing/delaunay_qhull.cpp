@@ -24,7 +24,7 @@ constexpr double flat = 1e-10;  // of the extent: thickness below which points l
 /// tetrahedron, and cells fit together.
 char command[] = "qhull d Qbb QJ Pp";
 
-/// The first of the points at each place.
+/// The first of the points at each position.
 std::vector<std::uint32_t> distinct(std::span<const Vec3d> points) {
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), 0u);

@@ -186,7 +186,7 @@ class Improvement {
       if (p >= fixed_) result_.moves += move(p);
   }
 
-  /// The cells at a point, the worst first: they decide soonest that a place is no better.
+  /// The cells at a point, the worst first: they decide soonest that a position is no better.
   std::vector<std::int32_t> cells_at(std::uint32_t p) {
     std::vector<std::pair<double, std::int32_t>> cells;
     for (const std::int32_t cell : store_.around_vertex(p)) cells.push_back({shape(store_.vertices(cell)), cell});
@@ -196,7 +196,7 @@ class Improvement {
     return sorted;
   }
 
-  /// Looks for a better place of a point in ever smaller steps. The cells at it are all of one material.
+  /// Searches a better position of a point in ever smaller steps. The cells at it are all of one material.
   bool move(std::uint32_t p) {
     static constexpr std::array<std::array<int, 3>, 14> directions = {{{1, 0, 0},
                                                                        {-1, 0, 0},

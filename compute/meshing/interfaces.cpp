@@ -13,7 +13,7 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t chunk = 1 << 14;  // cells that one thread looks at
+constexpr std::size_t chunk = 1 << 14;  // cells that one thread processes
 
 /// Calls visit(cell, k, label of the cell, label beyond facet k) for the facets between labels of cells [begin, end).
 template <class Visit>

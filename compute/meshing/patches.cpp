@@ -1,4 +1,4 @@
-// Nacre: the bad places of a mesh, each by itself, so that each can be judged by itself.
+// Nacre: connected groups of bad triangles, each of which can be judged by itself.
 #include "compute/meshing/patches.hpp"
 
 #include <algorithm>

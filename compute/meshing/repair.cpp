@@ -24,7 +24,7 @@ constexpr std::size_t most_cells = 16;  // that one change may touch
 constexpr double flat = 0.02;           // volume by longest edge^3; 0.118 in a regular cell
 constexpr int most_steps = 3;           // of changes that help together only
 constexpr int most_debt = 3;            // how much worse it may be in between
-constexpr int most_tries = 1000;        // at one place
+constexpr int most_tries = 1000;        // at one position
 
 /// An edge (a < b), or the vertex a where a == b, and a cell that has it.
 struct Place {
@@ -39,7 +39,7 @@ struct Change {
   std::vector<std::int32_t> cells;
   std::uint16_t label;
   double volume;
-  bool may_vanish = false;  ///< their material goes on beyond the place, so that no body is lost with them
+  bool may_vanish = false;  ///< their material goes on beyond this position, so that no body is lost with them
 };
 
 class Repair {
@@ -111,7 +111,7 @@ class Repair {
                         [&](std::int32_t n) { return n >= 0 && label_[n] == label_[cell]; });
   }
 
-  // ---- how badly a place touches itself
+  // ---- how badly the surface touches itself at a position
 
   /// Wedges or vertex fans of each material beyond its first, summed.
   int excess(const Place& place) { return place.a == place.b ? vertex_excess(place) : edge_excess(place); }
@@ -194,7 +194,7 @@ class Repair {
   }
 
   /// Makes the change if that lowers the excess around it by `gain` at least, maybe with up to `steps` more where it
-  /// does harm. A change concerns the places of its own cells alone, so that what each one gains adds up.
+  /// does harm. A change concerns its own cells alone, so that what each one gains adds up.
   bool try_change(const Change& change, int gain, int steps) {
     const std::uint16_t old = label_[change.cells[0]];
     const std::vector<Place> places = places_of(change.cells);
@@ -221,7 +221,7 @@ class Repair {
     return false;
   }
 
-  /// The smallest change at a place that helps.
+  /// The smallest change at a position that helps.
   bool repair_at(const Place& place, int steps) {
     tries_ = most_tries;
     const std::vector<Change> changes = changes_at(place);
@@ -236,7 +236,7 @@ class Repair {
     return changes;
   }
 
-  /// A part of a material at a place, and the labels beside it.
+  /// A part of a material at a position, and the labels beside it.
   struct Part {
     std::vector<std::int32_t> cells;
     std::vector<std::uint16_t> beside;
@@ -346,7 +346,7 @@ class Repair {
       if (!is_alone(pocket) || wanted == label_[pocket]) continue;
       result_.pockets += try_change({{pocket}, wanted, 0}, 0, 0);
     }
-    waiting_.clear();  // all of it is looked at afterwards
+    waiting_.clear();  // all of it is checked afterwards
   }
 
   std::uint16_t largest_neighbour(std::int32_t cell) const {

@@ -139,7 +139,7 @@ class Cutter {
     return reflex_ ? left_of_next || right_of_previous : left_of_next && right_of_previous;
   }
 
-  /// False where a particle with a lower number is in the same place.
+  /// False where a particle with a lower number has the same position.
   bool cut_within(double reach, bool rim) {
     const Vec3d here = items_.place[item_];
     const double size = items_.size[item_], frame = 2 * size;

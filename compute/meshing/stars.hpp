@@ -38,7 +38,7 @@ struct Star {
   std::array<std::uint32_t, most> ring;
   std::uint8_t count = 0;
   bool closed = false;
-  bool hidden = false;       ///< another item is in the same place; it has no neighbours
+  bool hidden = false;       ///< another item has the same position; it has no neighbours
   float reach = 0;           ///< nothing farther away was looked at, the items beside it on a rim excepted
   std::uint32_t gaps = 0;    ///< bit k: ring[k] and the one after it are no neighbours of each other
   std::uint32_t agreed = 0;  ///< bit k: triangle (item, ring[k], the one after it) is in the stars of all its corners

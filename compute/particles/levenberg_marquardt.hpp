@@ -7,7 +7,7 @@
 
 namespace nacre {
 
-/// A Surface tells a solver where particles may be and how dense they shall be:
+/// A Surface defines where particles may be and how dense they are to be:
 ///
 ///   bool project(std::uint32_t interface, const Vec3f& p, float reach, Vec3f& on, Vec3f& direction) const
 ///       the point of the interface near p, the unit normal (surface) or tangent (curve) there; false: not within reach

@@ -124,13 +124,13 @@ NACRE_HD_INLINE int compact(const Flag& flag, int n, const Put& put) {
 }  // namespace detail
 
 /// Of a neighbourhood, the particles that one of them may feel at any position of its next step, in the team's scratch.
-/// There are 256 places; where more are near (seeds on top of each other), sums go over as many lists as it takes.
+/// There is room for 256; where more are near (seeds on top of each other), sums go over as many lists as it takes.
 class NearInNeighbourhood {
  public:
   static constexpr int capacity = 256;
   static constexpr std::size_t bytes = std::size_t(NearList::arrays) * capacity * sizeof(float);
 
-  /// For particle `mine` of the neighbourhood at `at`, and places up to `step` * at.h from there.
+  /// For particle `mine` of the neighbourhood at `at`, and positions up to `step` * at.h from there.
   NACRE_HD NearInNeighbourhood(Team& team, unsigned char* scratch, const Neighbourhood& all, const Relation& relation,
                                int mine, const Mover& at, float step)
       : all_(all), relation_(relation), mine_(mine), start_(at.p), reach_(step * at.h) {

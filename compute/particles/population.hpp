@@ -54,9 +54,8 @@ NACRE_HD inline Fate population_fate(const PopulationRule& rule, const Populatio
 
 /// What is decided for the particles of a set before any is added or deleted; fixed ones have no entry that counts.
 struct PopulationPlan {
-  std::uint32_t* copies;  ///< per particle: how many there will be in its place, and which companions (see below)
-  Float4*
-      child_position;  ///< of the second, where there are two; more than two have places of their own (spread_position)
+  std::uint32_t* copies;   ///< per particle: how many will replace it, and which companions (see below)
+  Float4* child_position;  ///< of the second, where there are two; more than two are placed by spread_position
   Float4* child_direction;
 
   /// Of an entry of `copies`: 0 to 4.

@@ -147,7 +147,7 @@ IterationResult serial_iteration(Executor<Backend>& exec, ParticleSet& set, Solv
     for (auto* of : {&bins.next, &bins.before, &bins.bin}) of->resize(n);
     exec.for_each(1, detail::FillBins{set.position.data(), n, &bins});
     detail::NearInBins near;
-    const std::int64_t piece = 1024;  // between two looks at the stop flag
+    const std::int64_t piece = 1024;  // between two checks of the stop flag
     for (std::int64_t first = set.fixed; first < n; first += piece)
       exec.for_each(1,
                     detail::SerialTurn<Surface>{surface, parameters, table.data(), extent.largest, set.fixed, first,

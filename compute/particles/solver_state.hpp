@@ -1,4 +1,4 @@
-// Nacre: what the serial and the red-black solver are told, and what they keep between iterations.
+// Nacre: parameters of the serial and the red-black solver, and the state that they keep between iterations.
 #pragma once
 
 #include <cmath>

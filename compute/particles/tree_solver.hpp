@@ -11,7 +11,7 @@
 
 namespace nacre {
 
-/// What the tree solver can be told.
+/// Parameters of the tree solver.
 struct TreeRule {
   float theta = 0.5f;
   float step = 1.2f;       ///< share of the Newton step
@@ -94,7 +94,7 @@ struct IsOfOrder {
 }  // namespace detail
 
 /// Moves the particles of one junction order at a time; those of lower orders are felt and stay. Particles are kept in
-/// the tree's order, in two sets that change places.
+/// the tree's order, in two sets that are swapped.
 class TreeSolver {
  public:
   template <class Backend>

@@ -6,7 +6,7 @@
 
 namespace nacre {
 
-/// The closest-point grid's place in the world: cell = (p - origin) / cell_size.
+/// The closest-point grid's frame in the world: cell = (p - origin) / cell_size.
 struct FlowDomain {
   Vec3d origin{};
   double cell_size = 1;  ///< of the closest-point grid

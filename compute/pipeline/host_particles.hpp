@@ -39,7 +39,7 @@ std::vector<Vec3d> world_positions(std::span<const Float4> position, const Volum
 /// How many particles are at points, on curves and on surfaces.
 std::array<std::int64_t, 3> count_by_order(std::span<const std::uint32_t> interface, const JunctionTable& table);
 
-/// What is told of particles to those outside.
+/// What callers are given of the particles.
 MeshParticles describe_particles(const HostParticles& particles, const JunctionTable& table, const VolumeFrame& frame);
 
 }  // namespace nacre

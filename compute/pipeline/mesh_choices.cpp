@@ -1,4 +1,4 @@
-// Nacre: the choices among MeshParameters, which are words there, as enums.
+// Nacre: enums for the choices that MeshParameters holds as strings.
 #include "compute/pipeline/mesh_choices.hpp"
 
 #include <algorithm>

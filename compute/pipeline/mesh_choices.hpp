@@ -1,4 +1,4 @@
-// Nacre: the choices among MeshParameters, which are words there, as enums.
+// Nacre: enums for the choices that MeshParameters holds as strings.
 #pragma once
 
 #include <string>
@@ -37,7 +37,7 @@ enum class TriangleSource {
 std::string to_string(Solver solver);
 std::string to_string(CubicKernel kernel);
 
-/// Each throws Error, with the words that there are, for any other word.
+/// Each throws Error, listing the valid values, for any other value.
 Solver solver_from_string(std::string_view word);
 CubicKernel kernel_from_string(std::string_view word);
 TriangleSource triangles_from_string(std::string_view word);
@@ -59,7 +59,7 @@ struct MeshChoices {
   TriangleSource triangles;
   MeshQuality quality;
 
-  /// Throws Error where one of the words is unknown.
+  /// Throws Error where one of the values is unknown.
   explicit MeshChoices(const MeshParameters& parameters);
 };
 

@@ -63,7 +63,7 @@ class MeshImprovement {
     std::vector<std::array<std::uint32_t, 2>> touching;  ///< where it touches itself: two of its points, or one twice
     std::vector<std::uint8_t> order;                     ///< per point: of the junction that the mesh has there
     std::vector<float> size;                             ///< per point, world units
-    double fitness = 0;  ///< see nacre::fitness; below 0: it touches itself at so many places
+    double fitness = 0;  ///< see nacre::fitness; below 0: the number of positions where it touches itself
 
     Attempt::View view() const { return {mesh, point_of, order, touching}; }
   };
@@ -91,7 +91,7 @@ class MeshImprovement {
   int smoothed_ = 0, mended_ = 0;             ///< rounds so far
   std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began
   std::uint32_t tried_ = 0;                   ///< kinds of attempts so far
-  std::optional<Attempt> attempt_;            ///< the one that is under way,
+  std::optional<Attempt> attempt_;            ///< the one in progress,
   HostParticles before_;                      ///< what was there before it,
   int further_ = 0;                           ///< and its rounds after the first
 };

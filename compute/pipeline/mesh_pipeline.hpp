@@ -77,7 +77,7 @@ struct MeshVolume {
 /// What became of the fields and particles, for the report.
 struct MeshInfo {
   Int3 blocks{};          ///< of 8^3 voxels
-  int crowded_cells = 0;  ///< of 4^3 cells of the embedding, those where more materials meet than are told apart
+  int crowded_cells = 0;  ///< of 4^3 cells of the embedding, those where more materials meet than can be distinguished
   std::int64_t field_bytes = 0, embedding_bytes = 0, embedding_cells = 0;
   int surfaces = 0, curves = 0;  ///< interfaces of two materials, junction curves of three
   int points = 0;                ///< junction points of four materials
@@ -193,7 +193,7 @@ class MeshPipeline {
   virtual std::vector<float> field_at(MeshField field, std::span<const Vec3d> points) = 0;
 
   /// Stage show. A kernel writes the particles as they are now into `memory`; nothing where they do not fit, which the
-  /// counts tell. None before `relax`; also within `progress` of `relax` and `triangulate`, where points and curves are
+  /// counts say. None before `relax`; also within `progress` of `relax` and `triangulate`, where points and curves are
   /// alone at first.
   virtual ShownCounts show_particles(const ShownParticles& memory) = 0;
   /// The same for the boxes around particles: the nodes of the tree that was built last, level by level from the roots;

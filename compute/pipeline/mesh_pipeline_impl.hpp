@@ -129,8 +129,8 @@ class MeshPipelineOf : public MeshPipeline {
                                     : info_.expected_particles;
   }
 
-  /// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels tell: a
-  /// plane of particles max_size apart is the least that there can be. What the fields say is looked at again in
+  /// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels show: a
+  /// plane of particles max_size apart is the least that there can be. The fields are checked again in
   /// `relax`.
   void require_room() {
     const double h = std::max(parameters.min_size, parameters.max_size);

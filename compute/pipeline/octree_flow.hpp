@@ -102,7 +102,7 @@ inline void fill_lookup(const ThesisOctree& tree, FlowLookup& lookup) {
 template <class View>
 struct GatherSurface {
   View view;
-  std::uint64_t* code;  ///< Morton code of its place; all ones where no triangle touches it
+  std::uint64_t* code;  ///< Morton code of its position; all ones where no triangle touches it
   CellPoint* point;
   NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor&) const {
     code[s] = is_touched(view, cell) ? morton(position) : ~std::uint64_t(0);
@@ -244,13 +244,13 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     if constexpr (Band::as_thesis) {
       release(k, view);
     } else {
-      move(k, view);
+      move_particles(k, view);
     }
     show();
   }
 
   /// Advection as on the grid.
-  void move(int k, const View& view) {
+  void move_particles(int k, const View& view) {
     Array<std::uint64_t>&crossed = sums_[0], &arrived = sums_[1 + (launched_ & 1)], &ended = sums_[2 - (launched_ & 1)];
     MoveBrickParticles particles;
     particles.path.field = field(k, view);

@@ -1,4 +1,4 @@
-// Nacre: what the knobs tell the solvers: steps, population, and room for how many particles.
+// Nacre: how the knobs become parameters of the solvers: steps, population control, capacity.
 #include "compute/pipeline/particle_rules.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Nacre: what the knobs tell the solvers: steps, population, and room for how many particles.
+// Nacre: how the knobs become parameters of the solvers: steps, population control, capacity.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ TreeRule tree_rule(const MeshParameters& parameters);
 /// For particles of a junction order. On curves thresholds are wider, since a curve's particle has two neighbours only.
 PopulationRule population_rule(const MeshParameters& parameters, int order);
 
-/// How many particles are kept room for where `expected` are. Crowded places relax to fewer, holes fill: half as many
+/// Capacity for particles where `expected` are seeded. Crowded regions relax to fewer, holes fill: half as many
 /// again has always been enough.
 double particle_capacity(double expected);
 

@@ -17,7 +17,7 @@
 
 namespace nacre {
 
-/// Seeds and moves the particles of a store. What happens is noted in a MeshInfo and told stage by stage.
+/// Seeds and moves the particles of a store. Results are recorded in a MeshInfo and reported stage by stage.
 template <class Backend>
 class Relaxation {
  public:

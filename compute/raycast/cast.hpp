@@ -8,7 +8,7 @@
 namespace nacre {
 
 /// First hit of the ray with the surface. Empty bricks are crossed in one step; inside a brick the stored distance
-/// tells how far the ray may advance without hitting anything; in a cell that the surface passes through, its triangles
+/// says how far the ray may advance without hitting anything; in a cell that the surface passes through, its triangles
 /// are tested.
 NACRE_HD inline bool cast(const ClosestPointGridView& grid, const MeshView& mesh, const Ray& ray, Hit& hit) {
   const Int3 dims = grid.dims();

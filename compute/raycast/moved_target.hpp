@@ -24,7 +24,7 @@ struct MovedTarget {
   }
 
  private:
-  /// A vector in the plane of triangle `from`, as the motion to triangle `to` carries it; zero where `from` has no area.
+  /// A vector in the plane of triangle `from`, as the motion to triangle `to` carries it; zero if `from` has no area.
   NACRE_HD static Vec3d carried(const Vec3d& v, const Corners& from, const Corners& to) {
     const Vec3d e = from.b - from.a, f = from.c - from.a;
     const double ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), det = ee * ff - ef * ef;

@@ -45,8 +45,8 @@ struct Shading {
 };
 
 // What rays traverse. A target has find(mesh, ray, hit), which returns whether the ray meets the surface, and
-// texture(shown, ray, hit, footprint), the shown value at a hit. `at` of the targets below gives it at a position of the
-// embedded surface, in cells. `nearest` holds the tree of triangles, where there is one, and the sheets.
+// texture(shown, ray, hit, footprint), the shown value at a hit. `at` of the targets below gives it at a position of
+// the embedded surface, in cells. `nearest` holds the tree of triangles, where there is one, and the sheets.
 
 /// The two-level grid with its refined grid.
 struct GridTarget {

@@ -1,4 +1,4 @@
-// Nacre: errors that several files of this folder report in the same words.
+// Nacre: error messages that several files of this folder share.
 #pragma once
 
 #include <cstddef>

@@ -40,7 +40,7 @@ class Window : public Context {
   std::array<int, 2> pixels() const;  ///< of its framebuffer; (0, 0) while minimised
   float scale() const;                ///< pixels of this screen to one of an ordinary screen (DPI); 0.25 to 16
 
-  /// What the user did, as a frame shall see it; to be asked for once in each. The mouse's place is in pixels.
+  /// User input since the last frame; to be asked for once a frame. The mouse position is in pixels.
   InputFrame next_input();
 
   /// Called in `poll` with the files that were dropped on the window.

@@ -15,7 +15,7 @@ class CudaLink {
  public:
   virtual ~CudaLink() = default;
   virtual void* map() = 0;  ///< its device pointer; what the device does next waits for draws that use it. Throws Error
-  virtual void unmap() = 0;  ///< the next draws wait for what the device has been told to do
+  virtual void unmap() = 0;  ///< the next draws wait for the work submitted to the device
 };
 
 /// Host memory that CUDA copies to at full speed.

@@ -14,7 +14,7 @@ namespace nacre {
 /// zlib packs at most 1032 bytes into one.
 inline constexpr std::size_t zlib_ratio = 1032;
 
-/// What each character of base64 stands for; -1 for others.
+/// The value of each character of base64; -1 for others.
 inline constexpr std::array<std::int8_t, 256> base64_digits = [] {
   std::array<std::int8_t, 256> digits{};
   digits.fill(-1);

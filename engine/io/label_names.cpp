@@ -99,7 +99,7 @@ std::vector<std::string_view> words_of_line(std::string_view line) {
   return words;
 }
 
-/// What stands in quotes, otherwise everything between the number and the three or more numbers of a colour. Empty if
+/// The text in quotes, otherwise everything between the number and the three or more numbers of a colour. Empty if
 /// there is no name.
 std::string_view name_in_line(std::string_view line, const std::vector<std::string_view>& words) {
   const std::size_t quote = line.find('"'), last_quote = line.rfind('"');

@@ -234,7 +234,7 @@ GmshMesh::Block gmsh_tetrahedra(const MeshParts& mesh) {
   return block;
 }
 
-/// The triangles between the materials, then the tetrahedra. Only groups tell what each belongs to: from a file with
+/// The triangles between the materials, then the tetrahedra. Only groups say what each belongs to: from a file with
 /// two kinds of cells, meshio 5.3 reads no numbers beside them, nor anything after them.
 void write_msh(const fs::path& file, const MeshParts& parts) {
   GmshMesh out;

@@ -13,7 +13,7 @@ class FaceCollector {
  public:
   /// A face of volume cell `cell`, corners in the order that makes it face outwards.
   void add(std::span<const std::int64_t> corners, std::size_t cell) { add(corners, cell, false); }
-  /// A face that is a cell by itself: always kept, and used in place of an equal outer face.
+  /// A face that is a cell by itself: always kept, and used instead of an equal outer face.
   void add_free(std::span<const std::int64_t> corners, std::size_t cell) { add(corners, cell, true); }
 
   /// Calls `use(corners, cell)` for each outer face, in the order in which they were added.

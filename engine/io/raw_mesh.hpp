@@ -24,7 +24,7 @@ struct RawArray {
 };
 
 /// Points, polygons of any size and arrays as a reader found them. Readers do not check them: corners may refer to
-/// missing points, points may be NaN, polygons may have no area. `build_surface` handles this, in one place for all
+/// missing points, points may be NaN, polygons may have no area. `build_surface` handles this once for all
 /// formats.
 struct RawMesh {
   static constexpr std::uint32_t no_point = std::numeric_limits<std::uint32_t>::max();

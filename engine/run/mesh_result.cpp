@@ -1,4 +1,4 @@
-// Nacre: what a mesh run gives, measured and in words.
+// Nacre: the result of a mesh run: its measures, and the lines printed about it.
 #include "engine/run/mesh_result.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Nacre: what a mesh run gives, measured and in words.
+// Nacre: the result of a mesh run: its measures, and the lines printed about it.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

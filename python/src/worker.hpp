@@ -19,7 +19,7 @@ namespace nb = nanobind;
 /// All that a run and its callbacks share. A run keeps one thread for itself: a GPU is chosen thread by thread.
 class Worker {
  public:
-  /// `progress`: called with (stage, fraction, iteration, particles, energy); None: nobody is told.
+  /// `progress`: called with (stage, fraction, iteration, particles, energy); None: no reports.
   explicit Worker(nb::object progress);
   ~Worker();
   Worker(const Worker&) = delete;

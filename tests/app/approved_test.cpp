@@ -3,9 +3,9 @@
 #include <cstdlib>
 
 #include "engine/picture/compose.hpp"
+#include "engine/picture/png.hpp"
 #include "tests/app/picture_likeness.hpp"
 #include "tests/app/view_program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

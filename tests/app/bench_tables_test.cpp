@@ -1,7 +1,7 @@
 // Nacre: the tables of `nacre bench` at the smallest scale: rows, quantities beside the source's, sums, plots.
 #include "compute/device/device.hpp"
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

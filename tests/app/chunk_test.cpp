@@ -5,8 +5,8 @@
 namespace nacre::test {
 namespace {
 
-const Words unsteady = {"flow", "--sample", "torus", "--detail", "24",    "--resolution", "64",
-                        "--steps", "7",     "--size", "64x48",  "--quiet"};
+const Words unsteady = {"flow", "--sample", "torus", "--detail", "24",    "--resolution",
+                        "64",   "--steps",  "7",     "--size",   "64x48", "--quiet"};
 
 class Chunk : public AppTest {
  protected:

@@ -1,8 +1,8 @@
 // Nacre: the picture of a close-up is computed at the picture's resolution.
 #include <nlohmann/json.hpp>
 
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 #include "tests/evidence/crispness.hpp"
 
 namespace nacre::test {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "engine/io/surface_writer.hpp"
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

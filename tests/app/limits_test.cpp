@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <thread>
 
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 #include "tests/engine/picture/small_disk.hpp"
 
 namespace nacre::test {

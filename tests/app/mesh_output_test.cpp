@@ -1,8 +1,8 @@
 // Nacre: tests of what `nacre mesh` writes, and of Ctrl-C.
 #include <thread>
 
+#include "engine/picture/png.hpp"
 #include "tests/app/mesh_program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

@@ -3,9 +3,9 @@
 
 #include "engine/io/reader.hpp"
 #include "engine/io/surface_writer.hpp"
+#include "engine/picture/png.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

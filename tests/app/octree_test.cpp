@@ -1,6 +1,6 @@
 // Nacre: tests of `nacre flow --method octree` as a user runs it.
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

@@ -1,8 +1,8 @@
 // Nacre: tests of the pictures, frames and videos that the program leaves.
 #include <cmath>
 
+#include "engine/picture/png.hpp"
 #include "tests/app/program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

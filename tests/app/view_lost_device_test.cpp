@@ -10,9 +10,9 @@ using View = ViewTest;
 void expect_window_goes_on(const TemporaryFolder& folder, const Words& input, const std::string& when) {
   const std::string report = (folder / "r.json").string(), picture = (folder / "p.png").string();
   const Outcome window =
-      run("/bin/bash", Words{source_file("tests/app/on_display.sh"), "/usr/bin/env",
-                             "NACRE_FAULTS=lost-device@" + when, program_path, "view", "--size", "320x240",
-                             "--frames-count", "12", "--report", report, "--image", picture} +
+      run("/bin/bash", Words{source_file("tests/app/on_display.sh"), "/usr/bin/env", "NACRE_FAULTS=lost-device@" + when,
+                             program_path, "view", "--size", "320x240", "--frames-count", "12", "--report", report,
+                             "--image", picture} +
                            input);
   if (window.status == 77) GTEST_SKIP() << window.err;
   ASSERT_EQ(window.status, 0) << window.err;

@@ -1,9 +1,9 @@
 // Nacre: meshes in the viewer, as a script runs it without a display.
 #include <cstdlib>
 
+#include "engine/picture/png.hpp"
 #include "tests/app/mesh_program.hpp"
 #include "tests/app/view_program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

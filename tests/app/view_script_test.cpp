@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "engine/picture/png.hpp"
 #include "engine/scene/session/session.hpp"
 #include "tests/app/view_program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

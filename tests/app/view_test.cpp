@@ -3,8 +3,8 @@
 #include <cstring>
 #include <map>
 
+#include "engine/picture/png.hpp"
 #include "tests/app/view_program.hpp"
-#include "tests/engine/picture/read_png.hpp"
 
 namespace nacre::test {
 namespace {

@@ -14,7 +14,7 @@ enum class FlowStage {
   surface,  ///< cleaning, normals; at first also reading and choosing
   vectors,  ///< the choice of the vectors
   colours,  ///< the array to colour by
-  arrows,   ///< their places
+  arrows,   ///< their positions
   embed,    ///< from the triangles
   start,    ///< from the noise
   step      ///< one more, which takes new values

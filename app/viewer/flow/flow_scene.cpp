@@ -160,7 +160,7 @@ bool FlowScene::advance_and_wait(const std::atomic<bool>& stop, double patience)
   return true;
 }
 
-/// Where boxes are wanted, they are written once for an embedding. True while they are on their way.
+/// Where boxes are wanted, they are written once for an embedding. True while they are being computed.
 bool FlowScene::ask_boxes() {
   Texture* const texture = written();
   if (!texture || !settings_.view.boxes || texture->boxes.count() == 0) return false;
@@ -327,7 +327,7 @@ void FlowScene::draw(const View& view) {
   if (shown_) shown_->values.drawn();
 }
 
-/// Those of the finest level that is not too small to be told apart.
+/// Those of the finest level whose boxes are large enough to be seen.
 void FlowScene::draw_boxes(const View& view) const {
   const FlowBoxes& boxes = shown_->boxes;
   std::size_t level = boxes.level_start.size() - 2;

@@ -70,7 +70,7 @@ void FlowWorker::read() {
       news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
       news.read = [&](const Surface& first) { tell(offer_of(first)); };
       const Range all{series.times.front(), series.times.back()};
-      news.first_step = [&](VectorsInTime& first) {  // something to see, before all steps are looked at
+      news.first_step = [&](VectorsInTime& first) {  // something to see, before all steps are read
         tell(describe(first));
         told_surface = true;
         shown_time_ = first.start();

@@ -23,7 +23,7 @@ FlowRerun FlowScene::pass_on(const Settings& settings, bool jumps) {
   } else if (jumps) {
     const int steps = steps_in_all(), skipped = std::clamp(int(std::lround(settings.begin_at * steps)), 0, steps);
     seek(position_after(skipped + 1 - skipped_));
-  } else if (back && rerun.has(FlowStage::colours)) {  // what was looked at is gone
+  } else if (back && rerun.has(FlowStage::colours)) {  // what was shown is gone
     restart_at(position);
   }
   return rerun;
@@ -44,7 +44,7 @@ int FlowScene::next_position() const {
 bool FlowScene::ended() const { return !settings_.view.loop && position_ >= steps_in_all(); }
 
 void FlowScene::seek(int position) {
-  if (position == position_) {  // a step that is under way is for later
+  if (position == position_) {  // a step in progress is for later
     looks_back_ =
         looks_back_ || (!settings_.view.play && kept_.find(position) && written() && written()->values.writing());
     return;

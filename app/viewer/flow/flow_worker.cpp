@@ -13,7 +13,7 @@
 namespace nacre {
 namespace {
 
-/// What went wrong in words; empty: nothing. Throws Interrupted.
+/// The error message; empty: no error. Throws Interrupted.
 template <class Work>
 std::string failure_of(const Work& work) {
   try {

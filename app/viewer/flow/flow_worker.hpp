@@ -26,7 +26,7 @@
 
 namespace nacre {
 
-// What the worker tells, in this order (FlowOffer and FlowData after SurfaceRead); after a change of knobs again what
+// Events of the worker, in this order (FlowOffer and FlowData after SurfaceRead); after a change of knobs again what
 // has been done again.
 
 /// The surface is read.
@@ -91,7 +91,7 @@ struct FlowStepped {
   std::shared_ptr<const MovedSurface> shape;          ///< at that time; null: it does not move
 };
 
-/// Shown values at the places that were asked for.
+/// Shown values at the requested positions.
 struct FlowSampled {
   Vec3d place;
   float value = 0;
@@ -102,7 +102,7 @@ struct FlowWritten {
   std::string failure;
 };
 
-/// What was under way was dropped, for other knobs or for good: memory that was lent is not written any more.
+/// The running work was dropped, because knobs changed or for good: lent memory is no longer written to.
 struct FlowInterrupted {};
 
 /// A stage did not work; the worker waits for other knobs, or goes on as before where it can.
@@ -150,7 +150,7 @@ class FlowWorker : public Worker<FlowEvent> {
   bool cancelled() const;
   bool busy() const;  ///< with something, or about to be
 
-  /// Asks for the shown value at a place of the surface; FlowSampled answers. Only the last one that was asked counts.
+  /// Requests the shown value at a position on the surface; FlowSampled answers. Only the last request counts.
   void sample(const Vec3d& place);
   /// Asks for the boxes of an embedding in `memory` of the device; FlowBoxed answers. Memory for one that has been
   /// followed by another is not touched.

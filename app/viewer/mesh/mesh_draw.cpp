@@ -101,7 +101,7 @@ std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
   return {};
 }
 
-/// Values of the volume are made here and now. Fields are the worker's: until it answers, the volume stands in for
+/// Values of the volume are made here and now. Fields are the worker's: until it answers, the volume replaces
 /// them.
 void MeshScene::update_slice() {
   if (!results_.volume) return;

@@ -1,4 +1,4 @@
-// Nacre: what is under the cursor of a mesh: a triangle, or a place of the slice.
+// Nacre: what is under the cursor of a mesh: a triangle, or a position on the slice.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Nacre: a mesh in the making as the viewer shows it: what the worker has told, on the graphics device.
+// Nacre: a mesh in the making as the viewer shows it: the worker's results, on the graphics device.
 #pragma once
 
 #include <atomic>

@@ -15,7 +15,7 @@ namespace nacre {
 namespace {
 
 constexpr int slice_pixels = 512;         ///< along the longer side of a slice of a field
-constexpr std::size_t most_worst = 1000;  ///< triangles that can be told apart as the worst
+constexpr std::size_t most_worst = 1000;  ///< triangles that can be outlined as the worst
 
 bool has_cells(const std::filesystem::path& file) {
   const std::string extension = lower_extension(file);
@@ -75,7 +75,7 @@ void MeshWorker::preview() {
   tell(std::move(told));
 }
 
-/// Who sits before a live view sees something first, and moves the iso-value then; a replay is told exactly.
+/// A live view shows something first, and the user moves the iso-value then; a replay needs it given.
 MeshVolume MeshWorker::materials_of(MaterialSettings words, MeshInput& input) {
   const bool sample = !input_.sample.empty();
   std::string proposal;

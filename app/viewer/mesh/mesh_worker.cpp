@@ -257,7 +257,7 @@ void MeshWorker::perform(Task task) {
   if (const std::string why = lost_device(); answered && !why.empty()) tell(MeshFailed{why});
 }
 
-/// What went wrong in words; none: nothing, or an interruption.
+/// The error message; none: no error, or an interruption.
 std::optional<std::string> MeshWorker::failure_of(const std::function<void()>& work) {
   try {
     if (fault_due("out-of-memory")) throw std::bad_alloc();
@@ -317,7 +317,7 @@ void MeshWorker::make(MeshStage stage) {
   }
 }
 
-/// In lockstep, waits until the frames have taken what they were told and lent memory for more; slices are filled
+/// In lockstep, waits until the frames have taken the events and lent memory for more; slices are filled
 /// meanwhile. False where it was interrupted.
 bool MeshWorker::await_turn() {
   std::unique_lock lock(mutex_);
@@ -352,7 +352,7 @@ void MeshWorker::note_progress(const MeshProgress& progress) {
   if (progress.iteration > 0 && progress.particles > 0 && await_turn()) show(progress, true);
 }
 
-/// Fills what was lent, if it was, and tells.
+/// Fills the lent memory, if there is any, and reports.
 void MeshWorker::show(const MeshProgress& progress, bool step) {
   std::optional<LentMemory> memory;
   {

@@ -30,7 +30,7 @@ enum class MeshStage : int { read, materials, fields, relax, triangulate, measur
 /// The first stage that has to run again when the settings change like this; done: none.
 MeshStage mesh_restart(const Settings& before, const Settings& after);
 
-// What the worker tells, in this order; after a change of knobs again from where it has to begin.
+// Events of the worker, in this order; after a change of knobs again from the first stage concerned.
 
 /// The volume is no label map, and no iso-value was given: this one was chosen.
 struct IsovalueProposed {
@@ -49,7 +49,7 @@ struct PreviewMade {
   MeshPreview preview;
 };
 
-/// Particles are about to be seeded: so much memory holds them all. What was lent before is not written any more.
+/// Particles are about to be seeded: so much memory holds them all. Memory lent before is no longer written to.
 struct RelaxBegun {
   MeshInfo info;
   std::int64_t capacity = 0, box_capacity = 0;
@@ -92,7 +92,7 @@ struct MeshWritten {
   std::string failure;
 };
 
-/// A stage did not work; the worker waits for other knobs, or to be told to resume.
+/// A stage failed; the worker waits for other knobs, or for resume().
 struct MeshFailed {
   std::string what;
 };
@@ -133,7 +133,7 @@ class MeshWorker : public Worker<MeshEvent> {
   std::optional<MeshEvent> wait(const std::atomic<bool>& stop, double patience = endless);
 
   void set_lockstep(bool lockstep);
-  /// In lockstep: one more iteration may be told; `all`: all that follow.
+  /// In lockstep: one more iteration may be reported; `all`: all that follow.
   void grant_turn(bool all = false);
   /// In lockstep: the iterations up to this one, counted from 1 since the particles were seeded, need no turn. Asking
   /// again changes nothing, so no iteration is made too many.
@@ -157,7 +157,7 @@ class MeshWorker : public Worker<MeshEvent> {
   void write(const std::filesystem::path& file);
 
   bool busy() const;
-  bool settled() const;  ///< all is done, and told
+  bool settled() const;  ///< all is done and reported
   bool halted() const;   ///< cancelled, or failed
   bool waits() const;    ///< in lockstep, for a turn
 
@@ -212,7 +212,7 @@ class MeshWorker : public Worker<MeshEvent> {
   };
   std::optional<Computed> computed_;
   MeshStage next_ = MeshStage::read;     ///< all before it are done
-  MeshStage restart_ = MeshStage::done;  ///< where to begin when what is under way has been interrupted
+  MeshStage restart_ = MeshStage::done;  ///< where to begin when the running work has been interrupted
   MeshStage doing_ = MeshStage::done;
   bool at_work_ = false, cancelled_ = false, failed_ = false;
   bool fields_ = false;   ///< can be asked

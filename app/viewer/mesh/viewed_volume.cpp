@@ -1,4 +1,4 @@
-// Nacre: a volume that is being meshed, as the viewer keeps it to look at.
+// Nacre: a volume that is being meshed, as the viewer shows it.
 #include "app/viewer/mesh/viewed_volume.hpp"
 
 #include <algorithm>

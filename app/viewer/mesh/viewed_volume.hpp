@@ -1,4 +1,4 @@
-// Nacre: a volume that is being meshed, as the viewer keeps it to look at: slices, probes, its box. No OpenGL here.
+// Nacre: a volume that is being meshed, as the viewer shows it: slices, probes, its box. No OpenGL here.
 #pragma once
 
 #include <algorithm>
@@ -34,12 +34,12 @@ struct ViewedVolume {
   std::vector<std::uint16_t> material;                 ///< per voxel
   ValueSpread spread;                                  ///< of a scalar volume
 
-  /// World coordinates of a place in voxels: (0, 0, 0) is the first voxel's centre.
+  /// World coordinates of a position in voxels: (0, 0, 0) is the first voxel's centre.
   Vec3d to_world(const Vec3d& voxel) const;
   Vec3d to_voxels(const Vec3d& world) const;
   /// What lengths in voxels are multiples of: the smallest spacing, world units.
   double voxel_length() const { return std::min({input.spacing.x, input.spacing.y, input.spacing.z}); }
-  /// The voxel that holds a place of the world, as an index; none beyond the volume.
+  /// The index of the voxel that contains a world position; none beyond the volume.
   std::optional<std::size_t> index_at(const Vec3d& world) const;
   double value(std::size_t index, std::size_t file = 0) const;
   /// Corners of the box around the voxels that are not outside, world: corner k has the far side of axis a where bit a

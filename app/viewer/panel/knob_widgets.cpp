@@ -66,7 +66,7 @@ void choice_widget(std::string& value, const std::vector<std::string>& choices) 
   ImGui::EndCombo();
 }
 
-/// "#rrggbb" as a swatch to click on, and the words beside it; empty: as it is by itself.
+/// "#rrggbb" as a swatch to click on, and the text beside it; empty: the default.
 void colour_widget(std::string& value) {
   const std::optional<std::array<float, 3>> now = hex_colour(value);
   std::array<float, 3> colour = now.value_or(std::array{0.5f, 0.5f, 0.5f});

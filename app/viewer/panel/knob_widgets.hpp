@@ -9,7 +9,7 @@
 namespace nacre {
 
 /// One knob by its name, with its unit and help. Numbers are clamped to their range, min_size and max_size to each
-/// other; sliders and text take effect when they are let go. `choices`: for a knob that takes words; none: any.
+/// other; sliders and text take effect when they are let go. `choices`: for a knob with fixed choices; none: any text.
 void knob_widget(Settings& settings, const std::string& name, const std::vector<std::string>& choices = {});
 
 /// Knobs of a job ("flow", "mesh"): the basic ones with plain names, and all others in their groups under "Advanced";

@@ -1,4 +1,4 @@
-// Nacre: knobs in words for people.
+// Nacre: texts of the knobs for people.
 #include "app/viewer/panel/knob_words.hpp"
 
 #include <map>

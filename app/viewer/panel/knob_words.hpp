@@ -1,4 +1,4 @@
-// Nacre: knobs in words for people: plain names, which ones come first, and what a change costs.
+// Nacre: texts of the knobs for people: plain names, which ones come first, and what a change costs.
 #pragma once
 
 #include <string>

@@ -132,7 +132,7 @@ void sort_rows(std::vector<std::size_t>& rows, const MeshResults& results) {
   });
 }
 
-/// As wide as the longer of its two words, so that nothing moves under the mouse.
+/// As wide as the longer of its two texts, so that nothing moves under the mouse.
 bool button(const char* label, const char* widest) {
   return ImGui::Button(label, ImVec2(ImGui::CalcTextSize(widest).x + 2 * ImGui::GetStyle().FramePadding.x, 0));
 }

@@ -291,7 +291,7 @@ void Ui::screenshot_window(const UiFacts& facts) {
   ImGui::EndPopup();
 }
 
-/// Asked once more, or told to, the program quits.
+/// Quits on a second request, or if confirmed.
 void Ui::quit_window(UiRequests& requests) {
   if (quit_reasons_.empty()) return;
   constexpr const char* title = "Quit?";

@@ -112,7 +112,8 @@ void worst_list(const MeshResults& results, Session& session) {
                                          material_name(input, pair[1]), k);
     if (!ImGui::Selectable(line.c_str())) continue;
     look_at(*results.mesh, worst.triangle, session.camera);
-    int& highlighted = session.settings.view.worst;  // or it could not be told from its neighbours, nor seen inside
+    int& highlighted =
+        session.settings.view.worst;  // otherwise it could not be distinguished from its neighbours, nor seen inside
     highlighted = std::max(highlighted, int(k) + 1);
   }
 }

@@ -229,7 +229,7 @@ void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
   panel_border(look, facts.width, l, high);
 }
 
-/// What goes on, how far it is, and a way to end it; what is under the cursor.
+/// The running stage, its progress, and a button to cancel it; what is under the cursor.
 void Ui::status(const ViewSettings& look, Scene& scene, const UiFacts& facts, UiRequests& requests) {
   const float high = layout(look, facts.width).status;
   ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - high));
@@ -279,7 +279,7 @@ void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) 
   const auto [from, along] = ray_under(camera, x, y, area.aspect());
   const std::optional<ProbeResult> probed = scene.probe(from, along);
   if (!probed) return;
-  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y) + 8));  // the time stands in the corner below
+  ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y) + 8));  // the time is in the corner below
   ImGui::SetNextWindowBgAlpha(0.7f);
   const auto quiet = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;

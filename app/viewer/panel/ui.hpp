@@ -19,7 +19,7 @@
 
 namespace nacre {
 
-/// What the loop tells about itself.
+/// Facts about the loop, for the panels.
 struct UiFacts {
   ScenePanel& panel;
   const FrameClock& clock;

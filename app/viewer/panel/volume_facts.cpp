@@ -14,7 +14,7 @@ namespace {
 
 void line(const std::string& words) { ImGui::TextWrapped("%s", words.c_str()); }
 
-/// The iso-value in words, where it is one number.
+/// The iso-value as text, if it is one number.
 std::optional<double> single_isovalue(const std::string& words) {
   char* end = nullptr;
   const double value = std::strtod(words.c_str(), &end);

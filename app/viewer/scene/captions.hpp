@@ -46,7 +46,7 @@ class Captions {
   Seen seen_;
 };
 
-/// How far the work is and what is open, also for who looks at other windows meanwhile: "relax 40% - head.nrrd -
+/// Progress and what is open, for the window's title, which is seen beside other windows: "relax 40% - head.nrrd -
 /// Nacre", or with "film" before all that.
 std::string window_title(const Scene& scene, bool filming);
 

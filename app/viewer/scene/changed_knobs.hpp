@@ -1,4 +1,4 @@
-// Nacre: which knobs have changed since the last frame. It is found once a frame; all who care are told.
+// Nacre: which knobs have changed since the last frame. It is computed once a frame and passed to all that need it.
 #pragma once
 
 #include <algorithm>

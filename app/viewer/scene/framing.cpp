@@ -18,7 +18,7 @@ Framing::Sight Framing::sight(const Session& session, const Scene& scene, const 
           scene.seen_version()};
 }
 
-/// Another projection is no other place.
+/// Another projection does not move the camera.
 bool Framing::is_fitted(const Camera& camera) const {
   if (!fitted_) return false;
   Camera same = *fitted_;

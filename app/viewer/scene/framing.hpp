@@ -26,13 +26,13 @@ class Framing {
   void fit(Session& session, const Scene& scene, const FreeArea& area);
   void look_from(const std::string& view, Session& session, const Scene& scene, const FreeArea& area);
 
-  /// Is there a scene to look at?
+  /// Is there anything to fit?
   bool ready() const { return ready_; }
   /// Another scene is opened.
   void forget() { ready_ = false; }
 
  private:
-  /// What a fit depends on, but for the side that the camera stands on.
+  /// What a fit depends on, except the side from which the camera looks.
   struct Sight {
     int width = 0, height = 0;
     bool legend = false, orthographic = false;

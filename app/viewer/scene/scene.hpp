@@ -45,7 +45,7 @@ class Scene {
  public:
   virtual ~Scene() = default;
 
-  /// Takes what the worker has told, and asks for what is due at time `now` (seconds). Never waits.
+  /// Takes the worker's events, and requests what is due at time `now` (seconds). Never waits.
   virtual void advance(double now) = 0;
   /// The same for replays: waits until there is one more thing to show: a step of the flow, an iteration of the
   /// particles. Returns at once where the work is done and nothing more will come. False where `patience` (seconds) was
@@ -70,7 +70,7 @@ class Scene {
   /// `overlay_version`.
   virtual Image overlay(int width, int height) = 0;
   virtual std::uint64_t overlay_version() const = 0;
-  /// Changes with all that is drawn or told, but for the progress and what time does.
+  /// Changes with everything that is drawn or reported, except progress and time.
   virtual std::uint64_t version() const = 0;
 
   /// Takes over into the session what the data have decided and the user had left open. False: nothing.
@@ -81,7 +81,7 @@ class Scene {
   /// Writes the result as the headless command would, in the format of the extension. Waits for the worker. Throws
   /// Error.
   virtual void write_result(const std::filesystem::path& file) = 0;
-  /// The same without waiting. `take_written` then tells once how it went: an empty line, or what did not work.
+  /// The same without waiting. `take_written` then returns the outcome once: an empty line, or the error.
   virtual void begin_write(const std::filesystem::path& file) = 0;
   virtual std::optional<std::string> take_written() = 0;
   /// Extensions that `write_result` takes, e.g. ".vtp".
@@ -98,7 +98,7 @@ class Scene {
   virtual std::string title() const = 0;
   virtual std::string state() const = 0;  ///< a line: "time 0.2, step 12"; "12,345 particles, energy 0.71"
   virtual SceneProgress progress() const = 0;
-  /// Where it stands in its time or its iterations, and what of these it can show.
+  /// Its time or iteration, and the range of these that it can show.
   virtual Transport transport() const { return {}; }
   virtual const std::string& failure() const = 0;  ///< what went wrong last; empty: nothing
   virtual const std::vector<std::string>& warnings() const = 0;

@@ -1,4 +1,4 @@
-// Nacre: where a scene stands in its time, or in its iterations: what a transport bar shows. No Dear ImGui here.
+// Nacre: the time or iteration of a scene: what a transport bar shows. No Dear ImGui here.
 #pragma once
 
 #include <cstddef>

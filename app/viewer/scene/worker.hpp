@@ -1,4 +1,4 @@
-// Nacre: what the workers of flow and mesh share: a thread, and the events that it tells to another.
+// Nacre: what the workers of flow and mesh share: a thread, and the events that it sends to another.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ class Worker {
     return lost_;
   }
 
-  /// Interrupts what it does and ends the thread; memory that was lent is not written any more. Nothing may be asked
+  /// Interrupts what it does and ends the thread; lent memory is no longer written to. Nothing may be asked
   /// for after this.
   void finish() {
     if (!thread_.joinable()) return;

@@ -26,7 +26,7 @@ class EventLog {
     tell_new(remark_, scene.remark());
   }
 
-  /// What did not work and is told in the window, too.
+  /// A failure, which is also shown in the window.
   void add_error(const std::string& line) { tell_new(error_, line); }
 
  private:

@@ -44,7 +44,7 @@ void ImGuiLayer::dress(const ViewSettings& look) {
   style.WindowBorderSize = 0;
   style.Colors[ImGuiCol_WindowBg].w = 0.9f;
   style.Colors[ImGuiCol_PopupBg] = style.Colors[ImGuiCol_WindowBg];  // the light one is as white as its check boxes
-  style.Colors[ImGuiCol_PopupBg].w = 1;  // dialogs lie over panels, whose words would show through
+  style.Colors[ImGuiCol_PopupBg].w = 1;  // dialogs lie over panels, whose text would show through
   style.ScaleAllSizes(scale);
   if (size != size_) {
     ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
@@ -63,7 +63,7 @@ void ImGuiLayer::dress(const ViewSettings& look) {
   size_ = size;
 }
 
-/// In place of what the backend polls: a user may do more in a frame than can be polled at its end.
+/// Replaces what the backend polls: a user may do more in a frame than can be polled at its end.
 void ImGuiLayer::take_input() {
   const InputFrame input = window_->next_input();
   ImGuiIO& io = ImGui::GetIO();

@@ -14,7 +14,7 @@ namespace nacre {
 
 class KeptRecording {
  public:
-  /// `write` (may be empty) is told the whole recording.
+  /// `write` (may be empty) is called with the whole recording.
   explicit KeptRecording(std::function<void(const Session&)> write) : write_(std::move(write)) {}
 
   bool on() const { return recorder_.has_value(); }

@@ -1,4 +1,4 @@
-// Nacre: another input is read beside the scene that is shown, and takes its place when there is something to see.
+// Nacre: another input is read beside the scene that is shown, and replaces it when there is something to see.
 #include <fmt/format.h>
 
 #include "app/viewer/window/viewer_loop.hpp"
@@ -20,7 +20,7 @@ void Viewer::open_beside(Session wanted, std::optional<SessionPlayer> player, co
   redraw_ = true;
 }
 
-/// Another input that the session has been given goes beside, before anybody is told of it. False: there is none, or it
+/// A new input of the session is opened beside the scene before anything else sees it. False: there is none, or it
 /// is to be opened at once.
 bool Viewer::divert_input() {
   if (static_cast<const SessionInput&>(session_) == told_ || !opens_beside()) return false;

@@ -24,7 +24,7 @@ class Saving {
     file_ = file;
   }
 
-  /// Another scene comes: what was being written will not be. Returns what to tell about it.
+  /// The scene is replaced: what was being written is given up. Returns the message for the user.
   std::string drop() {
     return on() ? std::exchange(file_, {}).string() + " was not saved: another input came before that" : "";
   }

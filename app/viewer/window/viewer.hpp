@@ -30,7 +30,7 @@ struct ViewerOptions {
   bool picture = false;  ///< return the last frame
   FrameSink* video = nullptr;  ///< takes every frame; these wait for compute, in a window, too
   std::function<void(const Session& done)>
-      recorded;  ///< what the user did: told at the end, also after a failure, and now and then in a window
+      recorded;  ///< the user's actions: reported at the end, also after a failure, and from time to time in a window
   std::filesystem::path out;  ///< where to write the result at the end; empty: nowhere
   const std::atomic<bool>* stop = nullptr;
   Framing::FirstCamera first_camera;

@@ -32,7 +32,7 @@
 namespace nacre {
 
 /// All that a user, a script or a file changes goes through one session. What differs from the last frame is found
-/// once a frame, told to the scene and to the recorder, and can be undone.
+/// once a frame, passed to the scene and to the recorder, and can be undone.
 class Viewer {
  public:
   explicit Viewer(const ViewerOptions& options);
@@ -99,7 +99,7 @@ class Viewer {
   /// A window is drawn where it has changed; not so where frames are counted or filmed.
   bool draws_on_demand() const { return window_ && options_.frames == 0 && !film_.on(); }
 
-  /// How long the loop waits for the user where nothing has to be drawn, seconds: what compute tells is looked after.
+  /// How long the loop waits for the user where nothing has to be drawn, seconds, so that events of compute are handled.
   double patience() const {
     if (!draws_on_demand()) return 0;
     if (opening_) return shortest_frame;
@@ -217,8 +217,8 @@ class Viewer {
   FrameClock clock_;
   DrawDemand demand_;
   bool quit_ = false, spare_ = false;
-  bool may_differ_ = true;      ///< the session, from what was told: it is compared, which costs more than to wait
-  bool redraw_ = false;         ///< the window has something to tell
+  bool may_differ_ = true;      ///< the session, from the last one passed on: comparing costs more than waiting
+  bool redraw_ = false;         ///< the window has events
   bool unsaved_ = false;        ///< the user has changed what a result depends on
   bool scripted_ = false;       ///< changes are those of a recording
   bool settled_knobs_ = false;  ///< the next change is the data's

@@ -18,7 +18,7 @@ Vec3d axis(double x) {
   return {x, 0.11 * x - 0.006 * x * x + off * std::cos(angle), 0.035 * x + off * std::sin(angle)};
 }
 
-/// A place in a half plane through the axis: along it, and away from it.
+/// A position in a half plane through the axis: along it, and away from it.
 struct Meridional {
   double x, r;
 };

@@ -30,7 +30,7 @@ SampleShape torus_shape(int detail) {
   return shape;
 }
 
-/// Toroidal stream with a swing of the poloidal one, and a chain of travelling cells that turns it back in places.
+/// Toroidal stream with a swing of the poloidal one, and a chain of travelling cells that reverses it here and there.
 SampleField torus_flow(double time) {
   const double phase = 2 * kPi * time;
   return [phase](const Vec3d& p, const Vec3d& n) {

@@ -12,7 +12,7 @@
 
 namespace nacre {
 
-/// What is looked at: files, or a built-in sample.
+/// What is shown: files, or a built-in sample.
 struct SessionInput {
   std::vector<std::filesystem::path> inputs;
   std::string sample;

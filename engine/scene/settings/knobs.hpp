@@ -26,7 +26,7 @@ KnobChoice knob_choice(Enum& place) {
           [](void* p, int value) { *static_cast<Enum*>(p) = Enum(value); }};
 }
 
-/// One knob, bound to its place in a Settings.
+/// One knob, bound to its member of a Settings.
 struct Knob {
   std::string name;       ///< snake_case; on the command line --with-dashes
   std::string group;      ///< the part of the panel that it is in
@@ -36,7 +36,7 @@ struct Knob {
   double min = 0, max = 0;                  ///< of a number
   bool or_zero = false;                     ///< 0 is allowed besides: the program chooses
   std::vector<std::string> choices = {};    ///< of an enumeration, or of a string (empty: any)
-  std::uint32_t* also = nullptr;            ///< a second place with the same value
+  std::uint32_t* also = nullptr;            ///< a second member with the same value
   std::vector<std::string> old_names = {};  ///< former names: still read from sessions and command lines
   std::string off_option = {};              ///< an option of its own that turns it off; empty: --no- and its name
 

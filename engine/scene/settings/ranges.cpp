@@ -1,4 +1,4 @@
-// Nacre: pairs of numbers in words, and what they mean for a flow.
+// Nacre: parses ranges such as "0:2" and "2%:98%".
 #include "engine/scene/settings/ranges.hpp"
 
 #include <fmt/format.h>

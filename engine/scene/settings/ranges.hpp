@@ -1,4 +1,4 @@
-// Nacre: pairs of numbers in words, and what they mean for a flow: its time, its colours.
+// Nacre: parses ranges such as "0:2" and "2%:98%", for the time and the colours of a flow.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ Range parse_time_range(const Settings& settings);
 /// Which values a colour map meets, at all times.
 struct ColourSpread {
   double low = 0, high = 1;   ///< the range without a wish; of a speed from 0 to what is usual
-  double least_positive = 0;  ///< of those that were looked at; 0: none is above 0
+  double least_positive = 0;  ///< of the values sampled; 0: none is above 0
   bool gaps = false;          ///< some are no numbers
   std::vector<float> sample;  ///< finite values, sorted: a part of all, of every time
 

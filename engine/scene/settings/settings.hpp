@@ -37,7 +37,7 @@ struct ViewSettings {
   std::string hidden, ghosts;               ///< L[,L...]: labels of materials
   int worst = 0;                            ///< mesh: so many of the worst triangles stand out
   std::string clip = "none";                ///< x, y, z: nothing is drawn before the plane across that axis
-  double clip_at = 0.5;                     ///< its place in the bounding box
+  double clip_at = 0.5;                     ///< its position in the bounding box
   bool clip_back = false;                   ///< nothing is drawn behind it instead
   std::string slice = "none";               ///< x, y, z: a plane of the volume
   double slice_at = 0.5;

@@ -19,12 +19,12 @@ struct FlowLog {
   std::function<void(const VectorChoice& choice)> chosen;      ///< which vectors, and why
   std::function<void(const std::string& sentence)> note = {};  ///< what was decided; empty: to `warn`
   std::function<void(const Surface& first)> read = {};  ///< the first step, before a choice is made; may be empty
-  /// The first step alone, as it can be shown before all others are looked at: its own statistics and range of colours.
-  /// Not told where there is only one; may be empty.
+  /// The first step alone, as it can be shown before the others are read: its own statistics and range of colours.
+  /// Not called if there is only one; may be empty.
   std::function<void(VectorsInTime& first)> first_step = {};
 };
 
-/// Prepares the surface of `series`, chooses vectors and looks at all steps. Throws Error where there is nothing to
+/// Prepares the surface of `series`, chooses vectors and reads all steps. Throws Error where there is nothing to
 /// show, Interrupted when `stop` is set.
 VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, const FlowLog& log,
                               const std::atomic<bool>* stop = nullptr);
@@ -35,7 +35,7 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
 MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, const std::string& vectors,
                            const Settings& settings, const FlowLog& log);
 
-/// Warns where the vectors show little: all zero, mostly normal to the surface, zero in many places.
+/// Warns where the vectors show little: all zero, mostly normal to the surface, zero over much of it.
 void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log);
 
 /// A prepared surface as the flow pipeline takes it; the surface must outlive it.

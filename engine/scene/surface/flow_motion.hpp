@@ -9,8 +9,8 @@
 
 namespace nacre {
 
-/// Keeps the flow of a pipeline on the present shape of its data. The texture lives on the shape that is embedded, whose
-/// triangles are the material, and is drawn where they are now; so nothing is resampled while the surface moves. The
+/// Keeps the flow of a pipeline on the present shape of its data. The texture lives on the shape that is embedded,
+/// whose triangles are the material, and is drawn where they are now; so nothing is resampled while it moves. The
 /// present shape is embedded instead where it has become too different: where the triangles change, or where more than
 /// a twentieth of its area is stretched or shortened by more than `most_stretch`. For still surfaces this is only
 /// `embed` and `start`. All references must outlive it.

@@ -1,4 +1,4 @@
-// Nacre: places spread evenly over a surface.
+// Nacre: points spread evenly over a surface.
 #include "engine/scene/surface/spread_points.hpp"
 
 #include <algorithm>

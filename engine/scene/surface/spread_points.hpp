@@ -1,4 +1,4 @@
-// Nacre: places spread evenly over a surface, for arrows.
+// Nacre: points spread evenly over a surface, for arrows.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct SurfacePoint {
   Vec3f weights;  ///< of its corners
 };
 
-/// At most `count` places, none nearer to another than the room allows (blue noise by darts); the same for one seed.
+/// At most `count` points, none nearer to another than the room allows (blue noise by darts); the same for one seed.
 /// None where the triangles have no area.
 std::vector<SurfacePoint> spread_points(std::span<const Vec3d> points, std::span<const Triangle> triangles, int count,
                                         std::uint32_t seed);

@@ -45,7 +45,7 @@ std::set<std::string> words_of(const std::string& name) {
 
 enum class Kind { never, displacement, other, momentum, velocity, wall_shear };
 
-/// What a name says about an array. Fragments match anywhere, words only whole.
+/// What a name says about an array. Fragments match anywhere, words only as a whole.
 Kind kind_of(const std::string& name) {
   struct Rule {
     Kind kind;

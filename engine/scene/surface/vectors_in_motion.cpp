@@ -48,7 +48,7 @@ std::vector<Vec3d> VectorsInTime::points(double t) {
 }
 
 PreparedSurface VectorsInTime::shape(double t) {
-  PreparedSurface shape{points(t), surface_.triangles, {}};
+  PreparedSurface shape{points(t), surface_.triangles, {}, surface_.second_sheet};
   update_normals(shape, same_, motion_.crease_degrees);
   return shape;
 }

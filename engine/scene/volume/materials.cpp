@@ -1,4 +1,4 @@
-// Nacre: which way a volume becomes materials.
+// Nacre: how a volume becomes materials.
 #include "engine/scene/volume/materials.hpp"
 
 #include <algorithm>

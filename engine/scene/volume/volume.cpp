@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-constexpr double largest_label = 9007199254740992.0;  // 2^53: beyond, a double does not tell neighbours apart
+constexpr double largest_label = 9007199254740992.0;  // 2^53: beyond, doubles cannot represent every integer
 
 template <class T>
 bool is_label(T value) {

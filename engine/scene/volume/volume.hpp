@@ -39,7 +39,7 @@ struct Volume {
   Vec3d origin{};          ///< of voxel (0, 0, 0)'s centre
   std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};  ///< unit, orthogonal
   VolumeValues values;
-  LabelNames label_names;             ///< where the file says what its values stand for
+  LabelNames label_names;             ///< if the file names its values
   LabelColours label_colours;         ///< and what colours they have
   std::vector<std::string> warnings;  ///< what was assumed on opening, each a full sentence
 

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "compute/device/error.hpp"
-#include "tests/engine/picture/read_png.hpp"
+#include "engine/picture/png.hpp"
 #include "tests/engine/picture/small_disk.hpp"
 #include "tests/engine/picture/temporary_folder.hpp"
 #include "tests/engine/picture/test_images.hpp"

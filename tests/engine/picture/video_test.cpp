@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "compute/device/error.hpp"
+#include "engine/picture/png.hpp"
 #include "engine/system/child_process.hpp"
-#include "tests/engine/picture/read_png.hpp"
 #include "tests/engine/picture/small_disk.hpp"
 #include "tests/engine/picture/temporary_folder.hpp"
 #include "tests/engine/picture/test_images.hpp"
