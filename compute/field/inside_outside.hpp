@@ -29,7 +29,7 @@ struct OneLane {
 
 namespace detail {
 
-/// How the step leaves J, where the equations of the junction do not say: down its gradient (Eq. 3.5 with the sign corrected).
+/// How the step leaves J, where the equations of the junction do not say: down its gradient (Eq. 3.5, sign corrected).
 NACRE_HD inline bool indicator_step(const FieldSample& j, Vec3f& step) {
   const float gg = dot(j.gradient, j.gradient);
   if (!(gg > 1e-12f)) return false;

@@ -103,7 +103,7 @@ NACRE_HD inline bool junction_step(const FieldSample* f, int count, Vec3f& step,
 inline constexpr int newton_steps = 10;
 inline constexpr float newton_stride = 0.5f;
 
-/// Newton's method onto the junction from `p` (Eq. 3.5 with its sign corrected, for differences of indicator functions),
+/// Newton's method onto the junction from `p` (Eq. 3.5, sign corrected, for differences of indicator functions),
 /// until a step is shorter than `last_step` (what is left is about its square times the curvature). False where it does
 /// not arrive within `reach` voxels of `p`.
 NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& junction, const Vec3f& p, float reach,

@@ -70,7 +70,7 @@ struct PlanBin {
 }  // namespace detail
 
 /// Deletes crowded particles and splits lonely ones; `energy` of the result is the mean before that. Moving particles
-/// change their positions in the arrays (they are written bin by bin, which the next iteration profits from); fixed ones
+/// change their indices in the arrays (they are written bin by bin, which the next iteration profits from); fixed ones
 /// keep theirs. `carried` is what else particles have, `fresh` what new ones have of it; `step` counts the controls.
 /// Works for any solver that leaves energies in direction.w. Throws Error where the set's capacity does not suffice.
 template <class Backend, class Surface, class T>

@@ -16,7 +16,7 @@ struct PairEnergy {
 };
 
 /// Eq. 3.1 and 3.4 for 0 < d; zero from d = 1 on. With x = d pi/2: E = cot x + x - pi/2, E' = -(pi/2) cot^2 x,
-/// E'' = (pi^2/2) cot x / sin^2 x. cot x = 1/x + x P(x^2), the series with a corrected last coefficient: E is right to 2e-5, E' to
+/// E'' = (pi^2/2) cot x / sin^2 x. cot x = 1/x + x P(x^2), the series with an adjusted tail: E is right to 2e-5, E' to
 /// 1.3e-4 of itself. d is kept above 0.02, where the energy is 30.
 NACRE_HD_INLINE PairEnergy cotangent_energy(float d) {
   const float x = (d > 0.02f ? (d < 1 ? d : 1.0f) : 0.02f) * (0.5f * pi);

@@ -85,7 +85,7 @@ struct JudgeParticle {
   }
 
   /// `crowded`: the most energy that the new particle may have where it is put, in units of the ideal. In a gap of 1.6
-  /// h on a curve it has 2.5 of it; among particles that are evenly a little too far apart there is no position with less
+  /// h on a curve it has 2.5 of it; among particles that are evenly a little too far apart there is nowhere less
   /// than that.
   NACRE_HD void split(std::int64_t i, std::uint32_t group, const Float4& at, const Float4& d, float crowded) const {
     const Vec3f n(d.x, d.y, d.z), p(at.x, at.y, at.z);

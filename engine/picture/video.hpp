@@ -42,8 +42,8 @@ void check_video_size(int width, int height);
 
 /// frame_0000.png, frame_0001.png and so on in `folder`, which is made if missing. Each file is complete at any time.
 /// The first frame removes those of an earlier run (files with exactly such names, no others), so that a film made of
-/// the folder is of one run, however that ends; `say` is called with a message that says how many. A folder that was made for the frames and gets
-/// none is removed. Throws Error if it cannot be made.
+/// the folder is of one run, however that ends; `say` gets a message with their number. A folder that was made for
+/// frames and gets none is removed. Throws Error if it cannot be made.
 ///
 /// `part`: the frames of one part of a run, whose other parts may be written to the same folder at the same time. They
 /// are numbered as in the whole run, and only earlier frames with these numbers are removed.

@@ -30,7 +30,7 @@ Camera pan(const Camera& camera, double dx, double dy, double aspect);
 /// Moves everything nearer (factor < 1) or farther; what is under (x, y), at the depth of the target, stays in place.
 Camera dolly(const Camera& camera, double factor, double x, double y, double aspect);
 
-/// The camera that looks at the plane through `point` instead of the plane through its target: the picture is the same, but
+/// The camera that looks at the plane through `point` instead of its target: the picture is the same, but
 /// `dolly` and `pan` move what is there with the cursor. For a perspective camera `point` must lie before the eye.
 Camera look_at_depth(const Camera& camera, const Vec3d& point);
 

@@ -99,7 +99,7 @@ class Viewer {
   /// A window is drawn where it has changed; not so where frames are counted or filmed.
   bool draws_on_demand() const { return window_ && options_.frames == 0 && !film_.on(); }
 
-  /// How long the loop waits for the user where nothing has to be drawn, seconds, so that events of compute are handled.
+  /// How long the loop waits for the user if nothing has to be drawn, seconds; then it handles events of compute.
   double patience() const {
     if (!draws_on_demand()) return 0;
     if (opening_) return shortest_frame;

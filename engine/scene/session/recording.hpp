@@ -15,8 +15,8 @@ class SessionPlayer {
   explicit SessionPlayer(Session recording);
 
   /// Brings `now` to `time` (seconds, never less than at the last call): makes the changes of all events up to then,
-  /// and moves the camera during a camera event. If the user moves it meanwhile, the user's camera holds until the next event's
-  /// camera. Returns the pictures to be taken of this frame.
+  /// and moves the camera during a camera event. If the user moves it meanwhile, that holds until the next
+  /// event's camera. Returns the pictures to be taken of this frame.
   std::vector<Screenshot> advance(double time, Session& now);
 
   /// Is there an event to play?

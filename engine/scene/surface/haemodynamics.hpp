@@ -17,8 +17,8 @@ namespace nacre {
 ///     RRT   = 1 / ((1 - 2 OSI) TAWSS)                                      relative residence time
 ///
 /// OSI as in X. He and D. N. Ku, J. Biomech. Eng. 118 (1996), after D. N. Ku, D. P. Giddens, C. K. Zarins and S.
-/// Glagov, Arteriosclerosis 5 (1985), whose index had another sign convention; RRT as in H. A. Himburg et al., Am. J. Physiol.
-/// Heart 286 (2004). OSI is 0 where tau is zero all the time; RRT is NaN where the mean of tau vanishes.
+/// Glagov, Arteriosclerosis 5 (1985), whose index had another sign convention; RRT as in H. A. Himburg et al., Am. J.
+/// Physiol. Heart 286 (2004). OSI is 0 where tau is zero all the time; RRT is NaN where the mean of tau vanishes.
 struct Haemodynamics {
   std::vector<float> tawss, osi, rrt;
 };
