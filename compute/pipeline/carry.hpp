@@ -5,7 +5,7 @@
 
 #include "compute/embedding/thesis_octree.hpp"
 #include "compute/flow/surface_cells.hpp"
-#include "compute/raycast/box_tree.hpp"
+#include "compute/raycast/triangle_boxes.hpp"
 
 namespace nacre {
 
@@ -56,9 +56,9 @@ struct SameMaterial {
 
 /// The closest point of another surface, as that one was when it was embedded. False where it is farther than `reach`.
 struct ClosestMaterial {
-  BoxTreeView tree;      ///< of the other surface as it is now
-  MeshView now, before;  ///< that surface: as it is, and as it was embedded
-  double scale;          ///< from cells of this domain to those of the other
+  TriangleBoxesView tree;  ///< of the other surface as it is now
+  MeshView now, before;    ///< that surface: as it is, and as it was embedded
+  double scale;            ///< from cells of this domain to those of the other
   Vec3d shift;
   double reach;  ///< in cells of the other domain
 

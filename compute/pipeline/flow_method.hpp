@@ -51,7 +51,7 @@ class FlowMethodOn : public FlowMethod {
     std::vector<Vec3d> points;
     points.reserve(shape.points.size());
     for (const Vec3d& p : shape.points) points.push_back(domain_.to_grid(p));
-    shape_.place(std::move(points), shape.corner_normals, shape.vectors);
+    shape_.place(exec_, corners_.data(), std::move(points), shape.corner_normals, shape.vectors);
   }
 
  protected:
@@ -89,7 +89,7 @@ class FlowMethodOn : public FlowMethod {
     triangles_ = std::uint32_t(embedded.triangles.size());
     boxes_ = {};
     second_sheet_.assign(seen.second_sheet.begin(), seen.second_sheet.end());
-    if (seen.moves) shape_.make(exec_, points_, seen.triangles, seen.corner_normals);
+    if (seen.moves) shape_.make(exec_, mesh_, points_, seen.triangles, seen.corner_normals);
     if (!sheets_) return;
     // Points that are not moved are the first ones of both.
     seen_corners_ = arena.permanent_copy<Triangle>(seen.triangles);

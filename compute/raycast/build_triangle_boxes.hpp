@@ -71,6 +71,14 @@ struct CombineBoxes {
 
 }  // namespace detail
 
+/// Makes the boxes fit the triangles of `mesh` as they are now; their order stays.
+template <class Backend>
+void bound_triangles(Executor<Backend>& exec, const MeshView& mesh, const TriangleBoxes& tree) {
+  exec.for_each(tree.leaves, detail::BoundLeaf{mesh, tree.view(), tree.box.data()});
+  for (std::uint32_t first = tree.leaves / 2; first > 0; first /= 2)
+    exec.for_each(first, detail::CombineBoxes{first, tree.box.data()});
+}
+
 /// Builds the tree over `triangles` triangles that lie within `dims` cells from the origin. Its arrays are permanent in
 /// the executor's arena.
 template <class Backend>
@@ -90,9 +98,7 @@ TriangleBoxes build_triangle_boxes(Executor<Backend>& exec, const MeshView& mesh
     exec.for_each(triangles, detail::PlaceOnCurve{mesh, {}, ((1 << 20) - 1) / longest, code.data(), tree.order.data()});
     exec.sort_pairs(code.data(), tree.order.data(), triangles);
   }
-  exec.for_each(tree.leaves, detail::BoundLeaf{mesh, tree.view(), tree.box.data()});
-  for (std::uint32_t first = tree.leaves / 2; first > 0; first /= 2)
-    exec.for_each(first, detail::CombineBoxes{first, tree.box.data()});
+  bound_triangles(exec, mesh, tree);
   return tree;
 }
 

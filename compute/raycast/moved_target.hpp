@@ -1,8 +1,8 @@
 // Nacre: what rays traverse where the surface has moved away from the shape that is embedded.
 #pragma once
 
-#include "compute/raycast/box_tree.hpp"
 #include "compute/raycast/footprint.hpp"
+#include "compute/raycast/triangle_boxes.hpp"
 
 namespace nacre {
 
@@ -12,9 +12,11 @@ template <class Target>
 struct MovedTarget {
   Target rest;
   MeshView rest_mesh{}, moved_mesh{};
-  BoxTreeView tree;  ///< of the triangles as they are now
+  TriangleBoxesView tree;  ///< of the triangles as they are now
 
-  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const { return cast(tree, mesh, ray, hit); }
+  NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const {
+    return cast(tree, ray, hit, [&](std::uint32_t t, const Ray& r, Hit& h) { intersect(mesh, t, r, h); });
+  }
 
   NACRE_HD float texture(const float* shown, const Ray&, const Hit& hit, const Footprint& footprint) const {
     const Corners c = rest_mesh.corners(hit.triangle), now = moved_mesh.corners(hit.triangle);

@@ -1,4 +1,5 @@
-// Nacre: a tree of boxes around triangles, for the rays of a picture whose cells each list many triangles.
+// Nacre: a tree of boxes around triangles: for rays, where cells list many triangles or the triangles have moved, and
+// for closest points.
 #pragma once
 
 #include <cstdint>
@@ -82,6 +83,48 @@ NACRE_HD bool cast(const TriangleBoxesView& tree, const Ray& ray, Hit& hit, cons
       if (count == 0) return hit.triangle != none;
       node = open[--count];
     } while (slabs.enter(tree.box[node], hit.t) >= 1e300);
+  }
+}
+
+/// The nearest triangle; `squared` is at first how far to search.
+struct NearestTriangle {
+  double squared;
+  Vec3d point{};
+  std::uint32_t triangle = none;
+};
+
+/// Of equally distant triangles the lower number wins.
+NACRE_HD inline void find_nearest(const TriangleBoxesView& tree, const MeshView& mesh, const Vec3d& p,
+                                  NearestTriangle& nearest) {
+  const auto away = [&](std::uint32_t node) {
+    const TriangleBoxesView::Box& box = tree.box[node];
+    if (box.low.x > box.high.x) return 1e300;  // beyond the last triangle
+    const Vec3d d = max(Vec3d(box.low), min(Vec3d(box.high), p)) - p;
+    return dot(d, d);
+  };
+  struct Open {
+    double squared;
+    std::uint32_t node;
+  } open[33];
+  int count = 0;
+  if (tree) open[count++] = {away(1), 1};
+  while (count > 0) {
+    const Open at = open[--count];
+    if (at.squared > nearest.squared) continue;
+    if (at.node < tree.leaves) {
+      const Open a{away(2 * at.node), 2 * at.node}, b{away(2 * at.node + 1), 2 * at.node + 1};
+      const bool left = a.squared < b.squared;
+      open[count++] = left ? b : a;
+      open[count++] = left ? a : b;  // the nearer one comes next
+      continue;
+    }
+    const std::uint32_t first = (at.node - tree.leaves) * TriangleBoxesView::leaf_size;
+    for (std::uint32_t k = first; k < first + TriangleBoxesView::leaf_size && k < tree.triangles; ++k) {
+      const Vec3d point = closest_point(mesh.corners(tree.order[k]), p), d = point - p;
+      const double squared = dot(d, d);
+      if (squared < nearest.squared || (squared == nearest.squared && tree.order[k] < nearest.triangle))
+        nearest = {squared, point, tree.order[k]};
+    }
   }
 }
 

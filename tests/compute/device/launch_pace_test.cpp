@@ -35,7 +35,9 @@ TEST(LaunchPace, LongLaunchesStayBelowTheLimitAndShortOnesWhole) {
     const Parts next = run(pace, n, [&](std::int64_t) { return each; });
     EXPECT_LT(next.longest, LaunchPace::most_seconds) << each;
     EXPECT_LE(next.count, 1 + next.seconds / (0.2 * LaunchPace::most_seconds)) << each << ": no more than need be";
-    if (each < 1e-4) EXPECT_EQ(next.count, 1) << each;
+    if (each < 1e-4) {
+      EXPECT_EQ(next.count, 1) << each;
+    }
   }
 }
 
