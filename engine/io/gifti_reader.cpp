@@ -100,7 +100,9 @@ void read_gifti_values(pugi::xml_node node, GiftiArray& array, const fs::path& p
   const std::size_t size = type == "NIFTI_TYPE_UINT8" ? 1 : type == "NIFTI_TYPE_FLOAT64" ? 8 : 4;
   const std::string bytes = gifti_bytes(node, count * size, path);
   const std::string endian = attribute_of(node, "Endian");
-  if (endian != "BigEndian" && endian != "LittleEndian" && size > 1)
+  const bool ordered = type == "NIFTI_TYPE_FLOAT32" || type == "NIFTI_TYPE_INT32" || type == "NIFTI_TYPE_UINT32" ||
+                       type == "NIFTI_TYPE_FLOAT64";
+  if (endian != "BigEndian" && endian != "LittleEndian" && ordered)
     fail_reading(path, fmt::format("the Endian of an array is '{}'", endian.substr(0, 40)));
   const std::endian order = endian == "BigEndian" ? std::endian::big : std::endian::little;
   array.values.reserve(count);

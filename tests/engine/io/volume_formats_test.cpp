@@ -144,7 +144,7 @@ TEST_F(Vti, ChoosesTheScalars) {
 TEST_F(Vti, WhatIsDamagedIsAnError) {
   const std::string points = "<PointData>" + array("UInt8", "v", twelve) + "</PointData>";
   EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 0 1\"", points)), "axis 1 is zero"));
-  EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 nan 1\"", points)), "not a number"));
+  EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 nan 1\"", points)), "not 3 numbers"));
   EXPECT_TRUE(contains(failure("a.vti", vti("Spacing=\"1 1 1\" Direction=\"1 1 0 0 1 0 0 0 1\"", points)), "sheared"));
   EXPECT_TRUE(contains(failure("a.vti", vti("", "<PointData>" + array("UInt8", "v", "1 2 3") + "</PointData>")),
                        "has 3 entries, 12 are needed"));
