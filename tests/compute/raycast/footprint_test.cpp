@@ -83,7 +83,7 @@ double error_of(const TurningSphere& sphere, double degrees, int size, int sampl
 
 class MinifiedTexture : public ::testing::TestWithParam<const char*> {};
 
-/// Ten cells to a pixel. Rays that looked up one value each would be off by the texture's deviation, about 0.2.
+/// Ten cells to a pixel. Means over bricks reach somewhat beyond a pixel, which blurs and does not shimmer.
 TEST_P(MinifiedTexture, IsTheMeanOfWhatAPixelCovers) {
   const TurningSphere sphere(GetParam(), 320);
   for (const int samples : {1, 2}) {
@@ -91,7 +91,7 @@ TEST_P(MinifiedTexture, IsTheMeanOfWhatAPixelCovers) {
     for (const double degrees : {0.0, 0.7}) error += error_of(sphere, degrees, 16, samples, 16) / 2;
     std::printf("%s, %d rays a pixel and axis: root mean square error %.4f of white\n", GetParam(), samples,
                 std::sqrt(error));
-    EXPECT_LT(std::sqrt(error), 0.05);
+    EXPECT_LT(std::sqrt(error), 0.06);
   }
 }
 
