@@ -13,7 +13,8 @@ class Fiber {
   Fiber& operator=(const Fiber&) = delete;
 
   /// The first `resume` calls `entry`, which never returns: it pauses where its work is done, and is resumed for the
-  /// next. ThreadSanitizer counts the calls that were not left, so none may be given up. A second call does nothing.
+  /// next. ThreadSanitizer counts the calls that were not left, so none may be given up. A second call does
+  /// nothing.
   void start(void (*entry)());
   /// Lets it run until it pauses.
   void resume();

@@ -18,7 +18,7 @@ char launch_begins, launch_ends;
 
 TeamRun* TeamRun::current() { return running_team; }
 
-void TeamRun::lane_entry() {
+[[gnu::no_sanitize("thread")]] void TeamRun::lane_entry() {
   for (;;) {  // each time for another item
     TeamRun& team = *running_team;
     acquire(&launch_begins);
@@ -111,7 +111,7 @@ bool TeamRun::count_votes(int first) {
 }
 
 /// No lane can go on by itself: all have ended (false), or all stand at one barrier, which they leave.
-bool TeamRun::pass_barrier() {
+[[gnu::no_sanitize("thread")]] bool TeamRun::pass_barrier() {
   int waiting = 0, voting = 0, done = 0;
   for (const Lane& l : lane_) {
     waiting += l.state == State::at_barrier;
