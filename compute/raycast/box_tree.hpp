@@ -16,7 +16,7 @@ struct TriangleBox {
 /// Boxes over runs of triangles, combined in pairs to an implicit binary tree: node k lies over 2 k and 2 k + 1, from
 /// 1; the leaves come last. When the triangles move, their order stays and the boxes are made anew.
 struct BoxTreeView {
-  static constexpr std::uint32_t run = 2;  ///< triangles in a leaf
+  static constexpr std::uint32_t run = 1;  ///< triangles in a leaf
 
   std::uint32_t leaves = 0;              ///< a power of two
   std::uint32_t triangles = 0;           ///< entries of `order`
