@@ -46,6 +46,8 @@ void for_each_surface_cell_of(Executor<Backend>& exec, const ThesisSurface& surf
 struct SameMaterial {
   MeshView now, before;
 
+  NACRE_HD bool is_near(const Vec3d&, Vec3d&) const { return false; }
+
   NACRE_HD bool operator()(std::uint32_t triangle, const Vec3d& p, Vec3d& there) const {
     const Vec3d w = barycentric(now.corners(triangle), p);
     const Corners c = before.corners(triangle);
@@ -61,6 +63,13 @@ struct ClosestMaterial {
   double scale;            ///< from cells of this domain to those of the other
   Vec3d shift;
   double reach;  ///< in cells of the other domain
+  bool at_rest;  ///< the other surface is as it was embedded: its embedding knows closest points near it
+
+  /// Where to ask the embedding before the triangles are searched.
+  NACRE_HD bool is_near(const Vec3d& p, Vec3d& there) const {
+    there = p * scale + shift;
+    return at_rest;
+  }
 
   NACRE_HD bool operator()(std::uint32_t, const Vec3d& p, Vec3d& there) const {
     NearestTriangle nearest{reach * reach};
@@ -83,11 +92,14 @@ struct FindSource {
     const SurfaceFoot foot = surface.foot(s, position);
     const Vec3d point = (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * texel;
     Vec3d there;
-    source[s] = no_cell;
-    if (!origin(foot.triangle, point, there)) return;
+    source[s] = origin.is_near(point, there) ? cell_at(there) : no_cell;
+    if (source[s] == no_cell && origin(foot.triangle, point, there)) source[s] = cell_at(there);
+  }
+
+  NACRE_HD CellIndex cell_at(const Vec3d& there) const {
     const Vec3d at = there / texel_before;
     typename Surface::Cursor cursor(before);
-    source[s] = cursor.find({int(std::floor(at.x)), int(std::floor(at.y)), int(std::floor(at.z))}).cell;
+    return cursor.find({int(std::floor(at.x)), int(std::floor(at.y)), int(std::floor(at.z))}).cell;
   }
 };
 

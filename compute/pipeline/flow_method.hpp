@@ -181,9 +181,16 @@ class FlowMethodOn : public FlowMethod {
       const double cell = before.domain_.cell_size;
       find(ClosestMaterial{before.shape_.tree(), before.shape_.mesh(before.corners_.data()), before.mesh_,
                            domain_.cell_size / cell, (domain_.origin - before.domain_.origin) / cell,
-                           carry_reach * texel_before});
+                           carry_reach * texel_before, before.is_at_rest(0.01 * texel_before)});
     }
     return n > 0 ? double(exec_.reduce(n, std::uint64_t(0), HasSource{source}, Add{})) / double(n) : 0;
+  }
+
+  /// Whether no point has moved farther than `slack` from where it was embedded, in cells of the domain.
+  bool is_at_rest(double slack) const {
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (!(length(shape_.points()[i] - points_[i]) <= slack)) return false;
+    return true;
   }
 
   template <class Value>
