@@ -75,7 +75,7 @@ float fine_at(vec3 place) {
 
 #ifdef SOURCE_OCTREE
 const float mean_width = 0.0;  // there are none
-float mean_at(vec3) { return -1.0; }
+float mean_at(vec3 place) { return -1.0; }
 #else
 const float mean_width = 8.0;  // texture cells
 

@@ -20,7 +20,8 @@ struct WorkerRun {
   std::atomic<bool> stop{false};
   Session session;
   std::unique_ptr<FlowWorker> worker;
-  std::vector<float> memory;
+  std::vector<float> memory;  ///< shown values, then means, as FlowLookup says
+  std::size_t values = 0;
   int surfaces = 0, data = 0, arrows = 0, embeddings = 0, starts = 0, steps = 0, interruptions = 0;
   std::string failure;
   std::optional<std::string> written;  ///< how that went
@@ -53,7 +54,8 @@ struct WorkerRun {
     if (auto* stepped = std::get_if<FlowStepped>(&event)) ++steps, last = *stepped;
     if (const auto* embedded = std::get_if<FlowEmbedded>(&event)) {
       ++embeddings;
-      memory.assign(embedded->lookup.values, -1);
+      values = embedded->lookup.values;
+      memory.assign(embedded->lookup.values + embedded->lookup.means, -1);
     }
     if (const auto* failed = std::get_if<FlowFailed>(&event)) failure = failed->what;
     if (const auto* done = std::get_if<FlowWritten>(&event)) written = done->failure;
@@ -88,7 +90,8 @@ TEST(FlowWorker, StepsWriteWhatIsToBeShown) {
   run.worker->step(run.memory.data());
   run.settle();
   EXPECT_EQ(run.steps, 1);
-  for (const float value : run.memory) ASSERT_TRUE(value >= 0 && value <= 1) << value;
+  for (std::size_t i = 0; i < run.memory.size(); ++i)
+    ASSERT_TRUE((run.memory[i] >= 0 && run.memory[i] <= 1) || (i >= run.values && run.memory[i] == -1)) << i;
 }
 
 TEST(FlowWorker, MayEndWhileItAnswers) {
@@ -271,7 +274,7 @@ TEST(FlowWorker, WritesWhatIsShown) {
   run.settle();
   EXPECT_EQ(run.written, "");
   const FileInfo written = describe(folder / "values.vtp");
-  EXPECT_EQ(written.points, run.memory.size());
+  EXPECT_EQ(written.points, run.values);
   EXPECT_TRUE(
       std::any_of(written.arrays.begin(), written.arrays.end(), [&](const ArrayInfo& a) { return a.name == "value"; }));
   run.worker->write(folder / "no" / "such" / "folder.vtp");

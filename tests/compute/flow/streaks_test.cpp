@@ -53,9 +53,9 @@ DrawnStreaks on_a_ball(int threads, bool bricks) {
   const auto device = make_cpu_device(threads);
   Executor<Cpu> exec(*device);
   FlowSheet ball;
-  ball.add(sphere({30, 30, 30}, 20, 24), {});
+  ball.add(sphere({30.2, 30.1, 29.7}, 20.3, 24), {});
   for (std::size_t i = 0; i < ball.vectors.size(); ++i)
-    ball.vectors[i] = Vec3f(cross(Vec3d(1, 2, 3), ball.mesh.points[i] - Vec3d(30, 30, 30)));
+    ball.vectors[i] = Vec3f(cross(Vec3d(1, 2, 3), ball.mesh.points[i] - Vec3d(30.2, 30.1, 29.7)));
   const auto noise = [](const Int3& p) {
     return uniform_random(7, std::uint32_t((p.z * 64 + p.y) * 64 + p.x), 0) - 0.5f;
   };
