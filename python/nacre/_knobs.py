@@ -58,6 +58,9 @@ class FlowKnobs(TypedDict, total=False):
     crease_angle: float  #: faces that meet at a larger angle than this keep their own normals [degrees]
     time: str | tuple[float, float]  #: T0:T1: part of the data's time range to show; empty: all of it
     begin_at: float  #: share of the time range at which to begin; the viewer jumps there
+    relative: Literal["auto", "on", "off"]  #: show vectors less the velocity of a surface that moves; auto: velocities only
+    surface_velocity: str  #: array with the velocity of the surface; empty: from its positions
+    period: float  #: time after which the data come round: the last step is followed by the first; 0: they do not
     ttl: int  #: lifetime of a particle, in the mean [steps]
     steps: int  #: number of steps from the first time to the last
     step_cells: float  #: distance in texture cells that the 98th percentile speed moves in a step [cells]
