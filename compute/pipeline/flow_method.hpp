@@ -26,11 +26,20 @@
 namespace nacre {
 
 /// The shared part on a backend. A derived class builds its embedding in `embed` (after `begin_embedding`), its arrays
-/// in `start` (after `begin_flow`), and advances by one step in `advance`.
+/// in `make_arrays` (after `begin_flow`), and advances by one step in `advance`.
 template <class Backend>
 class FlowMethodOn : public FlowMethod {
  public:
   FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters) : exec_(exec), parameters_(parameters) {}
+
+  void start(const FlowVectors& vectors) override {
+    make_arrays(vectors);
+    warm_up();
+    show();
+    ++launched_;
+    for (int k = first_; k < step_; ++k) advance(k);
+    exec_.wait();
+  }
 
   /// Waits once, at its end: then the frame is there, for whoever draws it.
   void step() override {
@@ -55,6 +64,10 @@ class FlowMethodOn : public FlowMethod {
   }
 
  protected:
+  /// `begin_flow`, and arrays with noise for this embedding.
+  virtual void make_arrays(const FlowVectors& vectors) = 0;
+  /// What the next step carries, and the frame for the eye.
+  virtual void show() = 0;
   /// Moves on by step `k` of the data; those before 0 are the warm-up.
   virtual void advance(int k) = 0;
   /// Embeds the vectors on the device (one per point of the mesh, world units) as displacements of the step's slot.

@@ -63,15 +63,6 @@ class GridFlow final : public FlowMethodOn<Backend> {
     this->end_embedding();
   }
 
-  void start(const FlowVectors& vectors) override {
-    make_arrays(vectors);
-    this->warm_up();
-    show();
-    ++launched_;
-    for (int k = first_; k < this->step_; ++k) advance(k);
-    exec_.wait();
-  }
-
   double resume(const FlowVectors& vectors, const FlowMethod& before, FlowCarry how) override {
     const auto& old = dynamic_cast<const GridFlow&>(before);
     make_arrays(vectors);
@@ -106,7 +97,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
 
   /// What `start` and `resume` need; noise in it.
-  void make_arrays(const FlowVectors& vectors) {
+  void make_arrays(const FlowVectors& vectors) override {
     this->begin_flow(vectors, 1.0 / refine_, 1);
     Arena& arena = exec_.arena();
     const std::size_t n = fine_.surface_cells;
@@ -185,7 +176,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   }
 
   /// Sharpening and jitter for the next step, streaks and contrast for the eye.
-  void show() {
+  void show() override {
     auto stage = exec_.stage("filter");
     const std::int64_t n = fine_.surface_cells;
     const RefinedGridView texture = fine_.view(coarse_.view());

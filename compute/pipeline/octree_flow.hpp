@@ -131,15 +131,6 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     this->end_embedding();
   }
 
-  void start(const FlowVectors& vectors) override {
-    make_arrays(vectors);
-    this->warm_up();
-    show();
-    ++launched_;
-    for (int k = first_; k < this->step_; ++k) advance(k);
-    exec_.wait();
-  }
-
   double resume(const FlowVectors& vectors, const FlowMethod& before, FlowCarry how) override {
     const auto& old = dynamic_cast<const OctreeFlow&>(before);
     make_arrays(vectors);
@@ -185,7 +176,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
 
   /// What `start` and `resume` need; noise in it.
-  void make_arrays(const FlowVectors& vectors) {
+  void make_arrays(const FlowVectors& vectors) override {
     this->begin_flow(vectors, 1.0, Band::as_thesis ? 0 : 1);
     Arena& arena = exec_.arena();
     const std::size_t mark = arena.mark();
@@ -305,7 +296,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   }
 
   /// Sharpening and jitter for the next step, streaks and contrast for the eye.
-  void show() {
+  void show() override {
     auto stage = exec_.stage("filter");
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);

@@ -1,39 +1,20 @@
 // Nacre: nacre-dicom-import PLACE FOLDER: the volume in a folder of DICOM files, or in a file, as a NRRD in FOLDER.
 // Prints "0 path". On failure it prints one line to stderr and exits with 1.
 #include <gdcmTrace.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 
 #include "engine/io/dicom_import/series.hpp"
-
-namespace {
-
-/// A damaged file must not leave a core dump, outlive the parent, or take more memory than the machine has.
-void limit_damage() {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-#if !defined(__SANITIZE_ADDRESS__)
-  const rlim_t memory = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGE_SIZE));
-  const rlimit address_space{memory, memory};
-  ::setrlimit(RLIMIT_AS, &address_space);
-#endif
-}
-
-}  // namespace
+#include "engine/io/import_limits.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 3) {
     std::fputs("usage: nacre-dicom-import PLACE FOLDER\n", stderr);
     return 2;
   }
-  limit_damage();
+  nacre::limit_damage();
   gdcm::Trace::WarningOff();
   gdcm::Trace::ErrorOff();
   try {

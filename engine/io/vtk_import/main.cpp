@@ -3,8 +3,6 @@
 // nacre-vtk-import --volume FILE FOLDER: converts the image in it to one .vti in FOLDER.
 // Prints "part name" for each part that it has, and "time path" for each file. On failure it
 // prints one line to stderr and exits with 1.
-#include <sys/prctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 #include <vtkAlgorithm.h>
 #include <vtkErrorCode.h>
@@ -12,7 +10,6 @@
 #include <vtkXMLImageDataWriter.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -20,6 +17,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "engine/io/import_limits.hpp"
 #include "engine/io/vtk_import/complaints.hpp"
 #include "engine/io/vtk_import/read.hpp"
 #include "engine/io/vtk_import/surface.hpp"
@@ -28,18 +26,6 @@
 namespace {
 
 using namespace nacre::vtk_import;
-
-/// A damaged file must not leave a core dump, outlive the parent, or take more memory than the machine has.
-void limit_damage() {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
-#if !defined(__SANITIZE_ADDRESS__)
-  const rlim_t memory = rlim_t(::sysconf(_SC_PHYS_PAGES)) * rlim_t(::sysconf(_SC_PAGE_SIZE));
-  const rlimit address_space{memory, memory};
-  ::setrlimit(RLIMIT_AS, &address_space);
-#endif
-}
 
 void fail_on_complaint() {
   if (!first_complaint().empty()) throw std::runtime_error(first_complaint());
@@ -96,7 +82,7 @@ int main(int argc, char** argv) {
     std::fputs("usage: nacre-vtk-import [--volume | --parts NAMES] FILE FOLDER\n", stderr);
     return 2;
   }
-  limit_damage();
+  nacre::limit_damage();
   keep_complaints();
   try {
     volume ? import_volume(argv[2], argv[3]) : import(argv[argc - 2], parts ? argv[2] : "", argv[argc - 1]);
