@@ -73,6 +73,7 @@ def in_function(lines):
 
 def hidden(line):
     """The line with strings, characters and comments blanked out, of the same length."""
+    line = re.sub(r'R"(\w*)\(.*?\)\1"', lambda m: "\0" * len(m[0]), line)
     line = re.sub(r'"(\\.|[^"\\])*"', lambda m: '"' + "\0" * (len(m[0]) - 2) + '"', line)
     line = re.sub(r"'(\\.|[^'\\])'", lambda m: "\0" * len(m[0]), line)
     return re.sub(r"//.*", lambda m: "\0" * len(m[0]), line)
