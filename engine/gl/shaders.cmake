@@ -1,6 +1,6 @@
 # Embeds the files of shaders/ in nacre_gl as strings, so that a program contains its shaders.
-file(GLOB shader_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/shaders/*.vert ${CMAKE_SOURCE_DIR}/shaders/*.frag
-  ${CMAKE_SOURCE_DIR}/shaders/*.glsl)
+file(GLOB shader_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/../../shaders/*.vert ${CMAKE_CURRENT_LIST_DIR}/../../shaders/*.frag
+  ${CMAKE_CURRENT_LIST_DIR}/../../shaders/*.glsl)
 set(shader_sources ${CMAKE_CURRENT_BINARY_DIR}/shader_sources.cpp)
 add_custom_command(OUTPUT ${shader_sources}
   COMMAND ${CMAKE_COMMAND} -DOUT=${shader_sources} "-DFILES=${shader_files}"

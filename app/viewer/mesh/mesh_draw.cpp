@@ -20,8 +20,22 @@ constexpr std::array<float, 4> worst_colour{0.93f, 0.05f, 0.45f, 1};
 /// Of the colours, in ideal energies: where particles are split, and where they are deleted.
 std::array<double, 2> energy_range(const MeshParameters& p) { return {p.add_below, std::min(p.delete_above, 3.0)}; }
 
-MeshField field_of(const std::string& name) {
-  return name == "distance" ? MeshField::distance : name == "size" ? MeshField::size : MeshField::material;
+/// What the slice shows, but for the values of the volume itself.
+MeshField field_of(SliceField field) {
+  return field == SliceField::distance ? MeshField::distance
+         : field == SliceField::size   ? MeshField::size
+                                       : MeshField::material;
+}
+
+/// Of the slice's legend.
+const char* title_of(SliceField field) {
+  switch (field) {
+    case SliceField::volume: return "volume";
+    case SliceField::material: return "material";
+    case SliceField::distance: return "distance";
+    case SliceField::size: return "size";
+  }
+  return "";
 }
 
 }  // namespace
@@ -106,7 +120,7 @@ std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
 void MeshScene::update_slice() {
   if (!results_.volume) return;
   const int axis = slice_axis(settings_.view);
-  if (axis < 0 || settings_.view.slice_field == "volume") {
+  if (axis < 0 || settings_.view.slice_field == SliceField::volume) {
     worker_.drop_slice();
     slice_of_field_ = false;
     if (const std::optional<VolumePlane> plane = shown_plane())
@@ -136,7 +150,7 @@ std::array<double, 2> MeshScene::volume_range() {
 
 /// Values of a volume are gray, as scanners show them; fields have the colours that were chosen.
 const Colormap& MeshScene::slice_map() const {
-  return colormap(settings_.view.slice_field == "volume" ? "gray" : settings_.colormap);
+  return colormap(settings_.view.slice_field == SliceField::volume ? "gray" : settings_.colormap);
 }
 
 void MeshScene::show_volume_slice(int axis, double at) {
@@ -203,7 +217,7 @@ void MeshScene::draw(const View& frame) {
 
 /// Surfaces, curves and points apart: curves have lower energies, and no normal to lie across.
 void MeshScene::draw_particles(const View& view) const {
-  const bool by_energy = settings_.view.particle_color == "energy";
+  const bool by_energy = settings_.view.particle_color == ParticleColour::energy;
   const double ideal = settings_.mesh.ideal_energy > 0 ? settings_.mesh.ideal_energy : hexagonal_energy;
   const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const auto range = [&](double energy) {
@@ -240,8 +254,8 @@ std::uint64_t MeshScene::overlay_version() const {
   const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", settings_.legend, energies[0], energies[1], particles_drawn(),
-                  settings_.view.particle_color, sizes[0], sizes[1], slice_axis(settings_.view), slice_values_,
-                  slice_range_[0], slice_range_[1], settings_.colormap + settings_.view.slice_field);
+                  int(settings_.view.particle_color), sizes[0], sizes[1], slice_axis(settings_.view), slice_values_,
+                  slice_range_[0], slice_range_[1], settings_.colormap + title_of(settings_.view.slice_field));
   return std::hash<std::string>()(key);
 }
 
@@ -252,11 +266,11 @@ Image MeshScene::overlay(int width, int height) {
   if (!has_legend()) return image;
   const Colormap& map = colormap(settings_.colormap);
   if (particles_drawn()) {
-    const bool by_energy = settings_.view.particle_color == "energy";
+    const bool by_energy = settings_.view.particle_color == ParticleColour::energy;
     const std::array<double, 2> range = by_energy ? energy_range(settings_.mesh) : size_range();
     draw_legend(image, map, range[0], range[1], by_energy ? "energy / ideal" : "size, voxels");
   } else {
-    draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], settings_.view.slice_field);
+    draw_legend(image, slice_map(), slice_range_[0], slice_range_[1], title_of(settings_.view.slice_field));
   }
   return image;
 }

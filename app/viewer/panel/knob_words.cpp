@@ -25,7 +25,7 @@ Settings with_other(const std::string& name) {
       if (knob.also) *knob.also = **number;
     }
     if (const auto* choice = std::get_if<KnobChoice>(&knob.value))
-      choice->set(choice->place, 1 - choice->get(choice->place));
+      choice->set(choice->place, choice->get(choice->place) == 0 ? 1 : 0);
     if (auto* const* words = std::get_if<std::string*>(&knob.value))
       **words = knob.choices.empty() ? "1" : **words == knob.choices[0] ? knob.choices[1] : knob.choices[0];
   }

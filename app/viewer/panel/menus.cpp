@@ -21,6 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+Turning other(Turning turning) { return turning == Turning::trackball ? Turning::turntable : Turning::trackball; }
+
+Theme other(Theme theme) { return theme == Theme::dark ? Theme::light : Theme::dark; }
+
 /// Views of the camera and the keys that give them.
 struct NamedView {
   const char *name, *view;
@@ -160,17 +164,18 @@ void Ui::view_menu(Session& session, UiRequests& requests) {
     if (ImGui::MenuItem(v.name, std::string(1, v.key).c_str())) requests.look_from = v.view;
   if (session.camera) ImGui::MenuItem("Orthographic", "o", &session.camera->orthographic);
   cameras_menu(session);
-  bool ball = look.turning == "trackball";
-  if (ImGui::MenuItem("Trackball", "b", &ball)) look.turning = ball ? "trackball" : "turntable";
+  bool ball = look.turning == Turning::trackball;
+  if (ImGui::MenuItem("Trackball", "b", &ball)) look.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
   ImGui::MenuItem("Edges", "e", &look.edges);
   marks_menu(session);
   ImGui::MenuItem("Legend", nullptr, &session.settings.legend);
   ImGui::MenuItem("Panels", "p", &look.panel);
-  bool light = look.theme == "light";
-  if (ImGui::MenuItem("Light", "t", &light)) look.theme = light ? "light" : "dark";
-  bool right = look.panel_side == "right";
-  if (ImGui::MenuItem("Panel on the right", nullptr, &right)) look.panel_side = right ? "right" : "left";
+  bool light = look.theme == Theme::light;
+  if (ImGui::MenuItem("Light", "t", &light)) look.theme = light ? Theme::light : Theme::dark;
+  bool right = look.panel_side == PanelSide::right;
+  if (ImGui::MenuItem("Panel on the right", nullptr, &right))
+    look.panel_side = right ? PanelSide::right : PanelSide::left;
   ImGui::EndMenu();
 }
 
@@ -254,10 +259,10 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'o':
         if (session.camera) session.camera->orthographic = !session.camera->orthographic;
         break;
-      case 'b': look.turning = look.turning == "trackball" ? "turntable" : "trackball"; break;
+      case 'b': look.turning = other(look.turning); break;
       case 'e': look.edges = !look.edges; break;
       case 'p': look.panel = !look.panel; break;
-      case 't': look.theme = look.theme == "dark" ? "light" : "dark"; break;
+      case 't': look.theme = other(look.theme); break;
       case 'd': measure(session, scene, facts); break;
       case 'n': ask_note(session, scene, facts); break;
       case '?': help_ = !help_; break;

@@ -30,7 +30,7 @@ Layout layout(const ViewSettings& look, int width) {
   return {row, 1.6f * row, std::floor(std::min(wanted, 0.6f * float(width)))};
 }
 
-bool on_the_right(const ViewSettings& look) { return look.panel_side == "right"; }
+bool on_the_right(const ViewSettings& look) { return look.panel_side == PanelSide::right; }
 
 /// The border between panel and picture, to be pulled.
 void panel_border(ViewSettings& look, int width, const Layout& l, float high) {
@@ -168,20 +168,20 @@ void Ui::knob_tab(Session& session) {
 
 /// The session's tab is shown, whoever chose it; a click on another changes the session.
 void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
-  std::string& tab = session.settings.view.tab;
+  PanelTab& tab = session.settings.view.tab;
   const bool told = tab != drawn_tab_;
-  const auto item = [&](const char* name, const auto& content) {
-    if (!ImGui::BeginTabItem(name, nullptr, told && tab == name ? ImGuiTabItemFlags_SetSelected : 0)) return;
-    if (!told) tab = name;
+  const auto item = [&](const char* name, PanelTab its, const auto& content) {
+    if (!ImGui::BeginTabItem(name, nullptr, told && tab == its ? ImGuiTabItemFlags_SetSelected : 0)) return;
+    if (!told) tab = its;
     content();
     ImGui::EndTabItem();
   };
   if (!ImGui::BeginTabBar("tabs")) return;
-  item("data", [&] { data_tab(session, scene, facts.panel); });
-  item("knobs", [&] { knob_tab(session); });
-  item("look", [&] { look_tab(session, facts.panel); });
-  item("result", [&] { facts.panel.result_tab(session); });
-  item("timings", [&] { timings_tab(scene, facts); });
+  item("data", PanelTab::data, [&] { data_tab(session, scene, facts.panel); });
+  item("knobs", PanelTab::knobs, [&] { knob_tab(session); });
+  item("look", PanelTab::look, [&] { look_tab(session, facts.panel); });
+  item("result", PanelTab::result, [&] { facts.panel.result_tab(session); });
+  item("timings", PanelTab::timings, [&] { timings_tab(scene, facts); });
   ImGui::EndTabBar();
   drawn_tab_ = tab;
 }

@@ -117,7 +117,8 @@ class Ui {
   bool typed_ = false;  ///< in a field, and the mouse has not been over the view since
   bool opens_quit_ = false;
   std::vector<std::string> quit_reasons_;  ///< not empty: it is asked whether to quit
-  std::string filter_, told_, error_, drawn_tab_;
+  std::string filter_, told_, error_;
+  std::optional<PanelTab> drawn_tab_;
   std::string note_, camera_name_;  ///< being typed
   std::optional<Vec3d> note_place_;
   bool opens_note_ = false;

@@ -6,7 +6,7 @@
 namespace nacre {
 
 std::optional<ClipPlane> clip_plane(const ViewSettings& look, std::span<const Vec3d> corners) {
-  const int axis = look.clip == "x" ? 0 : look.clip == "y" ? 1 : look.clip == "z" ? 2 : -1;
+  const int axis = int(look.clip) - 1;
   if (axis < 0 || corners.empty()) return {};
   double low = corners.front()[axis], high = low;
   for (const Vec3d& p : corners) low = std::min(low, p[axis]), high = std::max(high, p[axis]);

@@ -10,8 +10,7 @@
 
 namespace nacre {
 
-void move_camera(Camera& camera, const std::string& turning, const FreeArea& area, double extent,
-                 const FindSurface& find) {
+void move_camera(Camera& camera, Turning turning, const FreeArea& area, double extent, const FindSurface& find) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse) return;
   const double dx = 2 * io.MouseDelta.x / std::max(1, area.width);
@@ -20,7 +19,7 @@ void move_camera(Camera& camera, const std::string& turning, const FreeArea& are
   if (io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift))
     camera = pan(camera, dx, dy, area.aspect());
   else if (io.MouseDown[0])
-    camera = turning == "trackball" ? turn_ball(camera, dx, dy) : turn_table(camera, dx, dy);
+    camera = turning == Turning::trackball ? turn_ball(camera, dx, dy) : turn_table(camera, dx, dy);
   if (io.MouseWheel == 0) return;
   const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
   const auto [from, along] = ray_under(camera, x, y, area.aspect());

@@ -36,7 +36,7 @@ void ImGuiLayer::dress(const ViewSettings& look) {
   if (look.theme == theme_ && size == size_) return;
   ImGuiStyle& style = ImGui::GetStyle();
   style = ImGuiStyle();
-  if (look.theme == "light")
+  if (look.theme == Theme::light)
     ImGui::StyleColorsLight();
   else
     ImGui::StyleColorsDark();

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "engine/gl/window.hpp"
@@ -34,7 +34,7 @@ class ImGuiLayer {
   Window* window_;
   std::array<bool, 3> buttons_{};  ///< of the mouse, down
   std::vector<KeyPress> chords_;
-  std::string theme_;
+  std::optional<Theme> theme_;
   float size_ = 0;  ///< of the font, pixels
 };
 

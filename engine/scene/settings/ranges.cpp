@@ -92,7 +92,7 @@ std::vector<float> ColourRange::places(std::vector<float> values) const {
 }
 
 void check_color_range(const Settings& settings) {
-  const bool log = settings.color_scale == "log";
+  const bool log = settings.color_scale == ColourScale::log;
   if (log && settings.color_symmetric)
     throw Error("--color-symmetric and --color-scale log exclude each other", "a logarithm has no values below 0",
                 "leave one of them out");
@@ -105,7 +105,7 @@ void check_color_range(const Settings& settings) {
 
 ColourRange color_range(const Settings& settings, const ColourSpread& of_data) {
   check_color_range(settings);
-  ColourRange range{of_data.low, of_data.high, settings.color_scale == "log"};
+  ColourRange range{of_data.low, of_data.high, settings.color_scale == ColourScale::log};
   if (!settings.color_range.empty()) {
     const WantedRange wanted = parse_color_range(settings.color_range);
     range.low = wanted.percentiles ? of_data.percentile(wanted.low) : wanted.low;

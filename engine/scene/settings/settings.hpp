@@ -20,6 +20,16 @@ struct MaterialSettings {
   int layer = -1;         ///< of a segmentation whose segments overlap, from 0; -1: all, later segments over earlier
 };
 
+enum class PlaneAxis { none, x, y, z };  ///< that a plane of the viewer cuts across; none: there is no plane
+enum class ParticleColour { energy, size };
+enum class SliceField { volume, material, distance, size };
+enum class Turning { turntable, trackball };
+enum class PanelSide { left, right };
+enum class PanelTab { data, knobs, look, timings, result };
+enum class Theme { dark, light };
+enum class RelativeVectors { when_velocity, on, off };
+enum class ColourScale { linear, log };
+
 /// What the viewer draws, and how. Nothing here changes a result.
 struct ViewSettings {
   bool play = true;                         ///< time goes on; a mesh: iterations do
@@ -33,32 +43,32 @@ struct ViewSettings {
   bool triangles = true, particles = true;  ///< mesh
   bool curves = true;                       ///< mesh: junctions
   bool boxes = false;                       ///< those of the tree, or grid
-  std::string particle_color = "energy";    ///< energy, size
-  std::string hidden, ghosts;               ///< L[,L...]: labels of materials
-  int worst = 0;                            ///< mesh: so many of the worst triangles stand out
-  std::string clip = "none";                ///< x, y, z: nothing is drawn before the plane across that axis
-  double clip_at = 0.5;                     ///< its position in the bounding box
-  bool clip_back = false;                   ///< nothing is drawn behind it instead
-  std::string slice = "none";               ///< x, y, z: a plane of the volume
+  ParticleColour particle_color = ParticleColour::energy;
+  std::string hidden, ghosts;         ///< L[,L...]: labels of materials
+  int worst = 0;                      ///< mesh: so many of the worst triangles stand out
+  PlaneAxis clip = PlaneAxis::none;   ///< nothing is drawn before the plane
+  double clip_at = 0.5;               ///< its position in the bounding box
+  bool clip_back = false;             ///< nothing is drawn behind it instead
+  PlaneAxis slice = PlaneAxis::none;  ///< a plane of the volume
   double slice_at = 0.5;
-  std::string slice_field = "volume";          ///< volume, material, distance, size
+  SliceField slice_field = SliceField::volume;
   std::string slice_range;                     ///< LO:HI of a volume's values; empty: nearly all of them
   double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
   double ambient = 0.3;                        ///< share of the light that comes from everywhere
-  std::string turning = "turntable";           ///< turntable, trackball
+  Turning turning = Turning::turntable;        ///< how dragging rotates the camera
   std::string material_colors;                 ///< L:#rrggbb[,L:...]: of materials, by label
   std::string opacity;                         ///< L:0..1[,L:...]: of materials, by label
   int isolines = 0;                            ///< of a flow, over the colour range
   std::string ruler;                           ///< x y z;x y z;...: points to measure between
   std::string notes;                           ///< x y z text;...
   std::string cameras;                         ///< name:numbers;...: to come back to
-  std::string panel_side = "left";             ///< left, right
-  double panel_width = 1;                      ///< 1: normal
-  bool preview = true;                         ///< of a volume, a quick surface until there is a better one
-  bool panel = true;                           ///< over the picture
-  std::string tab = "data";                    ///< of the panel
-  std::string theme = "dark";                  ///< of the panels: dark, light
-  double text_size = 1;                        ///< of the panels
+  PanelSide panel_side = PanelSide::left;
+  double panel_width = 1;  ///< 1: normal
+  bool preview = true;     ///< of a volume, a quick surface until there is a better one
+  bool panel = true;       ///< over the picture
+  PanelTab tab = PanelTab::data;
+  Theme theme = Theme::dark;  ///< of the panels
+  double text_size = 1;       ///< of the panels
 };
 
 inline FlowParameters default_flow() {
@@ -75,19 +85,19 @@ struct Settings {
   ViewSettings view;
   double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
 
-  std::string patch;              ///< names of the parts of a case to show; empty: all
-  std::string vectors;            ///< array name or @field; empty: chosen
-  double crease_angle = 40;       ///< degrees
-  std::string time;               ///< LO:HI of the data; empty: all of it
-  double begin_at = 0;            ///< share of that time at which the first frame is
-  std::string relative = "auto";  ///< auto, on, off: less the velocity of the surface
-  std::string surface_velocity;   ///< an array that has it; empty: from the positions
-  double period = 0;              ///< of the data's time; 0: it does not come round
+  std::string patch;                                          ///< names of the parts of a case to show; empty: all
+  std::string vectors;                                        ///< array name or @field; empty: chosen
+  double crease_angle = 40;                                   ///< degrees
+  std::string time;                                           ///< LO:HI of the data; empty: all of it
+  double begin_at = 0;                                        ///< share of that time at which the first frame is
+  RelativeVectors relative = RelativeVectors::when_velocity;  ///< vectors less the velocity of the surface
+  std::string surface_velocity;                               ///< an array that has it; empty: from the positions
+  double period = 0;                                          ///< of the data's time; 0: it does not come round
   std::string color = "speed";
   std::string colormap = "sea";
-  std::string color_range;               ///< LO:HI, or percentiles A%:B%; empty: of the data
-  bool color_symmetric = false;          ///< as far below 0 as above
-  std::string color_scale = "linear";    ///< linear, log
+  std::string color_range;       ///< LO:HI, or percentiles A%:B%; empty: of the data
+  bool color_symmetric = false;  ///< as far below 0 as above
+  ColourScale color_scale = ColourScale::linear;
   std::string color_below, color_above;  ///< #rrggbb beyond the range; empty: the ends of the map
   std::string color_nan = "#808080";     ///< #rrggbb where there is no number
   BackFaces back_faces = BackFaces::shown;

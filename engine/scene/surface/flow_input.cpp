@@ -60,10 +60,10 @@ MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, co
       choice.surface_velocity.empty() ? "from its positions" : "the array " + choice.surface_velocity;
   const bool analytic = vectors.starts_with('@');
   const VectorKind kind = analytic ? VectorKind::other : vector_kind(vectors);
-  if (settings.relative == "on" && !known)
+  if (settings.relative == RelativeVectors::on && !known)
     throw Error("`relative` on: the velocity of the surface is not known", "its points do not move",
                 "name an array with `surface_velocity`");
-  if (settings.relative == "off" || !known) {
+  if (settings.relative == RelativeVectors::off || !known) {
     if (known && kind == VectorKind::velocity) tell(vectors + " is shown as it is, not relative to the surface");
     if (groups > 1 && !known)
       tell(
@@ -75,7 +75,7 @@ MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, co
     tell(vectors + " is wall shear stress: it is never changed by the motion of the surface");
   else if (analytic)
     tell(vectors + " flows on the material, whatever the motion of the surface");
-  else if (settings.relative == "on" || kind == VectorKind::velocity)
+  else if (settings.relative == RelativeVectors::on || kind == VectorKind::velocity)
     choice.relative = true;
   else
     tell(vectors +

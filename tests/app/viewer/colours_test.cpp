@@ -87,7 +87,7 @@ TEST_F(ColoursInView, SymmetricAndLogarithmicRanges) {
   change([](Settings& s) { s.color_range = "-0.1:0.8", s.color_symmetric = true; });
   EXPECT_DOUBLE_EQ(scene_->results().colours.range.low, -0.8);
   const int linear = at(0.5, 0.35)[0];
-  change([](Settings& s) { s.color_symmetric = false, s.color_range = "0.01:1", s.color_scale = "log"; });
+  change([](Settings& s) { s.color_symmetric = false, s.color_range = "0.01:1", s.color_scale = ColourScale::log; });
   EXPECT_TRUE(scene_->results().colours.range.log);
   EXPECT_GT(at(0.5, 0.35)[0], linear) << "small values lie higher on the map";
   EXPECT_EQ(at(0.5, 0.75), at(0.5, 0.7)) << "what has no logarithm lies at the lower end";

@@ -339,7 +339,7 @@ TEST_F(FlowInView, TimesAreThoseOfTheDataFromTheFirst) {
 
 TEST_F(FlowInView, WhatCanBeTickedInALightPopupIsSeen) {
   ImGuiLayer imgui(nullptr);
-  for (const char* theme : {"light", "dark"}) {
+  for (const Theme theme : {Theme::light, Theme::dark}) {
     session_.settings.view.theme = theme;
     imgui.begin(100, 100, 0.1, session_.settings.view);
     const ImVec4* colours = ImGui::GetStyle().Colors;
@@ -347,7 +347,7 @@ TEST_F(FlowInView, WhatCanBeTickedInALightPopupIsSeen) {
     for (const ImGuiCol behind : {ImGuiCol_PopupBg, ImGuiCol_WindowBg}) {
       const ImVec4 paper = colours[behind];
       const float differs = box.w * (std::abs(box.x - paper.x) + std::abs(box.y - paper.y) + std::abs(box.z - paper.z));
-      EXPECT_GT(differs, 0.15f) << theme << " " << ImGui::GetStyleColorName(behind);
+      EXPECT_GT(differs, 0.15f) << int(theme) << " " << ImGui::GetStyleColorName(behind);
     }
     imgui.end();
   }

@@ -161,8 +161,8 @@ TEST_F(MeshInView, ChangesInTheMiddleAreTakenOver) {
     change([&](Settings& s) {
       (k % 3 == 0 ? s.mesh.theta : k % 3 == 1 ? s.mesh.epsilon : s.mesh.max_size) *= k % 2 ? 0.9 : 1.1;
       s.view.boxes = k % 2 == 0;
-      s.view.slice = k % 4 == 0 ? "none" : "y";
-      s.view.slice_field = k % 3 == 0 ? "distance" : "size";
+      s.view.slice = k % 4 == 0 ? PlaneAxis::none : PlaneAxis::y;
+      s.view.slice_field = k % 3 == 0 ? SliceField::distance : SliceField::size;
     });
     advance();
     drawn();
@@ -209,11 +209,11 @@ TEST_F(MeshInView, AProbeTellsWhatIsUnderTheCursor) {
   const std::optional<ProbeResult> behind = scene_->probe(from, along);
   ASSERT_TRUE(behind);
   EXPECT_EQ(line(*behind, "between"), "1 and 2");
-  change([](Settings& s) { s.view.clip = "x", s.view.clip_at = 0.9; });
+  change([](Settings& s) { s.view.clip = PlaneAxis::x, s.view.clip_at = 0.9; });
   const std::optional<ProbeResult> beyond = scene_->probe(from, along);
   ASSERT_TRUE(beyond);
   EXPECT_EQ(line(*beyond, "between"), "outside and 2");
-  change([](Settings& s) { s.view.slice = "x", s.view.slice_at = 0.1; });
+  change([](Settings& s) { s.view.slice = PlaneAxis::x, s.view.slice_at = 0.1; });
   advance();
   const std::optional<ProbeResult> slice = scene_->probe(from, along);
   ASSERT_TRUE(slice);
@@ -236,7 +236,7 @@ TEST_F(MeshInView, AProbeTellsTheProbabilityOfWhatIsThere) {
   }
   open(true);
   advance();
-  change([](Settings& s) { s.view.slice = "z"; });
+  change([](Settings& s) { s.view.slice = PlaneAxis::z; });
   const std::optional<ProbeResult> left = scene_->probe({2, 4, 100}, {0, 0, -1}),
                                    right = scene_->probe({9, 4, 100}, {0, 0, -1});
   ASSERT_TRUE(left && right);
@@ -260,10 +260,10 @@ TEST_F(MeshInView, WhatIsSeenIsTheVolumeUntilThereAreParticles) {
   EXPECT_EQ(scene_->seen(), scene_->corners());
   EXPECT_TRUE(scene_->has_legend()) << "of the particles";
   const std::uint64_t before = scene_->seen_version();
-  change([](Settings& s) { s.view.slice = "x", s.mesh.iterations = 20; });
+  change([](Settings& s) { s.view.slice = PlaneAxis::x, s.mesh.iterations = 20; });
   EXPECT_NE(scene_->seen_version(), before);
   EXPECT_GT(scene_->seen().back().x, scene_->corners().back().x);
-  change([](Settings& s) { s.view.slice = "none"; });
+  change([](Settings& s) { s.view.slice = PlaneAxis::none; });
   EXPECT_TRUE(settles());
   EXPECT_FALSE(scene_->has_legend()) << "triangles have none";
 }

@@ -61,7 +61,7 @@ class UiTest : public ImGuiFrames {
     return found && found->Active;
   }
 
-  const std::string& tab() const { return session_.settings.view.tab; }
+  PanelTab tab() const { return session_.settings.view.tab; }
 
   StillScene scene_{{-1, -1, -1}, {1, 1, 1}};
   EmptyPanel panel_;
@@ -75,17 +75,17 @@ class UiTest : public ImGuiFrames {
 
 TEST_F(UiTest, AFailureDoesNotMoveTheTabs) {
   float y = 20;
-  for (; y < height && tab() != "knobs"; y += 4) click(70, y);
-  ASSERT_EQ(tab(), "knobs");
+  for (; y < height && tab() != PanelTab::knobs; y += 4) click(70, y);
+  ASSERT_EQ(tab(), PanelTab::knobs);
   y -= 4;
-  session_.settings.view.tab = "data";
+  session_.settings.view.tab = PanelTab::data;
   frame();
   frame();
   scene_.what_failed = "a volume that cannot be read (it is shorter than its header says); give the whole file";
   frame();
   frame();
   click(70, y);
-  EXPECT_EQ(tab(), "knobs");
+  EXPECT_EQ(tab(), PanelTab::knobs);
 }
 
 TEST_F(UiTest, EscapeClosesWhatIsOpenBeforeItCancels) {
@@ -155,7 +155,7 @@ TEST_F(UiTest, DigitsGoBackToCamerasThatWereKept) {
 
 TEST_F(UiTest, ThePanelStandsOnEitherSideAndIsPulledWider) {
   const FreeArea left = ui_.free_area(session_.settings.view, width, height);
-  session_.settings.view.panel_side = "right";
+  session_.settings.view.panel_side = PanelSide::right;
   const FreeArea right = ui_.free_area(session_.settings.view, width, height);
   EXPECT_GT(left.x, 200);
   EXPECT_EQ(right.x, 0);
@@ -185,7 +185,7 @@ TEST_F(UiTest, ItAsksBeforeItQuits) {
 }
 
 TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
-  session_.settings.view.tab = "knobs";
+  session_.settings.view.tab = PanelTab::knobs;
   for (int k = 0; k < 3; ++k) frame();
   float y = 20;
   const auto over_field = [&] { return ImGui::GetMouseCursor() == ImGuiMouseCursor_TextInput; };
@@ -195,7 +195,7 @@ TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
   type("t");
   press(enter_key);  // the field is left
   frame();
-  const std::string theme = session_.settings.view.theme;
+  const Theme theme = session_.settings.view.theme;
   type("t");
   EXPECT_EQ(session_.settings.view.theme, theme);
   move(600, 300);  // over the view

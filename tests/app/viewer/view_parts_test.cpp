@@ -106,7 +106,7 @@ TEST(Undo, WhatTheWindowDoesItselfIsNoChange) {
   Frames frames(with_ttl(4));
   frames.now.settings.width = 300;
   frames.now.settings.view.play = false;
-  frames.now.settings.view.tab = "knobs";
+  frames.now.settings.view.tab = PanelTab::knobs;
   frames.next();
   EXPECT_FALSE(frames.undo.can_undo());
 }

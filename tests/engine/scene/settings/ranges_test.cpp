@@ -67,13 +67,13 @@ TEST(Ranges, SymmetricColoursReachAsFarBelowZero) {
   settings.color_symmetric = true;
   EXPECT_EQ(color_range(settings, ends(-2, 5)).low, -5);
   EXPECT_EQ(color_range(settings, ends(-7, 5)).high, 7);
-  settings.color_scale = "log";
+  settings.color_scale = ColourScale::log;
   EXPECT_THROW(check_color_range(settings), Error);
 }
 
 TEST(Ranges, ALogarithmicScaleBeginsAboveZero) {
   Settings settings;
-  settings.color_scale = "log";
+  settings.color_scale = ColourScale::log;
   const ColourRange range = color_range(settings, hundred());
   EXPECT_EQ(range.low, 1);
   EXPECT_EQ(range.high, 100);

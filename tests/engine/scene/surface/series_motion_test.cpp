@@ -109,8 +109,8 @@ MotionChoice decided(const std::string& array, Settings settings, std::string* s
 
 TEST(RelativeVectors, VelocitiesAreWallShearNeverIs) {
   Settings automatic, on, off;
-  on.relative = "on";
-  off.relative = "off";
+  on.relative = RelativeVectors::on;
+  off.relative = RelativeVectors::off;
   std::string said;
   EXPECT_TRUE(decided("velocity", automatic, &said).relative);
   EXPECT_NE(said.find("velocity is shown relative to the surface, whose velocity is from its positions"),
