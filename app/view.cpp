@@ -203,7 +203,7 @@ std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerR
       lost_video = error.what();
     }
   if (!options.image.empty()) {
-    if (result.image.pixels.empty()) throw Error("no frame was drawn", "", "keep the window open for longer");
+    if (result.image.pixels.empty()) throw Error("no frame was drawn", "", "keep the window open longer");
     write_png(options.image, result.image);
     outputs.push_back(options.image);
   }

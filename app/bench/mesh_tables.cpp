@@ -57,7 +57,7 @@ constexpr const char* hardware_4 =
     "source: one thread of a Xeon X5550 (serial), a Tesla K20 (red-black, tree); pig 136x136x136, head 199x250x249";
 
 constexpr const char* own_settings =
-    "own settings: nacre mesh as it comes: the tree to its end, triangles smoothed and mended";
+    "own settings: nacre mesh as it comes: the tree to its end, triangles smoothed and repaired";
 
 std::string particle_cost(const Solver& s) { return fmt::format("{}: us per particle and iteration", s.name); }
 

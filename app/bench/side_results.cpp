@@ -109,7 +109,7 @@ void bench_arena(Bench& bench) {
   bench.row(table, "embedding", input, [&](BenchRow& row) {
     const double kept = bench.flows.embed_and_step(job, false, 3), anew = bench.flows.embed_and_step(job, true, 3);
     table.add(row, "arena kept, s", kept);
-    table.add(row, "arena made anew, s", anew);
+    table.add(row, "arena allocated again, s", anew);
     table.add(row, "made anew / kept", ratio(anew, kept));
   });
 }

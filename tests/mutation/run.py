@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""Nacre: do the tests notice broken code? Lines of compute/ and engine/ are picked at random, broken one at a time in a copy
-of the tree, built, and judged by the test programs of their folder.
+"""Nacre: do the tests notice broken code? Lines of compute/ and engine/ are picked at random and broken, one at a time, in a
+copy of the tree; the test programs of their folder judge each.
 
 Usage: tests/mutation/run.py [--count 30] [--seed 19] [--least 27] [--only N,N...] [--list] [--scratch FOLDER] [--jobs N]
        [--cmake=-DNAME=VALUE ...]
 
-Prints one line for each: place, what was broken, and the first test that noticed, or SURVIVED; then the score. The exit
+Prints one line for each: position, what was broken, and the first test that noticed, or SURVIVED; then the score. The exit
 status is 1 where fewer than --least of --count are noticed. A change that does not compile is replaced by the next one that
-was drawn. --list only says what would be broken. The first run builds the copy (minutes); ccache makes the rest bearable.
+was drawn. --list only says what would be broken.
+
+All changes are compiled at once, each behind a switch that the environment variable NACRE_MUTANT turns (0: none), so that
+one build serves for all. A change that cannot be switched so, as in a constant, is built alone.
 """
 import argparse
 import os
@@ -140,23 +143,128 @@ def prepare(scratch, options):
     return tree
 
 
-def notice(tree, scratch, judges, jobs):
-    """What noticed: a word; empty: nothing did; None: it does not compile."""
-    build = os.path.join(tree, "build/release")
-    for judge in judges:
-        log = os.path.join(scratch, "build.log")
-        if run(["ninja", "-C", build, "-j", str(jobs), "test_" + judge], tree, log) != 0:
-            return None
-        words = [os.path.join(build, "bin/test_" + judge), "--gtest_brief=1", "--gtest_filter=" + FILTER.get(judge, "*")]
-        log = os.path.join(scratch, "test.log")
-        status = run(words, build, log, TIME_LIMIT)
-        if status is None:
-            return f"test_{judge}: it did not end"
-        if status != 0:
-            with open(log, encoding="utf-8", errors="replace") as file:
-                failed = re.findall(r"^\[  FAILED  \] ([^\s,]+)", file.read(), re.M)
-            return f"test_{judge}: " + (failed[0] if failed else f"ended with status {status}")
-    return ""
+SWITCH = """#pragma once
+#include <cstdlib>
+#include <type_traits>
+inline const int nacre_chosen_mutant = std::getenv("NACRE_MUTANT") ? std::atoi(std::getenv("NACRE_MUTANT")) : 0;
+constexpr bool nacre_mutant(int number) { return !std::is_constant_evaluated() && nacre_chosen_mutant == number; }
+"""
+
+
+def expression_around(code, first, last):
+    """The whole expression that [first, last) of a line of code is in: as far as a bracket, comma, semicolon, = or return."""
+    depth, begin = 0, first
+    while begin > 0:
+        c = code[begin - 1]
+        if c in ")]}":
+            depth += 1
+        elif c in "([{" and depth == 0 or c in ",;" and depth == 0:
+            break
+        elif c in "([{":
+            depth -= 1
+        elif depth == 0 and (re.search(r"(^|[^=!<>])=$", code[:begin]) and code[begin:begin + 1] != "=" or
+                             re.search(r"\breturn$", code[:begin])):
+            break
+        begin -= 1
+    depth, end = 0, last
+    while end < len(code):
+        c = code[end]
+        if c in "([{":
+            depth += 1
+        elif c in ")]}" and depth == 0 or c in ",;" and depth == 0:
+            break
+        elif c in ")]}":
+            depth -= 1
+        end += 1
+    return begin, end
+
+
+def switched(kind, old, new, number):
+    """One line that is `new` where the mutant is chosen, else `old`; None: this line cannot be switched."""
+    on, indent = f"nacre_mutant({number})", re.match(r"\s*", old)[0]
+    if kind == "statement removed":
+        return f"{indent}{{ if (!{on}) {{ {old.strip()} }} }}"
+    if kind == "accumulation":
+        return f"{indent}{{ if ({on}) {{ {new.strip()} }} else {{ {old.strip()} }} }}" if old.endswith(";") else None
+    first = next(i for i, (a, b) in enumerate(zip(old, new)) if a != b)
+    after = next(i for i, (a, b) in enumerate(zip(old[::-1], new[::-1])) if a != b)
+    begin, end = expression_around(hidden(old), first, len(old) - after)
+    if end == len(old):  # it goes on in the next line
+        return None
+    is_there = old[begin:end].strip()
+    becomes = new[begin:end + len(new) - len(old)].strip()
+    return f"{old[:begin]} ({on} ? ({becomes}) : ({is_there})){old[end:]}"
+
+
+class Copy:
+    """The copy of the tree: lines are changed in it, and it is built."""
+
+    def __init__(self, tree, scratch, jobs):
+        self.tree, self.scratch, self.jobs = tree, scratch, jobs
+        self.build_folder, self.good = os.path.join(tree, "build/release"), {}
+        with open(os.path.join(tree, "mutant_switch.hpp"), "w", encoding="utf-8") as file:
+            file.write(SWITCH)
+
+    def write(self, path, changes):
+        """The file with these lines (by number from 0) changed; none: as it was."""
+        file = os.path.join(self.tree, path)
+        if path not in self.good:
+            with open(file, encoding="utf-8") as stream:
+                self.good[path] = stream.read()
+        lines = self.good[path].split("\n")
+        for line, text in changes.items():
+            lines[line] = text
+        if any("nacre_mutant(" in text for text in changes.values()):  # in a line that has code already: numbers stay
+            first = next(i for i, line in enumerate(lines) if line.startswith("#include"))
+            lines[first] = '#include "mutant_switch.hpp"\n#line %d\n' % (first + 1) + lines[first]
+        with open(file, "w", encoding="utf-8") as stream:
+            stream.write("\n".join(lines))
+
+    def build(self, judges):
+        """The positions (path, line from 0) that errors are at; none: it was built."""
+        log = os.path.join(self.scratch, "build.log")
+        words = ["ninja", "-C", self.build_folder, "-k", "0", "-j", str(self.jobs)] + ["test_" + judge for judge in judges]
+        if run(words, self.tree, log) == 0:
+            return []
+        with open(log, encoding="utf-8", errors="replace") as file:
+            found = re.findall(r"((?:compute|engine)/[\w/]+\.[ch]pp):(\d+)", file.read())
+        return {(path, int(line) - 1) for path, line in found} or {("", 0)}
+
+    def notice(self, judges, number):
+        """What noticed; empty: nothing did."""
+        for judge in judges:
+            words = ["env", f"NACRE_MUTANT={number}", os.path.join(self.build_folder, "bin/test_" + judge),
+                     "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + FILTER.get(judge, "*")]
+            log = os.path.join(self.scratch, "test.log")
+            status = run(words, self.build_folder, log, TIME_LIMIT)
+            if status is None:
+                return f"test_{judge}: it did not end"
+            if status != 0:
+                with open(log, encoding="utf-8", errors="replace") as file:
+                    failed = re.findall(r"^\[  FAILED  \] ([^\s,]+)", file.read(), re.M)
+                return f"test_{judge}: " + (failed[0] if failed else f"ended with status {status}")
+        return ""
+
+
+def switch_all(copy, drawn, chosen):
+    """Compiles the chosen ones (by number) behind switches; returns those that could be."""
+    switches = {n: switched(drawn[n][1][0], drawn[n][0][2], drawn[n][1][1], n) for n in chosen}
+    switches = {n: text for n, text in switches.items() if text}
+    judges = sorted({judge for n in switches for judge in judges_of(drawn[n][0][0])})
+    while switches:
+        for path in {drawn[n][0][0] for n in chosen}:
+            copy.write(path, {drawn[n][0][1]: text for n, text in switches.items() if drawn[n][0][0] == path})
+        errors = copy.build(judges)
+        if not errors:
+            break
+        bad = {n for n in switches if drawn[n][0][:2] in errors}
+        if not bad:
+            sys.exit("the copy does not compile: see " + os.path.join(copy.scratch, "build.log"))
+        switches = {n: text for n, text in switches.items() if n not in bad}
+    for judge in judges if switches else []:
+        if who := copy.notice([judge], 0):
+            sys.exit("without any change, a test fails: " + who)
+    return set(switches)
 
 
 def main():
@@ -178,29 +286,28 @@ def main():
             print(f"{number:3} {path}:{line + 1} {kind}\n    - {old.strip()}\n    + {new.strip()}")
         return
     only = {int(n) for n in arguments.only.split(",") if n}
-    tree = prepare(arguments.scratch, arguments.cmake)
+    drawn = dict(enumerate(drawn, 1))
+    copy = Copy(prepare(arguments.scratch, arguments.cmake), arguments.scratch, arguments.jobs)
+    ready = switch_all(copy, drawn, sorted(only) or list(drawn)[:arguments.count])
     tried = noticed = 0
-    for number, ((path, line, old), (kind, new)) in enumerate(drawn, 1):
-        if tried == arguments.count or (only and number > max(only)):
-            break
-        if only and number not in only:
-            continue
-        file = os.path.join(tree, path)
-        with open(file, encoding="utf-8") as stream:
-            good = stream.read()
-        lines = good.split("\n")
-        lines[line] = new
-        with open(file, "w", encoding="utf-8") as stream:
-            stream.write("\n".join(lines))
-        try:
-            who = notice(tree, arguments.scratch, judges_of(path), arguments.jobs)
-        finally:
-            with open(file, "w", encoding="utf-8") as stream:
-                stream.write(good)
-        verdict = "does not compile" if who is None else who or "SURVIVED"
-        print(f"{number:3} {path}:{line + 1} {kind}: `{old.strip()}` -> `{new.strip()}`: {verdict}", flush=True)
-        tried += who is not None
-        noticed += bool(who)
+    for by_switch in (True, False):
+        for number, ((path, line, old), (kind, new)) in drawn.items():
+            if (number in ready) != by_switch or (only and number not in only):
+                continue
+            if tried == arguments.count:
+                break
+            judges = judges_of(path)
+            if not by_switch:
+                copy.write(path, {line: new})
+            if not by_switch and copy.build(judges):
+                who = None
+            else:
+                who = copy.notice(judges, number if by_switch else 0)
+            copy.write(path, {})
+            verdict = "does not compile" if who is None else who or "SURVIVED"
+            print(f"{number:3} {path}:{line + 1} {kind}: `{old.strip()}` -> `{new.strip()}`: {verdict}", flush=True)
+            tried += who is not None
+            noticed += bool(who)
     print(f"{noticed} of {tried} noticed")
     least = arguments.least if not only else 0
     sys.exit(0 if noticed >= least * tried / arguments.count and tried else 1)

@@ -18,14 +18,17 @@ mkdir -p "$work"
 rm -rf "$work/prefix" "$work/examples/CMakeCache.txt" "$work/out"
 mkdir -p "$work/out"
 if [[ $kind == subfolder ]]; then
-  "$cmake" -S "$nacre/examples" -B "$work/examples" "${options[@]}" "-DNACRE_FOLDER=$nacre" >"$work/configure.log"
+  "$cmake" -S "$nacre/examples" -B "$work/examples" "${options[@]}" "-DNACRE_FOLDER=$nacre" \
+    -DCMAKE_CXX_FLAGS_RELEASE=-O1 >"$work/configure.log"  # its speed is not looked at
   # Nothing that only the program needs may be asked for.
   if grep -E 'CLI11|pugixml|teem|nifti|tinyobj|ffmpeg|GLFW|GLEW|VTK' "$work/configure.log"; then
     fail "the library asks for the packages above, which only the program needs"
   fi
 else
   [[ $kind == shared ]] && shared=ON || shared=OFF
-  "$cmake" -S "$nacre" -B "$work/build" "${options[@]}" -DBUILD_SHARED_LIBS=$shared
+  # Both kinds, and the Python module, are compiled in the same way, so that ccache compiles once for all three.
+  "$cmake" -S "$nacre" -B "$work/build" "${options[@]}" -DBUILD_SHARED_LIBS=$shared -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
+    -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON
   "$cmake" --build "$work/build" -j "$(nproc)" --target nacre_installed
   "$cmake" --install "$work/build" --prefix "$work/prefix" --component library
   "$cmake" -S "$nacre/examples" -B "$work/examples" -G "$generator" -DCMAKE_BUILD_TYPE=Release \

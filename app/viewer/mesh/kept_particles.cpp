@@ -6,13 +6,13 @@
 
 namespace nacre {
 
-void KeptParticles::keep(int iteration, const Buffer& place, const Buffer& direction, const ShownCounts& counts) {
+void KeptParticles::keep(int iteration, const Buffer& position, const Buffer& direction, const ShownCounts& counts) {
   const std::size_t bytes = std::size_t(counts.total()) * sizeof(Float4);
   if (bytes == 0 || 2 * bytes > most_bytes_ || kept_.contains(iteration)) return;
   while (iteration % stride_ == 0 && bytes_ + 2 * bytes > most_bytes_ && !kept_.empty()) thin_out();
   if (iteration % stride_ != 0) return;
   KeptIteration kept{Buffer(bytes), Buffer(bytes), counts};
-  glCopyNamedBufferSubData(place.id(), kept.place.id(), 0, 0, GLsizeiptr(bytes));
+  glCopyNamedBufferSubData(position.id(), kept.position.id(), 0, 0, GLsizeiptr(bytes));
   glCopyNamedBufferSubData(direction.id(), kept.direction.id(), 0, 0, GLsizeiptr(bytes));
   bytes_ += 2 * bytes;
   kept_.emplace(iteration, std::move(kept));
@@ -31,7 +31,7 @@ void KeptParticles::thin_out() {
       ++at;
       continue;
     }
-    bytes_ -= at->second.place.bytes() + at->second.direction.bytes();
+    bytes_ -= at->second.position.bytes() + at->second.direction.bytes();
     at = kept_.erase(at);
   }
 }

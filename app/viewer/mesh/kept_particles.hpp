@@ -11,7 +11,7 @@ namespace nacre {
 
 /// The particles of an iteration, on the graphics device, as ParticlePass draws them.
 struct KeptIteration {
-  Buffer place, direction;
+  Buffer position, direction;
   ShownCounts counts;
 };
 
@@ -21,7 +21,7 @@ class KeptParticles {
   explicit KeptParticles(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// Copies the first `counts` particles on the graphics device.
-  void keep(int iteration, const Buffer& place, const Buffer& direction, const ShownCounts& counts);
+  void keep(int iteration, const Buffer& position, const Buffer& direction, const ShownCounts& counts);
   /// The last one that is not after `iteration`, else the first there is; null: there is none.
   const KeptIteration* find(int iteration) const;
   bool has(int iteration) const { return kept_.contains(iteration); }

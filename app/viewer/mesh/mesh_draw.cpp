@@ -225,17 +225,17 @@ void MeshScene::draw_particles(const View& view) const {
                      : std::array{float(sizes[0]), float(sizes[1])};
   };
   const KeptIteration* const kept = looked_back_at();
-  const Buffer& place = kept ? kept->place : place_->shown();
+  const Buffer& position = kept ? kept->position : particle_positions_->shown();
   const Buffer& direction = kept ? kept->direction : direction_->shown();
   const ShownCounts& counts = kept ? kept->counts : counts_;
   const auto draw = [&](std::int64_t first, std::int64_t count, const ParticleStyle& look) {
-    particle_pass_.draw(view, voxels_, place, direction, std::size_t(first), std::size_t(count), look);
+    particle_pass_.draw(view, voxels_, position, direction, std::size_t(first), std::size_t(count), look);
   };
   const std::int64_t points = counts.points, curves = counts.curves;
   draw(points + curves, counts.surfaces, {0.44f, false, by_energy, range(ideal)});
   draw(points, curves, {0.3f, true, by_energy, range(ideal * row_energy / hexagonal_energy)});
   draw(0, points, {0.45f, true, by_energy, by_energy ? std::array{-1.0f, 1.0f} : range(0)});  // these have no energy
-  place_->drawn();
+  particle_positions_->drawn();
   direction_->drawn();
 }
 

@@ -101,14 +101,14 @@ bool MeshScene::advance_and_wait(const std::atomic<bool>& stop, double patience)
 
 /// Gives the worker the halves of the buffers that no frame reads.
 void MeshScene::lend(bool wait) {
-  if (lent_ || !place_) return;
+  if (lent_ || !particle_positions_) return;
   LentMemory memory;
   memory.lease = lease_;
   memory.particles.capacity = capacity_;
-  memory.particles.position = static_cast<Float4*>(place_->begin_write(wait));
+  memory.particles.position = static_cast<Float4*>(particle_positions_->begin_write(wait));
   if (!memory.particles.position) return;
   memory.particles.direction = static_cast<Float4*>(direction_->begin_write(wait));
-  if (!memory.particles.direction) return place_->cancel_write();
+  if (!memory.particles.direction) return particle_positions_->cancel_write();
   if (settings_.view.boxes) {
     const std::size_t bytes = std::size_t(box_capacity_) * sizeof(ShownBox);
     if (!boxes_) boxes_ = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_R32F);
@@ -121,7 +121,7 @@ void MeshScene::lend(bool wait) {
 }
 
 void MeshScene::drop_memory() {
-  for (std::unique_ptr<SharedBuffer>* buffer : {&place_, &direction_, &boxes_}) {
+  for (std::unique_ptr<SharedBuffer>* buffer : {&particle_positions_, &direction_, &boxes_}) {
     if (*buffer) copied_ += (*buffer)->copied_bytes();
     buffer->reset();
   }
@@ -131,7 +131,7 @@ void MeshScene::drop_memory() {
 
 std::uint64_t MeshScene::copied_bytes() const {
   std::uint64_t bytes = copied_;
-  for (const auto* buffer : {&place_, &direction_, &boxes_})
+  for (const auto* buffer : {&particle_positions_, &direction_, &boxes_})
     if (*buffer) bytes += (*buffer)->copied_bytes();
   return bytes;
 }
@@ -178,22 +178,22 @@ void MeshScene::take(RelaxBegun& told) {
   farthest_ = 0;
   iterations_ = 0;
   kept_.clear();
-  for (const auto* buffer : {&place_, &direction_, &boxes_})
+  for (const auto* buffer : {&particle_positions_, &direction_, &boxes_})
     if (*buffer) (*buffer)->cancel_write();
   lent_ = boxes_lent_ = false;
-  if (place_ && capacity_ >= told.capacity && capacity_ <= 2 * told.capacity) return;
+  if (particle_positions_ && capacity_ >= told.capacity && capacity_ <= 2 * told.capacity) return;
   drop_memory();
   capacity_ = told.capacity;
   box_capacity_ = told.box_capacity;
   const std::size_t bytes = std::size_t(capacity_) * sizeof(Float4);
-  auto place = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RGBA32F);
+  auto position = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RGBA32F);
   direction_ = std::make_unique<SharedBuffer>(worker_.device(), bytes, GL_RGBA32F);
-  place_ = std::move(place);  // with it the memory counts as there
+  particle_positions_ = std::move(position);  // with it the memory counts as there
 }
 
 void MeshScene::take(MeshIterated& told) {
   if (told.shown) {
-    place_->end_write();
+    particle_positions_->end_write();
     direction_->end_write();
     counts_ = results_.counts = *told.shown;
     if (boxes_lent_) {
@@ -206,8 +206,8 @@ void MeshScene::take(MeshIterated& told) {
   ++steps_;
   ++iterations_;
   if (told.shown) {
-    kept_.keep(iterations_, place_->shown(), direction_->shown(), counts_);
-    place_->drawn();
+    kept_.keep(iterations_, particle_positions_->shown(), direction_->shown(), counts_);
+    particle_positions_->drawn();
     direction_->drawn();
   }
   stale_ = true;

@@ -61,7 +61,7 @@ class MeshScene : public Scene {
   Transport transport() const override;
   const std::string& failure() const override { return failure_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
-  std::string remark() const override { return place_ ? place_->remark() : std::string(); }
+  std::string remark() const override { return particle_positions_ ? particle_positions_->remark() : std::string(); }
   SceneTotals totals() const override { return {steps_, copied_bytes(), worker_.timers(), worker_.peak_bytes()}; }
   int steps() const { return steps_; }
   std::uint64_t copied_bytes() const;
@@ -129,7 +129,7 @@ class MeshScene : public Scene {
   std::optional<std::string> written_;  ///< how the writing that was asked for went
 
   // Particles and boxes, which the worker writes.
-  std::unique_ptr<SharedBuffer> place_, direction_, boxes_;
+  std::unique_ptr<SharedBuffer> particle_positions_, direction_, boxes_;
   std::int64_t capacity_ = 0;
   ShownCounts counts_;
   std::int64_t box_count_ = 0, box_capacity_ = 0;

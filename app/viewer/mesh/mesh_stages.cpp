@@ -175,7 +175,7 @@ void MeshWorker::fill_slice() {
   const double width = length(told.plane.across), height = length(told.plane.up), longer = std::max(width, height);
   told.columns = std::max(1, int(slice_pixels * width / longer));
   told.rows = std::max(1, int(slice_pixels * height / longer));
-  told.values = pipeline_->field_at(request.field, told.plane.places(told.columns, told.rows));
+  told.values = pipeline_->field_at(request.field, told.plane.positions(told.columns, told.rows));
   {
     std::scoped_lock lock(mutex_);
     if (slice_ && slice_->number == request.number) slice_filled_ = true;
@@ -196,7 +196,7 @@ void MeshWorker::write_result() {
     progress_ = {"write", -1, 0, 0, 0};
     writing_ = true;
   }
-  MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; let it be made first"};
+  MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; wait until it is made"};
   const auto write = [&] {
     const MeshInput& input = viewed_->input;
     if (has_cells(file)) {

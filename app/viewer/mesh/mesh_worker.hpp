@@ -78,7 +78,7 @@ struct MeshMeasured {
   std::shared_ptr<const MeshMeasures> measures;
 };
 
-/// A slice that was asked for: row by row, as SlicePlane::places.
+/// A slice that was asked for: row by row, as SlicePlane::positions.
 struct SliceFilled {
   int number = 0;  ///< of the request
   SlicePlane plane;

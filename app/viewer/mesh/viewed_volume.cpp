@@ -114,13 +114,13 @@ std::vector<Vec3d> ViewedVolume::corners_of(const Vec3d& low, const Vec3d& high)
   return corner;
 }
 
-std::vector<Vec3d> SlicePlane::places(int columns, int rows) const {
-  std::vector<Vec3d> place;
-  place.reserve(std::size_t(columns) * std::size_t(rows));
+std::vector<Vec3d> SlicePlane::positions(int columns, int rows) const {
+  std::vector<Vec3d> result;
+  result.reserve(std::size_t(columns) * std::size_t(rows));
   for (int y = 0; y < rows; ++y)
     for (int x = 0; x < columns; ++x)
-      place.push_back(corner + across * ((x + 0.5) / columns) + up * ((y + 0.5) / rows));
-  return place;
+      result.push_back(corner + across * ((x + 0.5) / columns) + up * ((y + 0.5) / rows));
+  return result;
 }
 
 SlicePlane slice_plane(const MeshInput& input, int axis, double at) {

@@ -60,7 +60,7 @@ struct SlicePlane {
   int width, height;         ///< voxels along the edges
 
   /// Centres of `columns` x `rows` pixels, row by row from the corner.
-  std::vector<Vec3d> places(int columns, int rows) const;
+  std::vector<Vec3d> positions(int columns, int rows) const;
 };
 
 /// The plane across the volume's axis that runs most along the world's `axis` (0..2), at a share of the volume.

@@ -69,7 +69,7 @@ const std::vector<KnobPreset>& built_in_presets() {
        {{"color", "speed"}, {"colormap", "turbo"}, {"color_range", "0%:100%"}, {"ttl", "8"}}},
       {"currents",
        "flow",
-       "slow and fast water alike: speeds on a logarithmic scale, displacements nearly equal",
+       "slow and fast water: speeds on a logarithmic scale, displacements nearly equal",
        {{"color", "speed"},
         {"colormap", "sea"},
         {"color_range", "2%:100%"},

@@ -97,7 +97,7 @@ void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
     std::string name = knob.text();
     choice_widget(name, knob.choices);
     const auto chosen = std::find(knob.choices.begin(), knob.choices.end(), name);
-    choice->set(choice->place, int(chosen - knob.choices.begin()));
+    choice->set(choice->member, int(chosen - knob.choices.begin()));
   }
   if (auto* const* words = std::get_if<std::string*>(&knob.value)) {
     if (knob.name == "color_below" || knob.name == "color_above" || knob.name == "color_nan")

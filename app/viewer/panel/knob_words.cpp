@@ -25,7 +25,7 @@ Settings with_other(const std::string& name) {
       if (knob.also) *knob.also = **number;
     }
     if (const auto* choice = std::get_if<KnobChoice>(&knob.value))
-      choice->set(choice->place, choice->get(choice->place) == 0 ? 1 : 0);
+      choice->set(choice->member, choice->get(choice->member) == 0 ? 1 : 0);
     if (auto* const* words = std::get_if<std::string*>(&knob.value))
       **words = knob.choices.empty() ? "1" : **words == knob.choices[0] ? knob.choices[1] : knob.choices[0];
   }
@@ -34,8 +34,8 @@ Settings with_other(const std::string& name) {
 
 std::string flow_cost(const FlowRerun& rerun) {
   using enum FlowStage;
-  if (rerun.has(surface) || rerun.has(embed)) return "a change builds the grid anew, and the texture";
-  if (rerun.has(start)) return "a change begins the texture anew";
+  if (rerun.has(surface) || rerun.has(embed)) return "a change rebuilds the grid and restarts the texture";
+  if (rerun.has(start)) return "a change restarts the texture";
   if (rerun.has(step)) return "a change is seen from the next step on";
   return "a change is seen at once";
 }
@@ -43,10 +43,10 @@ std::string flow_cost(const FlowRerun& rerun) {
 std::string mesh_cost(MeshStage stage) {
   switch (stage) {
     case MeshStage::read:
-    case MeshStage::materials: return "a change makes all anew, from the materials on";
-    case MeshStage::fields: return "a change builds the fields anew, then particles and triangles";
-    case MeshStage::relax: return "a change moves the particles anew";
-    case MeshStage::triangulate: return "a change makes the triangles anew";
+    case MeshStage::materials: return "a change recomputes everything from the materials on";
+    case MeshStage::fields: return "a change rebuilds the fields, then the particles and triangles";
+    case MeshStage::relax: return "a change moves the particles again";
+    case MeshStage::triangulate: return "a change rebuilds the triangles";
     default: return "a change is seen at once";
   }
 }

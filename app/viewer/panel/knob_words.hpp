@@ -12,7 +12,7 @@ std::string plain_name(const std::string& knob);
 /// The knobs of a job ("flow", "mesh") that come first, by their names.
 const std::vector<std::string>& basic_knobs(const std::string& job);
 
-/// What the viewer does again when it is changed: "computes the texture anew"; of knobs of no job, empty.
+/// What the viewer does again when it is changed: "restarts the texture"; of knobs of no job, empty.
 std::string knob_cost(const std::string& knob, const std::string& job);
 
 }  // namespace nacre

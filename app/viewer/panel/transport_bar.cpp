@@ -131,7 +131,7 @@ void TransportBar::buttons(Session& session, const Transport& t) {
   if (icon_button("back", back_icon, "one step back ( , )")) step(session, t, -1);
   if (icon_button("play", plays ? pause_icon : play_icon, plays ? "pause (space)" : "play (space)", !plays))
     toggle_play(session, t);
-  if (icon_button("forth", forth_icon, "one step forth ( . )")) step(session, t, 1);
+  if (icon_button("forth", forth_icon, "one step forward ( . )")) step(session, t, 1);
   if (mesh) return;
   if (icon_button("loop", loop_icon, look.loop ? "begins again after the last time" : "stops at the last time",
                   look.loop))

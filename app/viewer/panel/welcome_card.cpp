@@ -66,7 +66,7 @@ WelcomeCard::Wish WelcomeCard::draw(const FreeArea& area, const std::vector<std:
     }
     heading("or replay a tour");
     tour("flow around a train", "a flow, from near and from far (11 s)", flow_tour, wish);
-    tour("a mesh of a torso", "a mesh in the making: particles, triangles, materials (12 s)", mesh_tour, wish);
+    tour("a mesh of a torso", "how a mesh is made: particles, triangles, materials (12 s)", mesh_tour, wish);
     ImGui::NewLine();
     if (ImGui::BeginTable("samples", 2)) {
       const float column = 0.45f * wide;

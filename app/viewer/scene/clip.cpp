@@ -10,8 +10,8 @@ std::optional<ClipPlane> clip_plane(const ViewSettings& look, std::span<const Ve
   if (axis < 0 || corners.empty()) return {};
   double low = corners.front()[axis], high = low;
   for (const Vec3d& p : corners) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
-  const double place = low + look.clip_at * (high - low), side = look.clip_back ? -1 : 1;
-  ClipPlane plane{{0, 0, 0}, side * place};
+  const double position = low + look.clip_at * (high - low), side = look.clip_back ? -1 : 1;
+  ClipPlane plane{{0, 0, 0}, side * position};
   plane.normal[axis] = side;
   return plane;
 }

@@ -42,7 +42,7 @@ void put_dot(Image& image, const std::array<double, 2>& at, float radius) {
   draw_stroke(image, float(at[0]), float(at[1]), radius, float(at[0]), float(at[1]), radius, mark_colour);
 }
 
-/// Beside a place, within the picture.
+/// Beside a position, within the picture.
 void put_words(Image& image, const std::array<double, 2>& at, const std::string& words, float pixels,
                const Rgba& paper) {
   const int width = text_width(words, pixels), height = text_cap_height(pixels);
@@ -84,7 +84,7 @@ std::vector<PlacedNote> parse_notes(const std::string& words) {
   std::vector<PlacedNote> notes;
   for_parts(words, [&](std::istream& stream) {
     PlacedNote note;
-    if (read_point(stream, note.place) && std::getline(stream >> std::ws, note.text) && !note.text.empty())
+    if (read_point(stream, note.position) && std::getline(stream >> std::ws, note.text) && !note.text.empty())
       notes.push_back(std::move(note));
   });
   return notes;
@@ -93,7 +93,7 @@ std::vector<PlacedNote> parse_notes(const std::string& words) {
 std::string notes_words(std::span<const PlacedNote> notes) {
   std::string words;
   for (const PlacedNote& note : notes)
-    words += fmt::format("{}{} {}", words.empty() ? "" : ";", point_words(note.place), one_part(note.text));
+    words += fmt::format("{}{} {}", words.empty() ? "" : ";", point_words(note.position), one_part(note.text));
   return words;
 }
 
@@ -153,7 +153,7 @@ Image marks_sheet(const View& view, const std::string& ruler, const std::string&
   if (points.size() == 3)
     if (const auto corner = pixel_of(view, points[1])) put_words(image, *corner, lines.back(), pixels, paper);
   for (const PlacedNote& note : parse_notes(notes)) {
-    const auto here = pixel_of(view, note.place);
+    const auto here = pixel_of(view, note.position);
     if (!here) continue;
     const std::array<double, 2> beside{(*here)[0] + 2 * pixels, (*here)[1] - 2 * pixels};
     draw_stroke(image, float(beside[0]), float(beside[1]), thin, float((*here)[0]), float((*here)[1]), thin,

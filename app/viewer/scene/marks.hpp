@@ -22,7 +22,7 @@ std::string ruler_words(std::span<const Vec3d> points);
 std::vector<std::string> ruler_lines(std::span<const Vec3d> points, const std::string& unit);
 
 struct PlacedNote {
-  Vec3d place;  ///< world
+  Vec3d position;  ///< world
   std::string text;
 };
 /// "x y z text;x y z text;..."
@@ -33,7 +33,7 @@ struct SavedCamera {
   std::string name;
   Camera camera;
 };
-/// "name:" and ten numbers: eye, target, up, height; with an o behind them where it is orthographic; parted by ";".
+/// "name:" and ten numbers: eye, target, up, height; followed by o for an orthographic camera; separated by ";".
 std::vector<SavedCamera> parse_cameras(const std::string& words);
 std::string cameras_words(std::span<const SavedCamera> cameras);
 

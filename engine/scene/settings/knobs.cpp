@@ -54,7 +54,7 @@ void assign(const Knob& knob, const std::string& text) {
   const auto chosen = std::find(knob.choices.begin(), knob.choices.end(), text);
   if (!knob.choices.empty() && chosen == knob.choices.end())
     throw Error(fmt::format("no {} '{}'", knob.name, text), "", "use " + range_of(knob));
-  if (auto* p = std::get_if<KnobChoice>(&knob.value)) p->set(p->place, int(chosen - knob.choices.begin()));
+  if (auto* p = std::get_if<KnobChoice>(&knob.value)) p->set(p->member, int(chosen - knob.choices.begin()));
   if (auto* p = std::get_if<std::string*>(&knob.value)) **p = text;
 }
 
@@ -104,7 +104,7 @@ bool Knob::concerns(const std::string& command) const {
 }
 
 std::string Knob::text() const {
-  if (const auto* choice = std::get_if<KnobChoice>(&value)) return choices.at(std::size_t(choice->get(choice->place)));
+  if (const auto* choice = std::get_if<KnobChoice>(&value)) return choices.at(std::size_t(choice->get(choice->member)));
   return std::visit(
       [](const auto& stored) {
         if constexpr (std::is_pointer_v<std::decay_t<decltype(stored)>>) return fmt::format("{}", *stored);

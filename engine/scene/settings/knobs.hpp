@@ -15,14 +15,14 @@ std::string snake_case(std::string name);
 
 /// Where a knob's value is stored as one of an enumeration's values; value k has the name `choices[k]`.
 struct KnobChoice {
-  void* place;
-  int (*get)(const void* place);
-  void (*set)(void* place, int value);
+  void* member;
+  int (*get)(const void* member);
+  void (*set)(void* member, int value);
 };
 
 template <class Enum>
-KnobChoice knob_choice(Enum& place) {
-  return {&place, [](const void* p) { return int(*static_cast<const Enum*>(p)); },
+KnobChoice knob_choice(Enum& member) {
+  return {&member, [](const void* p) { return int(*static_cast<const Enum*>(p)); },
           [](void* p, int value) { *static_cast<Enum*>(p) = Enum(value); }};
 }
 

@@ -27,7 +27,7 @@ TEST(KnobWords, BasicKnobsAreKnobsOfTheirJobAndHavePlainNames) {
 
 TEST(KnobWords, CostsAreThoseOfWhatRunsAgain) {
   EXPECT_NE(knob_cost("resolution", "flow").find("grid"), std::string::npos);
-  EXPECT_NE(knob_cost("ttl", "flow").find("begins the texture anew"), std::string::npos);
+  EXPECT_NE(knob_cost("ttl", "flow").find("restarts the texture"), std::string::npos);
   EXPECT_NE(knob_cost("contrast", "flow").find("next step"), std::string::npos);
   EXPECT_NE(knob_cost("colormap", "flow").find("at once"), std::string::npos);
   EXPECT_NE(knob_cost("epsilon", "mesh").find("fields"), std::string::npos);

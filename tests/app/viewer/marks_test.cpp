@@ -21,7 +21,7 @@ TEST(Marks, NotesAreWrittenAsTheyAreRead) {
   const std::vector<PlacedNote> notes{{{1, 2, 3}, "stagnation; here"}, {{-1, 0, 0}, "b"}};
   const std::vector<PlacedNote> read = parse_notes(notes_words(notes));
   ASSERT_EQ(read.size(), 2u);
-  EXPECT_EQ(read[0].place, notes[0].place);
+  EXPECT_EQ(read[0].position, notes[0].position);
   EXPECT_EQ(read[0].text, "stagnation, here");  // a semicolon would part it
   EXPECT_EQ(read[1].text, "b");
   EXPECT_TRUE(parse_notes("1 2;1 2 3;").empty());

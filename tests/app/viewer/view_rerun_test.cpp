@@ -75,7 +75,7 @@ Settings with_changed(const std::string& name) {
     if (auto* const* whole = std::get_if<int*>(&knob.value)) ++**whole;
     if (auto* const* number = std::get_if<std::uint32_t*>(&knob.value)) ++**number;
     if (const auto* choice = std::get_if<KnobChoice>(&knob.value))
-      choice->set(choice->place, 1 - choice->get(choice->place));
+      choice->set(choice->member, 1 - choice->get(choice->member));
     if (auto* const* word = std::get_if<std::string*>(&knob.value))
       **word = knob.choices.empty() ? "other" : **word == knob.choices[0] ? knob.choices[1] : knob.choices[0];
   }

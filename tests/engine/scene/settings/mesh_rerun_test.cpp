@@ -33,13 +33,13 @@ const std::map<std::string, MeshRerun>& begins() {
   return list;
 }
 
-bool inside(const void* place, const void* object, std::size_t bytes) {
-  const auto at = reinterpret_cast<std::uintptr_t>(place), from = reinterpret_cast<std::uintptr_t>(object);
+bool inside(const void* member, const void* object, std::size_t bytes) {
+  const auto at = reinterpret_cast<std::uintptr_t>(member), from = reinterpret_cast<std::uintptr_t>(object);
   return at >= from && at < from + bytes;
 }
 
-const void* place_of(const Knob& knob) {
-  if (const auto* choice = std::get_if<KnobChoice>(&knob.value)) return choice->place;
+const void* member_of(const Knob& knob) {
+  if (const auto* choice = std::get_if<KnobChoice>(&knob.value)) return choice->member;
   return std::visit(
       [](const auto& stored) -> const void* {
         if constexpr (std::is_pointer_v<std::decay_t<decltype(stored)>>) return stored;
@@ -62,7 +62,7 @@ TEST(MeshRerun, EveryKnobBeginsWhereItIsUsed) {
   std::size_t found = 0;
   for (const Knob& knob : knobs(settings)) {
     const bool also = knob.also && inside(knob.also, &settings.mesh, sizeof settings.mesh);
-    if (!also && !inside(place_of(knob), &settings.mesh, sizeof settings.mesh)) continue;
+    if (!also && !inside(member_of(knob), &settings.mesh, sizeof settings.mesh)) continue;
     SCOPED_TRACE(knob.name);
     ++found;
     const auto expected = begins().find(knob.name);
@@ -80,11 +80,11 @@ TEST(MeshRerun, EveryKnobBeginsWhereItIsUsed) {
 TEST(MeshRerun, TheGroupsHoldNoOthers) {
   Settings settings;
   for (const Knob& knob : knobs(settings)) {
-    const void* place = place_of(knob);
-    EXPECT_TRUE(knob.group != "materials" || inside(place, &settings.materials, sizeof settings.materials))
+    const void* member = member_of(knob);
+    EXPECT_TRUE(knob.group != "materials" || inside(member, &settings.materials, sizeof settings.materials))
         << knob.name;
     for (const char* group : {"fields", "sizing", "particles"})
-      EXPECT_TRUE(knob.group != group || inside(place, &settings.mesh, sizeof settings.mesh)) << knob.name;
+      EXPECT_TRUE(knob.group != group || inside(member, &settings.mesh, sizeof settings.mesh)) << knob.name;
   }
 }
 
