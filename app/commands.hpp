@@ -3,6 +3,8 @@
 
 #include <CLI/App.hpp>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace nacre {
 
@@ -14,5 +16,9 @@ void add_sample_command(CLI::App& program, std::function<void()>& run);
 void add_bench_command(CLI::App& program, std::function<void()>& run);
 void add_join_command(CLI::App& program, std::function<void()>& run);
 void add_view_command(CLI::App& program, std::function<void()>& run);
+
+/// `execute` runs nacre with these arguments. Throws as the commands do.
+void add_rerun_command(CLI::App& program, std::function<void()>& run,
+                       std::function<void(const std::vector<std::string>& arguments)> execute);
 
 }  // namespace nacre

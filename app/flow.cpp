@@ -10,7 +10,9 @@
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/io/flow_values.hpp"
+#include "engine/io/named_files.hpp"
 #include "engine/io/reader.hpp"
+#include "engine/io/vtk_inline.hpp"
 #include "engine/io/vtp_writer.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
@@ -161,30 +163,46 @@ std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const
   return seconds;
 }
 
+/// How the run's results come about.
+Origin flow_origin(const FlowOptions& options, const Session& session, const std::string& backend) {
+  Origin origin = origin_of(session, "flow", backend, named_files(session.inputs));
+  if (!options.chunk.empty())
+    origin.options = {"--chunk=" + options.chunk, "--lead-in=" + std::to_string(options.lead_in)};
+  add_beside(origin, {{"image", options.image},
+                      {"video", options.video},
+                      {"frames", options.frames},
+                      {"out", options.out},
+                      {"haemodynamics", options.haemodynamics}});
+  return origin;
+}
+
 /// Returns the files.
 std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, const FrameRange& steps,
-                                       FlowPainter& painter, Films& films) {
+                                       FlowPainter& painter, Films& films, const Origin& origin) {
   std::vector<std::string> outputs;
   Image image;
   if (!options.image.empty()) image = painter.paint(std::max(0, steps.last - 1));
   StageTimers::Scope scope(pipeline.timers(), "write");
-  if (!options.image.empty()) write_png(options.image, image), outputs.push_back(options.image);
+  if (!options.image.empty())
+    write_png(options.image, image, origin_of_output(origin, "image")), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
   if (!options.out.empty())
-    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time()), outputs.push_back(options.out);
+    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time(), origin_of_output(origin, "out")),
+        outputs.push_back(options.out);
   return outputs;
 }
 
 /// The first shape with the means of the vectors over time.
-void write_haemodynamics(const std::string& file, VectorsInTime& input) {
+void write_haemodynamics(const std::string& file, VectorsInTime& input, const Origin& origin) {
   input.enter(input.start());
   input.rebase(input.start());
   const Haemodynamics all = haemodynamics(input);
   std::vector<PointArray> arrays;
   for (const std::string& name : haemodynamic_names()) arrays.push_back({name, 1, haemodynamic_array(all, name)});
   const PreparedSurface& surface = input.surface();
-  write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays);
+  write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays, std::nullopt, {},
+            xml_origin(origin_of_output(origin, "haemodynamics")));
 }
 
 void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
@@ -198,14 +216,18 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   pipeline->parameters = settings.flow;
   Progress progress(options.common.quiet);
   const FrameRange steps = wanted_steps(options.chunk, remaining_steps(settings));
+  InputWatch watch(session.inputs);
   Films films = open_films(options, steps, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
   if (!options.chunk.empty() && input.moves())
     throw Error("--chunk needs a surface that does not move", "the shape before a part is not known to it");
+  const Origin origin = flow_origin(options, session, device->backend());
+  for (const OriginFile& each : origin.others) watch.add({each.file});
+  if (films.video) films.video->describe(origin_of_output(origin, "video"));
   std::vector<std::string> first_outputs;
   if (!options.haemodynamics.empty()) {
     StageTimers::Scope scope(pipeline->timers(), "write");
-    write_haemodynamics(options.haemodynamics, input);
+    write_haemodynamics(options.haemodynamics, input, origin);
     first_outputs.push_back(options.haemodynamics);
   }
   const PreparedSurface& surface = input.surface();
@@ -240,7 +262,8 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   progress.update("warm-up", 0.02);
   motion.start(vectors);
   const std::vector<double> seconds = take_steps(*pipeline, motion, steps, painter, films, progress);
-  std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films);
+  watch.check();
+  std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films, origin);
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
   progress.clear();
   if (!options.common.report.empty()) {
@@ -248,7 +271,7 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
-    write_report(options.common, std::move(report), outputs);
+    write_report(options.common, std::move(report), outputs, origin);
   }
   print_outputs(outputs);
 }

@@ -4,12 +4,15 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/common.hpp"
@@ -50,7 +53,8 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-Status run(int argc, char** argv) {
+/// `arguments`: what follows the program's name.
+Status run(std::vector<std::string> arguments) {
   CLI::App program("Nacre: unsteady flow on surfaces, and multi-material meshes from labelled volumes.", "nacre");
   program.formatter(std::make_shared<HelpFormatter>());
   program.set_version_flag("--version", std::string("nacre ") + nacre::version);
@@ -64,14 +68,16 @@ Status run(int argc, char** argv) {
   nacre::add_bench_command(program, command);
   nacre::add_join_command(program, command);
   nacre::add_view_command(program, command);
+  nacre::add_rerun_command(program, command, [](const std::vector<std::string>& again) { run(again); });
   for (CLI::App* each : program.get_subcommands({})) each->set_version_flag("--version", program.version());
   try {
-    program.parse(argc, argv);
+    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
+    program.parse(std::move(arguments));
   } catch (const CLI::Success& success) {  // --help, --version
     program.exit(success);
     return done;
   } catch (const CLI::ParseError& error) {
-    return fail(usage, std::string(error.what()) + "; see nacre --help");
+    throw nacre::UsageError(std::string(error.what()) + "; see nacre --help");
   }
   if (knobs) {
     fmt::print("{}", nacre::knob_table());
@@ -104,7 +110,7 @@ int main(int argc, char** argv) {
   nacre::catch_interrupts();
   nacre::watch_import_children(&nacre::interrupt_flag());
   try {
-    return flushed(run(argc, argv));
+    return flushed(run({argv + std::min(argc, 1), argv + argc}));
   } catch (const nacre::Interrupted&) {
     nacre::remove_unfinished_files();
     return interrupted;

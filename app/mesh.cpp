@@ -5,6 +5,7 @@
 #include "app/mesh_run.hpp"
 #include "app/picture_options.hpp"
 #include "compute/device/error.hpp"
+#include "engine/io/named_files.hpp"
 #include "engine/run/presets.hpp"
 #include "engine/run/report.hpp"
 #include "engine/scene/samples/phantoms.hpp"
@@ -99,6 +100,16 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   return result;
 }
 
+/// How the run's results come about.
+Origin mesh_origin(const MeshOptions& options, const Session& session, const std::string& backend) {
+  Origin origin = origin_of(session, "mesh", backend, named_files(session.inputs));
+  add_beside(origin, {{"out", options.out}, {"particles-out", options.particles_out}, {"image", options.image}});
+  if (options.per_material) origin.options.push_back("--per-material");
+  if (options.surface_only) origin.options.push_back("--surface-only");
+  if (options.cut_away) origin.options.push_back("--cut-away");
+  return origin;
+}
+
 void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   const double started = now();
   const Session session = make_session(options, knob_options);
@@ -109,22 +120,26 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   Progress bar(options.common.quiet);
   bar.update("read", 0);
   MeshInput input;
+  const InputWatch watch(session.inputs);
   const MeshVolume volume = read_input(options, session, pipeline->timers(), input);
+  Origin origin = mesh_origin(options, session, device->backend());
+  watch.check();
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   pipeline->parameters = session.settings.mesh;
   show_progress(*pipeline, bar);
 
   const MeshResult result = compute(options, session.settings, input, volume, *pipeline, bar);
+  origin.interrupted = result.interrupted;
   bar.update("write", 0.99);
   const std::vector<std::string> outputs =
-      write_mesh_outputs(options, session, input, result, *pipeline, pipeline->timers());
+      write_mesh_outputs(options, session, input, result, *pipeline, pipeline->timers(), origin);
   bar.clear();
   const double seconds = now() - started;
   if (!options.common.report.empty()) {
     nlohmann::json report = report_frame("mesh", *device, pipeline->timers(), pipeline->peak_bytes());
     add_mesh_report(report, input, session.settings, pipeline->info(), result);
     report["seconds"] = seconds;
-    write_report(options.common, std::move(report), outputs);
+    write_report(options.common, std::move(report), outputs, origin);
   }
   for (const std::string& flaw : mesh_flaws(input.labels, result.topology)) warn_of_result(flaw);
   say(options.common, mesh_summary(input, pipeline->info(), result, seconds));

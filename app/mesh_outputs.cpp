@@ -27,7 +27,7 @@ bool has(const std::vector<std::string>& list, const std::string& one) {
   return std::find(list.begin(), list.end(), one) != list.end();
 }
 
-void write_particles(const std::string& file, const MeshParticles& particles) {
+void write_particles(const std::string& file, const MeshParticles& particles, const std::string& origin) {
   const std::size_t n = particles.points.size();
   std::vector<PointArray> arrays{{"size", 1, particles.size},
                                  {"energy", 1, particles.energy},
@@ -35,7 +35,7 @@ void write_particles(const std::string& file, const MeshParticles& particles) {
                                  {"normal", 3, std::vector<float>(3 * n)}};
   for (std::size_t i = 0; i < n; ++i)
     for (int k = 0; k < 3; ++k) arrays[3].values[3 * i + k] = particles.normal[i][k];
-  write_vtp(file, std::span<const Vec3d>(particles.points), {}, arrays);
+  write_vtp(file, std::span<const Vec3d>(particles.points), {}, arrays, std::nullopt, {}, xml_origin(origin));
 }
 
 Image draw_mesh(const SurfaceMesh& mesh, const MeshInput& input, const Session& session, bool cut_away) {
@@ -97,8 +97,9 @@ void check_mesh_outputs(const MeshOptions& options) {
 }
 
 std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Session& session, const MeshInput& input,
-                                            const MeshResult& result, const MeshPipeline& pipeline,
-                                            StageTimers& timers) {
+                                            const MeshResult& result, const MeshPipeline& pipeline, StageTimers& timers,
+                                            const Origin& origin) {
+  const std::string out_origin = origin_of_output(origin, "out");
   std::vector<std::string> files;
   Image image;
   if (!options.image.empty()) {
@@ -107,21 +108,22 @@ std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Se
   }
   StageTimers::Scope scope(timers, "write");
   if (result.cells) {
-    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels, input.names);
+    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels, input.names, out_origin);
     files.push_back(options.out);
   } else if (options.per_material) {
-    for (const fs::path& file : write_material_surfaces(options.out, result.mesh, input.labels, input.names))
+    for (const fs::path& file :
+         write_material_surfaces(options.out, result.mesh, input.labels, input.names, out_origin))
       files.push_back(file.string());
   } else if (!options.out.empty()) {
-    write_surface_mesh(options.out, result.mesh, input.labels, input.names);
+    write_surface_mesh(options.out, result.mesh, input.labels, input.names, out_origin);
     files.push_back(options.out);
   }
   if (!options.particles_out.empty()) {
-    write_particles(options.particles_out, pipeline.particles());
+    write_particles(options.particles_out, pipeline.particles(), origin_of_output(origin, "particles-out"));
     files.push_back(options.particles_out);
   }
   if (!options.image.empty()) {
-    write_png(options.image, image);
+    write_png(options.image, image, origin_of_output(origin, "image"));
     files.push_back(options.image);
   }
   return files;

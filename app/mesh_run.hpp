@@ -25,7 +25,7 @@ bool wants_cells(const MeshOptions& options);
 
 /// Writes what was asked for, in stages render and write; returns the files.
 std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Session& session, const MeshInput& input,
-                                            const MeshResult& result, const MeshPipeline& pipeline,
-                                            StageTimers& timers);
+                                            const MeshResult& result, const MeshPipeline& pipeline, StageTimers& timers,
+                                            const Origin& origin);
 
 }  // namespace nacre

@@ -2,8 +2,10 @@
 #include "app/run.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include "engine/scene/settings/ranges.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 
@@ -50,13 +52,68 @@ std::unique_ptr<Device> open_device(const CommonOptions& options) {
   return device;
 }
 
-void write_report(const CommonOptions& options, nlohmann::json report, const std::vector<std::string>& outputs) {
+void add_beside(Origin& origin, const std::vector<std::pair<std::string, std::string>>& files) {
+  for (const auto& [option, file] : files)
+    if (!file.empty()) origin.beside[option] = option == "frames" ? "" : lower_extension(file);
+}
+
+Origin origin_alone(Origin origin, const std::string& output) {
+  origin.output = output;
+  // A picture of a flow beside its values is of the whole surface.
+  const bool of_pictures = output == "image" || output == "video" || output == "frames";
+  if (origin.command == "flow" && of_pictures && origin.beside.contains("out")) origin.knobs["focus"] = "false";
+  origin.beside.clear();
+  std::erase_if(origin.options, [&](const std::string& option) {
+    if (option == "--cut-away") return output != "image";
+    if (option == "--per-material" || option == "--surface-only") return output != "out";
+    return false;
+  });
+  return origin;
+}
+
+std::string origin_of_output(const Origin& origin, const std::string& output) {
+  return origin_text(origin_alone(origin, output));
+}
+
+void write_report(const CommonOptions& options, nlohmann::json report, const std::vector<std::string>& outputs,
+                  const std::optional<Origin>& origin) {
   if (options.report.empty()) return;
+  if (origin) {
+    Origin of_report = *origin;
+    of_report.output = "report";
+    report["origin"] = origin_json(of_report);
+  }
   report["outputs"] = outputs;
   write_text(options.report, report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }
 
+std::array<std::int64_t, 5> InputWatch::stamp_of(const std::filesystem::path& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) != 0) return {};
+  return {std::int64_t(status.st_dev), std::int64_t(status.st_ino), status.st_size, status.st_mtim.tv_sec,
+          status.st_mtim.tv_nsec};
+}
+
+void InputWatch::add(const std::vector<std::filesystem::path>& files) {
+  for (const std::filesystem::path& file : files) stamps_.push_back({file, stamp_of(file)});
+}
+
+void InputWatch::check() const {
+  for (const Stamp& stamp : stamps_)
+    if (stamp_of(stamp.file) != stamp.numbers)
+      throw Error(stamp.file.string() + " was changed while it was in use",
+                  "the result would be of two different files", "run again when nobody writes it");
+}
+
+namespace {
+int silent = 0;  // how many PrintNothing there are
+}
+
+PrintNothing::PrintNothing() { ++silent; }
+PrintNothing::~PrintNothing() { --silent; }
+
 void print_outputs(const std::vector<std::string>& outputs) {
+  if (silent > 0) return;
   for (const std::string& file : outputs) fmt::print("{}\n", file);
 }
 

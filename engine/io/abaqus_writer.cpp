@@ -11,6 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t abaqus_piece = 200;  // of a longer comment: a line has at most 256 characters
+
 /// Numbers from 1, sixteen to a line, the most that Abaqus reads.
 void write_abaqus_list(Chunks& out, const std::set<std::uint32_t>& numbers) {
   std::size_t written = 0;
@@ -120,6 +122,8 @@ void write_abaqus(const fs::path& file, const MeshParts& mesh) {
   OutputFile target(file);
   Chunks out(target);
   out.print("*HEADING\nMesh of materials, by Nacre\n");
+  for (std::size_t at = 0; at < mesh.origin.size(); at += abaqus_piece)
+    out.print("** {}\n", mesh.origin.substr(at, abaqus_piece));
   write_abaqus_points(out, mesh.points);
   mesh.cells.empty() ? write_abaqus_triangles(out, mesh) : write_abaqus_tetrahedra(out, mesh);
   out.flush();

@@ -91,7 +91,8 @@ void write_febio(const fs::path& file, const MeshParts& mesh) {
   check_counts(file, mesh, "FEBio");
   OutputFile target(file);
   Chunks out(target);
-  out.print("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n<Mesh>\n<Nodes name=\"all\">\n");
+  out.print("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}<febio_spec version=\"4.0\">\n", xml_origin(mesh.origin));
+  out.print("<Mesh>\n<Nodes name=\"all\">\n");
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     out.print("<node id=\"{}\">", i + 1);
     for (int axis = 0; axis < 3; ++axis) {

@@ -10,7 +10,8 @@
 
 namespace nacre {
 
-void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time) {
+void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time,
+                       const std::string& origin) {
   const FlowValues v = flow.values();
   const std::size_t n = v.value.size();
   const auto vectors = [&](std::string name, const std::vector<Vec3f>& from) {
@@ -22,7 +23,7 @@ void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file
   const std::vector<PointArray> arrays{
       {"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal)};
   const PointPlaces closest{"closest_point", v.closest_point};
-  write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time, {}, "", std::span(&closest, 1));
+  write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time, {}, xml_origin(origin), std::span(&closest, 1));
 }
 
 }  // namespace nacre

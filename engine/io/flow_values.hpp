@@ -2,13 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "compute/pipeline/flow_pipeline.hpp"
 
 namespace nacre {
 
 /// Writes `flow.values()` as .vtp: one point per surface cell, at its centre, with the arrays `value` (0..1),
-/// `velocity`, `normal` and `closest_point`; `time` becomes TimeValue. Throws Error where the file cannot be written.
-void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time);
+/// `velocity`, `normal` and `closest_point`; `time` becomes TimeValue. `origin` says how they came about
+/// (engine/run/origin.hpp). Throws Error where the file cannot be written.
+void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time,
+                       const std::string& origin = "");
 
 }  // namespace nacre

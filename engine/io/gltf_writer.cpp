@@ -67,12 +67,13 @@ GltfPart gltf_part(const MeshParts& mesh, const MaterialPair& pair, const Vec3d&
 /// The JSON and the numbers of a file.
 class GltfAsset {
  public:
-  explicit GltfAsset(const Vec3d& centre) {
+  GltfAsset(const Vec3d& centre, const std::string& origin) {
     const double half = std::sqrt(0.5);  // a quarter turn about x: (x, y, z) becomes (x, z, -y)
     json_ = {{"asset", {{"version", "2.0"}, {"generator", "Nacre"}}},
              {"scene", 0},
              {"scenes", json::array({json{{"nodes", json::array({0})}}})},
              {"nodes", json::array()}};
+    if (!origin.empty()) json_["asset"]["extras"] = {{"origin", json::parse(origin)}};
     json_["nodes"].push_back({{"name", "mesh"},
                               {"rotation", {-half, 0, 0, half}},
                               {"translation", {centre.x, centre.z, -centre.y}},
@@ -142,7 +143,7 @@ void write_gltf(const fs::path& file, const MeshParts& mesh) {
   Vec3d low = mesh.points.front(), high = low;
   for (const Vec3d& p : mesh.points) low = min(low, p), high = max(high, p);
   const Vec3d centre = (low + high) * 0.5;
-  GltfAsset asset(centre);
+  GltfAsset asset(centre, mesh.origin);
   for (const auto& [pair, group] : mesh.interfaces) asset.add(group, gltf_part(mesh, pair, centre));
   asset.write(file);
 }

@@ -149,6 +149,7 @@ void write_gmsh4(const fs::path& file, const MeshParts& mesh) {
   out.print("$MeshFormat\n4.1 1 8\n");
   out.raw(std::int32_t(1));
   out.print("\n$EndMeshFormat\n");
+  if (!mesh.origin.empty()) out.print("$Comments\n{}\n$EndComments\n", mesh.origin);
   write_gmsh4_names(out, entities);
   write_gmsh4_entities(out, mesh, entities);
   write_gmsh4_nodes(out, mesh, entities);

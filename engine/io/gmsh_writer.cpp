@@ -99,6 +99,7 @@ void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh) {
   out.print("$MeshFormat\n2.2 1 8\n");
   out.raw(std::int32_t(1));
   out.print("\n$EndMeshFormat\n");
+  if (!mesh.origin.empty()) out.print("$Comments\n{}\n$EndComments\n", mesh.origin);
   write_groups(out, mesh);
   write_points(out, mesh.points);
   write_cells(out, mesh);

@@ -36,6 +36,7 @@ struct GmshMesh {
   std::span<const Vec3d> points;
   std::vector<Block> blocks;
   std::vector<Numbers> numbers;  ///< written as $ElementData of all cells; meshio 5.3 reads them if there is one block
+  std::string origin = {};       ///< becomes $Comments
 
   std::size_t cells() const;
 };

@@ -33,7 +33,8 @@ struct MeshParts {
   std::span<const std::uint16_t> material;              ///< of each cell
   std::map<MaterialPair, Group> interfaces;             ///< pairs that occur, numbered from 1
   std::map<std::uint16_t, Group>
-      volumes;  ///< materials that cells have; the labels if all are positive, else materials
+      volumes;         ///< materials that cells have; the labels if all are positive, else materials
+  std::string origin;  ///< how the mesh came about (engine/run/origin.hpp); empty if that is not known
 };
 
 /// The names of materials for a file: each is followed by its label if another material has the same name, and is

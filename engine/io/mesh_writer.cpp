@@ -86,14 +86,16 @@ std::array<CellNumbers, 2> side_numbers(const SurfaceMesh& mesh, Labels labels) 
   return {side(0), side(1)};
 }
 
-void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels, const std::string& origin) {
   const auto [lower, upper] = std::minmax_element(labels.begin(), labels.end());
   using Narrow = std::numeric_limits<std::int32_t>;
   if (*lower < Narrow::min() || *upper > Narrow::max())
     throw Error(fmt::format("cannot write {}", file.string()), "PLY has no labels beyond 32 bits", "use .vtp");
   OutputFile target(file);
   Chunks out(target);
-  out.print("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.points.size());
+  out.print("ply\nformat binary_little_endian 1.0\n");
+  if (!origin.empty()) out.print("comment {}\n", origin);
+  out.print("element vertex {}\n", mesh.points.size());
   out.print("property double x\nproperty double y\nproperty double z\nelement face {}\n", mesh.triangles.size());
   out.print("property list uchar uint vertex_indices\nproperty int material_0\nproperty int material_1\nend_header\n");
   for (const Vec3d& p : mesh.points) out.raw(p);
@@ -107,13 +109,14 @@ void write_ply(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
 }
 
 /// Triangles by pair of materials, one group per pair.
-void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels) {
+void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels, const std::string& origin) {
   std::vector<std::uint32_t> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t i, std::uint32_t j) { return mesh.materials[i] < mesh.materials[j]; });
   OutputFile target(file);
   Chunks out(target);
+  if (!origin.empty()) out.print("# {}\n", origin);
   for (const Vec3d& p : mesh.points) out.point(p, "v ");
   const Pair* last = nullptr;
   for (const std::uint32_t i : order) {
@@ -140,6 +143,7 @@ GmshMesh::Block gmsh_triangles(const MeshParts& mesh) {
 void write_msh(const fs::path& file, const SurfaceMesh& mesh, const MeshParts& parts, Labels labels) {
   GmshMesh out;
   out.points = mesh.points;
+  out.origin = parts.origin;
   out.blocks.push_back(gmsh_triangles(parts));
   for (CellNumbers& side : side_numbers(mesh, labels))
     out.numbers.push_back({side.name, [of = side.of](std::size_t, std::size_t i) { return double(of(i)); }});
@@ -189,16 +193,19 @@ const PartsFormat* parts_format(const std::string& extension) {
 }
 
 /// One group, which has the name of the material whatever is around it.
-void write_one_material(const fs::path& file, SurfaceMesh&& surface, Labels labels, const std::string& name) {
+void write_one_material(const fs::path& file, SurfaceMesh&& surface, Labels labels, const std::string& name,
+                        const std::string& origin) {
   const std::string extension = checked_extension(file, surface_mesh_extensions());
   MeshParts parts = surface_parts(surface, labels, {});
   parts.interfaces.begin()->second.name = name;
+  parts.origin = origin;
   if (const PartsFormat* format = parts_format(extension)) return format->surface(file, parts);
-  if (extension == ".msh") return write_gmsh(file, {surface.points, {gmsh_triangles(parts)}, {}});
-  write_surface(file, {std::move(surface.points), std::move(surface.triangles), {}});
+  if (extension == ".msh") return write_gmsh(file, {surface.points, {gmsh_triangles(parts)}, {}, origin});
+  write_surface(file, {std::move(surface.points), std::move(surface.triangles), {}}, std::nullopt, origin);
 }
 
-void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels, const Names& names) {
+void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels, const Names& names,
+               const std::string& origin) {
   constexpr int vtk_tetrahedron = 10;
   const std::uint64_t cells = mesh.cells.size();
   const CellNumbers material = cell_numbers("material", labels, [&mesh](std::uint64_t i) { return mesh.material[i]; });
@@ -206,7 +213,7 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels,
   std::string xml = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n<UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-      announce_names(labels, names), mesh.points.size(), cells);
+      xml_origin(origin) + announce_names(labels, names), mesh.points.size(), cells);
   xml += announce_cell_data(numbers, cells, std::span(&material, 1));
   const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3d);
   xml += "<Points>\n" + numbers.announce("Float64", "Points", 3, bytes, [&](Base64Text& file) {
@@ -239,6 +246,7 @@ GmshMesh::Block gmsh_tetrahedra(const MeshParts& mesh) {
 void write_msh(const fs::path& file, const MeshParts& parts) {
   GmshMesh out;
   out.points = parts.points;
+  out.origin = parts.origin;
   out.blocks = {gmsh_triangles(parts), gmsh_tetrahedra(parts)};
   write_gmsh(file, out);
 }
@@ -267,25 +275,27 @@ std::vector<std::string> mesh_extensions() {
 }
 
 void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
-                        std::span<const std::string> names) {
+                        std::span<const std::string> names, const std::string& origin) {
   const std::string extension = checked_extension(file, surface_mesh_extensions());
   check(file, mesh, labels);
   if (extension == ".vtp")
     return write_vtp(file, std::span<const Vec3d>(mesh.points), mesh.triangles, {}, std::nullopt,
-                     side_numbers(mesh, labels), announce_names(labels, full_names(labels, names)));
-  if (extension == ".ply") return write_ply(file, mesh, labels);
-  if (extension == ".obj") return write_obj(file, mesh, labels);
+                     side_numbers(mesh, labels),
+                     xml_origin(origin) + announce_names(labels, full_names(labels, names)));
+  if (extension == ".ply") return write_ply(file, mesh, labels, origin);
+  if (extension == ".obj") return write_obj(file, mesh, labels, origin);
   const Names full = full_names(labels, names);
   const PartsFormat* format = parts_format(extension);
   if (format || extension == ".msh") {
-    const MeshParts parts = surface_parts(mesh, labels, full);
+    MeshParts parts = surface_parts(mesh, labels, full);
+    parts.origin = origin;
     return format ? format->surface(file, parts) : write_msh(file, mesh, parts, labels);
   }
-  write_surface(file, {mesh.points, mesh.triangles, {}});
+  write_surface(file, {mesh.points, mesh.triangles, {}}, std::nullopt, origin);
 }
 
 std::vector<fs::path> write_material_surfaces(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
-                                              std::span<const std::string> names) {
+                                              std::span<const std::string> names, const std::string& origin) {
   checked_extension(file, surface_mesh_extensions());
   check(file, mesh, labels);
   const Names full = full_names(labels, names);
@@ -296,7 +306,7 @@ std::vector<fs::path> write_material_surfaces(const fs::path& file, const Surfac
       if (surface.triangles.empty()) continue;
       const std::string name = fmt::format("{}_{}{}", file.stem().string(), labels[m], file.extension().string());
       write_one_material(file.parent_path() / name, std::move(surface), labels,
-                         material_name(std::uint16_t(m), labels, full));
+                         material_name(std::uint16_t(m), labels, full), origin);
       written.push_back(file.parent_path() / name);
     }
   } catch (...) {
@@ -308,14 +318,15 @@ std::vector<fs::path> write_material_surfaces(const fs::path& file, const Surfac
 }
 
 void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
-                            Labels labels, std::span<const std::string> names) {
+                            Labels labels, std::span<const std::string> names, const std::string& origin) {
   const std::string extension = checked_extension(file, tetrahedral_mesh_extensions());
   check(file, mesh, labels);
   check(file, surface, labels);
   if (surface.points.size() > mesh.points.size()) fail(file, "its surface has more points than it");
   const Names full = full_names(labels, names);
-  if (extension == ".vtu") return write_vtu(file, mesh, labels, full);
-  const MeshParts parts = volume_parts(mesh, surface, labels, full);
+  if (extension == ".vtu") return write_vtu(file, mesh, labels, full, origin);
+  MeshParts parts = volume_parts(mesh, surface, labels, full);
+  parts.origin = origin;
   const PartsFormat* format = parts_format(extension);
   format ? format->tetrahedra(file, parts) : write_msh(file, parts);
 }

@@ -18,10 +18,12 @@ namespace nacre {
 /// order of SurfaceMesh::materials, so that corners run counter-clockwise as seen from the side of `material_0`. .msh
 /// also has one physical group per pair of materials, named by their names ("outside - liver") or labels
 /// ("material_0_5"); .obj has one group per pair, named by the labels. .vtp has the names as field data: an array of
-/// each name that contains the label. .stl has 32-bit coordinates. Throws Error for other extensions, for an empty or
-/// broken mesh, and if writing fails.
+/// each name that contains the label. .stl has 32-bit coordinates. `origin` says how the mesh came about
+/// (engine/run/origin.hpp); it becomes a comment, except in .stl and .foam, which have no place for one. Throws Error
+/// for other extensions, for an empty or broken mesh, and if writing fails.
 void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& mesh,
-                        std::span<const std::int64_t> labels, std::span<const std::string> names = {});
+                        std::span<const std::int64_t> labels, std::span<const std::string> names = {},
+                        const std::string& origin = "");
 
 /// Writes the closed surface of each material except the outside to a file of its own, with normals that point out of
 /// it: `file` F.ext becomes F_LABEL.ext. Materials without a surface are left out; each file has only the points that
@@ -29,7 +31,8 @@ void write_surface_mesh(const std::filesystem::path& file, const SurfaceMesh& me
 /// nothing is written per triangle.
 std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem::path& file, const SurfaceMesh& mesh,
                                                            std::span<const std::int64_t> labels,
-                                                           std::span<const std::string> names = {});
+                                                           std::span<const std::string> names = {},
+                                                           const std::string& origin = "");
 
 /// Writes `mesh` as .vtu, with the label of each cell as `material`, as .msh (Gmsh 2.2, binary), or as a format of
 /// mesh_format_writers.hpp that has tetrahedra (.msh4 .inp .mesh .feb .foam). `surface` is the mesh that was filled:
@@ -38,7 +41,8 @@ std::vector<std::filesystem::path> write_material_surfaces(const std::filesystem
 /// number is the label if all labels are positive. Names as above, in .vtu as in .vtp. Throws Error for other
 /// extensions, for an empty or broken mesh, and if writing fails.
 void write_tetrahedral_mesh(const std::filesystem::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
-                            std::span<const std::int64_t> labels, std::span<const std::string> names = {});
+                            std::span<const std::int64_t> labels, std::span<const std::string> names = {},
+                            const std::string& origin = "");
 
 /// Extensions, lower case, with dot.
 std::vector<std::string> surface_mesh_extensions();

@@ -33,7 +33,9 @@ void write_mfem(const fs::path& file, const MeshParts& mesh) {
   check_counts(file, mesh, "MFEM");
   OutputFile target(file);
   Chunks out(target);
-  out.print("MFEM mesh v1.3\n\ndimension\n3\n\nelements\n{}\n", mesh.cells.size());
+  out.print("MFEM mesh v1.3\n");
+  if (!mesh.origin.empty()) out.print("\n# {}\n", mesh.origin);
+  out.print("\ndimension\n3\n\nelements\n{}\n", mesh.cells.size());
   for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
     const auto& c = mesh.cells[i];
     out.print("{} {} {} {} {} {}\n", mesh.volumes.at(mesh.material[i]).tag, tetrahedron, c[0], c[1], c[2], c[3]);

@@ -23,14 +23,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_obj(Chunks& out, const Surface& surface) {
+void write_obj(Chunks& out, const Surface& surface, const std::string& origin) {
+  if (!origin.empty()) out.print("# {}\n", origin);
   for (const Vec3d& p : surface.points) out.point(p, "v ");
   for (const Triangle& t : surface.triangles)
     out.print("f {} {} {}\n", std::uint64_t(t.a) + 1, std::uint64_t(t.b) + 1, std::uint64_t(t.c) + 1);
 }
 
-void write_off(Chunks& out, const Surface& surface) {
-  out.print("OFF\n{} {} 0\n", surface.points.size(), surface.triangles.size());
+void write_off(Chunks& out, const Surface& surface, const std::string& origin) {
+  out.print("OFF\n");
+  if (!origin.empty()) out.print("# {}\n", origin);
+  out.print("{} {} 0\n", surface.points.size(), surface.triangles.size());
   for (const Vec3d& p : surface.points) out.point(p, "");
   for (const Triangle& t : surface.triangles) out.print("3 {} {} {}\n", t.a, t.b, t.c);
 }
@@ -70,8 +73,10 @@ std::vector<std::string> ply_names(const PointArray& array, std::set<std::string
   return names;
 }
 
-void write_ply(Chunks& out, const Surface& surface) {
-  out.print("ply\nformat binary_little_endian 1.0\nelement vertex {}\n", surface.points.size());
+void write_ply(Chunks& out, const Surface& surface, const std::string& origin) {
+  out.print("ply\nformat binary_little_endian 1.0\n");
+  if (!origin.empty()) out.print("comment {}\n", origin);
+  out.print("element vertex {}\n", surface.points.size());
   out.print("property double x\nproperty double y\nproperty double z\n");
   std::set<std::string> taken = {"x", "y", "z"};
   for (const PointArray& array : surface.arrays)
@@ -127,7 +132,8 @@ void write_pvd(const fs::path& file, const std::vector<fs::path>& steps, const s
 
 std::vector<std::string> surface_writer_extensions() { return {".vtp", ".obj", ".ply", ".stl", ".off"}; }
 
-void write_surface(const fs::path& file, const Surface& surface, std::optional<double> time) {
+void write_surface(const fs::path& file, const Surface& surface, std::optional<double> time,
+                   const std::string& origin) {
   const std::string extension = lower_extension(file);
   const std::vector<std::string> known = surface_writer_extensions();
   if (std::find(known.begin(), known.end(), extension) == known.end())
@@ -136,13 +142,14 @@ void write_surface(const fs::path& file, const Surface& surface, std::optional<d
                 fmt::format("use one of {}", fmt::join(known, " ")));
   check(file, surface);
   if (extension == ".vtp")
-    return write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, surface.arrays, time);
+    return write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, surface.arrays, time, {},
+                     xml_origin(origin));
   OutputFile target(file);
   Chunks out(target);
-  if (extension == ".obj") write_obj(out, surface);
-  if (extension == ".ply") write_ply(out, surface);
+  if (extension == ".obj") write_obj(out, surface, origin);
+  if (extension == ".ply") write_ply(out, surface, origin);
   if (extension == ".stl") write_stl(out, surface);
-  if (extension == ".off") write_off(out, surface);
+  if (extension == ".off") write_off(out, surface, origin);
   out.flush();
   target.commit();
 }

@@ -39,6 +39,11 @@ inline std::string xml_escaped(const std::string& text) {
   return out;
 }
 
+/// How a file came about (engine/run/origin.hpp), as a comment; nothing if that is not known.
+inline std::string xml_origin(const std::string& origin) {
+  return origin.empty() ? std::string() : "<!-- " + origin + " -->\n";
+}
+
 /// Writes bytes to a file as base64 text.
 class Base64Text {
  public:

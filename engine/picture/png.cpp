@@ -71,8 +71,21 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
   return {png.get(), png.get() + size};
 }
 
-void write_png(const fs::path& file, const Image& image) {
-  const std::vector<std::uint8_t> bytes = encode_png(image);
+void add_png_text(std::vector<std::uint8_t>& png, const std::string& keyword, const std::string& text) {
+  constexpr std::size_t after_header = 8 + 25;  // the signature, and IHDR with its length, type and check sum
+  std::string chunk = "tEXt" + keyword + '\0' + text;
+  const auto number = [](std::size_t value) {
+    return std::string{char(value >> 24), char(value >> 16), char(value >> 8), char(value)};
+  };
+  const std::string length = number(chunk.size() - 4);
+  const unsigned sum = stbiw__crc32(reinterpret_cast<unsigned char*>(chunk.data()), int(chunk.size()));
+  chunk = length + chunk + number(sum);
+  png.insert(png.begin() + after_header, chunk.begin(), chunk.end());
+}
+
+void write_png(const fs::path& file, const Image& image, const std::string& origin) {
+  std::vector<std::uint8_t> bytes = encode_png(image);
+  if (!origin.empty()) add_png_text(bytes, "Source", origin);
   OutputFile output(file, OutputFile::Devices::refused);
   output.write(bytes.data(), bytes.size());
   output.commit();

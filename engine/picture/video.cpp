@@ -137,6 +137,8 @@ class Video : public FrameSink {
     if (!child_->send(packed_.data(), packed_.size())) fail();
   }
 
+  void describe(const std::string& origin) override { origin_ = origin; }
+
   void finish() override {
     if (!child_) throw Error("cannot write the video " + name_, "it has no frames");
     // ffmpeg ends with status 0 after some failed writes, so a message on stderr counts as a failure, too.
@@ -154,6 +156,9 @@ class Video : public FrameSink {
                    size,       "-framerate",   std::to_string(fps_), "-i",    "pipe:0",
                    "-vf",      format_.filter};
     words.insert(words.end(), format_.encoder.begin(), format_.encoder.end());
+    // Without random numbers and the version of ffmpeg, so that the same frames give the same file.
+    words.insert(words.end(), {"-fflags", "+bitexact", "-flags:v", "+bitexact"});
+    if (!origin_.empty()) words.insert(words.end(), {"-metadata", "comment=" + origin_});
     // "file:" prevents a colon in the name from being read as a protocol.
     words.insert(words.end(), {"-f", format_.container, "file:" + fs::absolute(output_.temporary()).string()});
     child_.emplace(program_, words, stop_);
@@ -179,7 +184,7 @@ class Video : public FrameSink {
                 full ? advice_on_writing(ENOSPC) : "write a folder of pictures instead");
   }
 
-  std::string name_;
+  std::string name_, origin_;
   int fps_;
   const std::atomic<bool>* stop_;
   Format format_;

@@ -26,6 +26,10 @@ class FrameSink {
   /// the sink cannot be used after that.
   void add(const Image& frame);
 
+  /// Says how the frames came about (engine/run/origin.hpp), before the first of them. A video has it as its comment,
+  /// except a .gif; pictures in a folder do not have it.
+  virtual void describe(const std::string& origin) { (void)origin; }
+
   /// Completes the result. Throws Error if that fails or no frame was added. A sink that is destroyed without `finish`
   /// leaves no incomplete file.
   virtual void finish() = 0;

@@ -48,6 +48,18 @@ inline Words operator+(Words a, const Words& b) {
 inline const Words small_flow = {"flow",         "--sample", "sphere",  "--detail", "24",
                                  "--resolution", "64",       "--steps", "2",        "--quiet"};
 
+/// A .vtp or .png without what it says of how it was made, to compare the results of two command lines.
+inline std::string without_origin(std::string bytes) {
+  if (const std::size_t comment = bytes.find("<!-- {\"Nacre origin\""); comment != bytes.npos)
+    bytes.erase(comment, bytes.find("-->\n", comment) + 4 - comment);
+  if (const std::size_t chunk = bytes.find("tEXtSource"); chunk != bytes.npos) {
+    std::size_t length = 0;
+    for (std::size_t i = 4; i > 0; --i) length = length << 8 | static_cast<unsigned char>(bytes[chunk - i]);
+    bytes.erase(chunk - 4, length + 12);
+  }
+  return bytes;
+}
+
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
 /// Lines of `text` that begin with `start`.
@@ -73,6 +85,7 @@ class AppTest : public ::testing::Test {
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
   bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
   std::string content(const std::string& name) const { return read_all(folder_ / name); }
+  std::string bare(const std::string& name) const { return without_origin(content(name)); }
   nlohmann::json read_json(const std::string& name) const { return nlohmann::json::parse(content(name)); }
 
   std::string write(const std::string& name, const std::string& text) const {

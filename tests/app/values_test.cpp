@@ -99,7 +99,7 @@ TEST_F(Values, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
   EXPECT_GT(one.size(), 100000u);
   EXPECT_EQ(one, bytes("2.vtp", {"--threads", "2", "--seed", "5"}));
   EXPECT_EQ(one, bytes("3.vtp", {"--threads", "3", "--seed", "5"}));
-  EXPECT_NE(one, bytes("4.vtp", {"--threads", "1", "--seed", "6"}));
+  EXPECT_NE(without_origin(one), without_origin(bytes("4.vtp", {"--threads", "1", "--seed", "6"})));
 }
 
 TEST_F(Values, ClosestPointsLieOnAFlatMesh) {

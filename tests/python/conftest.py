@@ -1,12 +1,27 @@
 # Nacre: what the tests of the Python module share.
 import os
 import pathlib
+import re
 import subprocess
 
 import numpy as np
 import pytest
 
 import nacre
+
+
+def result_bytes(path):
+    """A result without the line that says how the program made it: the module's have none."""
+    content = path.read_bytes()
+    origin = rb'\{"Nacre origin":[^\n]*'
+    for line in (rb"<!-- " + origin + rb" -->\n", rb"(?:comment|#) " + origin + rb"\n",
+                 rb"\$Comments\n" + origin + rb"\n\$EndComments\n"):
+        content = re.sub(line, b"", content, count=1)
+    chunk = content.find(b"tEXtSource\0")
+    if chunk >= 0:
+        length = int.from_bytes(content[chunk - 4:chunk], "big")
+        content = content[:chunk - 4] + content[chunk + 8 + length:]
+    return content
 
 
 @pytest.fixture(scope="session")

@@ -82,9 +82,9 @@ std::map<std::string, std::string> read_knobs(const json& from, const path& fold
   find_files_beside(folder, settings);
   std::map<std::string, std::string> texts;
   const std::vector<Knob> table = knobs(settings);
-  for (const auto& [name, value] : from.items()) {
-    const auto knob =
-        std::find_if(table.begin(), table.end(), [&](const Knob& each) { return each.is_named(snake_case(name)); });
+  for (const auto& item : from.items()) {
+    const std::string name = snake_case(item.key());
+    const auto knob = std::find_if(table.begin(), table.end(), [&](const Knob& each) { return each.is_named(name); });
     texts[knob->name] = knob->text();
   }
   return texts;
