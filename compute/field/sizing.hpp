@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "compute/field/distance.hpp"
 
@@ -18,16 +19,43 @@ struct SizingRule {
   /// things and small islands would have no particles to stand on; but not below `smallest` voxels.
   static constexpr float resolve = 1.2f, smallest = 0.35f;
 
-  /// h where the medial ball has this radius and the sharpest bend that one.
-  NACRE_HD float size(float feature, float bend) const {
+  /// h where the medial ball has this radius and the sharpest bend that one; `most`: the largest size there.
+  NACRE_HD float size(float feature, float bend, float most) const {
     const float bound = curvature ? min(feature, bend) : feature;
-    const float wanted = min(max(epsilon * bound, min_size), max_size);
+    const float wanted = min(max(epsilon * bound, min_size), most);
     return min(wanted, max(resolve * feature, smallest));
   }
   /// Radius from which on a medial ball makes no difference.
   float reach() const { return max_size / (min_size < max_size ? min(epsilon, resolve) : resolve); }
   bool operator==(const SizingRule&) const = default;
 };
+
+/// The largest size in a material or in a region, in place of SizingRule::max_size; lengths in voxels.
+struct SizeBound {
+  enum class Kind : std::uint32_t { material, box, ball };
+  Kind kind = Kind::material;
+  float size = 1;
+  std::uint32_t material = 0;
+  Vec3f centre, row[3];  ///< of a region: row * (p - centre) maps it to the cube or ball of half width 1 around zero
+
+  /// Whether it holds at a point of this interface.
+  NACRE_HD bool holds(const Vec3f& p, const Junction& surface) const {
+    if (kind == Kind::material) return surface.has(material);
+    const Vec3f r = p - centre, u{dot(row[0], r), dot(row[1], r), dot(row[2], r)};
+    if (kind == Kind::ball) return dot(u, u) <= 1;
+    return std::fabs(u.x) <= 1 && std::fabs(u.y) <= 1 && std::fabs(u.z) <= 1;
+  }
+  bool operator==(const SizeBound& b) const {
+    return kind == b.kind && size == b.size && material == b.material && centre == b.centre && row[0] == b.row[0] &&
+           row[1] == b.row[1] && row[2] == b.row[2];
+  }
+};
+
+/// The rule with the largest of all sizes as `max_size`: what reaches far enough for each of them.
+inline SizingRule widest_rule(SizingRule rule, const std::vector<SizeBound>& bounds) {
+  for (const SizeBound& bound : bounds) rule.max_size = std::max(rule.max_size, bound.size);
+  return rule;
+}
 
 /// h at a point, trilinear between the centres of a lattice.
 struct SizingFieldView {
@@ -94,15 +122,27 @@ struct MedialRadius {
 struct SizeAtInterface {
   MedialRadius radius;
   SizingRule rule;
+  float largest;  ///< of all sizes
+  const SizeBound* bound;
+  int bounds;
   float* at_point;
   NACRE_HD void operator()(std::int64_t i) const {
     const InterfacePoint& q = radius.distance.point[i];
     if (q.position.w < 0) {
-      at_point[i] = rule.max_size;
+      at_point[i] = largest;
       return;
     }
     const Vec3f p{q.position.x, q.position.y, q.position.z}, n{q.normal.x, q.normal.y, q.normal.z};
-    at_point[i] = rule.size(min(radius(p, n), radius(p, -n)), 1 / max(q.normal.w, 1e-3f));
+    at_point[i] = rule.size(min(radius(p, n), radius(p, -n)), 1 / max(q.normal.w, 1e-3f), most(p, q.surface));
+  }
+
+ private:
+  /// Of several bounds the smallest holds, whether or not it is below the usual largest size.
+  NACRE_HD float most(const Vec3f& p, const Junction& surface) const {
+    float least = 3e38f;
+    for (int b = 0; b < bounds; ++b)
+      if (bound[b].holds(p, surface)) least = min(least, bound[b].size);
+    return least < 3e38f ? least : rule.max_size;
   }
 };
 
@@ -228,9 +268,11 @@ struct SizingField {
 
 /// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball
 /// (with `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On
-/// the lattice of `distance`; a body that its reach does not see across counts as wide.
+/// the lattice of `distance`; a body that its reach does not see across counts as wide. `bounds` hold where they are, in
+/// place of the rule's largest size.
 template <class Backend>
-SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule) {
+SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule,
+                         const std::vector<SizeBound>& bounds = {}) {
   Arena& arena = exec.arena();
   SizingField field;
   field.lattice = distance.lattice;
@@ -239,15 +281,22 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   Arena::Scope scope(arena);
   const DistanceFieldView view = distance.view();
   Array<float> at_point = arena.temporary<float>(points);
+  const SizingRule widest = widest_rule(rule, bounds);
+  Array<SizeBound> bound = arena.temporary<SizeBound>(std::max<std::size_t>(bounds.size(), 1));
+  if (!bounds.empty()) bound.upload(bounds);
   const Vec3f& s = field.lattice.spacing;
-  const float free = rule.reach() + 0.5f, most = std::min(free, distance.reach - 1.5f);
-  exec.for_each(points,
-                detail::SizeAtInterface{{view, most, free, 0.1f * std::max({s.x, s.y, s.z})}, rule, at_point.data()});
+  const float free = widest.reach() + 0.5f, most = std::min(free, distance.reach - 1.5f);
+  exec.for_each(points, detail::SizeAtInterface{{view, most, free, 0.1f * std::max({s.x, s.y, s.z})},
+                                                rule,
+                                                widest.max_size,
+                                                bound.data(),
+                                                int(bounds.size()),
+                                                at_point.data()});
   const detail::SizeRange range =
       exec.reduce(points, detail::SizeRange{}, detail::SizeRangeAt{at_point.data()}, detail::JoinSizeRanges{});
   field.smallest = range.low;
   field.largest = range.high;
-  float low = SizingRule::smallest, high = rule.max_size;
+  float low = SizingRule::smallest, high = widest.max_size;
   for (int k = 0; k < 10; ++k) {
     const float middle = 0.5f * (low + high);
     const std::uint64_t smaller =
@@ -260,7 +309,7 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   Array<std::uint32_t> changed[2] = {arena.temporary<std::uint32_t>(tiles), arena.temporary<std::uint32_t>(tiles)};
   Array<std::uint32_t> any = arena.temporary<std::uint32_t>(1);
   changed[0].fill_bytes(1);
-  exec.for_each(n, detail::SpreadSize{view, rule, at_point.data(), field.h.data()});
+  exec.for_each(n, detail::SpreadSize{view, widest, at_point.data(), field.h.data()});
   float *from = field.h.data(), *to = other.data();
   const int most_rounds = field.lattice.cells.x + field.lattice.cells.y + field.lattice.cells.z;
   for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {

@@ -3,6 +3,7 @@
 #include "compute/pipeline/field_recipe.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "compute/pipeline/mesh_choices.hpp"
 
@@ -11,21 +12,24 @@ namespace nacre {
 int FieldRecipe::alike(const FieldRecipe& other) const {
   if (width != other.width || stairs != other.stairs) return tighten_stage;
   if (kernel != other.kernel || !(lattice == other.lattice) || reach != other.reach) return distance_stage;
-  if (!(rule == other.rule)) return sizing_stage;
+  if (!(rule == other.rule) || bounds != other.bounds) return sizing_stage;
   return cells_per_voxel != other.cells_per_voxel ? embed_stage : field_stages;
 }
 
 FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
-                         float small) {
+                         std::vector<SizeBound> bounds, float small) {
   FieldRecipe recipe;
   if (kind == MeshVolume::Kind::labels) recipe.width = parameters.tighten;
   if (recipe.width > 0) recipe.stairs = parameters.stairs;
   recipe.kernel = kernel_from_string(parameters.kernel);
   recipe.rule = {float(parameters.epsilon), float(parameters.delta), float(parameters.min_size),
                  float(std::max(parameters.min_size, parameters.max_size)), parameters.curvature};
-  recipe.spacing = 0.5f * recipe.rule.min_size;
+  recipe.bounds = std::move(bounds);
+  float least = recipe.rule.min_size;
+  for (const SizeBound& bound : recipe.bounds) least = std::min(least, bound.size);
+  recipe.spacing = 0.5f * least;
   recipe.lattice = lattice_over(bricks, recipe.spacing);
-  recipe.reach = std::min(recipe.rule.reach() + 2, 64.0f);
+  recipe.reach = std::min(widest_rule(recipe.rule, recipe.bounds).reach() + 2, 64.0f);
   // Cells of two thirds of the smallest distance of particles suffice for the stencils. They are searched voxel by
   // voxel for what meets there, so that a few are no cheaper than many, and one that is larger than the volume takes
   // forever.

@@ -16,21 +16,22 @@ struct FieldRecipe {
   double width = 0;   ///< tighten: 0 where the volume is not made of labels
   double stairs = 0;  ///< tighten: 0 where width is
   CubicKernel kernel =
-      CubicKernel::catmull_rom;  ///< of all stages that read the materials' functions: from distance on
-  float spacing = 0.25f;         ///< asked for; the lattice that follows from it is what counts
-  Lattice lattice;               ///< distance
-  float reach = 0;               ///< distance, voxels
-  SizingRule rule;               ///< sizing
-  double cells_per_voxel = 0;    ///< embed; limited by the sizing field
+      CubicKernel::catmull_rom;   ///< of all stages that read the materials' functions: from distance on
+  float spacing = 0.25f;          ///< asked for; the lattice that follows from it is what counts
+  Lattice lattice;                ///< distance
+  float reach = 0;                ///< distance, voxels
+  SizingRule rule;                ///< sizing
+  std::vector<SizeBound> bounds;  ///< sizing: in materials and regions
+  double cells_per_voxel = 0;     ///< embed; limited by the sizing field
 
   /// How many stages, from the first, are built alike by `other`.
   int alike(const FieldRecipe& other) const;
 };
 
-/// The recipe that `parameters` ask for on a volume of this kind, laid out as `bricks`. The cells of the embedding are
+/// The recipe that `parameters` ask for on a volume of this kind, laid out as `bricks`; `bounds` are what its `sizes` say. The cells of the embedding are
 /// limited by `small`, SizingField::small of the present sizing field: where that is to be built anew, so is the
 /// embedding.
 FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
-                         float small);
+                         std::vector<SizeBound> bounds, float small);
 
 }  // namespace nacre

@@ -15,6 +15,7 @@
 #include "compute/particles/tree_forces.hpp"
 #include "compute/pipeline/field_recipe.hpp"
 #include "compute/pipeline/mesh_choices.hpp"
+#include "compute/pipeline/size_bounds.hpp"
 #include "compute/pipeline/stage_progress.hpp"
 #include "compute/pipeline/volume_frame.hpp"
 
@@ -40,6 +41,7 @@ class MeshFields {
   std::size_t end() const { return mark_[field_stages]; }  ///< the arena's mark behind the last stage
 
   const VolumeFrame& frame() const { return frame_; }
+  std::vector<SizeBound> bounds(const MeshParameters& p) const { return size_bounds(p.sizes, described_); }
   double least_area() const { return least_area_; }  ///< of all boundaries, squares of the smallest spacing
   const MaterialBricks& bricks() const { return bricks_; }
   const DistanceField& distance() const { return distance_; }
@@ -56,13 +58,16 @@ class MeshFields {
   EmbeddedProjector embedded_projector() const { return {grid_.view(), field_projector()}; }
 
  private:
-  FieldRecipe recipe(const MeshParameters& p) const { return field_recipe(p, *kind_, bricks_, size_.small); }
+  FieldRecipe recipe(const MeshParameters& p) const {
+    return field_recipe(p, *kind_, bricks_, size_bounds(p.sizes, described_), size_.small);
+  }
   void build_stage(FieldStage which, const MeshParameters& parameters, MeshInfo& info);
   void relate_interfaces(MeshInfo& info);
   void describe(MeshInfo& info);
 
   Executor<Backend>& exec_;
   VolumeFrame frame_;
+  MeshVolume described_;                  ///< the volume without its voxels
   std::optional<MeshVolume::Kind> kind_;  ///< of the volume; none: none is loaded
   MaterialBricks bricks_;
   double least_area_ = 0;
@@ -87,6 +92,9 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
   info = {};
   arena.rewind(0);
   frame_ = VolumeFrame(volume);
+  described_ = {volume.kind, volume.dims, volume.spacing, volume.origin, volume.axes, {},
+                {},          {},          volume.labels,  volume.names};
+  size_bounds(parameters.sizes, described_);  // what cannot be read is said before the long work
   std::vector<std::uint16_t> thinned;
   if (volume.kind == MeshVolume::Kind::labels && volume.materials() > max_block_materials) {
     thinned = volume.material;
@@ -145,7 +153,7 @@ void MeshFields<Backend>::build_stage(FieldStage which, const MeshParameters& pa
   switch (which) {
     case tighten_stage: info.constrained_voxels = tighten(exec_, bricks_, recipe_.width, recipe_.stairs).held; break;
     case distance_stage: distance_ = distance_field(exec_, bricks_, recipe_.spacing, recipe_.reach); break;
-    case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule); break;
+    case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule, recipe_.bounds); break;
     default:
       recipe_.cells_per_voxel = recipe(parameters).cells_per_voxel;  // now that the sizing field is known
       grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel);

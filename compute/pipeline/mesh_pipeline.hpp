@@ -29,6 +29,7 @@ struct MeshParameters {
   double delta = 0.4;                  ///< sizing: largest slope (Lipschitz constant)
   double min_size = 0.5;               ///< sizing: smallest distance of particles
   double max_size = 1.0;               ///< sizing: largest distance of particles
+  std::string sizes;                   ///< sizing: largest distances in materials and regions: size_bounds.hpp
   bool curvature = false;              ///< sizing: bound by epsilon / largest curvature, too
   int subcells = 2;                    ///< closest-point cells per voxel and axis
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline

@@ -130,10 +130,11 @@ class MeshPipelineOf : public MeshPipeline {
   }
 
   /// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels show: a
-  /// plane of particles max_size apart is the least that there can be. The fields are checked again in
+  /// plane of particles as far apart as `max_size` and `sizes` allow is the least that there can be. The fields are checked again in
   /// `relax`.
   void require_room() {
-    const double h = std::max(parameters.min_size, parameters.max_size);
+    double h = std::max(parameters.min_size, parameters.max_size);
+    for (const SizeBound& bound : fields_.bounds(parameters)) h = std::max(h, double(bound.size));
     if (parameters.particles == 0)
       require_room_for(fields_.least_area() * 1.1547 / (h * h), 0, exec_.arena().room_bytes(), exec_.device(),
                        parameters, "the boundaries ask for at least ");

@@ -111,6 +111,13 @@ std::vector<Knob> field_knobs(Settings& s) {
        .value = &m.max_size,
        .min = 0.05,
        .max = 1000},
+      {.name = "sizes",
+       .group = sizing,
+       .unit = "voxels",
+       .help =
+           "WHAT:SIZE[,WHAT:SIZE...]: largest distance there, instead of max_size; WHAT: a label, a name, box x0 y0 "
+           "z0 x1 y1 z1, or ball x y z radius (in the units of the data)",
+       .value = &m.sizes},
       {.name = "curvature",
        .group = sizing,
        .help = "also bound the sizing field by epsilon / largest curvature",
