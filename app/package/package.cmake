@@ -6,7 +6,21 @@ set(NACRE_MAINTAINER "Nacre maintainers <maintainers@nacre.example.org>" CACHE S
 set(here ${CMAKE_CURRENT_LIST_DIR})
 set(doc ${CMAKE_INSTALL_DATAROOTDIR}/doc)
 
-install(TARGETS nacre RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+if(NACRE_LEVELS)
+  include(${here}/levels.cmake)
+  nacre_build_levels(nacre)
+  add_executable(nacre_launcher ${here}/launcher.cpp)  # for any x86-64: without nacre_options
+  target_compile_features(nacre_launcher PRIVATE cxx_std_20)
+  set_target_properties(nacre_launcher PROPERTIES OUTPUT_NAME nacre
+    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/launcher)
+  install(TARGETS nacre_launcher RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  install(TARGETS nacre RUNTIME DESTINATION libexec/nacre/${NACRE_MARCH} COMPONENT program)
+  foreach(level IN LISTS NACRE_LEVELS)
+    install(PROGRAMS ${PROJECT_BINARY_DIR}/levels/${level}/bin/nacre DESTINATION libexec/nacre/${level} COMPONENT program)
+  endforeach()
+else()
+  install(TARGETS nacre RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endif()
 foreach(child nacre-vtk-import nacre-dicom-import)
   if(TARGET ${child})
     install(TARGETS ${child} RUNTIME DESTINATION libexec/nacre COMPONENT program)
@@ -72,8 +86,8 @@ integral convolution), and makes conformal meshes of several materials,
 triangles and tetrahedra, of segmented volumes such as CT and MRI scans. Both
 rest on the closest point embedding of a surface.
 
-This package has the program with its window. It needs a processor of the
-level x86-64-v3 (AVX2 and FMA).")
+This package has the program with its window, for the levels x86-64-v2, v3
+and v4 of processors; the best is chosen when it starts.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libnacre-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
@@ -83,5 +97,5 @@ Nacre shows unsteady flow on surfaces as a moving texture, and makes conformal
 meshes of several materials of segmented volumes.
 
 This package has its headers, a static library, and what find_package(nacre)
-of CMake needs. It needs a processor of the level x86-64-v3 (AVX2 and FMA).")
+of CMake needs. It is for processors of the level x86-64-v2 and above.")
 include(CPack)

@@ -28,15 +28,17 @@ constexpr std::chrono::seconds time_limit{120};
 
 std::atomic<const std::atomic<bool>*> watched{nullptr};
 
-/// Beside this program, or in the folder of helpers of an installed one.
+/// Beside this program, or in libexec/nacre, where an installed one has it: from bin/, or from libexec/nacre/LEVEL.
 fs::path child_path(const Importer& importer) {
   if (const char* chosen = std::getenv(importer.variable); chosen && *chosen) return chosen;
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   if (error) return {};
   const fs::path beside = self.parent_path() / importer.program;
-  const fs::path installed = self.parent_path().parent_path() / "libexec" / "nacre" / importer.program;
-  return !fs::exists(beside, error) && fs::exists(installed, error) ? installed : beside;
+  const fs::path above = self.parent_path().parent_path();
+  for (const fs::path& folder : {self.parent_path(), above / "libexec" / "nacre", above})
+    if (fs::exists(folder / importer.program, error)) return folder / importer.program;
+  return beside;
 }
 
 std::shared_ptr<const fs::path> make_folder(const fs::path& file) {

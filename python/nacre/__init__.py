@@ -11,7 +11,6 @@
 from __future__ import annotations
 
 import inspect
-import platform
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -22,21 +21,9 @@ from ._arrays import rows as _rows
 from ._errors import Error, Interrupted, Warning
 
 
-def _require_processor() -> None:
-    """A wheel is made for x86-64-v3; an older processor would end the interpreter with an illegal instruction."""
-    if platform.machine() not in ("x86_64", "AMD64"):
-        return
-    try:
-        with open("/proc/cpuinfo", encoding="ascii", errors="replace") as file:
-            flags = next((set(line.split()) for line in file if line.startswith("flags")), None)
-    except OSError:
-        return
-    missing = {"avx2", "bmi1", "bmi2", "f16c", "fma", "abm", "movbe"} - flags if flags else set()
-    if missing:
-        raise ImportError(f"nacre needs a processor of the level x86-64-v3; this one has no {', '.join(sorted(missing))}")
+from ._levels import load_core as _load_core
 
-
-_require_processor()
+_load_core()
 
 from . import _core  # noqa: E402
 from ._flow import Flow, FlowCells, Frame, flow  # noqa: E402

@@ -26,6 +26,10 @@ in_debian "$work/debian" bash -euxc '
   cd /opt/out
   nacre --version
   nacre mesh --sample three-sectors --max-size 2 --quiet --out sectors.vtu --image sectors.png
+  for level in x86-64-v2 x86-64-v3; do
+    NACRE_LEVEL=$level nacre mesh --sample two-spheres --detail 16 --max-size 4 --quiet --out $level.obj
+  done
+  ! NACRE_LEVEL=x86-64-v9 nacre --version
   nacre flow --sample torus --detail 48 --resolution 128 --steps 4 --quiet --image torus.png
   nacre view --offscreen --sample sphere --detail 24 --resolution 48 --frames-count 2 --image view.png --quiet
   nacre info sectors.vtu
