@@ -62,12 +62,15 @@ fs::path absolute_name(const fs::path& path) {
   return error ? path : all;
 }
 
-/// A new file that is on the list from the beginning. Returns what `open` returns.
+/// A new file that is on the list from the beginning: what fails between the two leaves nothing behind. Returns what
+/// `open` returns.
 int open_listed(const fs::path& file) {
-  const fs::path name = absolute_name(file);
   const std::lock_guard lock(registry().mutex);
+  const auto [listed, is_new] = registry().paths.insert(absolute_name(file));
   const int handle = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (handle >= 0) registry().paths.insert(name);
+  const int error_number = errno;
+  if (handle < 0 && is_new) registry().paths.erase(listed);
+  errno = error_number;
   return handle;
 }
 
