@@ -102,10 +102,14 @@ int choose_resolution(const FlowOptions& options, const FlowView& view, const Pr
 std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const FlowView& view,
                                   const PreparedSurface& surface, bool moves, const Device& device) {
   const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
-  if (!settings.focus || !pictures || settings.orbit != 0 || moves) return {};
+  if (!settings.focus || !pictures || settings.orbit != 0) return {};
   if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
-  std::optional<Focus> focus = focus_on(view, surface, settings.flow, device.available_bytes());
+  std::optional<Focus> focus = focus_on(view, surface, settings.flow, device.available_bytes(), picture_budget(view));
   if (!focus) return {};
+  if (moves) {
+    say(options.common, no_focus_where_it_moves);
+    return {};
+  }
   if (!options.out.empty()) {
     say(options.common,
         "a close-up, but --out needs the whole surface: the picture has its cells; leave --out away "
@@ -116,6 +120,7 @@ std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& se
                                   "(--no-focus: the whole surface)",
                                   focus->part.surface.triangles.size(), surface.triangles.size(), focus->resolution,
                                   focus->pixel / focus->cell_size));
+  if (const std::string coarser = coarser_than_pixels(*focus); !coarser.empty()) warn(options.common, coarser);
   return focus;
 }
 

@@ -15,6 +15,7 @@ uniform vec3 above;
 uniform vec3 no_number;
 uniform sampler1D colours;
 uniform bool neutral;  // these faces are grey
+uniform float opacity;
 
 #if defined(OCTREE)
 #include "octree_texture.glsl"
@@ -47,5 +48,5 @@ void main() {
 #ifdef TEXTURED
   if (!neutral) light_here *= 0.04 + 1.52 * shown_at(place);
 #endif
-  pixel = vec4(to_encoded(base * light_here), 1.0);
+  pixel = vec4(to_encoded(base * light_here), opacity);
 }

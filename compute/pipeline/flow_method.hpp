@@ -35,15 +35,17 @@ class FlowMethodOn : public FlowMethod {
   void start(const FlowVectors& vectors) override {
     make_arrays(vectors);
     warm_up();
+    shows_ = first_ == step_;
     show();
     ++launched_;
-    for (int k = first_; k < step_; ++k) advance(k);
+    for (int k = first_; k < step_; ++k) shows_ = k + 1 == step_, advance(k);
     exec_.wait();
   }
 
   /// Waits once, at its end: then the frame is there, for whoever draws it.
   void step() override {
     require_started();
+    shows_ = true;
     advance(step_);
     ++step_;
     exec_.wait();
@@ -66,7 +68,7 @@ class FlowMethodOn : public FlowMethod {
  protected:
   /// `begin_flow`, and arrays with noise for this embedding.
   virtual void make_arrays(const FlowVectors& vectors) = 0;
-  /// What the next step carries, and the frame for the eye.
+  /// What the next step carries, and the frame for the eye where it `shows_`: not in a warm-up before its end.
   virtual void show() = 0;
   /// Moves on by step `k` of the data; those before 0 are the warm-up.
   virtual void advance(int k) = 0;
@@ -80,8 +82,7 @@ class FlowMethodOn : public FlowMethod {
     if (!started_) throw Error("no flow started");
   }
 
-  /// The surface as it is embedded: second sheets apart from all others by more than `reach` cells of the domain, which
-  /// are `cell` wide.
+  /// The surface as embedded: second sheets are more than `reach` cells of the domain, `cell` wide, from all others.
   FlowMesh separate(const FlowMesh& mesh, double cell, double reach) {
     sheets_ = {};
     if (mesh.moves) return mesh;  // the sheets of a surface that moves share their cells
@@ -371,7 +372,7 @@ class FlowMethodOn : public FlowMethod {
   FlowDomain domain_;
   EmbeddingInfo info_;
   FlowVectors vectors_;
-  bool embedded_ = false, started_ = false, steady_ = true;
+  bool embedded_ = false, started_ = false, steady_ = true, shows_ = true;
   int ttl_ = 4, sight_ = 1, step_ = 0, first_ = 0, launched_ = 0;
   double texel_ = 1;  ///< edge of a texture cell in cells of the domain
   std::uint32_t triangles_ = 0;

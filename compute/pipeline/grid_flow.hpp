@@ -142,7 +142,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
 
   void advance(int k) override {
     this->look_ahead(k);
-    exec_.repeat(steps_, [&] { launch(k); });
+    exec_.repeat(this->shows_ ? steps_ : unseen_steps_, [&] { launch(k); });
     ++launched_;  // not inside: a graph that cannot be made is launched again, one by one
   }
 
@@ -190,6 +190,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
     equalise(value_.data());
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
                                        seed_, std::uint32_t(launched_ + 1), carried_.data()});
+    if (!this->shows_) return;
     if (parameters_.streaks > 0)
       this->draw_streaks(GridSurface{texture}, n, 1.0 / refine_, value_.data(), streak_cells_.data(), streaks_.data());
     frame_ = parameters_.streaks > 0 ? streaks_.data() : value_.data();
@@ -220,7 +221,7 @@ class GridFlow final : public FlowMethodOn<Backend> {
   Array<StreakCell> streak_cells_;
   const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_[2];
-  Steps steps_;
+  Steps steps_, unseen_steps_;
 };
 
 template <class Backend>

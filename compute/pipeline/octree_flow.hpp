@@ -225,7 +225,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   void advance(int k) override {
     this->look_ahead(k);
-    exec_.repeat(steps_, [&] { launch(k); });
+    exec_.repeat(this->shows_ ? steps_ : unseen_steps_, [&] { launch(k); });
     ++launched_;  // not inside: a graph that cannot be made is launched again, one by one
   }
 
@@ -307,6 +307,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
                           SharpenBand<View>{view, detail, float(parameters_.sharpen), float(parameters_.jitter), seed_,
                                             std::uint32_t(launched_ + 1), carried_.data()});
     frame_ = value_.data();
+    if (!this->shows_) return;
     if constexpr (!Band::as_thesis) {
       if (parameters_.streaks > 0) {
         this->draw_streaks(BrickSurface{view}, n, 1.0, value_.data(), streak_cells_.data(), streaks_.data());
@@ -349,7 +350,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   Array<StreakCell> streak_cells_;
   const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_;
-  Steps steps_;
+  Steps steps_, unseen_steps_;
 };
 
 template <class Backend, class Band>

@@ -8,21 +8,47 @@
 namespace nacre {
 namespace {
 
+/// Blends over what was drawn before, while it lives.
+class Blended {
+ public:
+  explicit Blended(bool blends) : blends_(blends) {
+    if (!blends_) return;
+    glEnable(GL_BLEND);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  }
+  ~Blended() {
+    if (blends_) glDisable(GL_BLEND);
+  }
+  Blended(const Blended&) = delete;
+  Blended& operator=(const Blended&) = delete;
+
+ private:
+  bool blends_;
+};
+
+/// Depths are larger where they are nearer.
+void set_nearer(float steps) {
+  if (steps == 0) return glDisable(GL_POLYGON_OFFSET_FILL);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(0.25f * steps, steps);
+}
+
 /// Triangles that face the camera, and those that do not; the former lie before the latter where both are in one place.
-void draw_sides(const Program& program, const SurfaceBuffers& surface, bool one_sided, BackFaces back_faces) {
+void draw_sides(const Program& program, const SurfaceBuffers& surface, bool one_sided, BackFaces back_faces,
+                float nearer) {
   program.set("neutral", 0);
   const bool alike = !one_sided && !surface.sheets() && back_faces == BackFaces::shown;
   if (!alike) glEnable(GL_CULL_FACE);
+  set_nearer(nearer);
   surface.draw_triangles();
   if (!alike && !one_sided && back_faces != BackFaces::hidden) {
     program.set("neutral", back_faces == BackFaces::neutral ? 1 : 0);
     glCullFace(GL_FRONT);
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(-0.5f, -2);  // larger depths are nearer
+    set_nearer(nearer - 2);
     surface.draw_triangles();
-    glDisable(GL_POLYGON_OFFSET_FILL);
     glCullFace(GL_BACK);
   }
+  set_nearer(0);
   glDisable(GL_CULL_FACE);
 }
 
@@ -86,7 +112,7 @@ void SurfacePass::set_texture(SurfaceTexture texture, const TextureLayout& layou
 }
 
 void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours,
-                       const BufferTexture* shown, BackFaces back_faces) const {
+                       const BufferTexture* shown, BackFaces back_faces, const SurfaceOver& over) const {
   const bool looks_up = shown && textured();
   const Program& program = looks_up ? textured_ : plain_;
   set_view(program, view, surface.placement());
@@ -103,10 +129,12 @@ void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const Su
     };
     std::visit(bind, texture_);
   }
+  program.set("opacity", over.opacity);
   program.use();
   glEnable(GL_DEPTH_TEST);
+  const Blended blended(over.opacity < 1);
   const bool one_sided = surface.closed() && !view.clip;
-  draw_sides(program, surface, one_sided, back_faces);
+  draw_sides(program, surface, one_sided, back_faces, over.nearer);
 }
 
 }  // namespace nacre

@@ -48,6 +48,12 @@ struct TextureLayout {
   Vec3d sheet_shift{};
 };
 
+/// How a part of a surface is laid over what was drawn before.
+struct SurfaceOver {
+  float opacity = 1;
+  float nearer = 0;  ///< by so many least steps of the depth
+};
+
 /// How shown values are looked up.
 using SurfaceTexture = std::variant<SparseTexture, OctreeTexture>;
 
@@ -65,7 +71,7 @@ class SurfacePass {
   /// `shown`: one value per surface cell, and the means that the layout says; null: plain. Of two sheets in one place
   /// the one that faces the camera is seen.
   void draw(const View& view, const SurfaceBuffers& surface, const SurfaceColours& colours, const BufferTexture* shown,
-            BackFaces back_faces = BackFaces::shown) const;
+            BackFaces back_faces = BackFaces::shown, const SurfaceOver& over = {}) const;
 
  private:
   Program plain_, textured_;

@@ -1,6 +1,8 @@
 // Nacre: focus: which part of a surface is in view, and how fine its cells must be.
 #include "engine/run/focus.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +18,8 @@ namespace {
 constexpr int least_resolution = 16;
 constexpr int finest_grid = 12000;  // cells along an axis that the two-level grid can number
 constexpr int finest_octree = 1 << 20;
-constexpr double cells_per_pixel = 4;      // of the picture, at most: hidden sheets and slanted ones count, too
+constexpr double picture_cells = 4;        // for each pixel, at most: hidden sheets and slanted ones count, too
+constexpr double window_cells = 5e5;       // what two cores make in a second
 constexpr double cells_along_pixel = 1.1;  // where a whole surface fills the picture
 constexpr double nearest = 1e-3;           // of the distance to the target: what is nearer to the eye is not drawn
 
@@ -124,11 +127,16 @@ double area_of(const PreparedSurface& surface) {
   return 0.5 * twice;
 }
 
+/// Along an axis, that the method can number.
+int most_cells(const FlowParameters& parameters) {
+  return parameters.method == EmbeddingKind::grid ? finest_grid : finest_octree;
+}
+
 /// The finest resolution, at most `wanted`, that the method can number and the memory holds; 0: none does.
 int affordable(const PreparedSurface& part, FlowParameters parameters, double wanted, double available) {
   const bool grid = parameters.method == EmbeddingKind::grid;
   const FlowMesh mesh = flow_mesh(part);
-  parameters.resolution = int(std::min<double>(wanted, grid ? finest_grid : finest_octree));
+  parameters.resolution = int(std::min<double>(wanted, most_cells(parameters)));
   while (parameters.resolution >= least_resolution) {
     const double bytes = grid ? estimate_flow_bytes(mesh, parameters) : estimate_octree_bytes(mesh, parameters);
     if (bytes <= available) return parameters.resolution;
@@ -148,14 +156,20 @@ int picture_resolution(const FlowView& view, const PreparedSurface& surface, con
   const Camera fitted = fit_camera(view.camera, triangle_corners(surface), view.width, view.height);
   const double longest = longest_side(surface), pixels = double(view.width) * view.height;
   const double cell = std::max(std::max(fitted.height, view.camera.height) / view.height / cells_along_pixel,
-                               std::sqrt(area_of(surface) / (cells_per_pixel * pixels)));
+                               std::sqrt(area_of(surface) / (picture_cells * pixels)));
   if (!(longest > 0) || !(cell > 0)) return least_resolution;
   return std::max(least_resolution,
                   affordable(surface, parameters, std::ceil(longest / cell), 0.5 * double(available)));
 }
 
+double picture_budget(const FlowView& view) { return picture_cells * view.width * view.height; }
+
+double window_budget(const FlowView& view) {
+  return std::min(picture_budget(view), std::max(window_cells, 0.6 * view.width * view.height));
+}
+
 std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
-                              std::size_t available) {
+                              std::size_t available, double budget) {
   const Projection project(view);
   const double coarse = longest_side(whole) / parameters.resolution;
   if (!(coarse > 0) || !(project.distance() > 0) || !(view.camera.height > 0)) return {};
@@ -174,16 +188,22 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
     std::vector<HalfSpace> inside = project.sides(cells_beside * cell);
     inside.push_back(project.no_deeper(depths->farthest + cells_beside * cell));
     focus.part = cut_surface(whole, inside);
-    const double pixels = double(view.width) * view.height;
-    cell = std::max(cell, std::sqrt(area_of(focus.part.surface) / (cells_per_pixel * pixels)));
+    cell = std::max(cell, std::sqrt(area_of(focus.part.surface) / budget));
   }
   const double longest = longest_side(focus.part.surface);
   if (!(longest > 0)) return {};
-  focus.resolution = affordable(focus.part.surface, parameters, std::ceil(longest / cell), double(available));
+  focus.wanted = int(std::min<double>(std::ceil(longest / cell), most_cells(parameters)));
+  focus.resolution = affordable(focus.part.surface, parameters, focus.wanted, double(available));
   if (focus.resolution == 0) return {};
   focus.cell_size = longest / focus.resolution;
   if (focus.cell_size * coarsest_cell > coarse) return {};  // no finer than the whole
   return focus;
+}
+
+std::string coarser_than_pixels(const Focus& focus) {
+  if (focus.resolution >= focus.wanted) return {};
+  return fmt::format("the memory holds {} of the {} cells along a close-up that its pixels ask for: it is coarser",
+                     focus.resolution, focus.wanted);
 }
 
 }  // namespace nacre

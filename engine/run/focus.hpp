@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/camera.hpp"
@@ -14,11 +15,14 @@ namespace nacre {
 struct FlowView {
   Camera camera;
   int width = 1024, height = 768;
+
+  bool operator==(const FlowView&) const = default;
 };
 
 struct Focus {
   SurfacePart part;      ///< what is in view, with a margin as wide as streaks and a step are long
   int resolution = 0;    ///< for FlowParameters, of the part
+  int wanted = 0;        ///< the same, if the memory did not count
   double cell_size = 0;  ///< world units
   double pixel = 0;      ///< edge of a pixel where the surface is nearest, world units
 };
@@ -33,10 +37,21 @@ inline constexpr double coarsest_cell = 1.5;
 int picture_resolution(const FlowView& view, const PreparedSurface& surface, const FlowParameters& parameters,
                        std::size_t available);
 
+/// Surface cells of a close-up, at most: in a picture, and in a window, where the user waits for it.
+double picture_budget(const FlowView& view);
+double window_budget(const FlowView& view);
+
 /// The focus for a view; none where the whole surface is in view, nothing is, or where the whole's cells are fine
-/// enough. Cells are a pixel, or larger where the memory (`available` bytes), the picture's budget of four cells a
-/// pixel, or the limits of the method ask for it.
+/// enough. Cells are a pixel, or larger where the memory (`available` bytes), the `budget` of surface cells, or
+/// the limits of the method ask for it.
 std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
-                              std::size_t available);
+                              std::size_t available, double budget);
+
+/// A sentence for the user where the memory makes a focus coarser; else empty.
+std::string coarser_than_pixels(const Focus& focus);
+
+/// Why a surface that moves has no focus: a sentence for the user.
+inline constexpr const char* no_focus_where_it_moves =
+    "the surface moves: a close-up is drawn with the texture of the whole; a larger resolution makes it sharper";
 
 }  // namespace nacre

@@ -15,20 +15,23 @@
 namespace nacre {
 namespace {
 
-SurfaceTexture surface_texture(const FlowEmbedded& told) {
-  const FlowLookup& l = told.lookup;
-  if (l.kind == FlowLookup::Kind::grid) return SparseTexture(sparse_lookup(l), told.rimmed);
-  return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer, l.child});
-}
-
 constexpr double least_box = 14;  ///< pixels: boxes that are smaller on the screen would cover it
 constexpr std::array<float, 4> box_colour{0.1f, 0.25f, 0.5f, 0.25f};
 
 }  // namespace
 
+SurfaceTexture FlowScene::surface_texture(const FlowLookup& l, const std::vector<std::uint32_t>& rimmed) {
+  if (l.kind == FlowLookup::Kind::grid) return SparseTexture(sparse_lookup(l), rimmed);
+  return OctreeTexture({l.levels, l.origin, l.cell_size, l.node, l.level_start, l.layer, l.child});
+}
+
+TextureLayout FlowScene::texture_layout(const FlowLookup& l) {
+  return {l.means > 0 ? std::int64_t(l.values) : -1, l.sheet_shift};
+}
+
 FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
-    : lookup(surface_texture(told)),
-      layout{told.lookup.means > 0 ? std::int64_t(told.lookup.values) : -1, told.lookup.sheet_shift},
+    : lookup(surface_texture(told.lookup, told.rimmed)),
+      layout(texture_layout(told.lookup)),
       info(told.info),
       boxes(told.boxes),
       number(told.number),
@@ -45,6 +48,10 @@ FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, boo
 
 FlowScene::~FlowScene() {
   worker_.finish();  // nobody writes to the memory any more
+  focus_.reset();
+  next_focus_.reset();
+  former_focus_.reset();
+  leaving_focuses_.clear();
   shown_.reset();
   next_.reset();
 }
@@ -71,6 +78,8 @@ void FlowScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   const FlowRerun rerun = pass_on(settings, changed.has("begin_at"));
   if (!(rerun == FlowRerun())) failure_.clear();
   stale_ = stale_ || rerun.has(FlowStage::step);
+  if (rerun.has(FlowStage::start) || changed.has("focus")) drop_focus();
+  colour_focus();
   ++look_version_;
 }
 
@@ -91,7 +100,7 @@ void FlowScene::begin_write(const std::filesystem::path& file) {
   worker_.write(file);
 }
 
-bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy(); }
+bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy() && !focus_changes(); }
 std::string FlowScene::title() const { return name_.empty() ? "" : name_ + ": " + results_.data.array; }
 
 std::string FlowScene::state() const {
@@ -138,6 +147,7 @@ Image FlowScene::overlay(int width, int height) {
 void FlowScene::advance(double now) {
   while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
   ask_boxes();
+  look(now);
   if (!wants_step() || now - last_step_ < 1 / (settings_.fps * settings_.view.play_speed)) return;
   if (play_kept() || begin_step(false)) last_step_ = now;
 }
@@ -176,9 +186,15 @@ bool FlowScene::begin_step(bool wait) {
   if (!no_texture_.empty()) return failure_ = no_texture_, false;  // what is shown has no room for the newest values
   Texture* const texture = written();
   if (!texture || texture->values.writing() || !worker_.ready()) return false;
+  float* focus_memory = nullptr;
+  int focus = 0;
+  if (!lend_focus(wait, focus_memory, focus)) return false;
   void* memory = texture->values.begin_write(wait);
-  if (!memory) return false;
-  worker_.step(static_cast<float*>(memory));
+  if (!memory) {
+    if (focus_memory) focus_->values.cancel_write(), focus_->in_step = false;
+    return false;
+  }
+  worker_.step(static_cast<float*>(memory), focus_memory, focus);
   stale_ = false;
   return true;
 }
@@ -195,6 +211,8 @@ void FlowScene::take(SurfaceRead& told) {
   name_ = std::move(told.name);
   results_.tree = std::move(told.tree);
   area_ = told.area;
+  box_ = {Vec3d(1e300), Vec3d(-1e300)};
+  for (const Vec3d& p : results_.corners) box_ = {min(box_[0], p), max(box_[1], p)};
   failure_.clear();
 }
 
@@ -235,6 +253,7 @@ void FlowScene::show_colours(const std::vector<float>& scalar) {
     colours_.set_scalar(results_.colours.range.places(scalar), results_.colours.range.bottom(),
                         results_.colours.range.top());
   scalar_ = scalar;
+  colour_focus();
 }
 
 void FlowScene::take(FlowArrows& told) {
@@ -243,6 +262,7 @@ void FlowScene::take(FlowArrows& told) {
 }
 
 void FlowScene::take(FlowEmbedded& told) {
+  drop_focus();
   failure_.clear();
   no_texture_.clear();
   next_.reset();
@@ -259,6 +279,7 @@ void FlowScene::take(FlowBoxed& told) {
 }
 
 void FlowScene::take(FlowStarted& told) {
+  drop_focus();
   results_.span = told.span;
   skipped_ = told.skipped;
   newest_ = -1;
@@ -270,6 +291,7 @@ void FlowScene::take(FlowStarted& told) {
 
 void FlowScene::take(FlowStepped& told) {
   written()->values.end_write();
+  return_focus(told.focus);
   if (next_) {
     if (shown_) copied_ += shown_->copied_bytes();
     shown_ = std::move(next_);
@@ -308,12 +330,14 @@ void FlowScene::show_moment(double time, const std::vector<float>& scalar,
 void FlowScene::take(FlowInterrupted&) {
   if (shown_) shown_->values.cancel_write();
   if (next_) next_->values.cancel_write();
+  return_focus(false);
   stale_ = true;
 }
 
 void FlowScene::draw(const View& view) {
   view_ = view;
   if (!surface_) return;
+  if (lockstep_) await_focus(view);
   const KeptFrame* const kept = looked_back_at();
   colours_.set_isolines(settings_.view.isolines);
   surface_pass_.draw(view, surface_, colours_,
@@ -321,6 +345,7 @@ void FlowScene::draw(const View& view) {
                      : shown_ ? &shown_->values.texture()
                               : nullptr,
                      settings_.back_faces);
+  if (!kept) draw_focus(view);
   if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.view.arrows) draw_arrows(view);
   if (settings_.view.boxes && shown_ && shown_->boxed) draw_boxes(view);

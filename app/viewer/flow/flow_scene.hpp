@@ -57,6 +57,14 @@ class FlowScene : public Scene {
   std::string remark() const override { return shown_ ? shown_->values.remark() : std::string(); }
   SceneTotals totals() const override;
   int steps() const { return results_.steps; }
+  void set_lockstep(bool on) override { lockstep_ = on; }
+  /// Ends the waiting of frames in lockstep; null: nothing does.
+  void set_stop(const std::atomic<bool>* stop) { stop_ = stop; }
+  bool focused() const;  ///< a close-up is shown with cells as fine as pixels, fully faded in
+  /// Parts of the surface that have memory for a texture of their own: what is shown, and what comes and goes.
+  std::size_t focuses() const {
+    return leaving_focuses_.size() + bool(focus_) + bool(next_focus_) + bool(former_focus_);
+  }
   std::uint64_t copied_bytes() const { return copied_ + (shown_ ? shown_->copied_bytes() : 0); }
   const FlowResults& results() const { return results_; }
   const Device& device() const override { return worker_.device(); }
@@ -79,6 +87,25 @@ class FlowScene : public Scene {
     std::uint64_t copied_bytes() const { return values.copied_bytes() + (codes ? codes->copied_bytes() : 0); }
   };
 
+  /// The part of the surface that a close-up shows, drawn over the whole.
+  struct FocusTexture {
+    std::shared_ptr<const SurfacePart> part;
+    SurfaceBuffers surface;
+    SurfaceColours colours;
+    SurfacePass pass;
+    SharedBuffer values;
+    int number;
+    double pixel = 0;      ///< edge of the pixels that it was made for, world units
+    double shown_at = 0;   ///< since when; it is faded in from there
+    bool in_step = false;  ///< it is lent to the worker for a step
+
+    FocusTexture(FlowFocused& told, Device& device);
+    double opacity(double now) const;
+  };
+
+  static SurfaceTexture surface_texture(const FlowLookup& lookup, const std::vector<std::uint32_t>& rimmed);
+  static TextureLayout texture_layout(const FlowLookup& lookup);
+
   void take(FlowEvent& event);
   void take(SurfaceRead& told);
   void take(FlowOffer& told) { results_.offer = std::move(told); }
@@ -89,11 +116,29 @@ class FlowScene : public Scene {
   void take(FlowMoment& told);
   void take(FlowStarted& told);
   void take(FlowStepped& told);
+  void take(FlowFocused& told);
+  void take(FlowFocusFilled& told);
   void take(FlowSampled& told) { sampled_ = told; }
   void take(FlowWritten& told) { written_ = std::move(told.failure); }
   void take(FlowInterrupted& told);
   void take(FlowFailed& told) { failure_ = std::move(told.what); }
   bool wants_step() const { return (settings_.view.play && !ended()) || stale_; }
+
+  // Focus, in flow_scene_focus.cpp.
+  void look(double now);
+  void await_focus(const View& view);
+  bool sees(const View& view);
+  double pixel() const;
+  bool cells_are_fine() const;
+  bool focus_changes() const;
+  void ask_focus();
+  void drop_focus();
+  void release(std::unique_ptr<FocusTexture>& texture);
+  void fill_focus();
+  bool lend_focus(bool wait, float*& memory, int& number);
+  void return_focus(bool written);
+  void colour_focus();
+  void draw_focus(const View& view);
 
   // Time, in flow_transport.cpp. Positions are those of Transport.
   FlowRerun pass_on(const Settings& settings, bool jumps);
@@ -130,6 +175,18 @@ class FlowScene : public Scene {
   ArrowPass arrow_pass_;
   BoxPass box_pass_;
   std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
+  /// Drawn; waits for its first values; drawn below the first until that is faded in; still written to.
+  std::unique_ptr<FocusTexture> focus_, next_focus_, former_focus_;
+  std::vector<std::unique_ptr<FocusTexture>> leaving_focuses_;
+  FlowView seen_{{}, 0, 0};           ///< of the last frame
+  double now_ = 0, rests_since_ = 0;  ///< seconds
+  bool looked_ = false;               ///< a focus was asked for, for this view
+  bool awaits_focus_ = false;         ///< that is not answered
+  bool begun_looking_ = false;        ///< a frame was made in lockstep
+  bool lockstep_ = false;             ///< frames wait for their focus
+  const std::atomic<bool>* stop_ = nullptr;
+  int focus_request_ = 0;       ///< the newest
+  std::array<Vec3d, 2> box_{};  ///< around the surface: lower and upper corner
   FlowResults results_;
   std::uint64_t version_ = 1;
   std::uint64_t surfaces_ = 0;  ///< read so far

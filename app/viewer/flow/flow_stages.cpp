@@ -150,6 +150,7 @@ FlowParameters FlowWorker::parameters() const {
 
 void FlowWorker::embed() {
   has_values_ = false;
+  focus_.reset();
   ++embeddings_;
   const PreparedSurface& surface = vectors_->surface();
   const FlowView view{fit_camera("iso", triangle_corners(surface), settings_.width, settings_.height), settings_.width,
@@ -173,12 +174,17 @@ void FlowWorker::tell_embedded() {
   tell(std::move(told));
 }
 
+/// Of a flow that comes round, when it has done so as often as it can.
+double FlowWorker::flow_end() const {
+  return loop_ ? span_.start + (span_.end - span_.first) * rounds(settings_.flow.steps, loop_) : span_.end;
+}
+
 void FlowWorker::start() {
   has_values_ = false;
+  focus_.reset();
   span_ = flow_span(settings_, {vectors_->start(), vectors_->end()});
   const int n = rounds(settings_.flow.steps, loop_);
-  const double end = loop_ ? span_.start + (span_.end - span_.first) * n : span_.end;
-  FlowVectors vectors = flow_vectors(*vectors_, span_.start, end);
+  FlowVectors vectors = flow_vectors(*vectors_, span_.start, flow_end());
   vectors.at = [this](double t, std::span<Vec3f> out) { vectors_->material_vectors(wrapped(t), out); };
   steps_in_all_ = loop_ ? settings_.flow.steps * n : span_.steps;
   pipeline_->parameters = parameters();
@@ -213,8 +219,10 @@ void FlowWorker::make_step() {
   pipeline_->flow().step();
   motion_->show();
   FlowStepped told;
+  ++steps_made_;
+  told.focus = focus_memory_.first && step_focus(focus_memory_.first, focus_memory_.second);
   told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
-  told.number = ++steps_made_;
+  told.number = steps_made_;
   told.time = shown_time_ = wrapped(pipeline_->flow().time());
   told.scalar = scalar(*vectors_, told.time);
   told.vectors = vectors_at(*vectors_, told.time);

@@ -57,6 +57,7 @@ void FlowScene::seek(int position) {
 
 /// From the noise. Colours and vectors come at once; the texture that was seen stays until there is another.
 void FlowScene::restart_at(int position) {
+  drop_focus();
   looks_back_ = false;
   warming_ = true;
   position_ = position;

@@ -54,10 +54,11 @@ bool FlowWorker::ready() const {
   return started_ && lost_.empty() && !cancelled_ && !next() && !step_ && doing_ != FlowStage::step && events_.empty();
 }
 
-void FlowWorker::step(float* memory) {
+void FlowWorker::step(float* memory, float* focus_memory, int focus) {
   {
     std::scoped_lock lock(mutex_);
     step_ = memory;
+    focus_step_ = {focus_memory, focus};
   }
   wake_.notify_all();
 }
@@ -80,6 +81,7 @@ FlowRerun FlowWorker::set_settings(const Settings& settings) {
     due_.add(rerun);
     if (rerun.has(FlowStage::start)) {
       started_ = false;
+      stop_focusing();
       if (step_) drop_step();
       for (const FlowStage stage : {FlowStage::surface, FlowStage::vectors, FlowStage::embed, FlowStage::start})
         if (rerun.has(stage) && doing_ && stage <= *doing_) interrupt_ = true;
@@ -92,6 +94,7 @@ FlowRerun FlowWorker::set_settings(const Settings& settings) {
 void FlowWorker::cancel() {
   std::scoped_lock lock(mutex_);
   cancelled_ = true;
+  stop_focusing();
   if (doing_ && *doing_ != FlowStage::step) interrupt_ = true;
 }
 
@@ -134,6 +137,7 @@ void FlowWorker::write(const std::filesystem::path& file) {
 
 std::string FlowWorker::stage() const {
   std::scoped_lock lock(mutex_);
+  if (focusing_) return "close-up";
   if (!doing_) return "";
   switch (*doing_) {
     case FlowStage::surface:
@@ -154,7 +158,9 @@ std::optional<FlowStage> FlowWorker::next() const {
   return {};
 }
 
-bool FlowWorker::has_work() const { return file_ || (lost_.empty() && (next() || sample_ || boxes_ || step_)); }
+bool FlowWorker::has_work() const {
+  return file_ || (lost_.empty() && (next() || sample_ || boxes_ || step_ || has_focus_work()));
+}
 
 void FlowWorker::run() {
   if (low_priority_) make_way();
@@ -167,6 +173,8 @@ void FlowWorker::run() {
       perform(*stage, lock);
     } else if (file_ || sample_ || boxes_) {
       run_errands(lock);
+    } else if (has_focus_work()) {
+      run_focus(lock);
     } else {
       perform(FlowStage::step, lock);
     }
@@ -202,7 +210,10 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
     due_.remove(FlowStage::vectors);
     due_.remove(FlowStage::colours);
   }
-  if (stage == FlowStage::step) memory_ = *std::exchange(step_, {});
+  if (stage == FlowStage::step) {
+    memory_ = *std::exchange(step_, {});
+    focus_memory_ = std::exchange(focus_step_, {});
+  }
   doing_ = stage;
   settings_ = wanted_;
   interrupt_ = false;

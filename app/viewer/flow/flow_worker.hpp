@@ -18,6 +18,7 @@
 #include "compute/raycast/triangle_tree.hpp"
 #include "engine/render/geometry.hpp"
 #include "engine/render/sparse_texture.hpp"
+#include "engine/run/focus.hpp"
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_motion.hpp"
@@ -89,6 +90,27 @@ struct FlowStepped {
   std::vector<float> scalar;
   std::shared_ptr<const std::vector<Vec3f>> vectors;  ///< one per point, at that time
   std::shared_ptr<const MovedSurface> shape;          ///< at that time; null: it does not move
+  bool focus = false;                                 ///< the focus is at that step, too, in the memory given for it
+};
+
+/// A request for a focus is answered. With a part: it is embedded, warmed up, and one step behind the texture of the
+/// whole. Without one there is none for that view, or it was interrupted.
+struct FlowFocused {
+  int request = 0;
+  int number = 0;  ///< larger than that of all before
+  std::shared_ptr<const SurfacePart> part;
+  SurfaceGeometry geometry;
+  FlowLookup lookup;
+  std::vector<std::uint32_t> rimmed;  ///< of a grid: its texels with_rims
+  bool ends_former = false;           ///< the focus before it, if there was one, takes no steps any more
+  std::string remark;                 ///< for the user; empty: none
+};
+
+/// The values of that focus at the newest step are in the memory that was given for them; or, if not `written`, will
+/// never be.
+struct FlowFocusFilled {
+  int number = 0;
+  bool written = false;
 };
 
 /// Shown values at the requested positions.
@@ -110,8 +132,9 @@ struct FlowFailed {
   std::string what;
 };
 
-using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowMoment,
-                               FlowStarted, FlowStepped, FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
+using FlowEvent =
+    std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowMoment, FlowStarted,
+                 FlowStepped, FlowFocused, FlowFocusFilled, FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
@@ -138,8 +161,9 @@ class FlowWorker : public Worker<FlowEvent> {
   /// May `step` be called? Not before FlowStarted, not before the last step's event, and not while knobs are taken
   /// over.
   bool ready() const;
-  /// Makes the next step and writes what is to be shown to `memory` of the device (null: the pipeline's own).
-  void step(float* memory);
+  /// Makes the next step and writes what is to be shown to `memory` of the device (null: the pipeline's own). The same
+  /// for the focus of number `focus` and its memory.
+  void step(float* memory, float* focus_memory = nullptr, int focus = 0);
 
   /// Takes other knobs over: at once where a step takes them, else it does again what depends on them, and interrupts
   /// what does. Returns the stages that the change concerns.
@@ -155,18 +179,46 @@ class FlowWorker : public Worker<FlowEvent> {
   /// Asks for the boxes of an embedding in `memory` of the device; FlowBoxed answers. Memory for one that has been
   /// followed by another is not touched.
   void show_boxes(std::uint64_t* memory, int embedding);
+  /// Asks for a focus on what this view shows, with a budget of cells (`focus_on`), made between two steps.
+  /// Each request has one answer, FlowFocused, also
+  /// where another request or one of the next two calls puts an end to it.
+  void focus(const FlowView& view, double budget, int request);
+  void stop_focus();  ///< no other focus is wanted
+  void drop_focus();  ///< nor the one that there is
+  /// Asks for the values of the focus of that number at the newest step, in `memory` of the device; FlowFocusFilled
+  /// answers.
+  void fill_focus(float* memory, int number);
   /// Writes the values as `nacre flow --out` does, after what goes on; ends with FlowWritten.
   void write(const std::filesystem::path& file);
 
   std::string stage() const;  ///< what it does now, for the panel: "embedding"; empty: nothing
 
  private:
+  struct FocusRequest {
+    FlowView view;
+    double budget;
+    int number;
+  };
+
+  /// A focus that takes its steps beside the texture of the whole.
+  struct WorkerFocus {
+    std::unique_ptr<FlowPipeline> pipeline;
+    std::shared_ptr<SurfacePart> part;
+    std::uint64_t values = 0;  ///< where its means begin behind its shown values; 0: there are none
+    int number = 0, resolution = 0;
+    int steps = 0;         ///< the step of the whole that it is at
+    int steps_in_all = 0;  ///< of its own flow
+  };
+
   // With the mutex held.
   std::optional<FlowStage> next() const;
   bool has_work() const;
+  bool has_focus_work() const;
+  void stop_focusing();
 
   void run();
   void run_errands(std::unique_lock<std::mutex>& lock);
+  void run_focus(std::unique_lock<std::mutex>& lock);
   void perform(FlowStage stage, std::unique_lock<std::mutex>& lock);
   void undo(FlowStage stage, const std::string& failure);
   void drop_step();
@@ -182,6 +234,10 @@ class FlowWorker : public Worker<FlowEvent> {
   FlowParameters parameters() const;
   void start();
   void make_step();
+  double flow_end() const;
+  void make_focus(const FocusRequest& wanted, FlowFocused& answer);
+  void note_focus_memory();
+  bool step_focus(float* memory, int number);
   void answer_sample(const Vec3d& place);
   void write_boxes(std::uint64_t* memory, int embedding);
   void write_values(const std::filesystem::path& file);
@@ -203,15 +259,22 @@ class FlowWorker : public Worker<FlowEvent> {
   int steps_made_ = 0, steps_in_all_ = 0;
   double shown_time_ = 0;
   bool has_values_ = false;
-  float* memory_ = nullptr;  ///< of the step that it makes
-  int embeddings_ = 0;       ///< begun so far
-  int resolution_ = 0;       ///< of the embedding
-  std::uint64_t means_ = 0;  ///< where means of blocks begin behind the shown values; 0: there are none
+  float* memory_ = nullptr;                ///< of the step that it makes
+  std::pair<float*, int> focus_memory_{};  ///< the same of the focus, and its number
+  std::unique_ptr<WorkerFocus> focus_;     ///< null: there is none
+  int focuses_ = 0;                        ///< made so far
+  int embeddings_ = 0;                     ///< begun so far
+  int resolution_ = 0;                     ///< of the embedding
+  std::uint64_t means_ = 0;                ///< where means of blocks begin behind the shown values; 0: there are none
 
   // Guarded by the mutex.
   FlowRerun due_;
   std::optional<FlowStage> doing_;
-  std::optional<float*> step_;  ///< is to be made, into this memory
+  std::optional<float*> step_;           ///< is to be made, into this memory
+  std::pair<float*, int> focus_step_{};  ///< with it, the focus of that number
+  std::optional<FocusRequest> focus_wanted_;
+  std::vector<std::pair<float*, int>> focus_fills_;  ///< focuses to be written, and their numbers
+  bool focusing_ = false, drops_focus_ = false;
   std::optional<Vec3d> sample_;
   std::optional<std::pair<std::uint64_t*, int>> boxes_;  ///< where to, and of which embedding
   std::optional<std::filesystem::path> file_;

@@ -17,6 +17,8 @@ OpenScene open_scene(const Session& session, const SceneOptions& options) {
     return {std::move(scene), std::move(panel)};
   }
   auto scene = std::make_unique<FlowScene>(session, options.open_device(), options.loop, options.low_priority);
+  scene->set_lockstep(options.lockstep);
+  scene->set_stop(options.stop);
   auto panel = std::make_unique<FlowPanel>(scene->results());
   return {std::move(scene), std::move(panel)};
 }

@@ -100,7 +100,7 @@ class Worker {
       const std::size_t peak = pipeline.peak_bytes();
       std::scoped_lock lock(mutex_);
       timers_ = std::move(timers);
-      peak_bytes_ = peak;
+      peak_bytes_ = std::max(peak_bytes_, peak);
     } catch (const std::exception& error) {
       std::scoped_lock lock(mutex_);
       if (lost_.empty()) lost_ = error.what();
