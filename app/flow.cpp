@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/picture_options.hpp"
+#include "app/ranks.hpp"
 #include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
@@ -30,6 +31,8 @@
 
 namespace nacre {
 namespace {
+
+using nlohmann::json;
 
 struct FlowOptions {
   CommonOptions common;
@@ -90,8 +93,8 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
 
 /// What the knob `resolution` leaves to the picture.
 int choose_resolution(const FlowOptions& options, const FlowView& view, const PreparedSurface& surface,
-                      const FlowParameters& parameters, const Device& device) {
-  const int resolution = picture_resolution(view, surface, parameters, device.available_bytes());
+                      const FlowParameters& parameters, std::size_t available) {
+  const int resolution = picture_resolution(view, surface, parameters, available);
   if (parameters.resolution == 0)
     say(options.common, fmt::format("resolution: {} cells along the longest side, for a picture of {} x {} pixels",
                                     resolution, view.width, view.height));
@@ -100,11 +103,11 @@ int choose_resolution(const FlowOptions& options, const FlowView& view, const Pr
 
 /// What a close-up is computed on; none: the whole surface.
 std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const FlowView& view,
-                                  const PreparedSurface& surface, bool moves, const Device& device) {
+                                  const PreparedSurface& surface, bool moves, std::size_t available) {
   const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
   if (!settings.focus || !pictures || settings.orbit != 0) return {};
   if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
-  std::optional<Focus> focus = focus_on(view, surface, settings.flow, device.available_bytes(), picture_budget(view));
+  std::optional<Focus> focus = focus_on(view, surface, settings.flow, available, picture_budget(view));
   if (!focus) return {};
   if (moves) {
     say(options.common, no_focus_where_it_moves);
@@ -124,11 +127,10 @@ std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& se
   return focus;
 }
 
-/// Where every frame goes; null if it was not asked for.
+/// Where every frame goes; null if it was not asked for, or another process writes it.
 struct Films {
   std::unique_ptr<FrameSink> frames, video;
-
-  bool any() const { return frames || video; }
+  bool asked = false;  ///< for frames or a video
   void add(const Image& image) {
     if (frames) frames->add(image);
     if (video) video->add(image);
@@ -137,6 +139,8 @@ struct Films {
 
 Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, Progress& progress) {
   Films films;
+  films.asked = !options.frames.empty() || !options.video.empty();
+  if (!is_first_process()) return films;
   const auto tell = [&](const std::string& line) {
     progress.clear();
     say(options.common, line);
@@ -157,7 +161,7 @@ std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const
     pipeline.flow().step();
     seconds.push_back(now() - before);
     motion.show();
-    if (films.any()) {
+    if (films.asked) {
       const Image image = painter.paint(k);
       StageTimers::Scope scope(pipeline.timers(), "write");
       films.add(image);
@@ -181,13 +185,17 @@ Origin flow_origin(const FlowOptions& options, const Session& session, const std
   return origin;
 }
 
-/// Returns the files.
+/// Returns the files. All processes paint, and the first one writes.
 std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, const FrameRange& steps,
                                        FlowPainter& painter, Films& films, const Origin& origin) {
   std::vector<std::string> outputs;
   Image image;
   if (!options.image.empty()) image = painter.paint(std::max(0, steps.last - 1));
   StageTimers::Scope scope(pipeline.timers(), "write");
+  if (!is_first_process()) {
+    if (!options.out.empty()) pipeline.flow().values();
+    return {};
+  }
   if (!options.image.empty())
     write_png(options.image, image, origin_of_output(origin, "image")), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
@@ -210,15 +218,40 @@ void write_haemodynamics(const std::string& file, VectorsInTime& input, const Or
             xml_origin(origin_of_output(origin, "haemodynamics")));
 }
 
-void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
+double median(std::vector<double> seconds) {
+  std::sort(seconds.begin(), seconds.end());
+  return seconds.empty() ? 0 : seconds[seconds.size() / 2];
+}
+
+/// What the processes of a run did, on the first: each one's share, memory, bytes sent, and time spent waiting.
+json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& own_report,
+                      const std::vector<double>& seconds) {
+  const EmbeddingInfo& e = pipeline.flow().embedding();
+  const json own = {{"bricks", e.own_bricks},           {"surface_cells", e.own_surface_cells},
+                    {"halo_bricks", e.halo_bricks},     {"memory", own_report["memory"]},
+                    {"stages", own_report["stages"]},   {"seconds_per_step", median(seconds)},
+                    {"sent_bytes", ranks.sent_bytes()}, {"waited_seconds", ranks.waited_seconds()}};
+  json all = gather_reports(ranks, own);
+  double most = 0, sum = 0;
+  for (const json& each : all) {
+    most = std::max(most, each["surface_cells"].get<double>());
+    sum += each["surface_cells"].get<double>();
+  }
+  return {{"count", ranks.count()}, {"imbalance", sum > 0 ? most * ranks.count() / sum : 1}, {"each", std::move(all)}};
+}
+
+void run_flow(FlowOptions options, const KnobOptions& knob_options) {
+  options.common = options_of_process(options.common);
+  Ranks* ranks = run_ranks();
   Session session = requested_session(options.common, options.input, knob_options, "flow");
   Settings& settings = session.settings;
-  check_options(options, settings);
+  if (is_first_process()) check_options(options, settings);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(session));
   const std::unique_ptr<Device> device = open_device(options.common);
   const std::unique_ptr<FlowPipeline> pipeline = make_flow_pipeline(*device);
   pipeline->watch(&interrupt_flag());
   pipeline->parameters = settings.flow;
+  pipeline->ranks = ranks;
   Progress progress(options.common.quiet);
   const FrameRange steps = wanted_steps(options.chunk, remaining_steps(settings));
   InputWatch watch(session.inputs);
@@ -226,24 +259,27 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   VectorsInTime input = read_input(options, session, pipeline->timers());
   if (!options.chunk.empty() && input.moves())
     throw Error("--chunk needs a surface that does not move", "the shape before a part is not known to it");
+  if (ranks && input.moves()) throw Error("a surface that moves needs one process", "", "leave mpirun away");
   const Origin origin = flow_origin(options, session, device->backend());
   for (const OriginFile& each : origin.others) watch.add({each.file});
   if (films.video) films.video->describe(origin_of_output(origin, "video"));
   std::vector<std::string> first_outputs;
-  if (!options.haemodynamics.empty()) {
+  if (!options.haemodynamics.empty() && is_first_process()) {
     StageTimers::Scope scope(pipeline->timers(), "write");
     write_haemodynamics(options.haemodynamics, input, origin);
     first_outputs.push_back(options.haemodynamics);
   }
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
+  if (ranks) require_same_input(*ranks, input, span.start, knob_values(settings).dump());
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 
   const FlowView view{painter.camera(), settings.width, settings.height};
-  settings.flow.resolution = choose_resolution(options, view, surface, settings.flow, *device);
+  const std::size_t available = first_ones(ranks, device->available_bytes());
+  settings.flow.resolution = choose_resolution(options, view, surface, settings.flow, available);
   pipeline->parameters.resolution = settings.flow.resolution;
-  const std::optional<Focus> focus = choose_focus(options, settings, view, surface, input.moves(), *device);
+  const std::optional<Focus> focus = choose_focus(options, settings, view, surface, input.moves(), available);
   const SurfacePart* part = focus ? &focus->part : nullptr;
   if (focus) {
     pipeline->parameters.resolution = focus->resolution;
@@ -272,11 +308,12 @@ void run_flow(const FlowOptions& options, const KnobOptions& knob_options) {
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
   progress.clear();
   if (!options.common.report.empty()) {
-    nlohmann::json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
+    json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
+    if (ranks) report["processes"] = processes_report(*ranks, *pipeline, report, seconds);
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
-    write_report(options.common, std::move(report), outputs, origin);
+    if (is_first_process()) write_report(options.common, std::move(report), outputs, origin);
   }
   print_outputs(outputs);
 }

@@ -17,6 +17,7 @@
 #include "app/commands.hpp"
 #include "app/common.hpp"
 #include "app/parameter_names.hpp"
+#include "app/ranks.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/vtk_child.hpp"
 #include "engine/scene/settings/knobs.hpp"
@@ -28,6 +29,7 @@ enum Status { done = 0, failed = 1, usage = 2, interrupted = 130 };
 
 /// Prints one line, whatever the text.
 Status fail(Status status, std::string line) {
+  nacre::wait_for_the_first();
   for (char& c : line)
     if (c == '\n') c = ' ';
   fmt::print(stderr, "nacre: {}\n", line);
@@ -87,6 +89,8 @@ Status run(std::vector<std::string> arguments) {
     fmt::print("{}", program.help());
     return usage;
   }
+  if (nacre::run_ranks() && nacre::run_ranks()->count() > 1 && !program.got_subcommand("flow"))
+    throw nacre::UsageError("only nacre flow works on several processes; leave mpirun away");
   command();
   return done;
 }
@@ -103,13 +107,10 @@ Status run(std::vector<std::string> arguments) {
   std::abort();
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::set_terminate(leave_without_memory);
-  nacre::catch_interrupts();
-  nacre::watch_import_children(&nacre::interrupt_flag());
+/// Runs the program; whatever it throws becomes a line and a status.
+Status guarded_run(int argc, char** argv) {
   try {
+    nacre::join_run();
     return flushed(run({argv + std::min(argc, 1), argv + argc}));
   } catch (const nacre::Interrupted&) {
     nacre::remove_unfinished_files();
@@ -123,4 +124,13 @@ int main(int argc, char** argv) {
     nacre::remove_unfinished_files();
     return fail(nacre::interrupt_flag() ? interrupted : failed, nacre::with_options(error.what()));
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::set_terminate(leave_without_memory);
+  nacre::catch_interrupts();
+  nacre::watch_import_children(&nacre::interrupt_flag());
+  return nacre::leave_run(guarded_run(argc, argv));
 }

@@ -80,9 +80,12 @@ struct BrickOctreeView {
   const CellPoint* point = nullptr;            ///< per cell
   const std::uint64_t* list_start = nullptr;   ///< brick_count + 1: into `list`
   const std::uint32_t* list = nullptr;         ///< triangles that touch each brick, ascending
+  const std::uint32_t* chosen = nullptr;       ///< bricks that kernels run on; null: all
+  std::uint32_t chosen_count = 0;
 
   NACRE_HD int size() const { return width << levels; }  ///< cells per axis
-  NACRE_HD std::int64_t items() const { return brick_count; }
+  NACRE_HD std::int64_t items() const { return chosen ? chosen_count : brick_count; }
+  NACRE_HD_INLINE std::int64_t brick_of_item(std::int64_t item) const { return chosen ? chosen[item] : item; }
 
   /// Number of the brick at these brick coordinates, or `none`: descends from the root.
   NACRE_HD std::uint32_t locate(const Int3& b) const {
@@ -227,9 +230,10 @@ NACRE_HD void each_masked(Team& team, const CellMask& mask, const Visit& visit) 
 
 template <class Body>
 NACRE_HD void BrickOctreeView::each_cell(Team& team, std::int64_t item, const Body& body) const {
-  const Int3 corner = morton_cell(brick_code[item]) * Int3(width);
-  Cursor cursor(*this, std::uint32_t(item));
-  detail::each_masked(team, brick[item].band, [&](CellIndex cell, int x, int y, int z) {
+  const std::int64_t b = brick_of_item(item);
+  const Int3 corner = morton_cell(brick_code[b]) * Int3(width);
+  Cursor cursor(*this, std::uint32_t(b));
+  detail::each_masked(team, brick[b].band, [&](CellIndex cell, int x, int y, int z) {
     Cursor own = cursor;
     body(cell, corner + Int3(x, y, z), own);
   });
@@ -237,9 +241,10 @@ NACRE_HD void BrickOctreeView::each_cell(Team& team, std::int64_t item, const Bo
 
 template <class Body>
 NACRE_HD void BrickOctreeView::each_surface_cell(Team& team, std::int64_t item, const Body& body) const {
-  const Int3 corner = morton_cell(brick_code[item]) * Int3(width);
-  const OctreeBrick& here = brick[item];
-  Cursor cursor(*this, std::uint32_t(item));
+  const std::int64_t b = brick_of_item(item);
+  const Int3 corner = morton_cell(brick_code[b]) * Int3(width);
+  const OctreeBrick& here = brick[b];
+  Cursor cursor(*this, std::uint32_t(b));
   detail::each_masked(team, here.surface, [&](CellIndex surface_cell, int x, int y, int z) {
     Cursor own = cursor;
     body(surface_cell, here.band.find(x, y, z), corner + Int3(x, y, z), own);

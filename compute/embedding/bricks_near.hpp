@@ -7,6 +7,30 @@
 #include "compute/embedding/clusters.hpp"
 #include "compute/math/morton.hpp"
 
+namespace nacre {
+
+/// Bricks that a process has, by their Morton codes: all; those of a range; or those in a list.
+struct WantedBricks {
+  std::uint64_t first = 0, last = ~std::uint64_t(0);  ///< the range, without `last`
+  const std::uint64_t* code = nullptr;                ///< the list, ascending; null: the range
+  std::uint64_t count = 0;
+
+  NACRE_HD bool contains(std::uint64_t wanted) const {
+    if (!code) return wanted >= first && wanted < last;
+    std::uint64_t low = 0, high = count;
+    while (low < high) {
+      const std::uint64_t middle = low + (high - low) / 2;
+      if (code[middle] < wanted)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low < count && code[low] == wanted;
+  }
+};
+
+}  // namespace nacre
+
 namespace nacre::detail {
 
 /// Calls visit(Morton code) for the bricks that come within `radius` cells of a cluster, and for a few more.
@@ -16,11 +40,15 @@ struct BricksNearCluster {
   const ClusterBound* bound;
   Int3 bricks;
   double cells_per_brick, radius;
+  WantedBricks wanted{};
 
   template <class Visit>
   NACRE_HD void operator()(std::int64_t k, Visit&& visit) const {
     const double scale = 1.0 / cells_per_brick, margin = radius * scale;
-    auto emit = [&](const Int3& brick) { visit(morton(brick)); };
+    auto emit = [&](const Int3& brick) {
+      const std::uint64_t code = morton(brick);
+      if (wanted.contains(code)) visit(code);
+    };
     const double spread = bound[k].radius * scale;
     // For a triangle smaller than a brick, few bricks are near the ball around it and not near the triangle.
     if (spread > 1 && start[k + 1] - start[k] == 1) {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "compute/device/executor.hpp"
 #include "compute/embedding/brick_octree.hpp"
+#include "compute/embedding/brick_ranges.hpp"
 #include "compute/embedding/bricks_near.hpp"
 #include "compute/embedding/closest_in_brick.hpp"
 #include "compute/embedding/octree_nodes.hpp"
@@ -116,10 +118,14 @@ struct GatherBricks {
 struct BricksTouched {
   MeshView mesh;
   int levels;
+  WantedBricks wanted{};
   template <class Visit>
   NACRE_HD void operator()(std::int64_t t, Visit&& visit) const {
     for_cells_near(mesh.corners(std::uint32_t(t)) * (1.0 / BrickOctreeView::width), 0.0, Int3(1 << levels),
-                   [&](const Int3& b) { visit(morton(b)); });
+                   [&](const Int3& b) {
+                     const std::uint64_t code = morton(b);
+                     if (wanted.contains(code)) visit(code);
+                   });
   }
 };
 
@@ -160,6 +166,16 @@ struct BricksUnder {
   }
 };
 
+}  // namespace detail
+
+/// A part of an octree: the bricks of a range of Morton codes, and what lies within `depth` bricks of those.
+struct OctreePart {
+  std::uint64_t first = 0, last = 0;  ///< the range, without `last`
+  int depth = 0;
+};
+
+namespace detail {
+
 /// Fills a BrickOctree step by step.
 template <class Backend>
 class BrickOctreeBuilder {
@@ -171,8 +187,9 @@ class BrickOctreeBuilder {
     tree_.quantum = CellPoint::quantum(radius);
   }
 
-  BrickOctree build() {
+  BrickOctree build(const OctreePart* part) {
     Arena& arena = exec_.arena();
+    std::vector<std::uint64_t> codes;
     {
       Arena::Scope scope(arena);
       const int size = BrickOctreeView::width << tree_.levels;
@@ -182,21 +199,42 @@ class BrickOctreeBuilder {
       const ClusterView view{clusters.order.data(),   clusters.start.data(), clusters.bound.data(),
                              clusters.corners.data(), frame.data(),          float(size) * 1.1e-7f};
       // The centres of a brick's cells are half a cell inside of it.
-      const BricksNearCluster near{clusters.corners.data(), clusters.start.data(),          clusters.bound.data(),
-                                   Int3(1 << tree_.levels), double(BrickOctreeView::width), radius_ - 0.499};
-      require_room(view, clusters.count);
+      BricksNearCluster near{clusters.corners.data(), clusters.start.data(),          clusters.bound.data(),
+                             Int3(1 << tree_.levels), double(BrickOctreeView::width), radius_ - 0.499};
+      if (part) {
+        near.wanted = {part->first, part->last};
+        {
+          Arena::Scope first(arena);
+          codes = place_lists(exec_, clusters.count, near).places.position.download();
+        }
+        codes = codes_around(codes, part->depth, tree_.levels);
+        near.wanted = wanted_ = listed(codes);
+      } else {
+        require_room(view, clusters.count);
+      }
       const PlaceLists lists = place_lists(exec_, clusters.count, near);
       find_cells(view, lists);
     }
-    if (tree_.cells == 0)
+    if (tree_.cells == 0 && !part)
       throw Error("no cell lies near the surface", "no triangle is inside of the grid's domain", "give a surface");
     tree_.nodes = build_octree_nodes(exec_, tree_.brick_code, tree_.levels);
     tree_.neighbour = find_brick_neighbours(exec_, tree_.brick_code, tree_.levels);
-    list_triangles();
+    {
+      Arena::Scope scope(arena);
+      if (part) wanted_ = listed(codes);
+      list_triangles();
+    }
     return tree_;
   }
 
  private:
+  /// In temporary memory of the caller's scope.
+  WantedBricks listed(const std::vector<std::uint64_t>& codes) {
+    Array<std::uint64_t> list = exec_.arena().template temporary<std::uint64_t>(std::max<std::size_t>(1, codes.size()));
+    list.upload(codes);
+    return {0, 0, list.data(), codes.size()};
+  }
+
   static constexpr std::uint32_t bricks_at_once = 2048;  // 13 MB of points at most
 
   /// For triangles of millions of cells squared, it would take hours to find that they do not fit.
@@ -254,7 +292,7 @@ class BrickOctreeBuilder {
   void list_triangles() {
     Arena& arena = exec_.arena();
     Arena::Scope scope(arena);
-    const PlaceLists lists = place_lists(exec_, triangles_, BricksTouched{mesh_, tree_.levels});
+    const PlaceLists lists = place_lists(exec_, triangles_, BricksTouched{mesh_, tree_.levels, wanted_});
     tree_.list_start = arena.permanent<std::uint64_t>(std::size_t(tree_.brick_count) + 1);
     tree_.list = arena.permanent<std::uint32_t>(lists.item.size());
     exec_.for_each(std::int64_t(tree_.brick_count) + 1,
@@ -267,6 +305,7 @@ class BrickOctreeBuilder {
   MeshView mesh_;
   std::uint32_t triangles_;
   double radius_;
+  WantedBricks wanted_{};
   BrickOctree tree_;
 };
 
@@ -276,15 +315,16 @@ class BrickOctreeBuilder {
 /// at most 2^20. Every cell whose centre is within `radius` (1 to 1000 cells) of a triangle is stored, with the closest
 /// point of the whole mesh (of equally distant triangles the lower one); whatever is outside of the domain is cut off.
 /// Empty space costs nothing. Arrays are permanent in the executor's arena; while building, a brick needs some 500
-/// bytes more. Throws Error if levels or radius are out of range, no cell is in the band, or memory is insufficient.
+/// bytes more. `part`: only these bricks, with the same cells as in the whole octree, perhaps none; null: all. Throws
+/// Error if levels or radius are out of range, no cell is in the band, or memory is insufficient.
 template <class Backend>
 BrickOctree build_brick_octree(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
-                               double radius) {
+                               double radius, const OctreePart* part = nullptr) {
   if (levels < 0 || levels > 17)
     throw Error("the grid is too fine", std::to_string(levels) + " levels; at most 2^20 cells per axis",
                 "lower the resolution");
   if (!(radius >= 1 && radius <= 1000)) throw Error("the band's radius is out of range", "", "use 1 to 1000 cells");
-  return detail::BrickOctreeBuilder<Backend>(exec, mesh, triangles, levels, radius).build();
+  return detail::BrickOctreeBuilder<Backend>(exec, mesh, triangles, levels, radius).build(part);
 }
 
 }  // namespace nacre

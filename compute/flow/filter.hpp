@@ -3,6 +3,7 @@
 
 #include "compute/device/executor.hpp"
 #include "compute/device/random.hpp"
+#include "compute/device/ranks.hpp"
 #include "compute/flow/deposit.hpp"
 
 namespace nacre {
@@ -65,6 +66,21 @@ const TextureSpread* measure_spread(Executor<Backend>& exec, std::int64_t n, con
   const Array<TextureSpread> spread = arena.template temporary<TextureSpread>(1);
   exec.reduce_into(moments.data(), n, Moments{}, MomentsOf{value}, AddMoments{});
   exec.for_each(1, SpreadOf{moments.data(), n, spread.data()});
+  return spread.data();
+}
+
+/// The same of the values of several processes, of which this one has `n`. Collective.
+template <class Backend>
+const TextureSpread* measure_spread(Executor<Backend>& exec, std::int64_t n, const float* value, Ranks& ranks) {
+  Arena& arena = exec.arena();
+  const Moments own = exec.reduce(n, Moments{}, MomentsOf{value}, AddMoments{});
+  std::uint64_t all[] = {own.sum, own.squares, std::uint64_t(n)};
+  ranks.sum(all);
+  Array<Moments> moments = arena.template temporary<Moments>(1);
+  const Moments sum{all[0], all[1]};
+  moments.upload({&sum, 1});
+  const Array<TextureSpread> spread = arena.template temporary<TextureSpread>(1);
+  exec.for_each(1, SpreadOf{moments.data(), std::int64_t(all[2]), spread.data()});
   return spread.data();
 }
 

@@ -122,9 +122,13 @@ struct SmoothAlongAndSharpenAcross {
   }
 };
 
+/// How much farther than its own length, in cells on an axis, a streak may come: it is pulled back onto the surface at
+/// every cell.
+inline constexpr int streak_slack = 8;
+
 /// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
-/// to where the flow or the surface ends or turns back; stretched, around 1/2. Streamlines of several cells run side by
-/// side where the surface allows.
+/// to where the flow or the surface ends or turns back, or it strays; stretched, around 1/2. Streamlines of several
+/// cells run side by side where the surface allows.
 template <class Surface>
 struct ConvolveAlongFlow {
   Surface surface;
@@ -146,6 +150,8 @@ struct ConvolveAlongFlow {
     const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
     const Vec3<Float> along = own.direction(), middle(Wide::all(0.5f));
     const Vec3<Float> start = middle + own.normal() * own.plane();
+    const Float far = Wide::all(float(reach + streak_slack));
+    const auto within = [&](const Float& x) { return (x >= Wide::all(0.0f) - far) & (x <= far); };
     Float sum = own.value, count = Wide::all(1.0f);
     for (int side = -1; side <= 1; side += 2) {
       typename Surface::WideCursor cursor(surface);
@@ -156,6 +162,7 @@ struct ConvolveAlongFlow {
         // A cell by Adams and Bashforth's second order: one direction a step.
         p = p + d * Wide::all(1.5f) - before * Wide::all(0.5f);
         const Vec3<Int> in{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
+        runs = runs & within(p.x) & within(p.y) & within(p.z);
         const auto found = cursor.find(position + in, runs);
         const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);
         const Vec3<Float> next = cell.direction() * sign;

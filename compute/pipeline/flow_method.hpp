@@ -19,8 +19,8 @@
 #include "compute/pipeline/moved_shape.hpp"
 #include "compute/pipeline/separate_sheets.hpp"
 #include "compute/raycast/build_triangle_boxes.hpp"
+#include "compute/raycast/draw_among_ranks.hpp"
 #include "compute/raycast/moved_target.hpp"
-#include "compute/raycast/render.hpp"
 #include "compute/raycast/triangle_tree.hpp"
 
 namespace nacre {
@@ -30,7 +30,8 @@ namespace nacre {
 template <class Backend>
 class FlowMethodOn : public FlowMethod {
  public:
-  FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters) : exec_(exec), parameters_(parameters) {}
+  FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters, Ranks* ranks = nullptr)
+      : exec_(exec), parameters_(parameters), ranks_(ranks) {}
 
   void start(const FlowVectors& vectors) override {
     make_arrays(vectors);
@@ -220,15 +221,15 @@ class FlowMethodOn : public FlowMethod {
   }
 
   /// Streaks of `value` along the flow of the frame, around 1/2, into `streaks`. `cell`: edge of a texture cell in
-  /// cells of the domain.
+  /// cells of the domain. `known`: what streaks run through; `on`: where they are made.
   template <class Surface>
-  void draw_streaks(const Surface& on, std::int64_t n, double cell, const float* value, StreakCell* cells,
-                    float* streaks) {
+  void draw_streaks(const Surface& known, const Surface& on, std::int64_t n, double cell, const float* value,
+                    StreakCell* cells, float* streaks) {
     const float least = 1e-6f * float(vectors_.reference_speed);
     auto stage = exec_.stage("streaks");
-    for_each_surface_cell_of(exec_, on, n,
-                             MarkStreakCells<Surface>{on, mesh_, cell, present_vectors_.data(), least, cells});
-    for_each_surface_cell_of(exec_, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value, cells});
+    for_each_surface_cell_of(exec_, known, n,
+                             MarkStreakCells<Surface>{known, mesh_, cell, present_vectors_.data(), least, cells});
+    for_each_surface_cell_of(exec_, known, n, SmoothAlongAndSharpenAcross<Surface>{known, value, cells});
     store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, streaks);
   }
 
@@ -287,11 +288,10 @@ class FlowMethodOn : public FlowMethod {
       const Vec3d target = domain_.to_grid(options.camera.target);
       for (const Vec3d& p : shape_.points()) pixel.reach = std::max(pixel.reach, 1 + length(p - target));
     }
-    const std::size_t n = std::size_t(options.width) * options.height;
-    Array<std::uint32_t> pixels = arena.template temporary<std::uint32_t>(n);
+    Array<std::uint32_t> pixels = arena.template temporary<std::uint32_t>(std::size_t(pixel.width) * pixel.height);
     pixel.pixels = pixels.data();
-    exec_.for_each(std::int64_t(n), pixel);
-    std::vector<std::uint8_t> bytes(4 * n);
+    draw_among(exec_, ranks_, pixel, known_around_);
+    std::vector<std::uint8_t> bytes(pixels.bytes());
     exec_.device().copy_to_host(bytes.data(), pixels.data(), bytes.size());
     return bytes;
   }
@@ -369,6 +369,8 @@ class FlowMethodOn : public FlowMethod {
 
   Executor<Backend>& exec_;
   const FlowParameters& parameters_;
+  Ranks* ranks_;             ///< null: this process is alone
+  double known_around_ = 0;  ///< else: cells around its own in which this one knows the values
   FlowDomain domain_;
   EmbeddingInfo info_;
   FlowVectors vectors_;
@@ -407,8 +409,7 @@ class FlowMethodOn : public FlowMethod {
     view.forward = camera.forward();
     view.right = right * (half * options.width / options.height);
     view.up = up * half;
-    view.distance = length(camera.target - camera.eye) / domain_.cell_size;
-    view.orthographic = camera.orthographic;
+    view.distance = length(camera.target - camera.eye) / domain_.cell_size, view.orthographic = camera.orthographic;
     pixel.scene.light = Vec3f(normalized(-view.forward + right * 0.35 + up * 0.55));
     // A ball around the target that holds the domain, and what the camera sees of it.
     pixel.reach = length(dims) + length(domain_.to_grid(camera.target) - dims * 0.5) + half * 2;

@@ -13,6 +13,7 @@
 
 #include "compute/device/device.hpp"
 #include "compute/device/executor.hpp"
+#include "compute/device/ranks.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/math/vec.hpp"
 #include "compute/raycast/camera.hpp"
@@ -92,6 +93,8 @@ struct EmbeddingInfo {
   std::uint64_t dense_bytes = 0;  ///< the same payload for every texture cell of the box
   std::uint64_t flow_bytes = 0;   ///< on an octree: values, deposits and vectors of its cells, made by `start`
   double cell_size = 0;           ///< edge of a texture cell, world units
+  /// Of this process, where several share the octree; the numbers above are those of all.
+  std::uint64_t own_bricks = 0, own_surface_cells = 0, halo_bricks = 0;
 };
 
 /// One value per surface cell and what belongs to it; world coordinates.
@@ -202,6 +205,10 @@ class FlowPipeline {
   virtual ~FlowPipeline() = default;
 
   FlowParameters parameters;
+  /// The processes that share the flow, each with the whole surface; null: this one alone. Only on the octree of
+  /// bricks, on CPUs, and where the surface does not move. All processes make the same calls; pictures and FlowValues
+  /// are complete on the first, `shown` and `lookup` are those of its own bricks, and there is no `sample_shown`.
+  Ranks* ranks = nullptr;
 
   virtual void embed(const FlowMesh& mesh) = 0;  ///< chooses the method; the surface and flow before it are gone
   /// Embeds another shape while a flow goes on, and carries its texture there (stages rebuild, carry); `vectors` are

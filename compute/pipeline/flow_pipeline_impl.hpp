@@ -60,9 +60,13 @@ class FlowPipelineOf final : public FlowPipeline {
 
  private:
   std::unique_ptr<FlowMethod> make_method(Executor<Backend>& exec) {
+    if (ranks && (parameters.method == EmbeddingKind::grid || parameters.octree != OctreeKind::brick))
+      throw Error("several processes share only an octree of bricks", "", "use `method` octree and `octree` brick");
+    if (ranks && device_.backend() != "cpu")
+      throw Error("several processes work only on CPUs", "this one has " + device_.name(), "use --device cpu");
     if (parameters.method == EmbeddingKind::grid) return std::make_unique<GridFlow<Backend>>(exec, parameters);
     if (parameters.octree == OctreeKind::brick)
-      return std::make_unique<OctreeFlow<Backend, BrickBand>>(exec, parameters);
+      return std::make_unique<OctreeFlow<Backend, BrickBand>>(exec, parameters, ranks);
     return std::make_unique<OctreeFlow<Backend, ThesisBand>>(exec, parameters);
   }
 

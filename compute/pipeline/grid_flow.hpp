@@ -192,7 +192,8 @@ class GridFlow final : public FlowMethodOn<Backend> {
                                        seed_, std::uint32_t(launched_ + 1), carried_.data()});
     if (!this->shows_) return;
     if (parameters_.streaks > 0)
-      this->draw_streaks(GridSurface{texture}, n, 1.0 / refine_, value_.data(), streak_cells_.data(), streaks_.data());
+      this->draw_streaks(GridSurface{texture}, GridSurface{texture}, n, 1.0 / refine_, value_.data(),
+                         streak_cells_.data(), streaks_.data());
     frame_ = parameters_.streaks > 0 ? streaks_.data() : value_.data();
     equalise(frame_);
     exec_.for_each(n, Show{detail_.data(), float(parameters_.contrast), shown_.data(), output_});

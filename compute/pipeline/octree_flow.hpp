@@ -4,113 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "compute/embedding/build_brick_octree.hpp"
-#include "compute/embedding/build_thesis_octree.hpp"
 #include "compute/embedding/tree_boxes.hpp"
 #include "compute/flow/band_advect.hpp"
 #include "compute/flow/band_filter.hpp"
 #include "compute/flow/band_velocity.hpp"
-#include "compute/flow/sample_band.hpp"
 #include "compute/flow/thesis_advect.hpp"
 #include "compute/pipeline/flow_method.hpp"
+#include "compute/pipeline/octree_bands.hpp"
+#include "compute/pipeline/octree_share.hpp"
 #include "compute/raycast/octree_cast.hpp"
 #include "compute/raycast/render.hpp"
 
 namespace nacre {
-
-/// The two-level octree and how flow runs on it: as on the grid, contrast judged in each brick's surroundings.
-struct BrickBand {
-  using Octree = BrickOctree;
-  using Surface = BrickSurface;
-  static constexpr const char* name = "brick octree";
-  static constexpr bool as_thesis = false;
-  static constexpr int smallest_box = 8;  ///< texture cells
-  static std::uint64_t touched(const Octree& tree) { return tree.surface_cells; }
-  /// Triangles of a brick that lists some.
-  static double mean_list(const Octree& tree) { return double(tree.list.size()) / std::max(1u, tree.brick_count); }
-
-  template <class Backend>
-  static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
-                      const FlowDomain& domain, const FlowParameters&) {
-    return build_brick_octree(exec, mesh, triangles, levels, domain.radius);
-  }
-};
-
-/// The thesis octree of cells and its flow, as the thesis has it: every cell of the band releases a particle from its
-/// centre, whose whole life is computed at once; the texture is shown without streaks.
-struct ThesisBand {
-  using Octree = ThesisOctree;
-  using Surface = ThesisSurface;
-  static constexpr const char* name = "source octree";
-  static constexpr bool as_thesis = true;
-  static constexpr int smallest_box = 2;
-  static std::uint64_t touched(const Octree& tree) { return tree.touched_cells; }
-  static double mean_list(const Octree&) { return 0; }  // it lists none
-
-  template <class Backend>
-  static Octree build(Executor<Backend>& exec, const MeshView& mesh, std::uint32_t triangles, int levels,
-                      const FlowDomain& domain, const FlowParameters& parameters) {
-    return build_thesis_octree(exec, mesh, triangles, levels, domain.radius, parameters.neighbour_index);
-  }
-};
-
-namespace detail {
-
-/// Values at points of the band, for probes.
-template <class View>
-struct SampleBandAt {
-  View view;
-  const float* values;
-  const BandPoint* points;
-  float* result;
-  NACRE_HD void operator()(std::int64_t i) const { result[i] = sample_band(view, values, points[i], 0.5f); }
-};
-
-/// Whether a triangle touches a cell that has a value of its own: all do among bricks.
-NACRE_HD inline bool is_touched(const BrickOctreeView&, CellIndex) { return true; }
-NACRE_HD inline bool is_touched(const ThesisOctreeView& view, CellIndex cell) { return view.touches(cell); }
-
-/// What a renderer needs of the tree.
-inline void fill_lookup(const BrickOctree& tree, FlowLookup& lookup) {
-  lookup.kind = FlowLookup::Kind::octree;
-  for (const OctreeNode& node : tree.nodes.node.download()) {
-    lookup.node.push_back(node.first);
-    lookup.node.push_back(node.children);
-  }
-  lookup.level_start = tree.nodes.level_start.download();
-  if (tree.surface_cells > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower `resolution`");
-  lookup.layer.reserve(24 * std::size_t(tree.brick_count));
-  for (const OctreeBrick& brick : tree.brick.download())
-    for (int z = 0; z < BrickOctreeView::width; ++z) {
-      const CellMask& mask = brick.surface;
-      lookup.layer.push_back(std::uint32_t(mask.word[z]));
-      lookup.layer.push_back(std::uint32_t(mask.word[z] >> 32));
-      lookup.layer.push_back(std::uint32_t(mask.first + mask.before[z]));
-    }
-}
-
-inline void fill_lookup(const ThesisOctree& tree, FlowLookup& lookup) {
-  lookup.kind = FlowLookup::Kind::thesis;
-  const std::vector<ThesisNode> nodes = tree.node.download();
-  if (8 * nodes.size() > 0xffffffffu) throw Error("the octree is too large to be drawn", "", "lower `resolution`");
-  lookup.child.reserve(8 * nodes.size());
-  for (const ThesisNode& node : nodes) lookup.child.insert(lookup.child.end(), node.child, node.child + 8);
-}
-
-/// What an output needs of each cell that has a value.
-template <class View>
-struct GatherSurface {
-  View view;
-  std::uint64_t* code;  ///< Morton code of its position; all ones where no triangle touches it
-  CellPoint* point;
-  NACRE_HD void operator()(CellIndex s, CellIndex cell, const Int3& position, typename View::Cursor&) const {
-    code[s] = is_touched(view, cell) ? morton(position) : ~std::uint64_t(0);
-    point[s] = view.point[cell];
-  }
-};
-
-}  // namespace detail
 
 template <class Backend, class Band>
 class OctreeFlow final : public FlowMethodOn<Backend> {
@@ -122,12 +29,21 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     levels_ = make_octree_domain(mesh, parameters_, domain_);
     const FlowMesh embedded = this->separate(mesh, domain_.cell_size, domain_.radius);
     if (this->sheets_) levels_ = make_octree_domain(embedded, parameters_, domain_);
-    require_octree_memory(embedded, parameters_, exec_.arena());
+    if (!ranks_) require_octree_memory(embedded, parameters_, exec_.arena());
+    if (ranks_ && mesh.moves) throw Error("several processes cannot share a surface that moves", "", "use one process");
     auto stage = exec_.stage("embed");
     this->begin_embedding(embedded, mesh);
-    octree_ = Band::build(exec_, mesh_, triangles_, levels_, domain_, parameters_);
-    this->build_boxes(Band::mean_list(octree_), longest_lists, Vec3d(domain_.cells));
+    if (ranks_) {
+      const MeshView on_host{this->points_.data(), embedded.triangles.data(), nullptr};
+      share_.emplace(exec_, *ranks_, cut_octree(*ranks_, on_host, triangles_, levels_),
+                     HaloDepths::of(domain_.radius, parameters_.step_cells, parameters_.streaks));
+    }
+    const OctreePart part = share_ ? share_->part() : OctreePart{};
+    octree_ = Band::build(exec_, mesh_, triangles_, levels_, domain_, parameters_, share_ ? &part : nullptr);
+    if constexpr (!Band::as_thesis)
+      if (share_) share_->take(octree_);
     describe();
+    this->build_boxes(mean_list_, longest_lists, Vec3d(domain_.cells));
     this->end_embedding();
   }
 
@@ -173,7 +89,15 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
  private:
   using Base = FlowMethodOn<Backend>;
   using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
-  using Base::launched_, Base::output_, Base::seed_, Base::steady_, Base::triangles_, Base::ttl_;
+  using Base::known_around_, Base::launched_, Base::output_, Base::ranks_, Base::seed_, Base::steady_, Base::triangles_,
+      Base::ttl_;
+
+  /// What kernels run on that make values of cells: all, or those that are this process's own.
+  View own() const {
+    if constexpr (!Band::as_thesis)
+      if (share_) return share_->own(octree_.view());
+    return octree_.view();
+  }
 
   /// What `start` and `resume` need; noise in it.
   void make_arrays(const FlowVectors& vectors) override {
@@ -213,9 +137,28 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     info_.cells = info_.closest_point_cells = view.cells;
     info_.surface_cells = Band::touched(octree_);
     info_.bytes = octree_.bytes();
+    mean_list_ = Band::mean_list(octree_);
+    if constexpr (!Band::as_thesis)
+      if (share_) describe_share();
     info_.dense_bytes =
         std::uint64_t(double(n) * n * n * double(octree_.bytes()) / std::max<double>(1, double(view.cells)));
     info_.cell_size = domain_.cell_size;
+  }
+
+  /// The numbers of all processes, and those of this one.
+  void describe_share() {
+    info_.own_bricks = share_->own_bricks();
+    info_.own_surface_cells = share_->surface_count();
+    info_.halo_bricks = share_->halo_bricks();
+    std::uint64_t all[] = {share_->own_cells(), share_->surface_count(), info_.bytes, share_->own_bricks(),
+                           share_->own_lists(octree_)};
+    ranks_->sum(all);
+    if (all[0] == 0) throw Error("no cell lies near the surface", "", "give a surface");
+    info_.cells = info_.closest_point_cells = all[0];
+    info_.surface_cells = all[1];
+    info_.bytes = all[2];
+    known_around_ = share_->known_around();
+    mean_list_ = double(all[4]) / double(std::max<std::uint64_t>(1, all[3]));
   }
 
   void fill_slot(const Array<Vec3f>& vectors, const SpeedScale& scale, int slot) override {
@@ -225,7 +168,10 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   void advance(int k) override {
     this->look_ahead(k);
-    exec_.repeat(this->shows_ ? steps_ : unseen_steps_, [&] { launch(k); });
+    if (share_)
+      launch(k);  // it waits for other processes
+    else
+      exec_.repeat(this->shows_ ? steps_ : unseen_steps_, [&] { launch(k); });
     ++launched_;  // not inside: a graph that cannot be made is launched again, one by one
   }
 
@@ -253,10 +199,16 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     particles.rounding = this->rounding_of(launched_);
     {
       auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
-      for_each_surface_cell(exec_, view, particles);
+      for_each_surface_cell(exec_, own(), particles);
+    }
+    if (share_) {
+      auto stage = exec_.stage("exchange");
+      share_->collect(crossed);
+      share_->collect(ended);
+      share_->refresh_beside(crossed);
     }
     auto stage = exec_.stage("extend");
-    const BrickSurface surface{view};
+    const BrickSurface surface{own()};
     for_each_surface_cell_of(
         exec_, surface, std::int64_t(view.surface_cells),
         Normalise<BrickSurface>{surface, ended.data(), crossed.data(), carried_.data(), value_.data()});
@@ -297,24 +249,27 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   /// Sharpening and jitter for the next step, streaks and contrast for the eye.
   void show() override {
+    exchange(value_);
     auto stage = exec_.stage("filter");
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);
     Arena::Scope scope(exec_.arena());
     float* detail = exec_.arena().template temporary<float>(n).data();
-    equalise(Band::as_thesis ? ahead_.data() : value_.data(), detail);
-    for_each_surface_cell(exec_, view,
+    equalise(Band::as_thesis ? ahead_.data() : value_.data(), detail, around_own());
+    for_each_surface_cell(exec_, own(),
                           SharpenBand<View>{view, detail, float(parameters_.sharpen), float(parameters_.jitter), seed_,
                                             std::uint32_t(launched_ + 1), carried_.data()});
     frame_ = value_.data();
     if (!this->shows_) return;
     if constexpr (!Band::as_thesis) {
       if (parameters_.streaks > 0) {
-        this->draw_streaks(BrickSurface{view}, n, 1.0, value_.data(), streak_cells_.data(), streaks_.data());
+        this->draw_streaks(BrickSurface{view}, BrickSurface{own()}, n, 1.0, value_.data(), streak_cells_.data(),
+                           streaks_.data());
         frame_ = streaks_.data();
+        exchange(streaks_, true);
       }
     }
-    equalise(frame_, detail);
+    equalise(frame_, detail, own());
     exec_.for_each(n, Show{detail, float(parameters_.contrast), shown_.data(), output_});
     if (this->output_means_) find_means(view, this->output_means_);
   }
@@ -324,14 +279,37 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     if constexpr (!Band::as_thesis) exec_.for_each(view.items(), BrickMeans{view, shown_.data(), means});
   }
 
-  void equalise(const float* value, float* detail) {
+  /// Gives the halo the values of the processes that own them; `beside`: only around its own bricks.
+  void exchange(const Array<float>& value, bool beside = false) {
+    if constexpr (!Band::as_thesis) {
+      if (!share_) return;
+      auto stage = exec_.stage("exchange");
+      beside ? share_->refresh_beside(value) : share_->refresh(value);
+    }
+  }
+
+  /// Own bricks, and those whose values sharpening asks for.
+  View around_own() const {
+    if constexpr (!Band::as_thesis)
+      if (share_) return share_->detail(octree_.view());
+    return octree_.view();
+  }
+
+  /// Of the values of all processes.
+  const TextureSpread* spread_of(const float* value) {
+    if (!share_) return measure_spread(exec_, std::int64_t(octree_.view().surface_cells), value);
+    const auto n = std::int64_t(share_->surface_count());
+    return measure_spread(exec_, n, value + share_->surface_first(), *ranks_);
+  }
+
+  /// On the bricks of `on`, from the values in those and around them.
+  void equalise(const float* value, float* detail, const View& on) {
     const View view = octree_.view();
-    const auto n = std::int64_t(view.surface_cells);
     Arena::Scope scope(exec_.arena());
-    const TextureSpread* whole = measure_spread(exec_, n, value);
+    const TextureSpread* whole = spread_of(value);
     const auto run = [&](const auto& local) {
       using Local = std::remove_cvref_t<decltype(local)>;
-      for_each_surface_cell(exec_, view,
+      for_each_surface_cell(exec_, on,
                             EqualiseBand<View, Local>{view, value, local, whole, float(parameters_.equalise), detail});
     };
     if constexpr (Band::as_thesis) {
@@ -343,6 +321,8 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   }
 
   typename Band::Octree octree_;
+  std::optional<OctreeShare<Backend>> share_;  ///< none: this process is alone
+  double mean_list_ = 0;                       ///< triangles of a brick
   int levels_ = 0;
   Array<std::uint32_t> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
@@ -361,6 +341,9 @@ std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions&
   BandTarget<View> target{view, this->nearest_triangles()};
   const float* shown = started_ && options.texture ? shown_.data() : nullptr;
   Arena::Scope scope(exec_.arena());
+  if (shown) exchange(shown_);
+  if constexpr (!Band::as_thesis)
+    if (share_) target.own_first = share_->own_first_brick(), target.own_count = std::uint32_t(share_->own_bricks());
   if (shown && !Band::as_thesis) {
     Array<float> means = exec_.arena().template temporary<float>(std::size_t(view.items()));
     find_means(view, means.data());
@@ -396,21 +379,24 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
   const std::vector<std::uint64_t> code = device_code.download();
   const std::vector<CellPoint> point = device_point.download();
   const std::vector<float> value = this->download_frame(frame_, n);
-  FlowValues values(std::size_t(info_.surface_cells));
+  const std::size_t first = share_ ? share_->surface_first() : 0, own = share_ ? share_->surface_count() : n;
+  FlowValues values(share_ ? own : std::size_t(info_.surface_cells));
   const typename Base::Describe describe(*this);
   std::size_t out = 0;
-  for (std::size_t s = 0; s < n; ++s) {
+  for (std::size_t s = first; s < first + own; ++s) {
     if (code[s] == ~std::uint64_t(0)) continue;
     const Vec3d centre = Vec3d(morton_cell(code[s])) + Vec3d(0.5);
     values.value[out] = value[s];
     describe(values, out++, centre, centre + Vec3d(point[s].offset(view.quantum)), point[s].triangle);
   }
+  if (share_) gather_values(*ranks_, values);
   return values;
 }
 
 template <class Backend, class Band>
 std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d> points) {
   this->require_started();
+  if (share_) throw std::logic_error("a probe of a surface that several processes share");
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<BandPoint> host;

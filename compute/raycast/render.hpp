@@ -77,7 +77,8 @@ template <class View>
 struct BandTarget {
   View view;
   NearestTriangles nearest{};
-  const float* means = nullptr;  ///< of the shown values in each brick
+  const float* means = nullptr;                   ///< of the shown values in each brick
+  std::uint32_t own_first = 0, own_count = none;  ///< bricks that this process has to show
 
   NACRE_HD bool find(const MeshView& mesh, const Ray& ray, Hit& hit) const {
     return nearest.boxes ? nearest.find(mesh, ray, hit) : cast(view, mesh, ray, hit);
@@ -94,6 +95,25 @@ struct BandTarget {
     return filtered(footprint, means ? brick_means_width : 0.0f, fine, coarse);
   }
 };
+
+/// What a ray sees of a flow that several processes share.
+struct SeenSample {
+  double t = 1e300;
+  std::uint32_t triangle = none;  ///< none: nothing
+  Vec3f weights{};
+  float value = 0;  ///< of the texture
+};
+
+/// Whether a hit is in what this process has to show: always, unless it shares an octree with others.
+template <class Target>
+NACRE_HD_INLINE bool is_own(const Target&, const Ray&, const Hit&) {
+  return true;
+}
+NACRE_HD_INLINE bool is_own(const BandTarget<BrickOctreeView>& target, const Ray& ray, const Hit& hit) {
+  BrickOctreeView::Cursor cursor(target.view);
+  const std::uint32_t brick = cursor.brick_of(band_point(target.nearest.sheets.place(ray, hit)).base);
+  return brick - target.own_first < target.own_count;
+}
 
 template <class Target>
 struct Scene : Shading {
@@ -142,8 +162,15 @@ struct RenderPixel {
   int width, height, samples;
   double reach;  ///< radius of a ball around the target that contains the surface
   std::uint32_t* pixels;
+  // Among several processes, each finds what there is to see of its own, and one shades what is nearest.
+  std::int64_t first = 0;             ///< pixel of index 0
+  SeenSample* seen = nullptr;         ///< samples^2 entries for each index; null: nothing is recorded
+  const SeenSample* given = nullptr;  ///< null: rays are cast
+  float most = 0;                     ///< cells around a hit in which this process knows the values
+  std::uint32_t* too_wide = nullptr;  ///< set where a footprint goes farther
 
-  NACRE_HD void operator()(std::int64_t i) const {
+  NACRE_HD void operator()(std::int64_t index) const {
+    const std::int64_t i = first + index;
     const int px = int(i % width), py = int(i / width);
     const Shading& shading = scene;
     Vec3f sum{};
@@ -154,16 +181,37 @@ struct RenderPixel {
       Ray ray = camera.ray(x, y, reach);
       ray.fronts_only = shading.hidden_backs;
       Hit hit;
-      if (!scene.target.find(shading.mesh, ray, hit)) {
+      float value = 0;
+      bool met;
+      if (given) {
+        const SeenSample& sample = given[index * (samples * samples) + k];
+        met = sample.triangle != none;
+        hit = {sample.t, sample.triangle, sample.weights};
+        value = sample.value;
+      } else {
+        met = scene.target.find(shading.mesh, ray, hit);
+        const bool own = !seen || (met && is_own(scene.target, ray, hit));
+        if (met && own && shading.shown) value = scene.target.texture(shading.shown, ray, hit, footprint(ray, hit));
+        if (seen) {
+          SeenSample sample;
+          if (own) {
+            sample = {hit.t, hit.triangle, hit.weights, value};
+            const Footprint f = footprint(ray, hit);
+            if (shading.shown && !(length(f.across) + length(f.up) <= 2 * most)) relaxed_store(too_wide, 1);
+          }
+          seen[index * (samples * samples) + k] = sample;
+          continue;
+        }
+      }
+      if (!met) {
         sum += shading.background;
         alpha += shading.background_alpha;
         continue;
       }
-      float value = 0;
-      if (shading.shown) value = scene.target.texture(shading.shown, ray, hit, footprint(ray, hit));
       sum += shade(shading, ray, hit, value);
       alpha += 1;
     }
+    if (seen) return;
     const float n = 1.0f / float(samples * samples);
     pixels[i] = channel(std::sqrt(sum.x * n)) | channel(std::sqrt(sum.y * n)) << 8 |
                 channel(std::sqrt(sum.z * n)) << 16 | channel(alpha * n) << 24;

@@ -1,0 +1,313 @@
+// Nacre: the bricks of the octree that one of several processes has, and what it exchanges with the others.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "compute/device/error.hpp"
+#include "compute/device/ranks.hpp"
+#include "compute/embedding/build_brick_octree.hpp"
+#include "compute/flow/halo_depths.hpp"
+#include "compute/pipeline/flow_pipeline.hpp"
+
+namespace nacre {
+
+/// Where each process's range of Morton codes of bricks begins, and the end of the last: ranges of about equal work,
+/// the same on all processes. `mesh`: as for the octree, on the host, in cells. Collective.
+std::vector<std::uint64_t> cut_octree(Ranks& ranks, const MeshView& mesh, std::uint32_t triangles, int levels);
+
+/// Puts the values of all processes one after the other, on the first of them; on the others none are left. Collective.
+void gather_values(Ranks& ranks, FlowValues& values);
+
+namespace detail {
+
+/// Copies the surface cells of bricks into a row, brick after brick, or back.
+template <class Value>
+struct PackBricks {
+  const OctreeBrick* brick;
+  const std::uint32_t* listed;
+  const std::uint64_t* start;  // of each listed brick in the row
+  const Value* value;
+  Value* row;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const CellMask& mask = brick[listed[i]].surface;
+    const int n = mask.count();
+    for (int k = 0; k < n; ++k) row[start[i] + std::uint64_t(k)] = value[mask.first + CellIndex(k)];
+  }
+};
+
+template <class Value>
+struct UnpackBricks {
+  const OctreeBrick* brick;
+  const std::uint32_t* listed;
+  const std::uint64_t* start;
+  const Value* row;
+  Value* value;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const CellMask& mask = brick[listed[i]].surface;
+    const int n = mask.count();
+    for (int k = 0; k < n; ++k) value[mask.first + CellIndex(k)] = row[start[i] + std::uint64_t(k)];
+  }
+};
+
+/// Sets the surface cells of bricks to 0.
+struct ClearBricks {
+  const OctreeBrick* brick;
+  const std::uint32_t* listed;
+  std::uint64_t* value;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const CellMask& mask = brick[listed[i]].surface;
+    const int n = mask.count();
+    for (int k = 0; k < n; ++k) value[mask.first + CellIndex(k)] = 0;
+  }
+};
+
+/// Adds a row to the surface cells of bricks, of which two may be the same one.
+struct AddToBricks {
+  const OctreeBrick* brick;
+  const std::uint32_t* listed;
+  const std::uint64_t* start;
+  const std::uint64_t* row;
+  std::uint64_t* value;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const CellMask& mask = brick[listed[i]].surface;
+    const int n = mask.count();
+    for (int k = 0; k < n; ++k)
+      if (row[start[i] + std::uint64_t(k)] != 0) atomic_add(value + mask.first + k, row[start[i] + std::uint64_t(k)]);
+  }
+};
+
+}  // namespace detail
+
+/// The share of this process: its own bricks, and a halo of bricks of others that are within some depth of them. The
+/// cells of its octree are numbered on their own; what goes from one process to another goes brick by brick, in the
+/// order of Morton codes, in which both have them.
+template <class Backend>
+class OctreeShare {
+ public:
+  /// `begin`: what cut_octree gives. The arrays of the share are permanent.
+  OctreeShare(Executor<Backend>& exec, Ranks& ranks, std::vector<std::uint64_t> begin, const HaloDepths& depths)
+      : exec_(exec), ranks_(ranks), begin_(std::move(begin)), depths_(depths) {}
+
+  Ranks& ranks() const { return ranks_; }
+  OctreePart part() const { return {begin_[at(ranks_.rank())], begin_[at(ranks_.rank()) + 1], depths_.whole}; }
+
+  /// Takes up the octree of `part`, and finds with the other processes what goes to whom. Collective.
+  void take(const BrickOctree& tree) {
+    code_ = tree.brick_code.download();
+    brick_ = tree.brick.data();
+    const std::vector<OctreeBrick> bricks = tree.brick.download();
+    const OctreePart own = part();
+    own_first_ = std::size_t(std::lower_bound(code_.begin(), code_.end(), own.first) - code_.begin());
+    own_count_ = std::size_t(std::lower_bound(code_.begin(), code_.end(), own.last) - code_.begin()) - own_first_;
+    surface_first_ = own_count_ ? bricks[own_first_].surface.first : 0;
+    for (std::size_t b = own_first_; b < own_first_ + own_count_; ++b) {
+      surface_count_ += detail::cells_of(bricks[b].surface);
+      cells_ += detail::cells_of(bricks[b].band);
+    }
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t b = own_first_; b < own_first_ + own_count_; ++b) chosen.push_back(std::uint32_t(b));
+    own_ = exec_.arena().template permanent_copy<std::uint32_t>(chosen);
+    detail_ = exec_.arena().template permanent_copy<std::uint32_t>(around(tree.levels, depths_.detail, true));
+    deposits_ = make_halo(bricks, around(tree.levels, depths_.deposits, false));
+    beside_ = make_halo(bricks, around(tree.levels, depths_.beside, false));
+    whole_ = make_halo(bricks, around(tree.levels, depths_.whole, false));
+    const std::size_t most = std::max({deposits_.cells(), beside_.cells(), whole_.cells()});
+    row_ = exec_.arena().template permanent<std::uint64_t>(most);
+  }
+
+  BrickOctreeView own(BrickOctreeView view) const { return choose(view, own_); }
+  BrickOctreeView detail(BrickOctreeView view) const { return choose(view, detail_); }
+
+  std::uint64_t own_bricks() const { return own_count_; }
+  std::uint64_t own_cells() const { return cells_; }
+  std::size_t surface_first() const { return surface_first_; }  ///< its own surface cells are consecutive
+  std::size_t surface_count() const { return surface_count_; }
+  std::uint32_t own_first_brick() const { return std::uint32_t(own_first_); }
+  std::size_t halo_bricks() const { return code_.size() - own_count_; }
+  /// Cells around one of its own in which values are known, of which a brick's mean takes away one brick and a half.
+  double known_around() const { return BrickOctreeView::width * (depths_.whole - 1.5) - 1; }
+  /// Triangles in the lists of its own bricks.
+  std::uint64_t own_lists(const BrickOctree& tree) const {
+    const auto start = tree.list_start.download(own_first_, own_count_ + 1);
+    return start.back() - start.front();
+  }
+
+  /// Deposits in cells of others go to those, and theirs come here; in cells of others they are 0 afterwards.
+  void collect(const Array<std::uint64_t>& sums) {
+    send(deposits_, &Halo::theirs, sums);
+    exec_.for_each(std::int64_t(deposits_.theirs.bricks.size()),
+                   detail::ClearBricks{brick_, deposits_.theirs.listed.data(), sums.data()});
+    receive<std::uint64_t>(deposits_, &Halo::mine, [&](const Side& side, const std::uint64_t* row) {
+      exec_.for_each(std::int64_t(side.bricks.size()),
+                     detail::AddToBricks{brick_, side.listed.data(), side.start.data(), row, sums.data()});
+    });
+  }
+
+  /// Gives the cells of the halo the values that they have where they belong: as deep as paths are asked for beside a
+  /// cell, or in all of it.
+  template <class Value>
+  void refresh_beside(const Array<Value>& value) {
+    refresh(beside_, value);
+  }
+  template <class Value>
+  void refresh(const Array<Value>& value) {
+    refresh(whole_, value);
+  }
+
+ private:
+  /// Bricks that take part in an exchange, those that concern one process after those that concern another.
+  struct Side {
+    std::vector<std::uint32_t> bricks;
+    std::vector<std::uint64_t> starts;
+    std::vector<std::pair<int, std::uint64_t>> ends;  ///< process, and where its cells end in the row
+    Array<std::uint32_t> listed;
+    Array<std::uint64_t> start;
+    std::uint64_t cells = 0;
+    std::vector<std::byte> row;
+  };
+  /// Bricks of this process that others have in their halos, and those of theirs that it has in its own.
+  struct Halo {
+    Side mine, theirs;
+    std::size_t cells() const { return std::max<std::size_t>(1, std::max(mine.cells, theirs.cells)); }
+  };
+
+  static std::size_t at(int rank) { return static_cast<std::size_t>(rank); }
+
+  BrickOctreeView choose(BrickOctreeView view, const Array<std::uint32_t>& bricks) const {
+    static constexpr std::uint32_t nothing = 0;
+    view.chosen = bricks.size() ? bricks.data() : &nothing;
+    view.chosen_count = std::uint32_t(bricks.size());
+    return view;
+  }
+
+  /// Bricks that are here, within `depth` of its own ones, with them or without.
+  std::vector<std::uint32_t> around(int levels, int depth, bool with_own) const {
+    std::vector<std::uint32_t> bricks;
+    const std::span own(code_.data() + own_first_, own_count_);
+    for (const std::uint64_t code : codes_around(own, depth, levels)) {
+      const auto found = std::lower_bound(code_.begin(), code_.end(), code);
+      if (found == code_.end() || *found != code) continue;
+      const auto b = std::size_t(found - code_.begin());
+      if (with_own || b < own_first_ || b >= own_first_ + own_count_) bricks.push_back(std::uint32_t(b));
+    }
+    return bricks;
+  }
+
+  int owner_of(std::uint64_t code) const {
+    return int(std::upper_bound(begin_.begin(), begin_.end() - 1, code) - begin_.begin()) - 1;
+  }
+
+  /// Tells the owners of these bricks that they are wanted here. Throws Error where an owner has no such brick or
+  /// another one: then the processes do not see the same surface.
+  Halo make_halo(const std::vector<OctreeBrick>& bricks, std::vector<std::uint32_t> wanted) {
+    Halo halo;
+    std::vector<Ranks::Bytes> ask(at(ranks_.count()));
+    for (const std::uint32_t b : wanted) {
+      const std::uint64_t words[2] = {code_[b], hash_of(bricks[b])};
+      Ranks::Bytes& to = ask[at(owner_of(code_[b]))];
+      const auto* bytes = reinterpret_cast<const std::byte*>(words);
+      to.insert(to.end(), bytes, bytes + sizeof words);
+      add(halo.theirs, bricks, b, owner_of(code_[b]));
+    }
+    const std::vector<Ranks::Bytes> asked = ranks_.exchange(ask);
+    std::uint64_t wrong = 0;
+    for (int q = 0; q < ranks_.count(); ++q)
+      for (std::size_t k = 0; k < asked[at(q)].size(); k += 16) {
+        std::uint64_t words[2];
+        std::memcpy(words, asked[at(q)].data() + k, sizeof words);
+        const auto found = std::lower_bound(code_.begin(), code_.end(), words[0]);
+        const auto b = std::size_t(found - code_.begin());
+        if (found == code_.end() || *found != words[0] || hash_of(bricks[b]) != words[1])
+          ++wrong;
+        else
+          add(halo.mine, bricks, std::uint32_t(b), q);
+      }
+    ranks_.sum({&wrong, 1});
+    if (wrong > 0) throw Error("the processes do not see the same surface", "", "give all of them the same files");
+    finish(halo.mine);
+    finish(halo.theirs);
+    return halo;
+  }
+
+  static std::uint64_t hash_of(const OctreeBrick& brick) {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (const CellMask* mask : {&brick.band, &brick.surface})
+      for (const std::uint64_t word : mask->word) hash = (hash ^ word) * 0x100000001b3;
+    return hash;
+  }
+
+  static void add(Side& side, const std::vector<OctreeBrick>& bricks, std::uint32_t b, int rank) {
+    side.bricks.push_back(b);
+    side.starts.push_back(side.cells);
+    side.cells += detail::cells_of(bricks[b].surface);
+    if (side.ends.empty() || side.ends.back().first != rank) side.ends.emplace_back(rank, 0);
+    side.ends.back().second = side.cells;
+  }
+
+  void finish(Side& side) {
+    side.listed = exec_.arena().template permanent_copy<std::uint32_t>(side.bricks);
+    side.start = exec_.arena().template permanent_copy<std::uint64_t>(side.starts);
+  }
+
+  /// The parts of a row of `width` bytes a cell.
+  static std::vector<Ranks::Part> parts(Side& side, std::size_t width) {
+    std::vector<Ranks::Part> all;
+    std::uint64_t first = 0;
+    for (const auto& [rank, end] : side.ends) {
+      if (end > first) all.push_back({rank, std::span(side.row).subspan(first * width, (end - first) * width)});
+      first = end;
+    }
+    return all;
+  }
+
+  /// Packs the values of one side, ready to be sent.
+  template <class Value>
+  void send(Halo& halo, Side Halo::*which, const Array<Value>& value) {
+    Side& side = halo.*which;
+    side.row.resize(side.cells * sizeof(Value));
+    auto* row = reinterpret_cast<Value*>(row_.data());
+    exec_.for_each(std::int64_t(side.bricks.size()),
+                   detail::PackBricks<Value>{brick_, side.listed.data(), side.start.data(), value.data(), row});
+    if (side.cells) exec_.device().copy_to_host(side.row.data(), row, side.row.size());
+  }
+
+  /// Sends what `send` has packed of the other side, and gives what comes to `use(side, row)`.
+  template <class Value, class Use>
+  void receive(Halo& halo, Side Halo::*which, const Use& use) {
+    Side& in = halo.*which;
+    Side& out = which == &Halo::mine ? halo.theirs : halo.mine;
+    in.row.resize(in.cells * sizeof(Value));
+    const std::vector<Ranks::Part> to = parts(out, sizeof(Value)), from = parts(in, sizeof(Value));
+    ranks_.exchange(to, from);
+    auto* row = reinterpret_cast<Value*>(row_.data());
+    if (in.cells) exec_.device().copy_to_device(row, in.row.data(), in.row.size());
+    use(in, row);
+  }
+
+  template <class Value>
+  void refresh(Halo& halo, const Array<Value>& value) {
+    send(halo, &Halo::mine, value);
+    receive<Value>(halo, &Halo::theirs, [&](const Side& side, const Value* row) {
+      exec_.for_each(std::int64_t(side.bricks.size()),
+                     detail::UnpackBricks<Value>{brick_, side.listed.data(), side.start.data(), row, value.data()});
+    });
+  }
+
+  Executor<Backend>& exec_;
+  Ranks& ranks_;
+  std::vector<std::uint64_t> begin_;
+  HaloDepths depths_;
+  std::vector<std::uint64_t> code_;
+  const OctreeBrick* brick_ = nullptr;
+  std::size_t own_first_ = 0, own_count_ = 0, surface_first_ = 0, surface_count_ = 0;
+  std::uint64_t cells_ = 0;
+  Array<std::uint32_t> own_, detail_;
+  Halo deposits_, beside_, whole_;
+  Array<std::uint64_t> row_;
+};
+
+}  // namespace nacre
