@@ -38,6 +38,19 @@ cat >"$frames/paused.json" <<'JSON'
 JSON
 "$nacre" view --offscreen --script "$frames/paused.json" --record "$frames/paused"
 mv "$frames/transport.png" "$pictures"
+# A close-up at 1, 8 and 64 times: above by the texture of the whole, below as it is by default.
+views=()
+for focus in no-focus focus; do
+  for height in 3.2 0.4 0.05; do
+    printf '{"eye": [-12, -6, 4], "target": [-4.7, -0.2, 0.9], "up": [0, 0, 1], "height": %s}' "$height" \
+      >"$frames/near.json"
+    "$nacre" flow --sample train --detail 160 --steps 3 --camera "$frames/near.json" --size 280x210 --color none \
+      --no-legend --no-time --$focus --image "$frames/$focus-$height.png"
+    views+=(-i "$frames/$focus-$height.png")
+  done
+done
+ffmpeg -v error -y "${views[@]}" -filter_complex \
+  "[0][1][2]hstack=3[above];[3][4][5]hstack=3[below];[above][below]vstack,format=gray" "$pictures/close-ups.png"
 # docs/pictures/welcome.png is a screenshot of the window that `nacre view` opens at 960x640.
 "$nacre" view --offscreen --script mesh_demo.json --size 360x202 --record "$frames/tour.mp4"
 gif -i "$frames/tour.mp4" "fps=8," 96 tour.gif

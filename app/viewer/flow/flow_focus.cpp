@@ -9,6 +9,12 @@
 #include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
+namespace {
+
+/// Steps: after them, no noise is seen among the streaks, and a user waits for each.
+constexpr int least_warmup = 2;
+
+}  // namespace
 
 void FlowWorker::focus(const FlowView& view, double budget, int request) {
   {
@@ -124,7 +130,10 @@ void FlowWorker::make_focus(const FocusRequest& wanted, FlowFocused& answer) {
   FlowVectors vectors = flow_vectors(*vectors_, span_.start, flow_end(), made->part.get());
   vectors.at = [this, at = vectors.at](double t, std::span<Vec3f> out) { at(wrapped(t), out); };
   vectors.start += (vectors.end - vectors.start) * (double(before) / std::max(1, steps_in_all_));
-  made->pipeline->parameters.steps = made->steps_in_all = std::max(1, steps_in_all_ - before);
+  FlowParameters& start = made->pipeline->parameters;
+  start.steps = made->steps_in_all = std::max(1, steps_in_all_ - before);
+  start.warmup = least_warmup;
+  start.streaks = 0;  // this frame is not seen
   made->pipeline->flow().start(vectors);
   made->steps = steps_made_ - 1;
 
