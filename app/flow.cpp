@@ -20,6 +20,7 @@
 #include "engine/picture/video.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
+#include "engine/run/flow_skeleton.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/run/report.hpp"
 #include "engine/scene/samples/samples.hpp"
@@ -32,12 +33,12 @@
 namespace nacre {
 namespace {
 
-using nlohmann::json;
+using json;
 
 struct FlowOptions {
   CommonOptions common;
   InputOptions input;
-  std::string image, frames, video, out, haemodynamics;
+  std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out;
   std::string chunk;  ///< I/N: this part of the steps only
   int lead_in = 256;  ///< steps before it
 };
@@ -69,10 +70,12 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   check_output(options.image, "--image", ".png");
   check_output(options.out, "--out", ".vtp");
   check_output(options.haemodynamics, "--haemodynamics", ".vtp");
+  check_output(options.topology_out, "--topology-out", ".vtp");
+  check_output(options.streamlines_out, "--streamlines-out", ".vtp");
   check_output(options.common.report, "--report", "");
   check_output(options.common.save_session, "--save-session", "");
-  for (const std::string& output :
-       {options.image, options.frames, options.video, options.out, options.haemodynamics, options.common.report})
+  for (const std::string& output : {options.image, options.frames, options.video, options.out, options.haemodynamics,
+                                    options.topology_out, options.streamlines_out, options.common.report})
     if (!output.empty()) return;
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
@@ -181,7 +184,9 @@ Origin flow_origin(const FlowOptions& options, const Session& session, const std
                       {"video", options.video},
                       {"frames", options.frames},
                       {"out", options.out},
-                      {"haemodynamics", options.haemodynamics}});
+                      {"haemodynamics", options.haemodynamics},
+                      {"topology-out", options.topology_out},
+                      {"streamlines-out", options.streamlines_out}});
   return origin;
 }
 
@@ -238,6 +243,29 @@ json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& ow
     sum += each["surface_cells"].get<double>();
   }
   return {{"count", ranks.count()}, {"imbalance", sum > 0 ? most * ranks.count() / sum : 1}, {"each", std::move(all)}};
+}
+
+/// Topology and streamlines of the last frame, as far as they were asked for. Returns their part of the report.
+json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTime& input, const Settings& settings,
+                 std::vector<std::string>& outputs) {
+  json report = json::object();
+  const double t = pipeline.flow().time();
+  StageTimers::Scope scope(pipeline.timers(), "topology");
+  if (settings.topology || !options.topology_out.empty()) {
+    const FlowSkeleton skeleton = flow_skeleton(input, t, settings.persistence);
+    report["topology"] = skeleton_report(skeleton);
+    if (!options.topology_out.empty()) {
+      write_skeleton(options.topology_out, skeleton);
+      outputs.push_back(options.topology_out);
+    }
+  }
+  if (!options.streamlines_out.empty()) {
+    const std::size_t count =
+        write_streamlines(options.streamlines_out, input, t, settings.line_spacing, &interrupt_flag());
+    report["streamlines"] = {{"time", t}, {"count", count}};
+    outputs.push_back(options.streamlines_out);
+  }
+  return report;
 }
 
 void run_flow(FlowOptions options, const KnobOptions& knob_options) {
@@ -306,12 +334,14 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   watch.check();
   std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films, origin);
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
+  const json lines = is_first_process() ? write_lines(options, *pipeline, input, settings, outputs) : json::object();
   progress.clear();
   if (!options.common.report.empty()) {
     json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
     if (ranks) report["processes"] = processes_report(*ranks, *pipeline, report, seconds);
+    report.update(lines);
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     if (is_first_process()) write_report(options.common, std::move(report), outputs, origin);
   }
@@ -331,6 +361,10 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
   command->add_option("--haemodynamics", options->haemodynamics,
                       "write means of wall shear stress over time as .vtp: TAWSS, OSI, RRT on the points");
+  command->add_option("--topology-out", options->topology_out,
+                      "write critical points and separatrices of the last frame as .vtp");
+  command->add_option("--streamlines-out", options->streamlines_out,
+                      "write evenly spaced streamlines of the last frame as .vtp");
   command->add_option("--chunk", options->chunk,
                       "I/N: only part I of N of the steps, with the frames of the whole run (`nacre join` joins them)");
   command

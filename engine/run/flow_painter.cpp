@@ -4,6 +4,7 @@
 #include "engine/picture/caption.hpp"
 #include "engine/picture/legend.hpp"
 #include "engine/run/picture_settings.hpp"
+#include "engine/run/skeleton_marks.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
@@ -49,6 +50,8 @@ Image FlowPainter::paint(int frame) {
   image.width = settings_.width;
   image.height = settings_.height;
   image.pixels = pipeline_.flow().render(options);
+  if (settings_.topology)
+    draw_skeleton(image, camera, flow_skeleton(input_, pipeline_.flow().time(), settings_.persistence));
   FlowCaption caption;
   caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;
   caption.low = colours_.range.low;

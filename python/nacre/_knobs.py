@@ -89,3 +89,5 @@ class FlowKnobs(TypedDict, total=False):
     background: str  #: background colour: #rrggbb or transparent
     legend: bool  #: draw the colour legend and the axes
     time_stamp: bool  #: draw the time of the data
+    topology: bool  #: draw the critical points of the flow and the separatrices of its saddles
+    persistence: float  #: critical points that cancel each other at speeds below this share of the reference speed are left out

@@ -109,6 +109,9 @@ struct Settings {
   std::string background = "#ffffff";
   int fps = 25;
   bool legend = true, time_stamp = true;
+  bool topology = false;       ///< pictures show critical points and separatrices
+  double persistence = 0.02;   ///< share of the reference speed; zeros that cancel below it are left out
+  double line_spacing = 0.02;  ///< of evenly spaced streamlines; share of the longest side of the bounding box
 };
 
 }  // namespace nacre

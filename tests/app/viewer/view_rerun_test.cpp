@@ -60,6 +60,9 @@ const std::map<std::string, FlowRerun>& expected() {
       {"focus", {}},
       {"orbit", {}},
       {"fps", {}},
+      {"topology", {}},
+      {"persistence", {}},
+      {"line_spacing", {}},
   };
   return table;
 }

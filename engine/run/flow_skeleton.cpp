@@ -1,0 +1,136 @@
+// Nacre: the topology of the flow at one time: computed, reported, written.
+#include "engine/run/flow_skeleton.hpp"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "compute/topology/even_lines.hpp"
+#include "engine/io/lines_writer.hpp"
+#include "engine/scene/surface/winding.hpp"
+
+namespace nacre {
+namespace {
+
+/// The triangles with one number for all points at one position; each sheet by itself.
+std::vector<Triangle> welded(const PreparedSurface& surface) {
+  const std::vector<std::uint32_t> same = first_at_position(surface.points);
+  std::vector<std::uint32_t> second(surface.points.size(), none);  // the first of the second sheet, by position
+  std::vector<Triangle> triangles = surface.triangles;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const bool on_second = !surface.second_sheet.empty() && surface.second_sheet[t] != 0;
+    const auto number = [&](std::uint32_t point) {
+      if (!on_second) return same[point];
+      std::uint32_t& first = second[same[point]];
+      return first = first == none ? point : first;
+    };
+    triangles[t] = {number(triangles[t].a), number(triangles[t].b), number(triangles[t].c)};
+  }
+  return triangles;
+}
+
+}  // namespace
+
+FlowSkeleton flow_skeleton(VectorsInTime& input, double t, double persistence) {
+  FlowSkeleton skeleton;
+  skeleton.shape = input.moves() ? input.shape(t) : input.surface();
+  skeleton.time = t;
+  skeleton.least_persistence = persistence * input.statistics().percentile_98;
+  std::vector<Vec3f> vectors(skeleton.shape.points.size());
+  input.vectors(t, vectors);
+  const std::vector<Triangle> triangles = welded(skeleton.shape);
+  const TangentField field(skeleton.shape.points, triangles, vectors);
+  skeleton.topology = find_critical_points(field, skeleton.least_persistence);
+  skeleton.separatrices = separatrices(field, skeleton.topology.points);
+  return skeleton;
+}
+
+nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
+  const FlowTopology& all = skeleton.topology;
+  nlohmann::json points = nlohmann::json::array(), counts = nlohmann::json::object();
+  for (const CriticalKind kind : {CriticalKind::saddle, CriticalKind::source, CriticalKind::sink,
+                                  CriticalKind::focus_source, CriticalKind::focus_sink, CriticalKind::centre})
+    counts[name_of(kind)] = 0;
+  for (const CriticalPoint& p : all.points) {
+    counts[name_of(p.kind)] = counts[name_of(p.kind)].get<int>() + 1;
+    points.push_back({{"kind", name_of(p.kind)},
+                      {"index", p.index},
+                      {"position", {p.position.x, p.position.y, p.position.z}},
+                      {"eigenvalues", {{p.first.real(), p.first.imag()}, {p.second.real(), p.second.imag()}}},
+                      {"persistence", p.persistence}});
+  }
+  double area = 0;
+  for (const ZeroRegion& region : all.zero_regions) area += region.area;
+  std::map<LineEnd, int> ends;
+  for (const SurfaceLine& line : skeleton.separatrices) ++ends[line.end];
+  return {{"time", skeleton.time},
+          {"least_persistence", skeleton.least_persistence},
+          {"points", points},
+          {"counts", counts},
+          {"cancelled", all.cancelled},
+          {"euler_characteristic", all.euler_characteristic},
+          {"index_sum", all.point_index},
+          {"zero_regions", {{"count", all.zero_regions.size()}, {"area", area}, {"index", all.region_index}}},
+          {"rims", {{"count", all.rims}, {"index", all.rim_index}}},
+          {"separatrices",
+           {{"count", skeleton.separatrices.size()},
+            {"to_critical_point", ends[LineEnd::critical_point]},
+            {"to_rim", ends[LineEnd::rim]},
+            {"to_still_flow", ends[LineEnd::still]},
+            {"circling", ends[LineEnd::circling]}}}};
+}
+
+void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton) {
+  std::vector<Vec3d> points;
+  PointArray kind{"kind", 1, {}}, index{"index", 1, {}}, persistence{"persistence", 1, {}};
+  PointArray real{"eigenvalue_real", 2, {}}, imaginary{"eigenvalue_imaginary", 2, {}};
+  const auto add = [&](const Vec3d& p, int k, int i, double persists, std::complex<double> first,
+                       std::complex<double> second) {
+    points.push_back(p);
+    kind.values.push_back(float(k));
+    index.values.push_back(float(i));
+    persistence.values.push_back(float(persists));
+    real.values.insert(real.values.end(), {float(first.real()), float(second.real())});
+    imaginary.values.insert(imaginary.values.end(), {float(first.imag()), float(second.imag())});
+  };
+  const std::vector<CriticalPoint>& zeros = skeleton.topology.points;
+  for (const CriticalPoint& p : zeros) add(p.position, int(p.kind), p.index, p.persistence, p.first, p.second);
+  std::vector<std::uint64_t> starts{points.size()};
+  for (const SurfaceLine& line : skeleton.separatrices) {
+    for (const Vec3d& p : line.points) add(p, line.forward ? 6 : 7, 0, zeros[line.from].persistence, 0, 0);
+    starts.push_back(points.size());
+  }
+  if (skeleton.separatrices.empty()) starts.clear();
+  write_vtp_lines(file, points, zeros.size(), starts,
+                  std::vector<PointArray>{kind, index, persistence, real, imaginary}, skeleton.time);
+}
+
+std::size_t write_streamlines(const std::filesystem::path& file, VectorsInTime& input, double t, double spacing,
+                              const std::atomic<bool>* stop) {
+  const PreparedSurface shape = input.moves() ? input.shape(t) : input.surface();
+  std::vector<Vec3f> vectors(shape.points.size());
+  input.vectors(t, vectors);
+  const std::vector<Triangle> triangles = welded(shape);
+  Vec3d low(1e300), high(-1e300);
+  for (const Triangle& each : triangles)
+    for (int k = 0; k < 3; ++k) {
+      low = min(low, shape.points[each[k]]);
+      high = max(high, shape.points[each[k]]);
+    }
+  const Vec3d size = high - low;
+  const TangentField field(shape.points, triangles, vectors);
+  const std::vector<EvenLine> lines = even_lines(field, spacing * std::max({size.x, size.y, size.z}), stop);
+  std::vector<Vec3d> points;
+  PointArray speed{"speed", 1, {}};
+  std::vector<std::uint64_t> starts{0};
+  for (const EvenLine& line : lines) {
+    points.insert(points.end(), line.points.begin(), line.points.end());
+    speed.values.insert(speed.values.end(), line.speed.begin(), line.speed.end());
+    starts.push_back(points.size());
+  }
+  if (lines.empty()) starts.clear();
+  write_vtp_lines(file, points, 0, starts, std::vector<PointArray>{speed}, t);
+  return lines.size();
+}
+
+}  // namespace nacre

@@ -1,0 +1,145 @@
+// Nacre: critical points and separatrices, drawn over a picture.
+#include "engine/run/skeleton_marks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "compute/raycast/triangle_tree.hpp"
+#include "engine/picture/compose.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr Rgba outline{20, 20, 20, 255}, hole{255, 255, 255, 255};
+constexpr Rgba with_flow{255, 150, 30, 255}, against_flow{120, 220, 255, 255};
+
+Rgba colour_of(CriticalKind kind) {
+  switch (kind) {
+    case CriticalKind::saddle: return {255, 225, 40, 255};
+    case CriticalKind::source:
+    case CriticalKind::focus_source: return {225, 40, 40, 255};
+    case CriticalKind::sink:
+    case CriticalKind::focus_sink: return {40, 90, 230, 255};
+    case CriticalKind::centre: return {40, 170, 70, 255};
+  }
+  return outline;
+}
+
+struct Pixel {
+  double x = 0, y = 0;
+  bool seen = false;
+};
+
+/// Where points are in a picture, and whether the surface hides them.
+class Projection {
+ public:
+  Projection(const Camera& camera, int width, int height, const PreparedSurface& shape)
+      : camera_(camera), width_(width), height_(height), tree_(shape.points, shape.triangles) {
+    Vec3d low(1e300), high(-1e300);
+    for (const Triangle& t : shape.triangles)
+      for (int k = 0; k < 3; ++k) {
+        low = min(low, shape.points[t[k]]);
+        high = max(high, shape.points[t[k]]);
+      }
+    slack_ = shape.triangles.empty() ? 0 : 1e-3 * length(high - low);
+  }
+
+  Pixel operator()(const Vec3d& p) const {
+    const Vec3d forward = camera_.forward(), right = camera_.right(), up = cross(right, forward), d = p - camera_.eye;
+    const double depth = dot(d, forward), distance = length(camera_.target - camera_.eye);
+    const double scale = camera_.orthographic ? 1 : distance / std::max(depth, 1e-9 * distance);
+    const double half = 0.5 * height_;
+    Pixel pixel{0.5 * width_ + dot(d, right) * scale / (0.5 * camera_.height) * half - 0.5,
+                half - dot(d, up) * scale / (0.5 * camera_.height) * half - 0.5, false};
+    const bool inside = pixel.x > -20 && pixel.y > -20 && pixel.x < width_ + 20 && pixel.y < height_ + 20;
+    if (!inside || (!camera_.orthographic && depth <= 0)) return pixel;
+    const Vec3d back = camera_.orthographic ? -forward : normalized(camera_.eye - p);
+    const double far = camera_.orthographic ? 1e300 : length(camera_.eye - p);
+    pixel.seen = !tree_.first(p, back, slack_, far);
+    return pixel;
+  }
+
+ private:
+  const Camera& camera_;
+  int width_, height_;
+  TriangleTree tree_;
+  double slack_ = 0;
+};
+
+/// Blends `colour` where `distance` (pixels, from the middle of a pixel to a shape) is below 0, softly.
+void fill(Image& image, double left, double top, double right, double bottom, const Rgba& colour,
+          const std::function<double(double, double)>& distance) {
+  for (int y = std::max(0, int(top)); y <= std::min(image.height - 1, int(bottom) + 1); ++y)
+    for (int x = std::max(0, int(left)); x <= std::min(image.width - 1, int(right) + 1); ++x)
+      blend_pixel(image.at(x, y), colour, float(std::clamp(0.5 - distance(x, y), 0.0, 1.0)));
+}
+
+void draw_mark(Image& image, const Pixel& at, CriticalKind kind, double radius) {
+  const bool diamond = kind == CriticalKind::saddle;
+  const auto put = [&](double size, const Rgba& colour) {
+    const double reach = 1.5 * size + 1;
+    fill(image, at.x - reach, at.y - reach, at.x + reach, at.y + reach, colour, [&](double x, double y) {
+      const double u = std::fabs(x - at.x), v = std::fabs(y - at.y);
+      return diamond ? (u + v - 1.4 * size) * 0.7071 : std::hypot(u, v) - size;
+    });
+  };
+  put(radius + 0.3 * radius, outline);
+  put(radius, colour_of(kind));
+  if (kind == CriticalKind::focus_source || kind == CriticalKind::focus_sink) put(0.4 * radius, hole);
+}
+
+/// The cover of all lines of one kind in each pixel, so that a line does not cover itself twice.
+class LineSheet {
+ public:
+  LineSheet(int width, int height) : width_(width), height_(height), cover_(std::size_t(width) * height) {}
+
+  void add(const Pixel& a, const Pixel& b, double half_width) {
+    const double dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy, reach = half_width + 1;
+    for (int y = std::max(0, int(std::min(a.y, b.y) - reach));
+         y <= std::min(height_ - 1, int(std::max(a.y, b.y) + reach)); ++y)
+      for (int x = std::max(0, int(std::min(a.x, b.x) - reach));
+           x <= std::min(width_ - 1, int(std::max(a.x, b.x) + reach)); ++x) {
+        const double s = squared > 0 ? std::clamp(((x - a.x) * dx + (y - a.y) * dy) / squared, 0.0, 1.0) : 0;
+        const double distance = std::hypot(x - a.x - s * dx, y - a.y - s * dy);
+        float& cover = cover_[std::size_t(y) * width_ + x];
+        cover = std::max(cover, float(std::clamp(half_width + 0.5 - distance, 0.0, 1.0)));
+      }
+  }
+  void blend(Image& image, const Rgba& colour) const {
+    for (std::size_t i = 0; i < cover_.size(); ++i)
+      if (cover_[i] > 0) blend_pixel(&image.pixels[4 * i], colour, cover_[i]);
+  }
+
+ private:
+  int width_, height_;
+  std::vector<float> cover_;
+};
+
+}  // namespace
+
+void draw_skeleton(Image& image, const Camera& camera, const FlowSkeleton& skeleton) {
+  const Projection project(camera, image.width, image.height, skeleton.shape);
+  const double unit = std::max(0.5, std::min(image.width, image.height) / 768.0);
+  LineSheet edge(image.width, image.height), forward = edge, backward = edge;
+  for (const SurfaceLine& line : skeleton.separatrices) {
+    Pixel before;
+    for (const Vec3d& p : line.points) {
+      const Pixel now = project(p);
+      if (before.seen && now.seen) {
+        edge.add(before, now, 1.6 * unit);
+        (line.forward ? forward : backward).add(before, now, 0.9 * unit);
+      }
+      before = now;
+    }
+  }
+  edge.blend(image, {outline.r, outline.g, outline.b, 170});
+  backward.blend(image, against_flow);
+  forward.blend(image, with_flow);
+  for (const CriticalPoint& point : skeleton.topology.points) {
+    const Pixel at = project(point.position);
+    if (at.seen) draw_mark(image, at, point.kind, 4.5 * unit);
+  }
+}
+
+}  // namespace nacre

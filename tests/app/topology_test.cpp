@@ -1,0 +1,105 @@
+// Nacre: critical points and separatrices of `nacre flow`, as a user gets them.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/io/surface_writer.hpp"
+#include "engine/picture/png.hpp"
+#include "engine/scene/samples/samples.hpp"
+#include "tests/app/program.hpp"
+
+namespace nacre::test {
+namespace {
+
+using nlohmann::json;
+
+const Words small = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
+
+/// A sphere with the gradient of x^2 + 2 y^2 + 3 z^2: two sources, saddles and sinks, on the axes x, y and z.
+class Topology : public AppTest {
+ protected:
+  std::string six_points() {
+    Surface s = make_sample("sphere", 64).load(0);
+    PointArray gradient{"gradient", 3, {}};
+    for (const Vec3d& p : s.points) {
+      const Vec3d n = normalized(p), g(2 * n.x, 4 * n.y, 6 * n.z), v = g - n * dot(g, n);
+      for (int k = 0; k < 3; ++k) gradient.values.push_back(float(v[k]));
+    }
+    s.arrays = {gradient};
+    write_surface(path("six.vtp"), s);
+    return path("six.vtp");
+  }
+};
+
+TEST_F(Topology, IsReportedAndWritten) {
+  const Outcome done = nacre(Words{"flow", six_points(), "--quiet"} + small +
+                             Words{"--topology-out", path("t.vtp"), "--report", path("r.json")});
+  ASSERT_EQ(done.status, 0) << done.err;
+  const json report = json::parse(content("r.json"));
+  EXPECT_EQ(report["outputs"], json({path("t.vtp")}));
+  const json& topology = report["topology"];
+  EXPECT_EQ(topology["counts"]["source"], 2);
+  EXPECT_EQ(topology["counts"]["saddle"], 2);
+  EXPECT_EQ(topology["counts"]["sink"], 2);
+  ASSERT_EQ(topology["points"].size(), 6u);
+  for (const json& point : topology["points"]) {
+    const int axis = point["kind"] == "source" ? 0 : point["kind"] == "saddle" ? 1 : 2;
+    double length = 0;
+    for (int k = 0; k < 3; ++k) length += std::pow(point["position"][std::size_t(k)].get<double>(), 2);
+    EXPECT_NEAR(std::fabs(point["position"][std::size_t(axis)].get<double>()) / std::sqrt(length), 1, 0.001);
+  }
+  EXPECT_EQ(topology["index_sum"], 2);
+  EXPECT_EQ(topology["euler_characteristic"], 2);
+  EXPECT_EQ(topology["rims"]["count"], 0);
+  EXPECT_EQ(topology["separatrices"]["count"], 8);
+  EXPECT_EQ(topology["separatrices"]["to_critical_point"], 8);
+  const std::string file = content("t.vtp");
+  EXPECT_TRUE(contains(file, "NumberOfVerts=\"6\" NumberOfLines=\"8\"")) << file.substr(0, 600);
+}
+
+TEST_F(Topology, IsDrawnWhereTheCameraSeesIt) {
+  const Words from_x = Words{"flow", six_points(), "--quiet", "--camera", "+x", "--color", "none"} + small;
+  ASSERT_EQ(nacre(from_x + Words{"--image", path("with.png"), "--topology"}).status, 0);
+  ASSERT_EQ(nacre(from_x + Words{"--image", path("without.png")}).status, 0);
+  const Image with = read_png(path("with.png")), without = read_png(path("without.png"));
+  const auto coloured = [](const Image& image) {  // one source of +x, gray elsewhere
+    int red = 0, blue = 0, far_red = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const std::uint8_t* p = image.at(x, y);
+        const bool is_red = p[0] > 200 && p[1] < 80 && p[2] < 80;
+        red += is_red;
+        far_red += is_red && std::hypot(x - 96, y - 96) > 8;
+        blue += p[2] > 200 && p[0] < 80;
+      }
+    return std::array{red, far_red, blue};
+  };
+  EXPECT_EQ(coloured(without), (std::array{0, 0, 0}));
+  EXPECT_GT(coloured(with)[0], 5);
+  EXPECT_EQ(coloured(with)[1], 0);  // the one behind is hidden
+}
+
+TEST_F(Topology, StreamlinesAreWritten) {
+  const auto lines_at = [&](const std::string& spacing) {
+    const Outcome done = nacre(Words{"flow", six_points(), "--quiet", "--line-spacing", spacing} + small +
+                               Words{"--streamlines-out", path("s.vtp"), "--report", path("r.json")});
+    EXPECT_EQ(done.status, 0) << done.err;
+    const json report = json::parse(content("r.json"));
+    EXPECT_EQ(report["outputs"], json({path("s.vtp")}));
+    const int count = report["streamlines"]["count"].get<int>();
+    EXPECT_TRUE(contains(content("s.vtp"), "NumberOfLines=\"" + std::to_string(count) + "\""));
+    return count;
+  };
+  const int few = lines_at("0.1"), many = lines_at("0.05");
+  EXPECT_GT(few, 20);
+  EXPECT_GT(many, few);
+}
+
+TEST_F(Topology, BadInputIsNamed) {
+  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small), 2,
+                 {"--topology-out", ".vtp"});
+  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--persistence", "2"} + small), 2,
+                 {"--persistence"});
+}
+
+}  // namespace
+}  // namespace nacre::test
