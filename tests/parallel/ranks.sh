@@ -40,9 +40,9 @@ refused() {
 
 if [[ $what != faults ]]; then
   same train "1 2 3 4 7" --sample train --detail 96 --resolution 200 --steps 2
-  same sheets "3" --sample delta-wing --detail 200 --resolution 300 --steps 1 --step-cells 12 --streaks 40
+  same vortex "3" --sample delta-wing --detail 200 --resolution 300 --steps 1 --step-cells 12 --streaks 40
   same particles "3" --sample cylinder --detail 140 --resolution 160 --steps 2 --streaks 0 --camera +x
-  same few "7" --sample sphere --resolution 20 --steps 1 # fewer bricks than some ranges would hold
+  same few "7" --sample sphere --resolution 20 --steps 1 # some have next to no bricks
 fi
 [[ $what == bytes ]] && exit $bad
 
