@@ -33,7 +33,7 @@
 namespace nacre {
 namespace {
 
-using json;
+using nlohmann::json;
 
 struct FlowOptions {
   CommonOptions common;
