@@ -138,13 +138,13 @@ void FlowWorker::make_focus(const FocusRequest& wanted, FlowFocused& answer) {
   made->steps = steps_made_ - 1;
 
   const FlowMethod& flow = made->pipeline->flow();
-  answer.part = made->part;
   answer.geometry =
       make_surface_geometry(surface.points, surface.triangles, surface.corner_normals, surface.second_sheet);
   answer.lookup = flow.lookup();
   if (answer.lookup.kind == FlowLookup::Kind::grid) answer.rimmed = with_rims(sparse_lookup(answer.lookup));
   answer.number = made->number = ++focuses_;
   made->values = answer.lookup.means > 0 ? answer.lookup.values : 0;
+  answer.part = made->part;
   focus_ = std::move(made);
 }
 

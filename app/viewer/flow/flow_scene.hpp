@@ -32,7 +32,7 @@ class FlowScene : public Scene {
   void cancel() override { worker_.cancel(); }
   bool halted() const override { return worker_.cancelled() || !failure_.empty(); }
   std::string lost_device() const override { return worker_.lost_device(); }
-  void resume() override { worker_.resume(); }
+  void resume() override { looked_ = false, worker_.resume(); }
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
   std::uint64_t version() const override { return version_; }
@@ -134,6 +134,7 @@ class FlowScene : public Scene {
   void ask_focus();
   void drop_focus();
   void release(std::unique_ptr<FocusTexture>& texture);
+  void warn_once(const std::string& sentence);
   void fill_focus();
   bool lend_focus(bool wait, float*& memory, int& number);
   void return_focus(bool written);

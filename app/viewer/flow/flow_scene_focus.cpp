@@ -130,8 +130,7 @@ void FlowScene::release(std::unique_ptr<FocusTexture>& texture) {
 void FlowScene::take(FlowFocused& told) {
   if (told.request != focus_request_ || !awaits_focus_) return;  // dropped since
   awaits_focus_ = false;
-  if (!told.remark.empty() && std::find(warnings_.begin(), warnings_.end(), told.remark) == warnings_.end())
-    warnings_.push_back(told.remark);
+  warn_once(told.remark);
   if (!told.part) {
     if (told.ends_former) release(focus_);
     return;
@@ -141,12 +140,17 @@ void FlowScene::take(FlowFocused& told) {
     next_focus_ = std::make_unique<FocusTexture>(told, worker_.device());
     next_focus_->pixel = pixel();
   } catch (const std::exception& error) {  // the graphics device cannot hold it
-    warnings_.push_back("no close-up: " + with_knobs(error.what()));
+    warn_once("no close-up: " + with_knobs(error.what()));
     drop_focus();
     looked_ = true;
     return;
   }
   colour_focus();
+}
+
+void FlowScene::warn_once(const std::string& sentence) {
+  if (sentence.empty() || std::find(warnings_.begin(), warnings_.end(), sentence) != warnings_.end()) return;
+  warnings_.push_back(sentence);
 }
 
 void FlowScene::fill_focus() {
