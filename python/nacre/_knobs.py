@@ -25,6 +25,7 @@ class MeshKnobs(TypedDict, total=False):
     delta: float  #: largest slope of the sizing field
     min_size: float  #: smallest distance between particles, at most max_size [voxels]
     max_size: float  #: largest distance between particles, at least min_size [voxels]
+    sizes: str  #: WHAT:SIZE[,WHAT:SIZE...]: largest distance there, instead of max_size; WHAT: a label, a name, box x0 y0 z0 x1 y1 z1, or ball x y z radius (in the units of the data) [voxels]
     curvature: bool  #: also bound the sizing field by epsilon / largest curvature
     quality: Literal["draft", "standard", "best"]  #: draft: quick, for looking and for turning knobs; best: more rounds of everything
     solver: Literal["tree", "redblack", "serial"]  #: how particles are moved
