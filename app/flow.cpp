@@ -249,9 +249,11 @@ json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& ow
 json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTime& input, const Settings& settings,
                  std::vector<std::string>& outputs) {
   json report = json::object();
+  const bool points = settings.topology || !options.topology_out.empty();
+  if (!points && options.streamlines_out.empty()) return report;
   const double t = pipeline.flow().time();
   StageTimers::Scope scope(pipeline.timers(), "topology");
-  if (settings.topology || !options.topology_out.empty()) {
+  if (points) {
     const FlowSkeleton skeleton = flow_skeleton(input, t, settings.persistence);
     report["topology"] = skeleton_report(skeleton);
     if (!options.topology_out.empty()) {

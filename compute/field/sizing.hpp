@@ -119,37 +119,44 @@ struct MedialRadius {
   }
 };
 
+/// The largest size at an interface point.
+struct LargestSize {
+  float usual;
+  const SizeBound* bound;
+  int bounds;
+
+  /// Of several bounds the smallest holds, whether or not it is below the usual largest size.
+  NACRE_HD float operator()(const InterfacePoint& q) const {
+    float least = 3e38f;
+    for (int b = 0; b < bounds; ++b)
+      if (bound[b].holds({q.position.x, q.position.y, q.position.z}, q.surface)) least = min(least, bound[b].size);
+    return least < 3e38f ? least : usual;
+  }
+};
+
 struct SizeAtInterface {
   MedialRadius radius;
   SizingRule rule;
-  float largest;  ///< of all sizes
-  const SizeBound* bound;
-  int bounds;
+  LargestSize largest;
   float* at_point;
   NACRE_HD void operator()(std::int64_t i) const {
     const InterfacePoint& q = radius.distance.point[i];
     if (q.position.w < 0) {
-      at_point[i] = largest;
+      at_point[i] = largest.usual;
       return;
     }
     const Vec3f p{q.position.x, q.position.y, q.position.z}, n{q.normal.x, q.normal.y, q.normal.z};
-    at_point[i] = rule.size(min(radius(p, n), radius(p, -n)), 1 / max(q.normal.w, 1e-3f), most(p, q.surface));
-  }
-
- private:
-  /// Of several bounds the smallest holds, whether or not it is below the usual largest size.
-  NACRE_HD float most(const Vec3f& p, const Junction& surface) const {
-    float least = 3e38f;
-    for (int b = 0; b < bounds; ++b)
-      if (bound[b].holds(p, surface)) least = min(least, bound[b].size);
-    return least < 3e38f ? least : rule.max_size;
+    at_point[i] = rule.size(min(radius(p, n), radius(p, -n)), 1 / max(q.normal.w, 1e-3f), largest(q));
   }
 };
 
-/// h at a voxel: that of its closest interface point plus delta times the distance.
+/// h at a voxel: that of its closest interface point plus delta times the distance. Beside the interface no more than is
+/// the largest there: the distance of a voxel's centre must not make small triangles larger.
 struct SpreadSize {
   DistanceFieldView distance;
-  SizingRule rule;
+  SizingRule rule;  ///< the widest
+  LargestSize largest;
+  float beside;  ///< voxels
   const float* at_point;
   float* h;
   NACRE_HD void operator()(std::int64_t i) const {
@@ -159,8 +166,8 @@ struct SpreadSize {
       return;
     }
     const Float4 at = distance.point[q].position;
-    h[i] = min(rule.max_size, at_point[q] + rule.delta * length(Vec3f(at.x, at.y, at.z) -
-                                                                distance.lattice.centre(distance.lattice.cell(i))));
+    const float away = length(Vec3f(at.x, at.y, at.z) - distance.lattice.centre(distance.lattice.cell(i)));
+    h[i] = min(away < beside ? largest(distance.point[q]) : rule.max_size, at_point[q] + rule.delta * away);
   }
 };
 
@@ -284,6 +291,7 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   const SizingRule widest = widest_rule(rule, bounds);
   Array<SizeBound> bound = arena.temporary<SizeBound>(std::max<std::size_t>(bounds.size(), 1));
   if (!bounds.empty()) bound.upload(bounds);
+  const detail::LargestSize largest{rule.max_size, bound.data(), int(bounds.size())};
   const Vec3f& s = field.lattice.spacing;
   const float free = widest.reach() + 0.5f, most = std::min(free, distance.reach - 1.5f);
   exec.for_each(points, detail::SizeAtInterface{{view, most, free, 0.1f * std::max({s.x, s.y, s.z})},
@@ -309,7 +317,8 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   Array<std::uint32_t> changed[2] = {arena.temporary<std::uint32_t>(tiles), arena.temporary<std::uint32_t>(tiles)};
   Array<std::uint32_t> any = arena.temporary<std::uint32_t>(1);
   changed[0].fill_bytes(1);
-  exec.for_each(n, detail::SpreadSize{view, widest, at_point.data(), field.h.data()});
+  exec.for_each(
+      n, detail::SpreadSize{view, widest, largest, 1.5f * std::max({s.x, s.y, s.z}), at_point.data(), field.h.data()});
   float *from = field.h.data(), *to = other.data();
   const int most_rounds = field.lattice.cells.x + field.lattice.cells.y + field.lattice.cells.z;
   for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {

@@ -63,7 +63,7 @@ class FlowPipelineOf final : public FlowPipeline {
     if (ranks && (parameters.method == EmbeddingKind::grid || parameters.octree != OctreeKind::brick))
       throw Error("several processes share only an octree of bricks", "", "use `method` octree and `octree` brick");
     if (ranks && device_.backend() != "cpu")
-      throw Error("several processes work only on CPUs", "this one has " + device_.name(), "use --device cpu");
+      throw Error("several processes work only on CPUs", "this one has " + device_.name(), "choose the CPU");
     if (parameters.method == EmbeddingKind::grid) return std::make_unique<GridFlow<Backend>>(exec, parameters);
     if (parameters.octree == OctreeKind::brick)
       return std::make_unique<OctreeFlow<Backend, BrickBand>>(exec, parameters, ranks);

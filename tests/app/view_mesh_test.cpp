@@ -79,9 +79,9 @@ TEST_F(ViewMesh, TwoReplaysAreTheSame) {
 }
 
 TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
-  for (const char* name : {"a.vtp", "a.msh"}) {
+  for (const char* name : {"a.vtp", "a.stl"}) {
     ASSERT_EQ(nacre(Words{"mesh", "--out", path(name)} + quick).status, 0);
-    const std::string mesh = content(name);
+    const std::string mesh = bare(name);
     fs::remove(path(name));
     const Outcome run = nacre(Words{"view", "--offscreen", "--frames-count", "3", "--out", path(name)} + quick);
     ASSERT_EQ(run.status, 0) << run.err;

@@ -93,7 +93,8 @@ TEST(SizeBounds, RegionsAreOfTheWorld) {
   const SizeBound box = size_bounds("box 9 -2 4 13 3 9:1", volume)[0], ball = size_bounds("ball 11 0 6 2:1", volume)[0];
   int inside = 0;
   for (int k = 0; k < 2000; ++k) {
-    const Vec3d world(8 + 6 * uniform_random(3, k, 0), -3 + 7 * uniform_random(3, k, 1), 3 + 7 * uniform_random(3, k, 2));
+    const Vec3d world(8 + 6 * uniform_random(3, k, 0), -3 + 7 * uniform_random(3, k, 1),
+                      3 + 7 * uniform_random(3, k, 2));
     const Vec3f p(frame.to_voxels(world));
     const bool in_box = world.x > 9 && world.x < 13 && world.y > -2 && world.y < 3 && world.z > 4 && world.z < 9;
     const double away = length(world - Vec3d(11, 0, 6));
@@ -106,16 +107,24 @@ TEST(SizeBounds, RegionsAreOfTheWorld) {
   EXPECT_GT(inside, 300);
 }
 
+bool at_left(const Vec3d& p) { return p.x < 25; }
+bool at_right(const Vec3d& p) { return p.x > 25; }
+
+/// Each ball has the triangles that it has where all are of that size.
 TEST(SizeBounds, AMaterialHasItsOwnSize) {
   const SurfaceMesh mesh = mesh_with("1:0.8,2:2", 1.2);
-  EXPECT_NEAR(mean_edge(mesh, [](const Vec3d& p) { return p.x < 25; }), 0.8, 0.12);
-  EXPECT_NEAR(mean_edge(mesh, [](const Vec3d& p) { return p.x > 25; }), 2, 0.3);
+  const double fine = mean_edge(mesh_with("", 0.8), at_left), coarse = mean_edge(mesh_with("", 2), at_right);
+  EXPECT_GT(coarse, 2 * fine);
+  EXPECT_NEAR(mean_edge(mesh, at_left), fine, 0.05 * fine);
+  EXPECT_NEAR(mean_edge(mesh, at_right), coarse, 0.05 * coarse);
 }
 
 TEST(SizeBounds, ARegionHasItsOwnSize) {
-  const SurfaceMesh mesh = mesh_with("box 20 0 0 60 30 13:0.9", 2);
-  EXPECT_NEAR(mean_edge(mesh, [](const Vec3d& p) { return p.x > 25 && p.z < 12; }), 0.9, 0.14);
-  EXPECT_NEAR(mean_edge(mesh, [](const Vec3d& p) { return p.x < 22; }), 2, 0.3);
+  const auto below = [](const Vec3d& p) { return p.x > 28 && p.z < 11; };
+  const SurfaceMesh mesh = mesh_with("box 27 0 0 60 30 13:0.9", 2);
+  const double fine = mean_edge(mesh_with("", 0.9), below), coarse = mean_edge(mesh_with("", 2), at_left);
+  EXPECT_NEAR(mean_edge(mesh, below), fine, 0.05 * fine);
+  EXPECT_NEAR(mean_edge(mesh, at_left), coarse, 0.05 * coarse);
 }
 
 }  // namespace
