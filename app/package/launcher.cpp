@@ -42,6 +42,6 @@ int main(int, char** arguments) {
   if (wanted)
     std::fprintf(stderr, "nacre: there is no program for NACRE_LEVEL=%s that runs on this processor\n", wanted);
   else
-    std::fputs("nacre: this processor is older than the level x86-64-v2 (SSE4.2), or the package is incomplete\n", stderr);
+    std::fputs("nacre: this processor is older than x86-64-v2 (SSE4.2), or the package is incomplete\n", stderr);
   return 1;
 }

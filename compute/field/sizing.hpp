@@ -150,8 +150,8 @@ struct SizeAtInterface {
   }
 };
 
-/// h at a voxel: that of its closest interface point plus delta times the distance. Beside the interface no more than is
-/// the largest there: the distance of a voxel's centre must not make small triangles larger.
+/// h at a voxel: that of its closest interface point plus delta times the distance. Beside the interface no more than
+/// is the largest there: the distance of a voxel's centre must not make small triangles larger.
 struct SpreadSize {
   DistanceFieldView distance;
   SizingRule rule;  ///< the widest
@@ -275,8 +275,8 @@ struct SizingField {
 
 /// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball
 /// (with `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On
-/// the lattice of `distance`; a body that its reach does not see across counts as wide. `bounds` hold where they are, in
-/// place of the rule's largest size.
+/// the lattice of `distance`; a body that its reach does not see across counts as wide. `bounds` hold where they are,
+/// in place of the rule's largest size.
 template <class Backend>
 SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule,
                          const std::vector<SizeBound>& bounds = {}) {

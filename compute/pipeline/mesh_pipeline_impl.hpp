@@ -130,8 +130,8 @@ class MeshPipelineOf : public MeshPipeline {
   }
 
   /// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels show: a
-  /// plane of particles as far apart as `max_size` and `sizes` allow is the least that there can be. The fields are checked again in
-  /// `relax`.
+  /// plane of particles as far apart as `max_size` and `sizes` allow is the least that there can be. The fields are
+  /// checked again in `relax`.
   void require_room() {
     double h = std::max(parameters.min_size, parameters.max_size);
     for (const SizeBound& bound : fields_.bounds(parameters)) h = std::max(h, double(bound.size));

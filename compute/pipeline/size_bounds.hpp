@@ -9,9 +9,9 @@
 
 namespace nacre {
 
-/// What MeshParameters::sizes says: WHAT:SIZE[,WHAT:SIZE...], where WHAT is a label, the name of a material, `box x0 y0 z0
-/// x1 y1 z1` or `ball x y z radius` (world units), and SIZE is in voxels. Of `volume` everything but its voxels is read.
-/// Throws Error that names the part that cannot be read, and the labels that there are.
+/// What MeshParameters::sizes says: WHAT:SIZE[,WHAT:SIZE...], where WHAT is a label, the name of a material,
+/// `box x0 y0 z0 x1 y1 z1` or `ball x y z radius` (world units), and SIZE is in voxels. Of `volume` everything but its
+/// voxels is read. Throws Error that names the part that cannot be read, and the labels that there are.
 std::vector<SizeBound> size_bounds(std::string_view text, const MeshVolume& volume);
 
 }  // namespace nacre
