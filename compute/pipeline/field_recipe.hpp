@@ -29,8 +29,8 @@ struct FieldRecipe {
 };
 
 /// The recipe that `parameters` ask for on a volume of this kind, laid out as `bricks`; `bounds` are what its `sizes`
-/// say. The cells of the embedding are limited by `small`, SizingField::small of the present sizing field: where that is
-/// built again, so is the embedding.
+/// say. The cells of the embedding are limited by `small`, SizingField::small of the present sizing field: where that
+/// is built again, so is the embedding.
 FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
                          std::vector<SizeBound> bounds, float small);
 

@@ -1,5 +1,4 @@
-// Nacre: what the methods of the flow pipeline have in common: the mesh on the device, time, the ring of steps, the
-// view.
+// Nacre: what all methods of the flow pipeline share: the mesh on the device, time, the ring of steps, the view.
 #pragma once
 
 #include <algorithm>
