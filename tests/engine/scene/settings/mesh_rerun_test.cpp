@@ -66,6 +66,7 @@ const void* member_of(const Knob& knob) {
 std::string another(const Knob& knob) {
   if (!knob.choices.empty()) return knob.choices[knob.choices[0] == knob.text() ? 1 : 0];
   if (std::holds_alternative<bool*>(knob.value)) return *std::get<bool*>(knob.value) ? "false" : "true";
+  if (std::holds_alternative<std::string*>(knob.value)) return "1:2";  // sizes
   const double now = std::stod(knob.text());
   if (std::holds_alternative<double*>(knob.value)) return std::to_string(now < knob.max ? 0.5 * (now + knob.max) : 0);
   return std::to_string(long(now) + 1);
