@@ -54,6 +54,8 @@ def load_core() -> None:
         level = candidates[-1]
         lacks = ", ".join(sorted(_missing(level, flags)))
         raise ImportError(f"nacre needs a processor of the level {level}; this one has no {lacks}")
+    if "nacre._core" in sys.modules:  # `nacre` is loaded again
+        return
     for suffix in importlib.machinery.EXTENSION_SUFFIXES:
         path = os.path.join(found[level], "_core" + suffix)
         if os.path.exists(path):
@@ -61,7 +63,11 @@ def load_core() -> None:
             assert spec and spec.loader
             module = importlib.util.module_from_spec(spec)
             sys.modules["nacre._core"] = module
-            spec.loader.exec_module(module)
+            try:
+                spec.loader.exec_module(module)
+            except BaseException:
+                del sys.modules["nacre._core"]
+                raise
             setattr(sys.modules["nacre"], "_core", module)
             return
     raise ImportError(f"nacre is not installed completely: there is no _core in {found[level]}")
