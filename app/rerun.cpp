@@ -12,7 +12,7 @@
 #include "engine/run/origin.hpp"
 #include "engine/scene/session/camera_json.hpp"
 #include "engine/system/extension.hpp"
-#include "engine/system/output_file.hpp"
+#include "engine/system/scratch_folder.hpp"
 
 namespace nacre {
 namespace {
@@ -24,36 +24,6 @@ struct RerunOptions {
   std::string file, out;
   int threads = 0;
   bool quiet = false;
-};
-
-/// A folder for what is compared and thrown away, removed at its end; beside the result where there is no other place.
-class ScratchFolder {
- public:
-  explicit ScratchFolder(const fs::path& result) {
-    std::error_code none;
-    const fs::path usual = fs::temp_directory_path(none);
-    for (const fs::path& place : {usual, result.parent_path().empty() ? fs::path(".") : result.parent_path()}) {
-      std::string name = (place / "nacre-rerun-XXXXXX").string();
-      if (place.empty() || !::mkdtemp(name.data())) continue;
-      path_ = name;
-      add_unfinished(path_);
-      return;
-    }
-    throw Error("there is no folder to make " + result.string() + " again in", "", "set TMPDIR, or give --out FILE");
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-    drop_unfinished(path_);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
 };
 
 /// Whether the origin has only what nacre writes: a file from somewhere else must not make it write other files than
@@ -159,7 +129,9 @@ void run_rerun(const RerunOptions& options, const std::function<void(const Argum
   common.quiet = options.quiet;
   if (origin.version != version)
     say(common, fmt::format("made by nacre {}; this is {}, whose results may differ", origin.version, version));
-  const ScratchFolder scratch(file);
+  const fs::path beside = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+  const fs::path folders[] = {temporary_folder(), beside};
+  const ScratchFolder scratch("nacre-rerun", folders, "cannot make " + file.string() + " again");
   const std::string output = output_for(origin, options.out);
   const fs::path target = options.out.empty() ? scratch / ("again" + lower_extension(file)) : fs::path(options.out);
   Arguments arguments = arguments_for(origin, output, target, scratch);

@@ -2,11 +2,9 @@
 #include "engine/io/import_child.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <csignal>
@@ -17,7 +15,7 @@
 
 #include "compute/device/error.hpp"
 #include "engine/system/child_process.hpp"
-#include "engine/system/output_file.hpp"
+#include "engine/system/scratch_folder.hpp"
 
 namespace nacre {
 namespace {
@@ -42,20 +40,9 @@ fs::path child_path(const Importer& importer) {
 }
 
 std::shared_ptr<const fs::path> make_folder(const fs::path& file) {
-  std::error_code error;
-  std::string name = (fs::temp_directory_path(error) / "nacre-import-XXXXXX").string();
-  if (error || !::mkdtemp(name.data()))
-    throw Error(
-        fmt::format("cannot read {}", file.string()),
-        fmt::format("no temporary folder: {}", error ? error.message() : std::generic_category().message(errno)),
-        "set TMPDIR to a folder that you may write to");
-  add_unfinished(name);
-  return {new fs::path(name), [](const fs::path* path) {
-            std::error_code ignored;
-            fs::remove_all(*path, ignored);
-            drop_unfinished(*path);
-            delete path;
-          }};
+  const fs::path folders[] = {temporary_folder()};
+  const auto folder = std::make_shared<ScratchFolder>("nacre-import", folders, "cannot read " + file.string());
+  return {folder, &folder->path()};
 }
 
 /// Libraries quote from damaged files; nothing of that may move a terminal's cursor.

@@ -1,4 +1,4 @@
-// Nacre: writes surfaces and point clouds as VTK PolyData (.vtp).
+// Nacre: writes surfaces, point clouds and polylines as VTK PolyData (.vtp).
 #include "engine/io/vtp_writer.hpp"
 
 #include <fmt/format.h>
@@ -43,19 +43,8 @@ std::string announce_arrays(Inline& numbers, std::span<const PointArray> arrays,
   return xml + "</PointData>\n";
 }
 
-template <class Real>
-void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points, std::span<const Triangle> triangles,
-           std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-           const std::string& field_data, std::span<const PointPlaces> places) {
-  const auto check = [&](const std::string& name, std::size_t values, int components) {
-    if (components < 1 || values != points.size() * std::size_t(components))
-      throw Error(fmt::format("cannot write {}", path.string()),
-                  fmt::format("array \"{}\" has {} values in tuples of {} for {} points", name, values, components,
-                              points.size()));
-  };
-  for (const PointArray& array : arrays) check(array.name, array.values.size(), array.components);
-  for (const PointPlaces& each : places) check(each.name, 3 * each.values.size(), 3);
-  Inline numbers;
+/// What comes before the piece.
+std::string poly_data_start(std::optional<double> time, const std::string& field_data) {
   std::string xml =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n<PolyData>\n";
@@ -64,16 +53,41 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
         "<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" "
         "format=\"ascii\">{}</DataArray>\n</FieldData>\n",
         *time);
-  xml += field_data;
+  return xml + field_data;
+}
+
+template <class Real>
+std::string announce_points(Inline& numbers, std::span<const Vec3<Real>> points) {
+  return "<Points>\n" +
+         numbers.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
+                          [points](Base64Text& file) { file.write(points.data(), points.size_bytes()); }) +
+         "</Points>\n";
+}
+
+/// Throws where an array has not one tuple per point.
+void check_array(const std::filesystem::path& path, const std::string& name, std::size_t values, int components,
+                 std::size_t points) {
+  if (components < 1 || values != points * std::size_t(components))
+    throw Error(
+        fmt::format("cannot write {}", path.string()),
+        fmt::format("array \"{}\" has {} values in tuples of {} for {} points", name, values, components, points));
+}
+
+template <class Real>
+void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points, std::span<const Triangle> triangles,
+           std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
+           const std::string& field_data, std::span<const PointPlaces> places) {
+  for (const PointArray& array : arrays)
+    check_array(path, array.name, array.values.size(), array.components, points.size());
+  for (const PointPlaces& each : places) check_array(path, each.name, 3 * each.values.size(), 3, points.size());
+  Inline numbers;
+  std::string xml = poly_data_start(time, field_data);
   xml += fmt::format(
       "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
       "NumberOfPolys=\"{}\">\n",
       points.size(), triangles.empty() ? points.size() : 0, triangles.size());
   xml += announce_arrays(numbers, arrays, places) + announce_cell_data(numbers, triangles.size(), cells);
-  xml += "<Points>\n" +
-         numbers.announce(std::is_same_v<Real, double> ? "Float64" : "Float32", "Points", 3, points.size_bytes(),
-                          [points](Base64Text& file) { file.write(points.data(), points.size_bytes()); }) +
-         "</Points>\n";
+  xml += announce_points(numbers, points);
   xml += announce_cells(numbers, points.size(), triangles) + "</Piece>\n</PolyData>\n</VTKFile>\n";
 
   OutputFile file(path);
@@ -92,6 +106,36 @@ void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points,
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time) {
   write<float>(file, points, triangles, arrays, time, {}, "", {});
+}
+
+void write_vtp_lines(const std::filesystem::path& path, std::span<const Vec3d> points, std::size_t vertices,
+                     std::span<const std::uint64_t> line_starts, std::span<const PointArray> arrays,
+                     std::optional<double> time, const std::string& field_data) {
+  const std::size_t lines = line_starts.empty() ? 0 : line_starts.size() - 1;
+  const std::uint64_t first = lines > 0 ? line_starts.front() : points.size();
+  if (vertices > first || (lines > 0 && line_starts.back() != points.size()))
+    throw Error(fmt::format("cannot write {}", path.string()), "the lines do not fit the points");
+  for (const PointArray& array : arrays)
+    check_array(path, array.name, array.values.size(), array.components, points.size());
+  Inline numbers;
+  std::string xml = poly_data_start(time, field_data);
+  xml += fmt::format(
+      "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
+      "NumberOfPolys=\"0\">\n",
+      points.size(), vertices, lines);
+  xml += announce_arrays(numbers, arrays, {}) + announce_points(numbers, points);
+  const auto from_first = [first](std::uint64_t i) { return first + i; };
+  const auto end = [line_starts, first](std::uint64_t i) { return line_starts[i + 1] - first; };
+  xml += "<Verts>\n" +
+         announce_indices(numbers, "connectivity", vertices, points.size(), [](std::uint64_t i) { return i; }) +
+         announce_indices(numbers, "offsets", vertices, points.size(), [](std::uint64_t i) { return i + 1; }) +
+         "</Verts>\n<Lines>\n" +
+         announce_indices(numbers, "connectivity", points.size() - first, points.size(), from_first) +
+         announce_indices(numbers, "offsets", lines, points.size(), end) +
+         "</Lines>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+  OutputFile file(path);
+  numbers.write(file, xml);
+  file.commit();
 }
 
 }  // namespace nacre

@@ -1,6 +1,7 @@
-// Nacre: writes surfaces and point clouds as VTK PolyData (.vtp).
+// Nacre: writes surfaces, point clouds and polylines as VTK PolyData (.vtp).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -29,5 +30,12 @@ void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points,
                std::span<const PointPlaces> places = {});
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt);
+
+/// Writes `points`, of which the first `vertices` become a vertex cell each; `line_starts`: for each polyline the
+/// number of its first point, ascending, and how many points there are (empty: no lines). The rest is as for
+/// `write_vtp`. Throws Error as that does, or where the lines do not fit the points.
+void write_vtp_lines(const std::filesystem::path& file, std::span<const Vec3d> points, std::size_t vertices,
+                     std::span<const std::uint64_t> line_starts, std::span<const PointArray> arrays,
+                     std::optional<double> time = std::nullopt, const std::string& field_data = "");
 
 }  // namespace nacre

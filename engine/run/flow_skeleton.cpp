@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "compute/topology/even_lines.hpp"
-#include "engine/io/lines_writer.hpp"
+#include "engine/io/vtp_writer.hpp"
 #include "engine/scene/surface/winding.hpp"
 
 namespace nacre {

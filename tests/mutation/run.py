@@ -151,32 +151,24 @@ constexpr bool nacre_mutant(int number) { return !std::is_constant_evaluated() &
 """
 
 
+def outward(code, at, step, ends):
+    """From a position of a line of code on, to the first of the `ends`, or bracket, that is not within brackets."""
+    inner, outer = (")]}", "([{") if step < 0 else ("([{", ")]}")
+    depth = 0
+    while at > 0 if step < 0 else at < len(code):
+        c = code[at - 1] if step < 0 else code[at]
+        if depth == 0 and (at in ends or c in outer):
+            break
+        depth += (c in inner) - (c in outer)
+        at += step
+    return at
+
+
 def expression_around(code, first, last):
     """The whole expression that [first, last) of a line of code is in: as far as a bracket, comma, semicolon, = or return."""
-    depth, begin = 0, first
-    while begin > 0:
-        c = code[begin - 1]
-        if c in ")]}":
-            depth += 1
-        elif c in "([{" and depth == 0 or c in ",;" and depth == 0:
-            break
-        elif c in "([{":
-            depth -= 1
-        elif depth == 0 and (re.search(r"(^|[^=!<>])=$", code[:begin]) and code[begin:begin + 1] != "=" or
-                             re.search(r"\breturn$", code[:begin])):
-            break
-        begin -= 1
-    depth, end = 0, last
-    while end < len(code):
-        c = code[end]
-        if c in "([{":
-            depth += 1
-        elif c in ")]}" and depth == 0 or c in ",;" and depth == 0:
-            break
-        elif c in ")]}":
-            depth -= 1
-        end += 1
-    return begin, end
+    begins = {match.end() for match in re.finditer(r"(?<![=!<>])=(?!=)|\breturn\b|[,;]", code)}
+    ends = {match.start() for match in re.finditer("[,;]", code)}
+    return outward(code, first, -1, begins), outward(code, last, 1, ends)
 
 
 def switched(kind, old, new, number):

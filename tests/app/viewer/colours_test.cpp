@@ -7,7 +7,7 @@
 #include "engine/io/surface_writer.hpp"
 #include "engine/run/shown_colours.hpp"
 #include "engine/scene/samples/samples.hpp"
-#include "tests/engine/gl/offscreen.hpp"
+#include "tests/app/viewer/scene_in_view.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
@@ -16,7 +16,7 @@ namespace {
 using Rgb = std::array<int, 3>;
 
 /// A sphere whose points have a value that is its z, or no number where y is above a half.
-class ColoursInView : public test::Offscreen {
+class ColoursInView : public test::SceneInView<FlowScene> {
  protected:
   void open() {
     Surface surface = make_sample("sphere", 32).load(0);
@@ -32,17 +32,6 @@ class ColoursInView : public test::Offscreen {
     scene_ = std::make_unique<FlowScene>(session_, make_cpu_device(2), false);
     while (scene_->results().data.array.empty() || scene_->corners().empty()) scene_->advance(-1e9);
   }
-  void TearDown() override {
-    scene_.reset();
-    test::Offscreen::TearDown();
-  }
-
-  void change(const std::function<void(Settings&)>& how) {
-    const Session before = session_;
-    how(session_.settings);
-    scene_->set_settings(session_.settings, changed_knobs(before, session_));
-  }
-
   /// Seen from -y, at a share of the picture from its left and its top: without texture, all light is ambient.
   Rgb at(double x, double y, const char* from = "-y") {
     View view = scene_view(session_, scene_->corners(), 0, 100, 100);
@@ -57,8 +46,6 @@ class ColoursInView : public test::Offscreen {
   }
 
   test::TemporaryFolder folder_;
-  Session session_;
-  std::unique_ptr<FlowScene> scene_;
 };
 
 TEST_F(ColoursInView, WhatLiesBeyondTheRangeAndWhatIsNoNumber) {

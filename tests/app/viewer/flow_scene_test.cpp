@@ -18,7 +18,7 @@
 #include "engine/io/surface_writer.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/scene/samples/samples.hpp"
-#include "tests/engine/gl/offscreen.hpp"
+#include "tests/app/viewer/scene_in_view.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
@@ -33,22 +33,11 @@ Session small_session() {
   return session;
 }
 
-class FlowInView : public test::Offscreen {
+class FlowInView : public test::SceneInView<FlowScene> {
  protected:
   void open(const Session& session) {
     session_ = session;
     scene_ = std::make_unique<FlowScene>(session, make_cpu_device(2), false);
-  }
-
-  void TearDown() override {
-    scene_.reset();  // before the context
-    test::Offscreen::TearDown();
-  }
-
-  void change(const std::function<void(Settings&)>& how) {
-    const Session before = session_;
-    how(session_.settings);
-    scene_->set_settings(session_.settings, changed_knobs(before, session_));
   }
 
   void advance() { scene_->advance_and_wait(stop_); }
@@ -73,8 +62,6 @@ class FlowInView : public test::Offscreen {
   }
 
   std::atomic<bool> stop_{false};
-  Session session_;
-  std::unique_ptr<FlowScene> scene_;
 };
 
 TEST_F(FlowInView, EachCallIsOneStep) {

@@ -14,13 +14,13 @@
 #include "engine/io/surface_writer.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/surface/flow_input.hpp"
-#include "tests/engine/gl/offscreen.hpp"
+#include "tests/app/viewer/scene_in_view.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
 namespace {
 
-class FocusInView : public test::Offscreen {
+class FocusInView : public test::SceneInView<FlowScene> {
  protected:
   static constexpr int size = 160;
 
@@ -41,17 +41,6 @@ class FocusInView : public test::Offscreen {
     const std::atomic<bool> never{false};
     scene_->advance_and_wait(never);
     ASSERT_TRUE(scene_->complete());
-  }
-
-  void TearDown() override {
-    scene_.reset();  // before the context
-    test::Offscreen::TearDown();
-  }
-
-  void change(const std::function<void(Settings&)>& how) {
-    const Session before = session_;
-    how(session_.settings);
-    scene_->set_settings(session_.settings, changed_knobs(before, session_));
   }
 
   /// The camera of the whole, or that much nearer to a point of the surface, and moved to the side.
@@ -117,8 +106,6 @@ class FocusInView : public test::Offscreen {
                                      [&](const std::string& w) { return w.find(part) != std::string::npos; }));
   }
 
-  Session session_;
-  std::unique_ptr<FlowScene> scene_;
   Camera camera_;
   double now_ = 0;
 };

@@ -8,13 +8,13 @@
 #include "app/viewer/scene/scene_view.hpp"
 #include "engine/gl/framebuffer.hpp"
 #include "engine/io/nrrd_writer.hpp"
-#include "tests/engine/gl/offscreen.hpp"
+#include "tests/app/viewer/scene_in_view.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
 
 namespace nacre {
 namespace {
 
-class MeshInView : public test::Offscreen {
+class MeshInView : public test::SceneInView<MeshScene> {
  protected:
   void open(bool lockstep, int iterations = 20) {
     if (session_.inputs.empty()) session_.sample = "two-spheres", session_.detail = 20;
@@ -25,17 +25,6 @@ class MeshInView : public test::Offscreen {
     options.open_device = [] { return make_cpu_device(2); };
     options.lockstep = lockstep;
     scene_ = std::make_unique<MeshScene>(session_, options);
-  }
-
-  void TearDown() override {
-    scene_.reset();  // before the context
-    test::Offscreen::TearDown();
-  }
-
-  void change(const std::function<void(Settings&)>& how) {
-    const Session before = session_;
-    how(session_.settings);
-    scene_->set_settings(session_.settings, changed_knobs(before, session_));
   }
 
   void advance() { scene_->advance_and_wait(stop_); }
@@ -69,8 +58,6 @@ class MeshInView : public test::Offscreen {
   }
 
   std::atomic<bool> stop_{false};
-  Session session_;
-  std::unique_ptr<MeshScene> scene_;
 };
 
 TEST_F(MeshInView, EachCallIsOneIteration) {

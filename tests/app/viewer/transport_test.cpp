@@ -8,24 +8,17 @@
 #include "app/viewer/mesh/mesh_scene.hpp"
 #include "app/viewer/scene/scene_view.hpp"
 #include "engine/gl/framebuffer.hpp"
-#include "tests/engine/gl/offscreen.hpp"
+#include "tests/app/viewer/scene_in_view.hpp"
 
 namespace nacre {
 namespace {
 
 template <class AnyScene>
-class InTime : public test::Offscreen {
+class InTime : public test::SceneInView<AnyScene> {
  protected:
-  void TearDown() override {
-    scene_.reset();  // before the context
-    test::Offscreen::TearDown();
-  }
+  using test::SceneInView<AnyScene>::session_;
+  using test::SceneInView<AnyScene>::scene_;
 
-  void change(const std::function<void(Settings&)>& how) {
-    const Session before = session_;
-    how(session_.settings);
-    scene_->set_settings(session_.settings, changed_knobs(before, session_));
-  }
   void advance() { scene_->advance_and_wait(stop_); }
   int shown() const { return scene_->transport().shown; }
 
@@ -47,8 +40,6 @@ class InTime : public test::Offscreen {
   }
 
   std::atomic<bool> stop_{false};
-  Session session_;
-  std::unique_ptr<AnyScene> scene_;
 };
 
 class FlowInTime : public InTime<FlowScene> {
