@@ -247,7 +247,7 @@ json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& ow
 
 /// Topology and streamlines of the last frame, as far as they were asked for. Returns their part of the report.
 json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTime& input, const Settings& settings,
-                 std::vector<std::string>& outputs) {
+                 const Origin& origin, std::vector<std::string>& outputs) {
   json report = json::object();
   const bool points = settings.topology || !options.topology_out.empty();
   if (!points && options.streamlines_out.empty()) return report;
@@ -257,13 +257,13 @@ json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTi
     const FlowSkeleton skeleton = flow_skeleton(input, t, settings.persistence);
     report["topology"] = skeleton_report(skeleton);
     if (!options.topology_out.empty()) {
-      write_skeleton(options.topology_out, skeleton);
+      write_skeleton(options.topology_out, skeleton, origin_of_output(origin, "topology-out"));
       outputs.push_back(options.topology_out);
     }
   }
   if (!options.streamlines_out.empty()) {
-    const std::size_t count =
-        write_streamlines(options.streamlines_out, input, t, settings.line_spacing, &interrupt_flag());
+    const std::size_t count = write_streamlines(options.streamlines_out, input, t, settings.line_spacing,
+                                                origin_of_output(origin, "streamlines-out"), &interrupt_flag());
     report["streamlines"] = {{"time", t}, {"count", count}};
     outputs.push_back(options.streamlines_out);
   }
@@ -336,7 +336,8 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   watch.check();
   std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films, origin);
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
-  const json lines = is_first_process() ? write_lines(options, *pipeline, input, settings, outputs) : json::object();
+  const json lines =
+      is_first_process() ? write_lines(options, *pipeline, input, settings, origin, outputs) : json::object();
   progress.clear();
   if (!options.common.report.empty()) {
     json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());

@@ -80,7 +80,7 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
             {"circling", ends[LineEnd::circling]}}}};
 }
 
-void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton) {
+void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton, const std::string& origin) {
   std::vector<Vec3d> points;
   PointArray kind{"kind", 1, {}}, index{"index", 1, {}}, persistence{"persistence", 1, {}};
   PointArray real{"eigenvalue_real", 2, {}}, imaginary{"eigenvalue_imaginary", 2, {}};
@@ -102,11 +102,12 @@ void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skele
   }
   if (skeleton.separatrices.empty()) starts.clear();
   write_vtp_lines(file, points, zeros.size(), starts,
-                  std::vector<PointArray>{kind, index, persistence, real, imaginary}, skeleton.time);
+                  std::vector<PointArray>{kind, index, persistence, real, imaginary}, skeleton.time,
+                  xml_origin(origin));
 }
 
 std::size_t write_streamlines(const std::filesystem::path& file, VectorsInTime& input, double t, double spacing,
-                              const std::atomic<bool>* stop) {
+                              const std::string& origin, const std::atomic<bool>* stop) {
   const PreparedSurface shape = input.moves() ? input.shape(t) : input.surface();
   std::vector<Vec3f> vectors(shape.points.size());
   input.vectors(t, vectors);
@@ -129,7 +130,7 @@ std::size_t write_streamlines(const std::filesystem::path& file, VectorsInTime& 
     starts.push_back(points.size());
   }
   if (lines.empty()) starts.clear();
-  write_vtp_lines(file, points, 0, starts, std::vector<PointArray>{speed}, t);
+  write_vtp_lines(file, points, 0, starts, std::vector<PointArray>{speed}, t, xml_origin(origin));
   return lines.size();
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
 #include "compute/topology/critical_points.hpp"
@@ -33,13 +34,14 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton);
 /// As .vtp: a vertex cell for each critical point, and after them a polyline for each separatrix. Point arrays:
 /// `kind` (0 saddle, 1 source, 2 sink, 3 focus source, 4 focus sink, 5 centre; 6 a separatrix with the flow, 7 against
 /// it), `index` (0 on separatrices), `persistence` (that of the saddle), `eigenvalue_real` and `eigenvalue_imaginary`
-/// (two components; 0 on separatrices). Throws Error if the file cannot be written.
-void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton);
+/// (two components; 0 on separatrices). `origin`: how it came about (origin.hpp).
+/// Throws Error if the file cannot be written.
+void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton, const std::string& origin);
 
 /// Evenly spaced streamlines (compute/topology/even_lines.hpp) of time `t` as .vtp: a polyline each, with the point
 /// array `speed`. `spacing`: a share of the longest side of the bounding box. Returns how many there are. Throws Error
 /// if the file cannot be written, Interrupted where `stop` is set.
 std::size_t write_streamlines(const std::filesystem::path& file, VectorsInTime& input, double t, double spacing,
-                              const std::atomic<bool>* stop);
+                              const std::string& origin, const std::atomic<bool>* stop);
 
 }  // namespace nacre

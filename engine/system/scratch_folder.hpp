@@ -10,8 +10,8 @@ namespace nacre {
 /// A new, empty folder. Its destructor removes it with all that is in it, and so does whatever ends the program.
 class ScratchFolder {
  public:
-  /// `name`: how its name begins. It is made in the first of the `folders` that may be written to. Throws Error with the
-  /// text `what` and the reason where there is none.
+  /// `name`: how its name begins. It is made in the first of the `folders` that may be written to. Throws Error with
+  /// the text `what` and the reason where there is none.
   ScratchFolder(const std::string& name, std::span<const std::filesystem::path> folders, const std::string& what);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

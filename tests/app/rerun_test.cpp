@@ -49,6 +49,14 @@ TEST_F(Rerun, PartOfARunAndMeansOverTime) {
   expect_same("means.vtp");
 }
 
+TEST_F(Rerun, TopologyAndStreamlines) {
+  ASSERT_EQ(nacre(small_flow + Words{"--topology-out", path("points.vtp"), "--streamlines-out", path("lines.vtp"),
+                                     "--persistence", "0.1", "--report", path("a.json")})
+                .status,
+            0);
+  for (const char* name : {"points.vtp", "lines.vtp", "a.json"}) expect_same(name);
+}
+
 TEST_F(Rerun, CameraOfASession) {
   write("s.json", R"({"nacre": "session 1", "sample": "sphere", "detail": 24, "knobs": {"resolution": 64, "steps": 1},
     "camera": {"eye": [3, 2, 1], "target": [0, 0, 0], "up": [0, 0, 1], "height": 2.5, "orthographic": false}})");
