@@ -226,10 +226,14 @@ TEST(MeshWorker, AMeshComesBackWhileAnotherIsMade) {
   MeshWorkerRun run(false, 2, as_it_is, true);
   run.settle();
   const std::size_t first = run.triangles;
-  set_knob(run.session.settings, "theta", "0.9");
+  const long seeded = run.calls()["seed"];  // curves, then surfaces
+  const MeshParameters usual = run.session.settings.mesh;
+  run.session.settings.mesh.theta = 0.9;
+  run.session.settings.mesh.iterations = 5000;  // so that it is interrupted among those of the surfaces
+  run.session.settings.mesh.stagnation = 0;
   run.worker->set_settings(run.session.settings);
-  const int before = run.iterations;
-  run.settle([&] { return run.iterations > before + 2; });
+  run.settle([&] { return run.calls()["seed"] == 2 * seeded; });
+  run.session.settings.mesh = usual;
   EXPECT_EQ(run.rerun("theta", "0.5"), "");
   EXPECT_EQ(run.triangles, first);
   EXPECT_TRUE(run.worker->settled());
