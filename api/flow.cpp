@@ -58,7 +58,7 @@ Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const 
   return surface;
 }
 
-/// Knobs for which the texture is made anew, and those of them for which the embedding is, too.
+/// Knobs for which the texture is made again, and those of them for which the embedding is, too.
 const std::set<std::string> embedding_knobs{"method", "octree",   "neighbour_index", "resolution",
                                             "refine", "subcells", "radius"};
 const std::set<std::string> start_knobs{"ttl", "warmup", "seed"};
@@ -270,11 +270,11 @@ std::vector<float> Flow::sample(std::span<const std::array<double, 3>> points) {
   return library_call([&] {
     const Caller caller(state_->mutex, state_->options.threads);
     state_->prepare();
-    std::vector<Vec3d> places;
-    for (const auto& p : points) places.push_back(vec(p));
-    for (const Vec3d& p : places)
+    std::vector<Vec3d> positions;
+    for (const auto& p : points) positions.push_back(vec(p));
+    for (const Vec3d& p : positions)
       if (!is_finite(p)) throw Error("a point is not finite");
-    return state_->pipeline->flow().sample_shown(places);
+    return state_->pipeline->flow().sample_shown(positions);
   });
 }
 

@@ -21,8 +21,7 @@ const char* command_of(Job job) { return job == Job::mesh ? "mesh" : "flow"; }
 bool is_offered(const Knob& knob, Job job) {
   if (!knob.concerns(command_of(job))) return false;
   if (job == Job::mesh) return knob.group != "picture" && knob.name != "names" && knob.name != "layer";
-  return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus" &&
-         knob.name != "line_spacing";
+  return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus";
 }
 
 KnobValue value_of(const Knob& knob) {
@@ -123,7 +122,7 @@ void check_process() {
   if (!computed_in.compare_exchange_strong(none, here) && none != here)
     throw Error("Nacre cannot compute in a process that was forked from one in which it had computed",
                 "worker threads are not copied by fork",
-                "start processes anew: in Python, multiprocessing.get_context(\"spawn\")");
+                "start fresh processes: in Python, multiprocessing.get_context(\"spawn\")");
 }
 
 std::unique_ptr<Device> open_library_device(const RunOptions& options) {

@@ -24,8 +24,8 @@ ClosestPoints closest_points(std::span<const std::array<double, 3>> points,
                              std::span<const std::array<double, 3>> queries, const std::atomic<bool>* stop) {
   check_process();
   if (triangles.empty()) throw Error("the surface has no triangles");
-  std::vector<Vec3d> places(points.size());
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(points[i][0], points[i][1], points[i][2]);
+  std::vector<Vec3d> positions(points.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = Vec3d(points[i][0], points[i][1], points[i][2]);
   std::vector<Triangle> corners(triangles.size());
   for (std::size_t t = 0; t < corners.size(); ++t) {
     for (const std::uint32_t corner : triangles[t]) {
@@ -37,7 +37,7 @@ ClosestPoints closest_points(std::span<const std::array<double, 3>> points,
     corners[t] = {triangles[t][0], triangles[t][1], triangles[t][2]};
   }
   for (std::size_t i = 0; i < queries.size(); ++i) checked(queries[i], "query", i);
-  const TriangleTree tree(places, corners);
+  const TriangleTree tree(positions, corners);
   ClosestPoints result;
   result.points.resize(queries.size());
   result.triangles.resize(queries.size());

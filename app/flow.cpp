@@ -250,7 +250,8 @@ json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTi
                  const Origin& origin, std::vector<std::string>& outputs) {
   json report = json::object();
   const bool points = settings.topology || !options.topology_out.empty();
-  if (!points && options.streamlines_out.empty()) return report;
+  const bool lines = settings.streamlines || !options.streamlines_out.empty();
+  if (!points && !lines) return report;
   const double t = pipeline.flow().time();
   StageTimers::Scope scope(pipeline.timers(), "topology");
   if (points) {
@@ -261,11 +262,13 @@ json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTi
       outputs.push_back(options.topology_out);
     }
   }
-  if (!options.streamlines_out.empty()) {
-    const std::size_t count = write_streamlines(options.streamlines_out, input, t, settings.line_spacing,
-                                                origin_of_output(origin, "streamlines-out"), &interrupt_flag());
-    report["streamlines"] = {{"time", t}, {"count", count}};
-    outputs.push_back(options.streamlines_out);
+  if (lines) {
+    const FlowStreamlines streamlines = flow_streamlines(input, t, settings.line_spacing, &interrupt_flag());
+    report["streamlines"] = {{"time", t}, {"count", streamlines.lines.size()}};
+    if (!options.streamlines_out.empty()) {
+      write_streamlines(options.streamlines_out, streamlines, origin_of_output(origin, "streamlines-out"));
+      outputs.push_back(options.streamlines_out);
+    }
   }
   return report;
 }

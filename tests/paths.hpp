@@ -9,7 +9,7 @@
 namespace nacre::test {
 
 // Constants of one generated file (paths.cpp.in): as macros on the command line they would make every clone compile all
-// tests anew. Initialised before any object with a constructor.
+// tests again. Initialised before any object with a constructor.
 extern const char* const program_path;   ///< the program `nacre` that was built
 extern const char* const source_folder;  ///< root of the repository
 extern const char* const shared_folder;  ///< `shared/data` beside the repository; need not be there

@@ -134,19 +134,19 @@ const FlowRun& FlowRuns::run(const FlowJob& job) {
   return runs_[job] = run;
 }
 
-double FlowRuns::embed_and_step(const FlowJob& job, bool anew, int times) {
+double FlowRuns::embed_and_step(const FlowJob& job, bool again, int times) {
   const FlowMesh surface = mesh(job);
   const FlowVectors flow_vectors = vectors(job);
   std::unique_ptr<FlowPipeline> made;
   double best = 1e300;
-  for (int k = anew ? 1 : 0; k <= times; ++k) {
+  for (int k = again ? 1 : 0; k <= times; ++k) {
     const double before = now();
-    if (anew || !made) made = pipeline(job);
+    if (again || !made) made = pipeline(job);
     made->parameters.warmup = 0;
     made->embed(surface);
     made->flow().start(flow_vectors);
     made->flow().step();
-    if (anew) made.reset();
+    if (again) made.reset();
     if (k > 0) best = std::min(best, now() - before);
   }
   return best;

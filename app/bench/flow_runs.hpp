@@ -60,7 +60,7 @@ class FlowRuns {
   const FlowRun& run(const FlowJob& job);
   /// Seconds to embed the surface and take one step, with everything in memory that is kept (`times` runs in one
   /// pipeline, the first not counted) or allocated again for each; the fastest.
-  double embed_and_step(const FlowJob& job, bool anew, int times);
+  double embed_and_step(const FlowJob& job, bool again, int times);
   /// A picture after some steps, coloured by speed.
   Image picture(const FlowJob& job, int steps, int width, int height);
 

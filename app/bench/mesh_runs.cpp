@@ -99,7 +99,7 @@ const MeshFields& MeshRuns::fields(const MeshJob& job) {
   return fields_[job] = {volume_->dims, volume_->materials() - 1, best[0], best[1], best[2]};
 }
 
-void MeshRuns::place(const MeshSolve& solve) {
+void MeshRuns::place_particles(const MeshSolve& solve) {
   MeshParameters& parameters = pipeline_->parameters;
   parameters.solver = solve.solver == "own" ? "tree" : solve.solver;
   parameters.particles = solve.particles;
@@ -113,7 +113,7 @@ MeshRun MeshRuns::run_once(const MeshSolve& solve) {
     return timers.seconds("triangulate") + timers.seconds("smooth") + timers.seconds("mend");
   };
   const double placed = placing(), relaxed = timers.seconds("relax"), extracted = extracting();
-  place(solve);
+  place_particles(solve);
   MeshRun run;
   run.seconds = placing() - placed;
   run.relax = timers.seconds("relax") - relaxed;
@@ -153,7 +153,7 @@ const MeshRun& MeshRuns::run(const MeshJob& job, const MeshSolve& solve) {
 
 MeshParticles MeshRuns::particles(const MeshJob& job, const MeshSolve& solve) {
   open(job, solve.solver == "own", device_of(solve));
-  place(solve);
+  place_particles(solve);
   MeshParticles particles = pipeline_->particles();
   const double voxel = std::min({volume_->spacing.x, volume_->spacing.y, volume_->spacing.z});
   for (Vec3d& p : particles.points) p = (p - volume_->origin) / voxel;

@@ -79,7 +79,7 @@ class MeshRuns {
   Device& device_of(const MeshSolve& solve);
   void open(const MeshJob& job, bool own_settings, Device& device);
   MeshParameters parameters(const MeshJob& job, bool own_settings) const;
-  void place(const MeshSolve& solve);
+  void place_particles(const MeshSolve& solve);
   MeshRun run_once(const MeshSolve& solve);
 
   Device& device_;

@@ -48,12 +48,12 @@ void arena_turns(Bench& bench, BenchTable& table) {
     const double kept = turn_seconds(
         device, particles, [&](std::size_t bytes) -> void* { return arena.permanent<unsigned char>(bytes).data(); },
         [&](void*, std::size_t) { arena.rewind(start); });
-    const double anew = turn_seconds(
+    const double again = turn_seconds(
         device, particles, [&](std::size_t bytes) { return device.allocate(bytes); },
         [&](void* array, std::size_t bytes) { device.deallocate(array, bytes); });
     table.add(row, "arena, ms", 1000 * kept);
-    table.add(row, "made on the fly, ms", 1000 * anew);
-    table.add(row, "on the fly / arena", ratio(anew, kept), Better::higher);
+    table.add(row, "made on the fly, ms", 1000 * again);
+    table.add(row, "on the fly / arena", ratio(again, kept), Better::higher);
   });
 }
 
@@ -107,10 +107,10 @@ void bench_arena(Bench& bench) {
   job.detail = bench.small ? small_flow_detail : 0;
   const std::string input = fmt::format("sample train, {} cells: embed, start, one step", job.resolution);
   bench.row(table, "embedding", input, [&](BenchRow& row) {
-    const double kept = bench.flows.embed_and_step(job, false, 3), anew = bench.flows.embed_and_step(job, true, 3);
+    const double kept = bench.flows.embed_and_step(job, false, 3), again = bench.flows.embed_and_step(job, true, 3);
     table.add(row, "arena kept, s", kept);
-    table.add(row, "arena allocated again, s", anew);
-    table.add(row, "made anew / kept", ratio(anew, kept));
+    table.add(row, "arena allocated again, s", again);
+    table.add(row, "made again / kept", ratio(again, kept));
   });
 }
 

@@ -261,7 +261,7 @@ constexpr ThesisFigure figures[]{
     {"6.2", "train 2048", "voxels", 15800019},
     {"6.2", "train 2048", "growth of voxels", 4.1},
     {"6.2", "train 2048", "sparseness, %", 99.8},
-    {"arena", "embedding", "made anew / kept", 2, "the text: more than double"},
+    {"arena", "embedding", "made again / kept", 2, "the text: more than double"},
     {"gathering", "ribcage", "copying, % of a turn", 4, "the text: less than"},
 };
 

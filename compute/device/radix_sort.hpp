@@ -46,23 +46,23 @@ void radix_sort(Data data, Data other, std::int64_t n, int lowest = 0) {
   constexpr int digit_bits = 8, digits = 1 << digit_bits;
   const Data home = data;
   const std::int64_t blocks = std::clamp<std::int64_t>(n >> 14, 1, 256);
-  std::vector<std::int64_t> place(blocks * digits);
+  std::vector<std::int64_t> offset(blocks * digits);
   auto each_block = [&](const auto& body) {
     tbb::parallel_for(std::int64_t(0), blocks,
-                      [&](std::int64_t b) { body(place.data() + b * digits, n * b / blocks, n * (b + 1) / blocks); });
+                      [&](std::int64_t b) { body(offset.data() + b * digits, n * b / blocks, n * (b + 1) / blocks); });
   };
   std::uint64_t left = differing_bits(data.key, n) >> lowest << lowest;
   while (left) {
     const int shift = __builtin_ctzll(left);
     left &= ~(std::uint64_t(digits - 1) << shift);
     auto digit = [&](std::int64_t i) { return data.key[i] >> shift & (digits - 1); };
-    std::fill(place.begin(), place.end(), 0);
+    std::fill(offset.begin(), offset.end(), 0);
     each_block([&](std::int64_t* count, std::int64_t first, std::int64_t last) {
       for (std::int64_t i = first; i < last; ++i) ++count[digit(i)];
     });
     std::int64_t at = 0;
     for (int d = 0; d < digits; ++d)
-      for (std::int64_t b = 0; b < blocks; ++b) at += std::exchange(place[b * digits + d], at);
+      for (std::int64_t b = 0; b < blocks; ++b) at += std::exchange(offset[b * digits + d], at);
     each_block([&](std::int64_t* to, std::int64_t first, std::int64_t last) {
       for (std::int64_t i = first; i < last; ++i) data.move(i, other, to[digit(i)]++);
     });

@@ -15,8 +15,8 @@ namespace nacre {
 //   cells, surface_cells             how many cells are stored, and how many of them the surface passes through
 //   point[c]                         CellPoint of cell c; `quantum` unpacks it
 //   items()                          groups of cells that one team works on
-//   each_cell(team, item, body)      body(cell, Int3 place, cursor&) for the group's cells
-//   each_surface_cell(team, item, b) body(surface_cell, cell, Int3 place, cursor&) for those that the surface passes
+//   each_cell(team, item, body)      body(cell, Int3 position, cursor&) for the group's cells
+//   each_surface_cell(team, item, b) body(surface_cell, cell, Int3 position, cursor&) for those that the surface passes
 //   Cursor                           finds cells near each other fast:
 //     find(Int3)                       number of the cell, or `no_cell`
 //     find_surface(Int3)               number of the surface cell, or `no_cell`
@@ -120,7 +120,7 @@ struct SplineWeights {
   }
 };
 
-/// Runs `kernel(cell, place, cursor)` on every cell of the band, or `kernel(surface_cell, cell, place, cursor)` on
+/// Runs `kernel(cell, position, cursor)` on every cell of the band, or `kernel(surface_cell, cell, position, cursor)` on
 /// those that the surface passes through.
 template <class View, class Kernel>
 struct OnCells {

@@ -13,7 +13,7 @@ namespace nacre {
 /// `work`: per brick.
 std::vector<std::size_t> cut_by_work(std::span<const std::uint64_t> work, int parts);
 
-/// The Morton codes of all places within `depth` bricks (on every axis, also diagonally) of `bricks`, which are
+/// The Morton codes of all positions within `depth` bricks (on every axis, also diagonally) of `bricks`, which are
 /// ascending codes in a domain of 1 << levels bricks per axis; ascending, each once, `bricks` among them. Depth 0:
 /// `bricks` themselves.
 std::vector<std::uint64_t> codes_around(std::span<const std::uint64_t> bricks, int depth, int levels);

@@ -11,8 +11,8 @@
 #include "compute/embedding/brick_ranges.hpp"
 #include "compute/embedding/bricks_near.hpp"
 #include "compute/embedding/closest_in_brick.hpp"
+#include "compute/embedding/code_lists.hpp"
 #include "compute/embedding/octree_nodes.hpp"
-#include "compute/embedding/place_lists.hpp"
 
 namespace nacre {
 
@@ -132,13 +132,13 @@ struct BricksTouched {
 /// Where the list of a brick begins among those of all bricks; entry `bricks` is the end of the last.
 struct FindList {
   const std::uint64_t* brick_code;
-  std::uint32_t bricks, places;
+  std::uint32_t bricks, runs;
   std::uint64_t items;
   const std::uint64_t* position;  // ascending
-  const std::uint64_t* place_start;
+  const std::uint64_t* run_start;
   std::uint64_t* start;
   NACRE_HD void operator()(std::int64_t i) const {
-    std::uint32_t low = i < bricks ? 0 : places, high = places;
+    std::uint32_t low = i < bricks ? 0 : runs, high = runs;
     while (low < high) {
       const std::uint32_t middle = low + (high - low) / 2;
       if (position[middle] < brick_code[i])
@@ -146,7 +146,7 @@ struct FindList {
       else
         high = middle;
     }
-    start[i] = low < places ? place_start[low] : items;
+    start[i] = low < runs ? run_start[low] : items;
   }
 };
 
@@ -205,14 +205,14 @@ class BrickOctreeBuilder {
         near.wanted = {part->first, part->last};
         {
           Arena::Scope first(arena);
-          codes = place_lists(exec_, clusters.count, near).places.position.download();
+          codes = code_lists(exec_, clusters.count, near).runs.code.download();
         }
         codes = codes_around(codes, part->depth, tree_.levels);
         near.wanted = wanted_ = listed(codes);
       } else {
         require_room(view, clusters.count);
       }
-      const PlaceLists lists = place_lists(exec_, clusters.count, near);
+      const CodeLists lists = code_lists(exec_, clusters.count, near);
       find_cells(view, lists);
     }
     if (tree_.cells == 0 && !part)
@@ -248,9 +248,9 @@ class BrickOctreeBuilder {
                   exec_.device().too_small("lower the resolution"));
   }
 
-  void find_cells(const ClusterView& clusters, const PlaceLists& lists) {
+  void find_cells(const ClusterView& clusters, const CodeLists& lists) {
     Arena& arena = exec_.arena();
-    const std::uint32_t count = lists.places.count, most = std::min(count, bricks_at_once);
+    const std::uint32_t count = lists.runs.count, most = std::min(count, bricks_at_once);
     Array<OctreeBrick> found = arena.temporary<OctreeBrick>(count);
     {
       Arena::Scope scope(arena);
@@ -260,9 +260,8 @@ class BrickOctreeBuilder {
       for (std::uint64_t first = 0; first < count; first += most) {
         const auto n = std::int64_t(std::min<std::uint64_t>(most, count - first));
         OctreeBrick* brick = found.data() + first;
-        exec_.for_each_team(n,
-                            ClosestInBrick{clusters, radius_, tree_.quantum, lists.places.position.data() + first,
-                                           lists.places.start.data() + first, lists.item.data(), brick, point.data()});
+        exec_.for_each_team(n, ClosestInBrick{clusters, radius_, tree_.quantum, lists.runs.code.data() + first,
+                                              lists.runs.start.data() + first, lists.item.data(), brick, point.data()});
         exec_.for_each(n, CountCells{brick, band.data(), surface.data()});
         const std::uint32_t cells = exec_.exclusive_scan(band.data(), band.data(), n);
         const std::uint32_t surface_cells = exec_.exclusive_scan(surface.data(), surface.data(), n);
@@ -273,7 +272,7 @@ class BrickOctreeBuilder {
         exec_.for_each_team(n, GatherPoints{brick, point.data(), tree_.point.data()});
       }
     }
-    keep_filled(found, lists.places.position);
+    keep_filled(found, lists.runs.code);
   }
 
   /// Some of the bricks found have no cell within the radius.
@@ -292,12 +291,12 @@ class BrickOctreeBuilder {
   void list_triangles() {
     Arena& arena = exec_.arena();
     Arena::Scope scope(arena);
-    const PlaceLists lists = place_lists(exec_, triangles_, BricksTouched{mesh_, tree_.levels, wanted_});
+    const CodeLists lists = code_lists(exec_, triangles_, BricksTouched{mesh_, tree_.levels, wanted_});
     tree_.list_start = arena.permanent<std::uint64_t>(std::size_t(tree_.brick_count) + 1);
     tree_.list = arena.permanent<std::uint32_t>(lists.item.size());
     exec_.for_each(std::int64_t(tree_.brick_count) + 1,
-                   FindList{tree_.brick_code.data(), tree_.brick_count, lists.places.count, lists.item.size(),
-                            lists.places.position.data(), lists.places.start.data(), tree_.list_start.data()});
+                   FindList{tree_.brick_code.data(), tree_.brick_count, lists.runs.count, lists.item.size(),
+                            lists.runs.code.data(), lists.runs.start.data(), tree_.list_start.data()});
     exec_.for_each(std::int64_t(lists.item.size()), CopyItems{lists.item.data(), tree_.list.data()});
   }
 

@@ -175,7 +175,7 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
         clusters.corners.data(), clusters.start.data(), clusters.bound.data(), bricks, double(sub), double(radius)};
     const Array<std::uint64_t> pairs = sorted_pairs(exec, clusters.count, near);
     Array<std::uint32_t> number;
-    grid.brick_count = number_places(exec, pairs, number);
+    grid.brick_count = number_bins(exec, pairs, number);
     grid.cells = std::uint64_t(grid.brick_count) * sub * sub * sub;
     if (grid.cells >= none) throw Error("the grid is too fine", "over 2^32 cells", "lower `resolution`");
     Array<std::uint64_t> list_start = arena.temporary<std::uint64_t>(grid.brick_count + 1);

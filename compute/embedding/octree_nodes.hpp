@@ -6,7 +6,7 @@
 
 #include "compute/device/executor.hpp"
 #include "compute/embedding/brick_octree.hpp"
-#include "compute/embedding/place_lists.hpp"
+#include "compute/embedding/code_lists.hpp"
 
 namespace nacre {
 
@@ -86,7 +86,7 @@ OctreeNodes build_octree_nodes(Executor<Backend>& exec, const Array<std::uint64_
   const Array<std::uint64_t>* child = &brick_code;
   for (int l = levels - 1; l >= 0; --l) {
     level[l] = runs_of(exec, child->data(), child->size(), 3);
-    child = &level[l].position;
+    child = &level[l].code;
   }
   std::vector<std::uint32_t> start(levels + 1, 0);
   std::uint64_t total = 0;
@@ -98,7 +98,7 @@ OctreeNodes build_octree_nodes(Executor<Backend>& exec, const Array<std::uint64_
   nodes.node = arena.permanent<OctreeNode>(total);
   nodes.level_start = arena.permanent_copy<std::uint32_t>(start);
   for (int l = 0; l < levels; ++l)
-    exec.for_each(level[l].count, detail::WriteNode{(l + 1 < levels ? level[l + 1].position : brick_code).data(),
+    exec.for_each(level[l].count, detail::WriteNode{(l + 1 < levels ? level[l + 1].code : brick_code).data(),
                                                     level[l].start.data(), nodes.node.data() + start[l]});
   return nodes;
 }

@@ -1,5 +1,4 @@
-// Nacre: lists of the items at each place, as sorted keys: (place << 32
-// item).
+// Nacre: lists of the items of each bin, as sorted keys: bin << 32 | item.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +10,14 @@ namespace nacre {
 
 namespace detail {
 
-/// Counts the places of an item if `keys` is null, otherwise writes them. It is one kernel for both, because a compiler
-/// may round two instantiations of the same geometry differently. An item with one place only is not processed twice.
+/// Counts the bins of an item if `keys` is null, otherwise writes them. It is one kernel for both, because a compiler
+/// may round two instantiations of the same geometry differently. An item with one bin only is not processed twice.
 template <class Enumerate>
 struct EnumerateKeys {
   Enumerate enumerate;
   std::uint64_t items, pairs;
   std::uint64_t* count;  // later: where the item's keys begin
-  std::uint32_t* first;  // the item's first place
+  std::uint32_t* first;  // the item's first bin
   std::uint64_t* keys;
   NACRE_HD void operator()(std::int64_t i) const {
     std::uint64_t at = keys ? count[i] : 0;
@@ -28,11 +27,11 @@ struct EnumerateKeys {
       keys[at] = std::uint64_t(first[i]) << 32 | std::uint64_t(i);
       if (end == at + 1) return;
     }
-    enumerate(i, [&](std::uint64_t position) {
+    enumerate(i, [&](std::uint64_t bin) {
       if (keys)
-        keys[at] = position << 32 | std::uint64_t(i);
+        keys[at] = bin << 32 | std::uint64_t(i);
       else if (at == 0)
-        first[i] = std::uint32_t(position);
+        first[i] = std::uint32_t(bin);
       ++at;
     });
     if (!keys) count[i] = at;
@@ -45,22 +44,22 @@ struct HeadFlag {
   NACRE_HD void operator()(std::int64_t i) const { head[i] = i == 0 || keys[i] >> 32 != keys[i - 1] >> 32 ? 1 : 0; }
 };
 
-/// First position whose key has a place of at least i: the lists of all places as offsets.
+/// First index whose key has a bin of at least i: the lists of all bins as offsets.
 template <class Offset>
 struct ListStart {
   std::uint64_t pairs;
   const std::uint64_t* keys;
   Offset* start;
-  NACRE_HD void operator()(std::int64_t position) const {
+  NACRE_HD void operator()(std::int64_t bin) const {
     std::uint64_t low = 0, high = pairs;
     while (low < high) {
       const std::uint64_t middle = (low + high) / 2;
-      if (keys[middle] >> 32 < std::uint64_t(position))
+      if (keys[middle] >> 32 < std::uint64_t(bin))
         low = middle + 1;
       else
         high = middle;
     }
-    start[position] = Offset(low);
+    start[bin] = Offset(low);
   }
 };
 
@@ -72,8 +71,8 @@ struct LowHalf {
 
 }  // namespace detail
 
-/// `enumerate(i, visit)` calls visit(place) for every 32-bit place of item i (it runs twice). Returns all
-/// (place, item) pairs in ascending order, counted in 64 bits, in temporary memory of the caller's scope.
+/// `enumerate(i, visit)` calls visit(bin) for every 32-bit bin of item i (it runs twice). Returns all
+/// (bin, item) pairs in ascending order, counted in 64 bits, in temporary memory of the caller's scope.
 template <class Backend, class Enumerate>
 Array<std::uint64_t> sorted_pairs(Executor<Backend>& exec, std::int64_t items, const Enumerate& enumerate) {
   Arena& arena = exec.arena();
@@ -88,10 +87,10 @@ Array<std::uint64_t> sorted_pairs(Executor<Backend>& exec, std::int64_t items, c
   return keys;
 }
 
-/// For sorted keys: `number[i]` = how many different places begin before key i (the number of the place of key i is
-/// that, plus its own head flag, minus one). Returns how many places there are.
+/// For sorted keys: `number[i]` = how many different bins begin before key i (the number of the bin of key i is
+/// that, plus its own head flag, minus one). Returns how many bins there are.
 template <class Backend>
-std::uint32_t number_places(Executor<Backend>& exec, const Array<std::uint64_t>& keys, Array<std::uint32_t>& number) {
+std::uint32_t number_bins(Executor<Backend>& exec, const Array<std::uint64_t>& keys, Array<std::uint32_t>& number) {
   const std::int64_t n = keys.size();
   number = exec.arena().template temporary<std::uint32_t>(n);
   exec.for_each(n, detail::HeadFlag{keys.data(), number.data()});

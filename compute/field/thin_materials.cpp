@@ -17,9 +17,9 @@ constexpr int block_reach = 4;  // voxels around a block whose materials count
 constexpr int spare = 4;        // as many more go, so that blocks around may put some back
 
 /// What is within reach of one block, clipped to the volume.
-class BlockPlace {
+class Block {
  public:
-  BlockPlace(const Int3& dims, const Int3& block) : dims_(dims) {
+  Block(const Int3& dims, const Int3& block) : dims_(dims) {
     for (int axis = 0; axis < 3; ++axis) {
       const int begin = block[axis] * block_size - volume_padding - block_reach;
       const int end = begin + block_size + 2 * block_reach;
@@ -58,12 +58,12 @@ class BlockPlace {
 };
 
 /// Materials there with their numbers of voxels, ascending by material.
-std::vector<std::pair<std::uint16_t, int>> list_materials(const BlockPlace& place,
+std::vector<std::pair<std::uint16_t, int>> list_materials(const Block& block,
                                                           const std::vector<std::uint16_t>& material) {
   std::vector<std::uint16_t> all;
-  all.reserve(place.count() + 1);
-  for (std::size_t i = 0; i < place.count(); ++i) all.push_back(material[place.voxel(i)]);
-  if (place.reaches_beyond()) all.push_back(0);
+  all.reserve(block.count() + 1);
+  for (std::size_t i = 0; i < block.count(); ++i) all.push_back(material[block.voxel(i)]);
+  if (block.reaches_beyond()) all.push_back(0);
   std::sort(all.begin(), all.end());
   std::vector<std::pair<std::uint16_t, int>> counted;
   for (const std::uint16_t m : all)
@@ -74,8 +74,8 @@ std::vector<std::pair<std::uint16_t, int>> list_materials(const BlockPlace& plac
   return counted;
 }
 
-std::int64_t thin_block(const BlockPlace& place, std::vector<std::uint16_t>& material, int most) {
-  auto counted = list_materials(place, material);
+std::int64_t thin_block(const Block& block, std::vector<std::uint16_t>& material, int most) {
+  auto counted = list_materials(block, material);
   if (int(counted.size()) <= most) return 0;
   std::sort(counted.begin(), counted.end(), [](const auto& s, const auto& t) {
     if ((s.first == 0) != (t.first == 0)) return s.first == 0;
@@ -85,18 +85,18 @@ std::int64_t thin_block(const BlockPlace& place, std::vector<std::uint16_t>& mat
   std::vector<std::uint16_t> kept;
   for (const auto& [m, voxels] : counted) kept.push_back(m);
   std::sort(kept.begin(), kept.end());
-  std::vector<std::uint8_t> known(place.count(), 0);
+  std::vector<std::uint8_t> known(block.count(), 0);
   std::vector<std::size_t> front, next;
-  for (std::size_t i = 0; i < place.count(); ++i)
-    if (std::binary_search(kept.begin(), kept.end(), material[place.voxel(i)])) known[i] = 1, front.push_back(i);
+  for (std::size_t i = 0; i < block.count(); ++i)
+    if (std::binary_search(kept.begin(), kept.end(), material[block.voxel(i)])) known[i] = 1, front.push_back(i);
   std::int64_t changed = 0;
   for (; !front.empty(); front.swap(next)) {
     next.clear();
     for (const std::size_t i : front)
-      place.neighbours(i, [&](std::size_t k) {
+      block.neighbours(i, [&](std::size_t k) {
         if (known[k]) return;
         known[k] = 1;
-        material[place.voxel(k)] = material[place.voxel(i)];
+        material[block.voxel(k)] = material[block.voxel(i)];
         ++changed;
         next.push_back(k);
       });
@@ -110,18 +110,18 @@ std::int64_t thin_materials(const Int3& dims, std::vector<std::uint16_t>& materi
   Int3 blocks;
   for (int axis = 0; axis < 3; ++axis) blocks[axis] = (dims[axis] + 2 * volume_padding + block_size - 1) / block_size;
   const std::size_t count = std::size_t(blocks.x) * std::size_t(blocks.y) * std::size_t(blocks.z);
-  const auto place_of = [&](std::size_t b) {
+  const auto block_of = [&](std::size_t b) {
     const auto nx = std::size_t(blocks.x), ny = std::size_t(blocks.y);
-    return BlockPlace(dims, {int(b % nx), int(b / nx % ny), int(b / nx / ny)});
+    return Block(dims, {int(b % nx), int(b / nx % ny), int(b / nx / ny)});
   };
   std::int64_t changed = 0;
   for (int round = 0; round < thinning_rounds; ++round) {
     std::vector<std::uint8_t> crowded(count, 0);
     tbb::parallel_for(std::size_t(0), count,
-                      [&](std::size_t b) { crowded[b] = int(list_materials(place_of(b), material).size()) > most; });
+                      [&](std::size_t b) { crowded[b] = int(list_materials(block_of(b), material).size()) > most; });
     std::int64_t now = 0;
     for (std::size_t b = 0; b < count; ++b)
-      if (crowded[b]) now += thin_block(place_of(b), material, most);
+      if (crowded[b]) now += thin_block(block_of(b), material, most);
     if (now == 0) break;
     changed += now;
   }

@@ -138,7 +138,7 @@ struct SmoothBrick {
 };
 
 /// At voxels that smoothing puts on the wrong side of the boundary, asks for more of their own material and for less of
-/// its strongest rival. Looks at a brick's voxels of its own material, if a brick of its block was smoothed anew.
+/// its strongest rival. Looks at a brick's voxels of its own material, if a brick of its block was smoothed again.
 struct HoldVoxels {
   MaterialBricksView smooth;
   const std::uint32_t* brick_block;

@@ -123,11 +123,11 @@ CellMaterials cell_materials(const DelaunayCells& cells, const SurfaceMesh& mesh
   return result;
 }
 
-std::vector<std::uint16_t> materials_at(std::span<const Vec3d> places, std::span<const Vec3d> points,
+std::vector<std::uint16_t> materials_at(std::span<const Vec3d> positions, std::span<const Vec3d> points,
                                         const DelaunayCells& cells, std::span<const std::uint16_t> material) {
   constexpr int longest_walk = 100'000;  // exact predicates need far fewer; rounding may walk in a circle
-  std::vector<std::uint16_t> result(places.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size(), 4096), [&](const auto& range) {
+  std::vector<std::uint16_t> result(positions.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size(), 4096), [&](const auto& range) {
     std::int32_t cell = 0;
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       std::int32_t next = cell;
@@ -138,7 +138,7 @@ std::vector<std::uint16_t> materials_at(std::span<const Vec3d> places, std::span
         for (; k < 4; ++k) {
           const auto [a, b, c] = facet_corners[(k + steps) % 4];
           const Vec3d p = points[v[a]];
-          if (dot(cross(points[v[b]] - p, points[v[c]] - p), places[i] - p) > 0) break;
+          if (dot(cross(points[v[b]] - p, points[v[c]] - p), positions[i] - p) > 0) break;
         }
         if (k == 4) break;  // within
         next = cells.neighbours[cell][(k + steps) % 4];

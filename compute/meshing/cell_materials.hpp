@@ -21,8 +21,8 @@ struct CellMaterials {
 /// do not close off one material from another.
 CellMaterials cell_materials(const DelaunayCells& cells, const SurfaceMesh& mesh);
 
-/// The material at each of `places`, by walking through the cells; 0 outside of the hull.
-std::vector<std::uint16_t> materials_at(std::span<const Vec3d> places, std::span<const Vec3d> points,
+/// The material at each of `positions`, by walking through the cells; 0 outside of the hull.
+std::vector<std::uint16_t> materials_at(std::span<const Vec3d> positions, std::span<const Vec3d> points,
                                         const DelaunayCells& cells, std::span<const std::uint16_t> material);
 
 }  // namespace nacre

@@ -65,7 +65,7 @@ void close_chains(std::vector<CurveNode>& nodes, const StarParticles& particles)
     if (!nodes[i].has_previous || nodes[i].previous != none) continue;
     std::uint32_t last = i;
     while (nodes[last].next != none) last = nodes[last].next;
-    const Vec3d gap = particles.place(nodes[last].particle) - particles.place(nodes[i].particle);
+    const Vec3d gap = particles.point(nodes[last].particle) - particles.point(nodes[i].particle);
     if (nodes[last].has_next && length(gap) <= widest_gap * particles.position[nodes[i].particle].w)
       nodes[last].next = i, nodes[i].previous = last;
   }
@@ -75,15 +75,15 @@ void close_chains(std::vector<CurveNode>& nodes, const StarParticles& particles)
 
 std::vector<CurveNode> link_curves(const StarParticles& particles) {
   Nodes nodes = make_nodes(particles);
-  std::vector<Vec3d> place;
+  std::vector<Vec3d> position;
   std::vector<std::uint32_t> first, group;
   for (std::size_t i = 0; i < nodes.node.size(); ++i) {
     if (i == 0 || nodes.node[i].curve != nodes.node[i - 1].curve) first.push_back(std::uint32_t(i));
     group.push_back(std::uint32_t(first.size() - 1));
-    place.push_back(particles.place(nodes.node[i].particle));
+    position.push_back(particles.point(nodes.node[i].particle));
   }
   first.push_back(std::uint32_t(nodes.node.size()));
-  const PointTree tree(place, first);
+  const PointTree tree(position, first);
   std::vector<PointTree::Found> found;
   std::vector<Link> links;
   for (const Reach& reach : reaches) {
@@ -92,11 +92,11 @@ std::vector<CurveNode> link_curves(const StarParticles& particles) {
       const CurveNode& from = nodes.node[i];
       if (!from.has_next || from.next != none) continue;
       found.clear();
-      tree.within(group[i], place[i], reach.sizes * particles.position[from.particle].w, found);
+      tree.within(group[i], position[i], reach.sizes * particles.position[from.particle].w, found);
       for (const auto& [distance2, k] : found) {
         const CurveNode& to = nodes.node[k];
         if (k == i || !to.has_previous || to.previous != none) continue;
-        const Vec3d step = place[k] - place[i];
+        const Vec3d step = position[k] - position[i];
         const double length = std::sqrt(distance2);
         if (std::min(dot(step, nodes.tangent[i]), dot(step, nodes.tangent[k])) >= reach.cosine * length)
           links.push_back({length, i, k});

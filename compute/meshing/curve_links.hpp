@@ -18,7 +18,7 @@ struct StarParticles {
   std::span<const JunctionGradients> gradient;  ///< at those on curves and points; the others' are not read
 
   std::size_t count() const { return position.size(); }
-  Vec3d place(std::size_t i) const { return {position[i].x, position[i].y, position[i].z}; }
+  Vec3d point(std::size_t i) const { return {position[i].x, position[i].y, position[i].z}; }
   /// Gradient of the function of material i of the junction less that of its material j.
   Vec3d difference(std::size_t particle, int i, int j) const {
     const auto from_first = [&](int k) { return k == 0 ? Vec3d() : Vec3d(gradient[particle].from_first[k - 1]); };

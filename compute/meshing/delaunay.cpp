@@ -182,7 +182,7 @@ struct Delaunay::Held {
   std::vector<Vertex> vertices;  ///< per point
 
   /// Takes out the points that are not in `now`; the numbers of those that are to be put in, ascending. All, where
-  /// building anew costs less: then all of this is as new.
+  /// building all of it costs less: then all of this is as new.
   std::vector<std::uint32_t> keep(std::span<const Vec3d> now, const std::atomic<bool>* stop) {
     const PlaceTable known(points);
     std::vector<Vertex> at(now.size());

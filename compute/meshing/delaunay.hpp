@@ -22,7 +22,7 @@ struct DelaunayCells {
 };
 
 /// A Delaunay triangulation that follows its points: where few have gone, come or moved since the last call, only their
-/// neighbourhoods are made anew. What it gives depends on the points alone.
+/// neighbourhoods are made again. What it gives depends on the points alone.
 class Delaunay {
  public:
   /// On `threads` threads (0: all of the arena that it is called in; 1 under the thread sanitizer).
@@ -32,7 +32,7 @@ class Delaunay {
   Delaunay& operator=(const Delaunay&) = delete;
 
   /// The cells of `points`; of those that coincide the first is used. Points of the last call are known again by their
-  /// places. Throws Error where there are fewer than four points, all lie in
+  /// positions. Throws Error where there are fewer than four points, all lie in
   /// one plane or one is not finite, and Interrupted soon after `*stop` is set.
   DelaunayCells cells(std::span<const Vec3d> points, const std::atomic<bool>* stop = nullptr);
 

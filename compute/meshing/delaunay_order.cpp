@@ -47,7 +47,7 @@ void check_delaunay_points(std::span<const Vec3d> points) {
   if (points.size() < 4)
     throw Error(what, "there are fewer than four", "choose a smaller `max_size`, or more `particles`");
   for (const Vec3d& p : points)
-    if (!is_finite(p)) throw Error(what, "one of them is not at a finite place");
+    if (!is_finite(p)) throw Error(what, "one of them is not at a finite position");
 }
 
 void refuse_flat_points() {

@@ -1,4 +1,4 @@
-// Nacre: the Delaunay triangulation of the particles in a build without CGAL: by Qhull, all anew at each call.
+// Nacre: the Delaunay triangulation of the particles in a build without CGAL: by Qhull, from nothing at each call.
 #include <libqhull_r/qhull_ra.h>
 
 #include <algorithm>

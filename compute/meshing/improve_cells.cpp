@@ -93,7 +93,7 @@ class Improvement {
     if (ring.size() < 3 || ring.size() > most_around) return false;
     for (const std::int32_t c : ring)
       if (c < 0 || store_.material(c) != store_.material(cell)) return false;
-    corners_around(a, b, ring);
+    corners_around(ring);
     if (!is_even({a, b, around_[0], around_[1]}, store_.vertices(ring[0]))) std::swap(a, b);
     fresh_.clear();
     if (best_of_ring(a, b) < worst_of(ring) + gain) return false;
@@ -102,18 +102,8 @@ class Improvement {
     return true;
   }
 
-  void corners_around(std::uint32_t a, std::uint32_t b, const std::vector<std::int32_t>& ring) {
-    around_.clear();
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Cell& next = store_.vertices(ring[(i + 1) % ring.size()]);
-      const Cell& last = store_.vertices(ring[(i + ring.size() - 1) % ring.size()]);
-      for (const std::uint32_t v : store_.vertices(ring[i]))
-        if (v != a && v != b && std::find(next.begin(), next.end(), v) == next.end() &&
-            std::find(last.begin(), last.end(), v) != last.end())
-          around_.push_back(v);
-    }
-    if (around_.size() == ring.size()) return;
-    around_.clear();  // three cells share all their corners in turn: take what the next one does not have
+  void corners_around(const std::vector<std::int32_t>& ring) {
+    around_.clear();  // of each cell the corner that the next one does not have
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Cell& next = store_.vertices(ring[(i + 1) % ring.size()]);
       for (const std::uint32_t v : store_.vertices(ring[i]))

@@ -61,8 +61,8 @@ std::vector<double> patch_fitness(const SurfaceMesh& mesh, std::span<const std::
     const double fitness = triangle_fitness(mesh, t, order, rule);
     for (int k = 0; k < 3; ++k) lower(c[k], fitness);
   }
-  for (const auto& place : touching)
-    for (const std::uint32_t point : place) lower(point, -1);
+  for (const auto& defect : touching)
+    for (const std::uint32_t point : defect) lower(point, -1);
   return least;
 }
 

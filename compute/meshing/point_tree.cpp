@@ -17,11 +17,11 @@ PointTree::PointTree(std::span<const Vec3d> points, std::span<const std::uint32_
     : points_(points),
       first_(first.begin(), first.end()),
       order_(points.size()),
-      place_(points.size()),
+      position_(points.size()),
       axis_(points.size()) {
   std::iota(order_.begin(), order_.end(), 0u);
   tbb::parallel_for(std::size_t(1), first.size(), [&](std::size_t g) { build(first_[g - 1], first_[g]); });
-  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) { place_[i] = points_[order_[i]]; });
+  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) { position_[i] = points_[order_[i]]; });
 }
 
 void PointTree::build(std::uint32_t begin, std::uint32_t end) {
@@ -49,12 +49,12 @@ void PointTree::build(std::uint32_t begin, std::uint32_t end) {
 void PointTree::search(std::uint32_t begin, std::uint32_t end, const Vec3d& at, double radius2,
                        std::vector<Found>& found) const {
   const auto look_at = [&](std::uint32_t i) {
-    const Vec3d r = place_[i] - at;
+    const Vec3d r = position_[i] - at;
     if (const double d = dot(r, r); d <= radius2) found.push_back({d, order_[i]});
   };
   while (end - begin > leaf) {
     const std::uint32_t middle = begin + (end - begin) / 2;
-    const double beyond = at[axis_[middle]] - place_[middle][axis_[middle]];
+    const double beyond = at[axis_[middle]] - position_[middle][axis_[middle]];
     const bool both = beyond * beyond <= radius2;
     if (both) look_at(middle);
     if (beyond < 0) {

@@ -38,7 +38,7 @@ class PointTree {
   std::span<const Vec3d> points_;
   std::vector<std::uint32_t> first_;
   std::vector<std::uint32_t> order_;  // points; a range is divided at its middle
-  std::vector<Vec3d> place_;          // their positions, in this order
+  std::vector<Vec3d> position_;       // their positions, in this order
   std::vector<std::uint8_t> axis_;    // at the middle of a range: across which it is divided
 };
 

@@ -27,11 +27,11 @@ constexpr int most_debt = 3;            // how much worse it may be in between
 constexpr int most_tries = 1000;        // at one position
 
 /// An edge (a < b), or the vertex a where a == b, and a cell that has it.
-struct Place {
+struct Defect {
   std::uint32_t a, b;
   std::int32_t cell;
-  friend bool operator<(const Place& s, const Place& t) { return s.a != t.a ? s.a < t.a : s.b < t.b; }
-  friend bool operator==(const Place& s, const Place& t) { return s.a == t.a && s.b == t.b; }
+  friend bool operator<(const Defect& s, const Defect& t) { return s.a != t.a ? s.a < t.a : s.b < t.b; }
+  friend bool operator==(const Defect& s, const Defect& t) { return s.a == t.a && s.b == t.b; }
 };
 
 /// Cells that might all get another label.
@@ -58,33 +58,33 @@ class Repair {
 
   LabelRepair run() {
     fill_pockets();
-    for (const Place& place : find_places()) waiting_.push_back(place);
+    for (const Defect& defect : find_defects()) waiting_.push_back(defect);
     // Most give way to one change. What does not is tried again once all is quiet around it: without its crumbs, then
     // by several changes.
-    std::vector<Place> stuck = work_off(0);
+    std::vector<Defect> stuck = work_off(0);
     for (const int steps : {0, most_steps}) {
       crumbs_may_go_ = true;
       waiting_.assign(stuck.begin(), stuck.end());
       stuck = work_off(steps);
     }
-    for (const Place& place : stuck) result_.places.push_back({place.a, place.b});
+    for (const Defect& defect : stuck) result_.defects.push_back({defect.a, defect.b});
     result_.left = std::int64_t(stuck.size());
     return result_;
   }
 
  private:
   /// Improves what waits; returns what still touches itself, ascending.
-  std::vector<Place> work_off(int steps) {
-    std::vector<Place> stuck;
+  std::vector<Defect> work_off(int steps) {
+    std::vector<Defect> stuck;
     while (!waiting_.empty()) {
       check_stop(stop_);
-      const Place place = waiting_.front();
+      const Defect defect = waiting_.front();
       waiting_.pop_front();
-      if (excess(place) > 0 && !repair_at(place, steps)) stuck.push_back(place);
+      if (excess(defect) > 0 && !repair_at(defect, steps)) stuck.push_back(defect);
     }
     std::sort(stuck.begin(), stuck.end());
     stuck.erase(std::unique(stuck.begin(), stuck.end()), stuck.end());
-    std::erase_if(stuck, [&](const Place& place) { return excess(place) == 0; });
+    std::erase_if(stuck, [&](const Defect& defect) { return excess(defect) == 0; });
     return stuck;
   }
 
@@ -114,9 +114,9 @@ class Repair {
   // ---- how badly the surface touches itself at a position
 
   /// Wedges or vertex fans of each material beyond its first, summed.
-  int excess(const Place& place) { return place.a == place.b ? vertex_excess(place) : edge_excess(place); }
+  int excess(const Defect& defect) { return defect.a == defect.b ? vertex_excess(defect) : edge_excess(defect); }
 
-  int edge_excess(const Place& edge) {
+  int edge_excess(const Defect& edge) {
     const auto& ring = rings_.around_edge(edge.a, edge.b, edge.cell);
     std::array<std::uint16_t, 64> seen;  // labels of wedges so far; more than that do not fit around an edge
     std::size_t wedges = 0;
@@ -130,7 +130,7 @@ class Repair {
     return extra;
   }
 
-  int vertex_excess(const Place& vertex) {
+  int vertex_excess(const Defect& vertex) {
     facets_.clear();
     for (const std::int32_t cell : rings_.around_vertex(vertex.a, vertex.cell)) {
       const auto& v = cells_.vertices[cell];
@@ -151,22 +151,22 @@ class Repair {
   }
 
   /// The edges and vertices of some cells, each once, ascending.
-  std::vector<Place> places_of(const std::vector<std::int32_t>& cells) const {
-    std::vector<Place> places;
+  std::vector<Defect> defects_of(const std::vector<std::int32_t>& cells) const {
+    std::vector<Defect> defects;
     for (const std::int32_t cell : cells)
       for (int i = 0; i < 4; ++i)
         for (int j = 0; j <= i; ++j) {
           const auto [a, b] = std::minmax(cells_.vertices[cell][i], cells_.vertices[cell][j]);
-          places.push_back({a, b, cell});
+          defects.push_back({a, b, cell});
         }
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    return places;
+    std::sort(defects.begin(), defects.end());
+    defects.erase(std::unique(defects.begin(), defects.end()), defects.end());
+    return defects;
   }
 
-  int excess(const std::vector<Place>& places) {
+  int excess(const std::vector<Defect>& defects) {
     int sum = 0;
-    for (const Place& place : places) sum += excess(place);
+    for (const Defect& defect : defects) sum += excess(defect);
     return sum;
   }
 
@@ -197,23 +197,23 @@ class Repair {
   /// does harm. A change concerns its own cells alone, so that what each one gains adds up.
   bool try_change(const Change& change, int gain, int steps) {
     const std::uint16_t old = label_[change.cells[0]];
-    const std::vector<Place> places = places_of(change.cells);
-    const int before = excess(places);
+    const std::vector<Defect> defects = defects_of(change.cells);
+    const int before = excess(defects);
     if (!apply(change, old)) return false;
-    const int missing = gain - (before - excess(places));
-    if (missing <= 0 || (steps > 0 && missing <= most_debt && make_up(places, missing, steps))) {
+    const int missing = gain - (before - excess(defects));
+    if (missing <= 0 || (steps > 0 && missing <= most_debt && make_up(defects, missing, steps))) {
       result_.changed += std::int64_t(change.cells.size());
-      waiting_.insert(waiting_.end(), places.begin(), places.end());
+      waiting_.insert(waiting_.end(), defects.begin(), defects.end());
       return true;
     }
     take_back(change, change.cells.size(), old);
     return false;
   }
 
-  bool make_up(const std::vector<Place>& places, int gain, int steps) {
-    for (const Place& place : places) {
-      if (excess(place) == 0) continue;
-      for (const Change& change : changes_at(place)) {
+  bool make_up(const std::vector<Defect>& defects, int gain, int steps) {
+    for (const Defect& defect : defects) {
+      if (excess(defect) == 0) continue;
+      for (const Change& change : changes_at(defect)) {
         if (--tries_ <= 0) return false;
         if (try_change(change, gain, steps - 1)) return true;
       }
@@ -222,15 +222,15 @@ class Repair {
   }
 
   /// The smallest change at a position that helps.
-  bool repair_at(const Place& place, int steps) {
+  bool repair_at(const Defect& defect, int steps) {
     tries_ = most_tries;
-    const std::vector<Change> changes = changes_at(place);
+    const std::vector<Change> changes = changes_at(defect);
     return std::any_of(changes.begin(), changes.end(), [&](const Change& c) { return try_change(c, 1, steps); });
   }
 
   /// The smallest first.
-  std::vector<Change> changes_at(const Place& place) {
-    std::vector<Change> changes = place.a == place.b ? changes_at_vertex(place) : changes_at_edge(place);
+  std::vector<Change> changes_at(const Defect& defect) {
+    std::vector<Change> changes = defect.a == defect.b ? changes_at_vertex(defect) : changes_at_edge(defect);
     std::stable_sort(changes.begin(), changes.end(),
                      [](const Change& s, const Change& t) { return s.volume < t.volume; });
     return changes;
@@ -287,7 +287,7 @@ class Repair {
   }
 
   /// Parts: the wedges around the edge.
-  std::vector<Change> changes_at_edge(const Place& edge) {
+  std::vector<Change> changes_at_edge(const Defect& edge) {
     std::vector<std::int32_t> ring = rings_.around_edge(edge.a, edge.b, edge.cell);
     std::size_t begin = 0;
     while (begin < ring.size() && label_at(ring[begin]) == label_at(ring.back())) ++begin;
@@ -305,7 +305,7 @@ class Repair {
   }
 
   /// Parts: cells at the vertex that hang together by facets at it.
-  std::vector<Change> changes_at_vertex(const Place& vertex) {
+  std::vector<Change> changes_at_vertex(const Defect& vertex) {
     const std::vector<std::int32_t> star = rings_.around_vertex(vertex.a, vertex.cell);
     std::vector<char> done(star.size());
     std::vector<Part> parts;
@@ -369,15 +369,15 @@ class Repair {
   bool is_there(std::size_t point) const { return there_.empty() || there_[point]; }
 
   /// Edges and vertices that touch themselves.
-  std::vector<Place> find_places() {
+  std::vector<Defect> find_defects() {
     const InterfaceFacets facets = interface_facets(cells_, label_);
-    std::vector<Place> places;
+    std::vector<Defect> defects;
     const EdgeTable edges(facets.triangles, points_.size());
     for (std::size_t e = 0; e < edges.size(); ++e) {
       if (edges.uses(e).size() < 4) continue;
       if (!is_there(edges.a(e)) && !is_there(edges.b(e))) continue;
-      const Place place{edges.a(e), edges.b(e), facets.cell[edges.uses(e)[0] / 3]};
-      if (edge_excess(place) > 0) places.push_back(place);
+      const Defect defect{edges.a(e), edges.b(e), facets.cell[edges.uses(e)[0] / 3]};
+      if (edge_excess(defect) > 0) defects.push_back(defect);
     }
     const VertexTable vertices(facets.triangles, points_.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) {
@@ -389,9 +389,9 @@ class Repair {
       }
       const auto& counts = counter_.vertex_fans(facets_);
       if (std::any_of(counts.begin(), counts.end(), [](const MaterialCount& c) { return c.count > 1; }))
-        places.push_back({std::uint32_t(v), std::uint32_t(v), facets.cell[vertices.corners(v)[0] / 3]});
+        defects.push_back({std::uint32_t(v), std::uint32_t(v), facets.cell[vertices.corners(v)[0] / 3]});
     }
-    return places;
+    return defects;
   }
 
   std::span<const Vec3d> points_;
@@ -403,7 +403,7 @@ class Repair {
   VertexFanCounter counter_;
   std::vector<VertexFanCounter::Facet> facets_;
   std::vector<std::int64_t> left_;  // cells per label
-  std::deque<Place> waiting_;
+  std::deque<Defect> waiting_;
   int tries_ = 0;
   bool crumbs_may_go_ = false;
   LabelRepair result_;

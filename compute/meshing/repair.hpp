@@ -14,10 +14,10 @@ namespace nacre {
 
 /// What `repair_labels` did.
 struct LabelRepair {
-  std::int64_t changed = 0;                          ///< cells that got another label
-  std::int64_t pockets = 0;                          ///< of these, flat cells that were all of their component
-  std::int64_t left = 0;                             ///< edges and vertices that still touch themselves
-  std::vector<std::array<std::uint32_t, 2>> places;  ///< these: ends of an edge, or a vertex twice; ascending
+  std::int64_t changed = 0;                           ///< cells that got another label
+  std::int64_t pockets = 0;                           ///< of these, flat cells that were all of their component
+  std::int64_t left = 0;                              ///< edges and vertices that still touch themselves
+  std::vector<std::array<std::uint32_t, 2>> defects;  ///< these: ends of an edge, or a vertex twice; ascending
 };
 
 /// Changes labels of cells until every material meets an edge in one wedge, so that no edge off the junctions has more

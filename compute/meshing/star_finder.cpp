@@ -1,4 +1,4 @@
-// Nacre: the stars of items, of which only those are found anew whose surroundings have changed.
+// Nacre: the stars of items, of which only those are found again whose surroundings have changed.
 #include "compute/meshing/star_finder.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -11,14 +11,14 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t dear_share = 4;  // where more than this part has changed, finding all anew costs less
+constexpr std::size_t dear_share = 4;  // where more than this part has changed, finding all again costs less
 
-/// Items by their surface and place.
+/// Items by their surface and position.
 class ItemTable {
  public:
   explicit ItemTable(const StarItems& items) : items_(items), slots_(std::bit_ceil(2 * items.count() + 2), none) {
     for (std::uint32_t i = 0; i < items.count(); ++i) {
-      const std::size_t slot = slot_of(pair_of(items, i), items.place[i]);
+      const std::size_t slot = slot_of(pair_of(items, i), items.position[i]);
       if (slots_[slot] == none) slots_[slot] = i;
     }
   }
@@ -28,17 +28,18 @@ class ItemTable {
   }
 
   /// The first item there, or `none`.
-  std::uint32_t find(const std::array<std::uint16_t, 2>& pair, const Vec3d& place) const {
-    return slots_[slot_of(pair, place)];
+  std::uint32_t find(const std::array<std::uint16_t, 2>& pair, const Vec3d& position) const {
+    return slots_[slot_of(pair, position)];
   }
 
  private:
-  std::size_t slot_of(const std::array<std::uint16_t, 2>& pair, const Vec3d& place) const {
+  std::size_t slot_of(const std::array<std::uint16_t, 2>& pair, const Vec3d& position) const {
     std::uint64_t key = std::uint64_t(pair[0]) << 16 | pair[1];
-    for (const double x : {place.x, place.y, place.z})
+    for (const double x : {position.x, position.y, position.z})
       key = (std::rotl(key, 21) ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;
     std::size_t slot = (key ^ key >> 32) & (slots_.size() - 1);
-    while (slots_[slot] != none && !(items_.place[slots_[slot]] == place && pair_of(items_, slots_[slot]) == pair))
+    while (slots_[slot] != none &&
+           !(items_.position[slots_[slot]] == position && pair_of(items_, slots_[slot]) == pair))
       slot = (slot + 1) & (slots_.size() - 1);
     return slot;
   }
@@ -56,7 +57,7 @@ struct Known {
   Known(const StarItems& before, const StarItems& now) : old_of(now.count(), none), new_of(before.count(), none) {
     const ItemTable table(before);
     tbb::parallel_for(std::size_t(0), now.count(), [&](std::size_t i) {
-      const std::uint32_t old = table.find(ItemTable::pair_of(now, std::uint32_t(i)), now.place[i]);
+      const std::uint32_t old = table.find(ItemTable::pair_of(now, std::uint32_t(i)), now.position[i]);
       if (old != none && before.normal[old] == now.normal[i] && before.size[old] == now.size[i]) old_of[i] = old;
     });
     for (std::uint32_t i = 0; i < now.count(); ++i)
@@ -64,7 +65,7 @@ struct Known {
         if (new_of[old] == none)
           new_of[old] = i;
         else
-          old_of[i] = none;  // two in one place: the second is looked at anew
+          old_of[i] = none;  // two in one place: the second is looked at again
       }
     std::vector<std::uint32_t> differ;
     for (std::uint32_t i = 0; i < now.count(); ++i)
@@ -94,22 +95,22 @@ std::vector<std::uint8_t> StarFinder::take_over(const StarItems& items, const Po
   for (const Star& star : stars_) farthest = std::max(farthest, double(star.reach));
   for (std::uint32_t i = 0; i < items.count(); ++i) stale[i] = known.old_of[i] == none;
   std::vector<PointTree::Found> found;
-  const auto mark_around = [&](std::uint32_t surface, const Vec3d& place) {
+  const auto mark_around = [&](std::uint32_t surface, const Vec3d& position) {
     found.clear();
-    tree.within(surface, place, farthest, found);
+    tree.within(surface, position, farthest, found);
     for (const PointTree::Found& f : found) {
       const std::uint32_t old = known.old_of[f.point];
       if (old != none && f.distance2 <= double(stars_[old].reach) * stars_[old].reach) stale[f.point] = 1;
     }
   };
   for (std::uint32_t i = 0; i < items.count(); ++i)
-    if (known.old_of[i] == none) mark_around(items.surface[i], items.place[i]);
+    if (known.old_of[i] == none) mark_around(items.surface[i], items.position[i]);
   for (std::uint32_t old = 0; old < items_.count(); ++old) {
     if (known.new_of[old] != none) continue;
     const auto pair = ItemTable::pair_of(items_, old);
     const auto at = std::lower_bound(items.materials.begin(), items.materials.end(), pair);
     if (at != items.materials.end() && *at == pair)
-      mark_around(std::uint32_t(at - items.materials.begin()), items_.place[old]);
+      mark_around(std::uint32_t(at - items.materials.begin()), items_.position[old]);
   }
   tbb::parallel_for(std::size_t(0), items.count(), [&](std::size_t i) {
     if (stale[i]) return;
@@ -125,7 +126,7 @@ std::vector<std::uint8_t> StarFinder::take_over(const StarItems& items, const Po
 }
 
 std::vector<Star> StarFinder::find(const StarItems& items) {
-  const PointTree tree(items.place, items.first);
+  const PointTree tree(items.position, items.first);
   std::vector<Star> stars(items.count());
   const std::vector<std::uint8_t> stale = take_over(items, tree, stars);
   cut_ = std::count(stale.begin(), stale.end(), 1);

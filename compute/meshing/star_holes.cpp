@@ -58,10 +58,10 @@ Side* follow(std::vector<Side>& sides, const Side& side, const StarItems& items)
       std::lower_bound(sides.begin(), sides.end(), side.to, [](const Side& s, std::uint32_t v) { return s.from < v; });
   Side* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
-  const Vec3d at = items.place[side.to], back = items.place[side.from] - at;
+  const Vec3d at = items.position[side.to], back = items.position[side.from] - at;
   for (auto s = begin; s != sides.end() && s->from == side.to; ++s) {
     if (s->used) continue;
-    const double turn = clockwise(items.normal[side.to], back, items.place[s->to] - at);
+    const double turn = clockwise(items.normal[side.to], back, items.position[s->to] - at);
     if (turn < least) least = turn, best = &*s;
   }
   return best;
@@ -107,12 +107,13 @@ class Filling {
   }
 
  private:
-  Vec3d place(std::uint32_t i) const { return items_.place[i]; }
+  Vec3d position(std::uint32_t i) const { return items_.position[i]; }
 
   /// Sum of squared edges by area (1 where equilateral), dear where it faces aside.
   double price(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
     if (a == b || b == c || c == a) return taken;
-    const Vec3d u = place(b) - place(a), v = place(c) - place(a), w = place(c) - place(b), n = cross(u, v);
+    const Vec3d u = position(b) - position(a), v = position(c) - position(a), w = position(c) - position(b),
+                n = cross(u, v);
     const double twice_area = length(n), edges = dot(u, u) + dot(v, v) + dot(w, w);
     const Vec3d up = normalized(items_.normal[a] + items_.normal[b] + items_.normal[c]);
     const double shape = edges / std::max(2 * std::sqrt(3.0) * twice_area, 1e-6 * edges);

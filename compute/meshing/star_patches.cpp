@@ -44,19 +44,19 @@ class Patch {
     cells_ = delaunay.cells(places_, stop_);
     label_ = world_.material_at(label_points());
     facets_ = interface_facets(cells_, label_);
-    places_of_defects_.clear();
+    defects_.clear();
   }
 
   /// At the members that `there` marks: between the parts of the patch, where particles are missing, labels mean
   /// nothing.
   void repair(std::vector<std::uint8_t> there) {
     there.resize(places_.size(), 0);
-    places_of_defects_ = repair_labels_at(there, places_, cells_, label_, stop_).places;
+    defects_ = repair_labels_at(there, places_, cells_, label_, stop_).defects;
     facets_ = interface_facets(cells_, label_);
   }
 
   const InterfaceFacets& facets() const { return facets_; }
-  const std::vector<std::array<std::uint32_t, 2>>& places_of_defects() const { return places_of_defects_; }
+  const std::vector<std::array<std::uint32_t, 2>>& defects() const { return defects_; }
 
  private:
   /// Corners of a box far around: no facet at a particle is on the hull.
@@ -103,7 +103,7 @@ class Patch {
   DelaunayCells cells_;
   std::vector<std::uint16_t> label_;
   InterfaceFacets facets_;
-  std::vector<std::array<std::uint32_t, 2>> places_of_defects_;
+  std::vector<std::array<std::uint32_t, 2>> defects_;
 };
 
 /// One side of a triangle as a material passes it.
@@ -282,9 +282,9 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
       if (settling.grow(joined)) continue;
     }
     if (settling.stuck() || joined.triangles.empty()) return false;
-    for (const auto& place : patch.places_of_defects()) {
-      if (std::max(place[0], place[1]) >= members.size()) continue;
-      const std::array<std::uint32_t, 2> particles = {members[place[0]], members[place[1]]};
+    for (const auto& defect : patch.defects()) {
+      if (std::max(defect[0], defect[1]) >= members.size()) continue;
+      const std::array<std::uint32_t, 2> particles = {members[defect[0]], members[defect[1]]};
       if (settling.is_bad(particles[0]) || settling.is_bad(particles[1])) touching.push_back(particles);
     }
     mesh.triangles = std::move(joined.triangles);

@@ -68,14 +68,14 @@ class Settler {
   }
 
   bool lies_between(std::uint32_t a, std::uint32_t b, std::uint32_t other) const {
-    const Vec3d here = items_.place[item_], r = items_.place[other] - here, n = items_.normal[item_];
-    return dot(n, cross(items_.place[a] - here, r)) > 0 && dot(n, cross(r, items_.place[b] - here)) > 0;
+    const Vec3d here = items_.position[item_], r = items_.position[other] - here, n = items_.normal[item_];
+    return dot(n, cross(items_.position[a] - here, r)) > 0 && dot(n, cross(r, items_.position[b] - here)) > 0;
   }
 
   void add(int k, std::uint32_t other) {
     if (position_of(star_, other) >= 0) return;
-    std::uint32_t& place = fresh_[std::size_t(k)];
-    if (place == none || other < place) place = other;
+    std::uint32_t& position = fresh_[std::size_t(k)];
+    if (position == none || other < position) position = other;
     any_new_ = true;
   }
 
@@ -133,9 +133,9 @@ bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t
   double angle[4];
   for (std::size_t k = 0; k < 4; ++k) {
     const std::size_t at = low + k * step;
-    const Vec3d here = items.place[corners[at % 4]];
-    angle[k] =
-        angle_between(items.place[corners[(at + step) % 4]] - here, items.place[corners[(at + 4 - step) % 4]] - here);
+    const Vec3d here = items.position[corners[at % 4]];
+    angle[k] = angle_between(items.position[corners[(at + step) % 4]] - here,
+                             items.position[corners[(at + 4 - step) % 4]] - here);
   }
   const bool from_low = angle[0] + angle[2] >= angle[1] + angle[3];
   return from_low == (low % 2 == 0);

@@ -79,10 +79,10 @@ void add_rims(StarItems& items, const std::vector<CurveNode>& nodes) {
   std::sort(items.broken.begin(), items.broken.end());
 }
 
-/// A number in [0, 1) that looks random, by the place alone.
-double hash(const Vec3d& place) {
+/// A number in [0, 1) that looks random, by the position alone.
+double hash(const Vec3d& position) {
   std::uint64_t x = 0;
-  for (const double c : {place.x, place.y, place.z})
+  for (const double c : {position.x, position.y, position.z})
     x = (std::rotl(x, 21) ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15ull;  // -0 is 0
   x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9ull;
   return double((x ^ x >> 29) >> 11) * 0x1p-53;
@@ -124,9 +124,9 @@ class Cutter {
   };
 
   void set_sector() {
-    const Vec3d here = items_.place[item_];
-    const auto [nu, nv] = in_plane(items_.place[next_] - here);
-    const auto [pu, pv] = in_plane(items_.place[previous_] - here);
+    const Vec3d here = items_.position[item_];
+    const auto [nu, nv] = in_plane(items_.position[next_] - here);
+    const auto [pu, pv] = in_plane(items_.position[previous_] - here);
     next_u_ = nu, next_v_ = nv, previous_u_ = pu, previous_v_ = pv;
     reflex_ = nu * pv - nv * pu < 0;
   }
@@ -141,13 +141,13 @@ class Cutter {
 
   /// False where a particle with a lower number has the same position.
   bool cut_within(double reach, bool rim) {
-    const Vec3d here = items_.place[item_];
+    const Vec3d here = items_.position[item_];
     const double size = items_.size[item_], frame = 2 * size;
     found_.clear();
     tree_.within(items_.surface[item_], here, reach, found_);
     if (rim)
       for (const std::uint32_t q : {next_, previous_}) {
-        const Vec3d r = items_.place[q] - here;
+        const Vec3d r = items_.position[q] - here;
         if (const double d = dot(r, r); d > reach * reach) found_.push_back({d, q});
       }
     std::sort(found_.begin(), found_.end());
@@ -165,7 +165,7 @@ class Cutter {
         continue;
       }
       if (dot(normal_, items_.normal[q]) < same_side) continue;
-      auto [u, v] = in_plane(items_.place[q] - here);
+      auto [u, v] = in_plane(items_.position[q] - here);
       if (const double across2 = u * u + v * v; dot(normal_, items_.normal[q]) < bent && across2 > 0) {
         const double unfold = std::sqrt(distance2 / across2);
         u *= unfold, v *= unfold;
@@ -177,7 +177,7 @@ class Cutter {
   }
 
   double weight_of(std::uint32_t item) const {
-    return tie * hash(items_.place[item]) * items_.size[item] * items_.size[item];
+    return tie * hash(items_.position[item]) * items_.size[item] * items_.size[item];
   }
 
   double farthest2(bool rim) const {
@@ -250,7 +250,7 @@ class Cutter {
     for (const Corner& c : cell_) {
       if (c.after == next_ || c.after == previous_) continue;
       if (c.after == none) continue;
-      const auto [u, v] = in_plane(items_.place[c.after] - items_.place[item_]);
+      const auto [u, v] = in_plane(items_.position[c.after] - items_.position[item_]);
       double angle = std::atan2(next_u_ * v - next_v_ * u, next_u_ * u + next_v_ * v);
       if (angle < 0) angle += 2 * M_PI;
       order.push_back({angle, c.after});
@@ -281,7 +281,7 @@ StarItems star_items(const StarParticles& particles) {
   const std::vector<NewItem> list = list_items(particles, nodes);
   StarItems items;
   const std::size_t n = list.size();
-  items.place.resize(n), items.normal.resize(n), items.size.resize(n);
+  items.position.resize(n), items.normal.resize(n), items.size.resize(n);
   items.particle.resize(n), items.surface.resize(n);
   items.next.assign(n, none), items.previous.assign(n, none);
   for (std::size_t i = 0; i < n; ++i) {
@@ -290,7 +290,7 @@ StarItems star_items(const StarParticles& particles) {
       items.materials.push_back({std::uint16_t(item.surface_key >> 16), std::uint16_t(item.surface_key & 0xffff)});
       items.first.push_back(std::uint32_t(i));
     }
-    items.place[i] = particles.place(item.particle);
+    items.position[i] = particles.point(item.particle);
     items.normal[i] = item.normal;
     items.size[i] = particles.position[item.particle].w;
     items.particle[i] = item.particle;

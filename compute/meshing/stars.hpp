@@ -16,7 +16,7 @@ namespace nacre {
 /// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
 /// particle.
 struct StarItems {
-  std::vector<Vec3d> place, normal;  ///< the unit normal towards the lower material
+  std::vector<Vec3d> position, normal;  ///< the unit normal towards the lower material
   std::vector<double> size;
   std::vector<std::uint32_t> particle;
   std::vector<std::uint32_t> surface;         ///< number of its surface
@@ -26,7 +26,7 @@ struct StarItems {
   std::vector<std::uint32_t> first;                     ///< per surface and one more: its first item
   std::vector<std::uint32_t> broken;                    ///< particles at which a rim begins or ends; ascending
 
-  std::size_t count() const { return place.size(); }
+  std::size_t count() const { return position.size(); }
 };
 
 StarItems star_items(const StarParticles& particles);

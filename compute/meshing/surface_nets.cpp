@@ -165,29 +165,29 @@ void for_cells(const Cells& cells, const std::atomic<bool>* stop, const Work& wo
 
 /// Vertices in steps of the lattice, from voxel (0, 0, 0)'s centre.
 std::vector<Vec3f> place_vertices(const Lattice& lattice, const Cells& cells, const SurfaceNetsOptions& options) {
-  std::vector<Vec3f> place(cells.x.size());
+  std::vector<Vec3f> position(cells.x.size());
   for_cells(cells, options.stop, [&](std::uint32_t c, std::uint32_t i, int j, int k) {
-    place[c] = Vec3f(float(i) - 0.5f, float(j) - 0.5f, float(k) - 0.5f);
+    position[c] = Vec3f(float(i) - 0.5f, float(j) - 0.5f, float(k) - 0.5f);
   });
-  if (options.smoothing <= 0) return place;
-  std::vector<std::array<std::uint32_t, 6>> links(place.size());
+  if (options.smoothing <= 0) return position;
+  std::vector<std::array<std::uint32_t, 6>> links(position.size());
   for_cells(cells, options.stop,
             [&](std::uint32_t c, std::uint32_t i, int j, int k) { links[c] = links_of(lattice, cells, i, j, k); });
-  std::vector<Vec3f> next(place.size());
+  std::vector<Vec3f> next(position.size());
   for (int sweep = 0; sweep < options.smoothing; ++sweep) {
     for_cells(cells, options.stop, [&](std::uint32_t c, std::uint32_t i, int j, int k) {
       Vec3f sum(0.0f);
       int count = 0;
       for (const std::uint32_t other : links[c])
-        if (other != none) sum = sum + place[other], ++count;
+        if (other != none) sum = sum + position[other], ++count;
       const Vec3f middle(float(i) - 0.5f, float(j) - 0.5f, float(k) - 0.5f);
-      Vec3f to = count > 0 ? sum / float(count) : place[c];
+      Vec3f to = count > 0 ? sum / float(count) : position[c];
       for (int a = 0; a < 3; ++a) to[a] = std::clamp(to[a], middle[a] - farthest, middle[a] + farthest);
       next[c] = to;
     });
-    place.swap(next);
+    position.swap(next);
   }
-  return place;
+  return position;
 }
 
 /// Of a layer of cells.
@@ -196,11 +196,11 @@ struct Facets {
   std::vector<std::array<std::uint16_t, 2>> materials;
 
   /// Between two voxels, corners counter-clockwise seen from the side of `near`; cut along the shorter diagonal.
-  void add(std::array<std::uint32_t, 4> c, std::uint16_t near, std::uint16_t far, const std::vector<Vec3f>& place) {
+  void add(std::array<std::uint32_t, 4> c, std::uint16_t near, std::uint16_t far, const std::vector<Vec3f>& position) {
     if (far < near) std::swap(c[1], c[3]);
     const std::array pair{std::min(near, far), std::max(near, far)};
     const auto span = [&](int a, int b) {
-      const Vec3f d = place[c[std::size_t(a)]] - place[c[std::size_t(b)]];
+      const Vec3f d = position[c[std::size_t(a)]] - position[c[std::size_t(b)]];
       return dot(d, d);
     };
     if (span(1, 3) < span(0, 2)) c = {c[1], c[2], c[3], c[0]};
@@ -211,7 +211,7 @@ struct Facets {
 };
 
 /// The quads between voxel (i, j, k) and the one before it along each axis.
-void add_facets(const Lattice& lattice, const Cells& cells, const std::vector<Vec3f>& place, bool mirrored,
+void add_facets(const Lattice& lattice, const Cells& cells, const std::vector<Vec3f>& position, bool mirrored,
                 std::array<int, 3> at, Facets& facets) {
   const std::uint16_t here = lattice.at(at[0], at[1], at[2]);
   for (std::size_t a = 0; a < 3; ++a) {
@@ -228,7 +228,7 @@ void add_facets(const Lattice& lattice, const Cells& cells, const std::vector<Ve
       corner[n] = cells.find(std::uint32_t(cell[0]), cell[1], cell[2]);
     }
     if (mirrored) std::swap(corner[1], corner[3]);
-    facets.add(corner, here, there, place);
+    facets.add(corner, here, there, position);
   }
 }
 
@@ -253,17 +253,17 @@ SurfaceMesh surface_nets(const MaterialVoxels& voxels, const SurfaceNetsOptions&
   const int stride = std::max(1, options.stride);
   const Lattice lattice(voxels, stride);
   const Cells cells = find_cells(lattice, options.stop);
-  const std::vector<Vec3f> place = place_vertices(lattice, cells, options);
+  const std::vector<Vec3f> position = place_vertices(lattice, cells, options);
   const bool mirrored = dot(cross(voxels.steps[0], voxels.steps[1]), voxels.steps[2]) < 0;
   std::vector<Facets> layers(std::size_t(cells.dims.z));
   for_cells(cells, options.stop, [&](std::uint32_t, std::uint32_t i, int j, int k) {
-    add_facets(lattice, cells, place, mirrored, {int(i), j, k}, layers[std::size_t(k)]);
+    add_facets(lattice, cells, position, mirrored, {int(i), j, k}, layers[std::size_t(k)]);
   });
   SurfaceMesh mesh;
   collect(layers, mesh, options.stop);
-  mesh.points.resize(place.size());
-  tbb::parallel_for(std::size_t(0), place.size(), [&](std::size_t c) {
-    const Vec3d p = Vec3d(place[c]) * double(stride);
+  mesh.points.resize(position.size());
+  tbb::parallel_for(std::size_t(0), position.size(), [&](std::size_t c) {
+    const Vec3d p = Vec3d(position[c]) * double(stride);
     mesh.points[c] = voxels.origin + voxels.steps[0] * p.x + voxels.steps[1] * p.y + voxels.steps[2] * p.z;
   });
   return mesh;

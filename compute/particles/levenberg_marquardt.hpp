@@ -75,7 +75,7 @@ struct RelaxedParticle {
 };
 
 /// One turn of a particle: E, gradient and Hessian once, then steps that shrink as the damping grows, until one of them
-/// gives a lower energy; the step is computed anew for each damping, the energy among the neighbours of the trial
+/// gives a lower energy; the step is computed again for each damping, the energy among the neighbours of the trial
 /// position. `largest` bounds h at the trial position: bins were made for no larger one. `near` gives sums(group, at)
 /// and energy(group, at).
 template <class Group, class Near, class Surface>

@@ -120,7 +120,7 @@ class TreeSolver {
   const Tree& tree() const { return tree_; }
   TreeView view(float theta) const { return tree_.view(set_[0], theta); }
 
-  /// Sorts the particles and builds the tree anew.
+  /// Sorts the particles and builds the tree again.
   template <class Backend>
   void rebuild(Executor<Backend>& exec) {
     ParticleSet &from = set_[0], &to = set_[1];

@@ -62,7 +62,7 @@ class FlowMethodOn : public FlowMethod {
     std::vector<Vec3d> points;
     points.reserve(shape.points.size());
     for (const Vec3d& p : shape.points) points.push_back(domain_.to_grid(p));
-    shape_.place(exec_, corners_.data(), std::move(points), shape.corner_normals, shape.vectors);
+    shape_.move_to(exec_, corners_.data(), std::move(points), shape.corner_normals, shape.vectors);
   }
 
  protected:
@@ -338,19 +338,19 @@ class FlowMethodOn : public FlowMethod {
   };
 
   /// Where the embedded shape has the material that is at `points` (world) now, in cells of the domain.
-  std::vector<Vec3d> embedded_places(std::span<const Vec3d> points) const {
-    std::vector<Vec3d> places;
-    for (const Vec3d& p : points) places.push_back(domain_.to_grid(p));
-    if (!shape_.moved()) return places;
+  std::vector<Vec3d> embedded_positions(std::span<const Vec3d> points) const {
+    std::vector<Vec3d> positions;
+    for (const Vec3d& p : points) positions.push_back(domain_.to_grid(p));
+    if (!shape_.moved()) return positions;
     const std::vector<Vec3d>& now = shape_.points();
     const TriangleTree tree(now, shape_.triangles());
-    for (Vec3d& p : places) {
+    for (Vec3d& p : positions) {
       const TriangleHit hit = *tree.closest(p);
       const Triangle& t = shape_.triangles()[hit.triangle];
       const Vec3d w = barycentric({now[t.a], now[t.b], now[t.c]}, hit.position);
       p = points_[t.a] * w.x + points_[t.b] * w.y + points_[t.c] * w.z;
     }
-    return places;
+    return positions;
   }
 
   /// One vector for each embedded point.

@@ -278,12 +278,12 @@ std::vector<float> GridFlow<Backend>::sample_shown(std::span<const Vec3d> points
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<Vec3f> host;
-  for (const Vec3d& p : this->embedded_places(points)) host.push_back(Vec3f(p * double(refine_)));
-  Array<Vec3f> places = arena.temporary<Vec3f>(host.size());
-  places.upload(host);
+  for (const Vec3d& p : this->embedded_positions(points)) host.push_back(Vec3f(p * double(refine_)));
+  Array<Vec3f> positions = arena.temporary<Vec3f>(host.size());
+  positions.upload(host);
   Array<float> value = arena.temporary<float>(host.size());
   exec_.for_each(std::int64_t(host.size()),
-                 detail::SampleShown{fine_.view(coarse_.view()), shown_.data(), places.data(), value.data()});
+                 detail::SampleShown{fine_.view(coarse_.view()), shown_.data(), positions.data(), value.data()});
   return value.download();
 }
 

@@ -35,7 +35,7 @@ class MeshFields {
   /// Drops the stages that are built otherwise than `parameters` ask for, and the memory behind them. False where all
   /// are built.
   bool drop_outdated(const MeshParameters& parameters);
-  /// Runs the stages that are not built. One that is interrupted begins anew the next time.
+  /// Runs the stages that are not built. One that is interrupted starts over the next time.
   void build(const MeshParameters& parameters, const TellStage& tell, MeshInfo& info);
   bool built() const { return built_ == field_stages; }
   std::size_t end() const { return mark_[field_stages]; }  ///< the arena's mark behind the last stage

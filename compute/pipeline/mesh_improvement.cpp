@@ -26,20 +26,20 @@ struct AttemptKind {
 constexpr std::array<AttemptKind, 4> attempt_kinds{
     {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
 
-/// `places` in terms of the mesh's points instead of particles. The mesh has some of the particles, in the same order.
-std::vector<std::array<std::uint32_t, 2>> points_of_places(std::vector<std::array<std::uint32_t, 2>> places,
-                                                           const std::vector<std::uint32_t>& point_of) {
-  for (auto& place : places)
-    for (std::uint32_t& p : place)
+/// `defects` in terms of the mesh's points instead of particles. The mesh has some of the particles, in the same order.
+std::vector<std::array<std::uint32_t, 2>> points_of_defects(std::vector<std::array<std::uint32_t, 2>> defects,
+                                                            const std::vector<std::uint32_t>& point_of) {
+  for (auto& defect : defects)
+    for (std::uint32_t& p : defect)
       p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
-  return places;
+  return defects;
 }
 
 /// Marks the points of the mesh at triangles that are worth further work, and where it touches itself.
 std::vector<std::uint8_t> bad_points(const SurfaceMesh& mesh, std::span<const std::array<std::uint32_t, 2>> touching) {
   std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, mesh);
-  for (const auto& place : touching)
-    for (const std::uint32_t point : place) bad[point] = 1;
+  for (const auto& defect : touching)
+    for (const std::uint32_t point : defect) bad[point] = 1;
   return bad;
 }
 
@@ -103,15 +103,15 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
 bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points,
                                            Triangulated& made) {
   std::vector<Junction> junction;
-  std::vector<Vec3f> place_on_rims;
+  std::vector<Vec3f> position_on_rims;
   std::vector<Junction> rims;
   for (std::size_t i = 0; i < particles.count(); ++i) {
     junction.push_back(table_.junctions[particles.interface[i]]);
     if (junction.back().order() == 2) continue;
-    place_on_rims.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
+    position_on_rims.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
     rims.push_back(junction.back());
   }
-  const std::vector<JunctionGradients> on_rims = particles_.junction_gradients(place_on_rims, rims);
+  const std::vector<JunctionGradients> on_rims = particles_.junction_gradients(position_on_rims, rims);
   std::vector<JunctionGradients> gradient(particles.count());
   for (std::size_t i = 0, next = 0; i < particles.count(); ++i)
     if (junction[i].order() < 2) gradient[i] = on_rims[next++];
@@ -129,12 +129,12 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;
   made.mesh = mesh_of_triangles(points, std::move(stars.triangles), std::move(stars.materials), &made.point_of);
-  std::erase_if(touching, [&](const auto& place) {  // of particles that no triangle has
-    return !std::all_of(place.begin(), place.end(), [&](std::uint32_t p) {
+  std::erase_if(touching, [&](const auto& defect) {  // of particles that no triangle has
+    return !std::all_of(defect.begin(), defect.end(), [&](std::uint32_t p) {
       return std::binary_search(made.point_of.begin(), made.point_of.end(), p);
     });
   });
-  made.touching = points_of_places(std::move(touching), made.point_of);
+  made.touching = points_of_defects(std::move(touching), made.point_of);
   return true;
 }
 
@@ -143,7 +143,7 @@ void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triang
   std::vector<std::uint16_t> label = particles_.material_at(cells.circumcentres);
   LabelRepair repair = repair_labels(points, cells, label, rule_.stop);
   made.mesh = extract_interfaces(points, cells, label, &made.point_of);
-  made.touching = points_of_places(std::move(repair.places), made.point_of);
+  made.touching = points_of_defects(std::move(repair.defects), made.point_of);
 }
 
 /// Changes the particles before they are triangulated again; false where there is nothing to change.

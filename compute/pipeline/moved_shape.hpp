@@ -25,12 +25,12 @@ class MovedShape {
     Vec3d farthest(1);
     for (const Vec3d& p : points) farthest = max(farthest, p);
     boxes_ = build_triangle_boxes(exec, rest, std::uint32_t(triangles.size()), farthest);
-    place(exec, rest.triangles, std::move(points), corner_normals, {});
+    move_to(exec, rest.triangles, std::move(points), corner_normals, {});
     moved_ = false;
   }
 
-  void place(Executor<Backend>& exec, const Triangle* device_triangles, std::vector<Vec3d> points,
-             std::span<const Vec3f> corner_normals, std::span<const Vec3f> vectors) {
+  void move_to(Executor<Backend>& exec, const Triangle* device_triangles, std::vector<Vec3d> points,
+               std::span<const Vec3f> corner_normals, std::span<const Vec3f> vectors) {
     points_ = std::move(points);
     normals_.assign(corner_normals.begin(), corner_normals.end());
     vectors_.assign(vectors.begin(), vectors.end());
@@ -41,7 +41,7 @@ class MovedShape {
   }
 
   bool made() const { return boxes_.leaves > 0; }
-  bool moved() const { return moved_; }  ///< `place` has been called
+  bool moved() const { return moved_; }  ///< `move_to` has been called
   const std::vector<Vec3d>& points() const { return points_; }
   const std::vector<Triangle>& triangles() const { return triangles_; }
   const std::vector<Vec3f>& normals() const { return normals_; }

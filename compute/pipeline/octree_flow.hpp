@@ -400,12 +400,12 @@ std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<BandPoint> host;
-  for (const Vec3d& p : this->embedded_places(points)) host.push_back(band_point(p));
-  Array<BandPoint> places = arena.template temporary<BandPoint>(host.size());
-  places.upload(host);
+  for (const Vec3d& p : this->embedded_positions(points)) host.push_back(band_point(p));
+  Array<BandPoint> positions = arena.template temporary<BandPoint>(host.size());
+  positions.upload(host);
   Array<float> value = arena.template temporary<float>(host.size());
   exec_.for_each(std::int64_t(host.size()),
-                 detail::SampleBandAt<View>{octree_.view(), shown_.data(), places.data(), value.data()});
+                 detail::SampleBandAt<View>{octree_.view(), shown_.data(), positions.data(), value.data()});
   return value.download();
 }
 

@@ -60,14 +60,14 @@ struct GridTarget {
   }
 
   NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit, const Footprint& footprint) const {
-    return at(shown, nearest.sheets.place(ray, hit), footprint);
+    return at(shown, nearest.sheets.point(ray, hit), footprint);
   }
 
-  NACRE_HD float at(const float* shown, const Vec3d& place, const Footprint& footprint) const {
+  NACRE_HD float at(const float* shown, const Vec3d& point, const Footprint& footprint) const {
     const auto refine = float(texels.refine);
-    const Vec3f p = Vec3f(place) * refine;
+    const Vec3f p = Vec3f(point) * refine;
     const auto fine = [&](const Vec3f& off) { return sample(texels, shown, p + off, no_value); };
-    const auto coarse = [&](const Vec3f& off) { return sample_means(texels, means, Vec3f(place) + off / refine); };
+    const auto coarse = [&](const Vec3f& off) { return sample_means(texels, means, Vec3f(point) + off / refine); };
     return filtered(footprint * refine, refine, fine, coarse);
   }
 };
@@ -85,11 +85,11 @@ struct BandTarget {
   }
 
   NACRE_HD float texture(const float* shown, const Ray& ray, const Hit& hit, const Footprint& footprint) const {
-    return at(shown, nearest.sheets.place(ray, hit), footprint);
+    return at(shown, nearest.sheets.point(ray, hit), footprint);
   }
 
-  NACRE_HD float at(const float* shown, const Vec3d& place, const Footprint& footprint) const {
-    const BandPoint p = band_point(place);
+  NACRE_HD float at(const float* shown, const Vec3d& point, const Footprint& footprint) const {
+    const BandPoint p = band_point(point);
     const auto fine = [&](const Vec3f& off) { return sample_band(view, shown, p + off, no_value); };
     const auto coarse = [&](const Vec3f& off) { return sample_brick_means(view, means, p + off); };
     return filtered(footprint, means ? brick_means_width : 0.0f, fine, coarse);
@@ -111,7 +111,7 @@ NACRE_HD_INLINE bool is_own(const Target&, const Ray&, const Hit&) {
 }
 NACRE_HD_INLINE bool is_own(const BandTarget<BrickOctreeView>& target, const Ray& ray, const Hit& hit) {
   BrickOctreeView::Cursor cursor(target.view);
-  const std::uint32_t brick = cursor.brick_of(band_point(target.nearest.sheets.place(ray, hit)).base);
+  const std::uint32_t brick = cursor.brick_of(band_point(target.nearest.sheets.point(ray, hit)).base);
   return brick - target.own_first < target.own_count;
 }
 

@@ -11,7 +11,7 @@ struct SheetsView {
   const std::uint8_t* second = nullptr;  ///< per triangle: 1 in a second sheet; null: there are none
   Vec3d shift{};                         ///< cells
 
-  NACRE_HD_INLINE Vec3d place(const Ray& ray, const Hit& hit) const {
+  NACRE_HD_INLINE Vec3d point(const Ray& ray, const Hit& hit) const {
     return second && second[hit.triangle] ? ray.at(hit.t) + shift : ray.at(hit.t);
   }
 };

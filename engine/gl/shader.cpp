@@ -88,25 +88,25 @@ Program& Program::operator=(Program&& other) noexcept {
   return *this;
 }
 
-void Program::set(const char* name, int value) const { glProgramUniform1i(id_, place(name), value); }
-void Program::set(const char* name, float value) const { glProgramUniform1f(id_, place(name), value); }
+void Program::set(const char* name, int value) const { glProgramUniform1i(id_, location(name), value); }
+void Program::set(const char* name, float value) const { glProgramUniform1f(id_, location(name), value); }
 void Program::set(const char* name, const std::array<int, 3>& v) const {
-  glProgramUniform3iv(id_, place(name), 1, v.data());
+  glProgramUniform3iv(id_, location(name), 1, v.data());
 }
 void Program::set(const char* name, const std::array<float, 2>& v) const {
-  glProgramUniform2fv(id_, place(name), 1, v.data());
+  glProgramUniform2fv(id_, location(name), 1, v.data());
 }
 void Program::set(const char* name, const std::array<float, 3>& v) const {
-  glProgramUniform3fv(id_, place(name), 1, v.data());
+  glProgramUniform3fv(id_, location(name), 1, v.data());
 }
 void Program::set(const char* name, const std::array<float, 4>& v) const {
-  glProgramUniform4fv(id_, place(name), 1, v.data());
+  glProgramUniform4fv(id_, location(name), 1, v.data());
 }
 void Program::set(const char* name, const std::array<float, 9>& m) const {
-  glProgramUniformMatrix3fv(id_, place(name), 1, GL_FALSE, m.data());
+  glProgramUniformMatrix3fv(id_, location(name), 1, GL_FALSE, m.data());
 }
 void Program::set(const char* name, const std::array<float, 16>& m) const {
-  glProgramUniformMatrix4fv(id_, place(name), 1, GL_FALSE, m.data());
+  glProgramUniformMatrix4fv(id_, location(name), 1, GL_FALSE, m.data());
 }
 
 }  // namespace nacre

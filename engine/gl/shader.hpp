@@ -43,7 +43,7 @@ class Program {
   void set(const char* name, const std::array<float, 16>& matrix) const;
 
  private:
-  GLint place(const char* name) const { return glGetUniformLocation(id_, name); }
+  GLint location(const char* name) const { return glGetUniformLocation(id_, name); }
 
   GLuint id_ = 0;
 };

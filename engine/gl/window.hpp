@@ -31,7 +31,7 @@ class Window : public Context {
   /// most a tenth of a second, where the window is merely minimised only if `idles`.
   void poll(bool idles, double patience = 0);
   bool is_minimised() const;
-  /// Has the user done anything that no frame has seen, or has the window to be drawn anew?
+  /// Has the user done anything that no frame has seen, or has the window to be drawn again?
   bool touched() const { return damaged_ || input_.waits(); }
   void swap();
   void set_title(const std::string& title);

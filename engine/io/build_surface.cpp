@@ -108,7 +108,7 @@ void clean(RawArray& array, const std::string& name, std::vector<std::string>& w
     bad_items += bad;
   }
   if (bad_items > 0)
-    warnings.push_back(fmt::format("{}: array '{}' is NaN or infinite at {} of {} places, {}.", name, array.name,
+    warnings.push_back(fmt::format("{}: array '{}' is NaN or infinite at {} of {} positions, {}.", name, array.name,
                                    with_commas(bad_items), with_commas(array.items()),
                                    colours ? "drawn in the colour of NaN" : "set to 0"));
 }

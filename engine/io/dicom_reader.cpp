@@ -22,12 +22,12 @@ bool begins_as_dicom(const fs::path& file) {
   return stream.read(head, sizeof(head)) && std::memcmp(head + 128, "DICM", 4) == 0;
 }
 
-Volume read_converted(const fs::path& place, const std::function<Volume(const fs::path&)>& read) {
-  const ImportResult imported = import_by_child(gdcm, {place, {}, "volume", ".nrrd"});
+Volume read_converted(const fs::path& path, const std::function<Volume(const fs::path&)>& read) {
+  const ImportResult imported = import_by_child(gdcm, {path, {}, "volume", ".nrrd"});
   const std::string temporary = imported.files[0].string();
   const auto said_of = [&](std::string text) {  // the user knows the file by its own name
     for (std::size_t at = text.find(temporary); at != text.npos; at = text.find(temporary))
-      text.replace(at, temporary.size(), place.string());
+      text.replace(at, temporary.size(), path.string());
     return text;
   };
   try {
@@ -41,11 +41,11 @@ Volume read_converted(const fs::path& place, const std::function<Volume(const fs
 
 }  // namespace
 
-bool is_dicom(const fs::path& place) {
+bool is_dicom(const fs::path& path) {
   std::error_code error;
-  if (!fs::is_directory(place, error)) return fs::is_regular_file(place, error) && begins_as_dicom(place);
+  if (!fs::is_directory(path, error)) return fs::is_regular_file(path, error) && begins_as_dicom(path);
   int looked_at = 0;
-  for (fs::recursive_directory_iterator it(place, fs::directory_options::skip_permission_denied, error), end;
+  for (fs::recursive_directory_iterator it(path, fs::directory_options::skip_permission_denied, error), end;
        !error && it != end && looked_at < most_looked_at; it.increment(error)) {
     if (!it->is_regular_file(error)) continue;
     if (begins_as_dicom(it->path())) return true;
@@ -56,10 +56,10 @@ bool is_dicom(const fs::path& place) {
 
 bool dicom_child_available() { return is_available(gdcm); }
 
-Volume read_dicom(const fs::path& place) { return read_converted(place, read_nrrd); }
+Volume read_dicom(const fs::path& path) { return read_converted(path, read_nrrd); }
 
-Volume read_dicom_layer(const fs::path& place, int layer) {
-  return read_converted(place, [layer](const fs::path& file) { return read_nrrd_layer(file, layer); });
+Volume read_dicom_layer(const fs::path& path, int layer) {
+  return read_converted(path, [layer](const fs::path& file) { return read_nrrd_layer(file, layer); });
 }
 
 }  // namespace nacre

@@ -22,7 +22,7 @@ void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file
   };
   const std::vector<PointArray> arrays{
       {"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal)};
-  const PointPlaces closest{"closest_point", v.closest_point};
+  const PointPositions closest{"closest_point", v.closest_point};
   write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time, {}, xml_origin(origin), std::span(&closest, 1));
 }
 

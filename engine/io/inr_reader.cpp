@@ -105,12 +105,12 @@ void set_position(Volume& volume, const InrHeader& header, const fs::path& path)
   if (header.number("RX", 0) != 0 || header.number("RY", 0) != 0 || header.number("RZ", 0) != 0)
     fail_reading(path, "its header rotates it, which is not supported", "convert it to NRRD");
   std::array<Vec3d, 3> steps;
-  constexpr std::array<const char*, 3> sizes{"VX", "VY", "VZ"}, places{"TX", "TY", "TZ"};
+  constexpr std::array<const char*, 3> sizes{"VX", "VY", "VZ"}, positions{"TX", "TY", "TZ"};
   for (int axis = 0; axis < 3; ++axis) {
     if (!header.has(sizes[axis]))
       volume.warnings.push_back(fmt::format("The file gives no {}: a spacing of 1 is taken.", sizes[axis]));
     steps[axis][axis] = header.number(sizes[axis], 1);
-    volume.origin[axis] = header.number(places[axis], 0);
+    volume.origin[axis] = header.number(positions[axis], 0);
   }
   if (!is_finite(volume.origin)) fail_reading(path, "its origin is not a number", "correct its header");
   set_steps(volume, steps, path);

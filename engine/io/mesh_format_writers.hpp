@@ -33,7 +33,7 @@ void write_febio(const std::filesystem::path& file, const MeshParts& mesh);
 void write_openfoam(const std::filesystem::path& file, const MeshParts& mesh);
 
 /// .glb (glTF 2.0): a mesh with a colour and smooth normals per interface, below one node that turns z upwards (glTF
-/// has y up) and moves it into place, so that 32-bit coordinates lose little.
+/// has y up) and moves it into position, so that 32-bit coordinates lose little.
 void write_gltf(const std::filesystem::path& file, const MeshParts& mesh);
 
 }  // namespace nacre

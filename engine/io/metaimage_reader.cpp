@@ -130,7 +130,7 @@ void set_dimensions(Volume& volume, const MetaImageHeader& header, std::size_t b
 
 /// Row a of the matrix is the direction of axis a.
 template <std::size_t Rank>
-void set_place(Volume& volume, const MetaImageHeader& header, const fs::path& path) {
+void set_frame(Volume& volume, const MetaImageHeader& header, const fs::path& path) {
   std::array<double, Rank> spacing, origin{};
   std::array<double, Rank * Rank> matrix{};
   spacing.fill(1);
@@ -268,7 +268,7 @@ Volume read_metaimage(const fs::path& path) {
   const std::string_view type = header.text({"ElementType"});
   const bool known = with_element_type(type, [&](auto zero) {
     set_dimensions(volume, header, sizeof(zero), path);
-    header.integer("NDims", 0) == 3 ? set_place<3>(volume, header, path) : set_place<4>(volume, header, path);
+    header.integer("NDims", 0) == 3 ? set_frame<3>(volume, header, path) : set_frame<4>(volume, header, path);
     volume.values = read_values<decltype(zero)>(header, volume, path);
   });
   if (!known) fail_reading(path, fmt::format("its values are of type '{}'", type), "convert it to integers or floats");

@@ -180,9 +180,9 @@ void check_encoding(Volume& volume, const NrrdEncoded& encoded, const NrrdStorag
 }
 
 /// Where the value of a voxel of a layer is.
-class NrrdPlaces {
+class NrrdIndex {
  public:
-  NrrdPlaces(const Nrrd& nrrd, const NrrdAxes& axes) {
+  NrrdIndex(const Nrrd& nrrd, const NrrdAxes& axes) {
     std::size_t step = 1;
     for (unsigned a = 0; a < nrrd.dim; ++a) {
       for (std::size_t i = 0; i < 3; ++i)
@@ -203,9 +203,9 @@ class NrrdPlaces {
 
 /// Those of one layer, or of the only one.
 template <class T>
-std::vector<T> copied_values(const Volume& volume, const T* from, const NrrdPlaces& place, std::size_t layer) {
+std::vector<T> copied_values(const Volume& volume, const T* from, const NrrdIndex& index_of, std::size_t layer) {
   std::vector<T> values(volume.voxels());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = from[place(i, layer)];
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = from[index_of(i, layer)];
   return values;
 }
 
@@ -214,7 +214,7 @@ void set_values(Volume& volume, const Nrrd& nrrd, const NrrdAxes& axes, int laye
   const bool real = nrrd.type == nrrdTypeFloat || nrrd.type == nrrdTypeDouble;
   const bool is_signed =
       nrrd.type == nrrdTypeChar || nrrd.type == nrrdTypeShort || nrrd.type == nrrdTypeInt || nrrd.type == nrrdTypeLLong;
-  const NrrdPlaces place(nrrd, axes);
+  const NrrdIndex index_of(nrrd, axes);
   with_number_type(real, is_signed, int(nrrdElementSize(&nrrd)), [&](auto zero) {
     using T = decltype(zero);
     const T* from = static_cast<const T*>(nrrd.data);
@@ -223,11 +223,11 @@ void set_values(Volume& volume, const Nrrd& nrrd, const NrrdAxes& axes, int laye
       std::memcpy(values.data(), from, values.size() * sizeof(T));
       volume.values = std::move(values);
     } else if (layer >= 0) {
-      volume.values = copied_values(volume, from, place, std::size_t(layer));
+      volume.values = copied_values(volume, from, index_of, std::size_t(layer));
     } else {
       merge_layers(volume, std::int64_t(nrrd.axis[*axes.layers].size), segments,
                    [&](std::size_t voxel, std::int64_t l) {
-                     const T value = from[place(voxel, std::size_t(l))];
+                     const T value = from[index_of(voxel, std::size_t(l))];
                      if constexpr (std::is_floating_point_v<T>)
                        return std::abs(value) < T(1e15) ? std::int64_t(value) : std::int64_t(0);
                      else

@@ -17,11 +17,11 @@ Volume read_mgh(const std::filesystem::path& path);  ///< .mgh .mgz of FreeSurfe
 Volume read_vti(const std::filesystem::path& path);  ///< .vti of one piece
 Volume read_metaimage(const std::filesystem::path& path);   ///< .mhd .mha with one data file
 Volume read_vtk_volume(const std::filesystem::path& path);  ///< .slc .vtk .vtkhdf, in a child process
-Volume read_dicom(const std::filesystem::path& place);      ///< a folder with one series, or one of its files, or a SEG
-Volume read_dicom_layer(const std::filesystem::path& place, int layer);
+Volume read_dicom(const std::filesystem::path& path);       ///< a folder with one series, or one of its files, or a SEG
+Volume read_dicom_layer(const std::filesystem::path& path, int layer);
 
 /// Whether a file begins as DICOM does, or one of the first files of a folder.
-bool is_dicom(const std::filesystem::path& place);
+bool is_dicom(const std::filesystem::path& path);
 
 /// Whether `nacre-dicom-import` exists: beside this program, or where the environment variable NACRE_DICOM_IMPORT says.
 bool dicom_child_available();

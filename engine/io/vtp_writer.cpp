@@ -31,13 +31,14 @@ std::string announce_cells(Inline& numbers, std::uint64_t points, std::span<cons
          "</Polys>\n";
 }
 
-std::string announce_arrays(Inline& numbers, std::span<const PointArray> arrays, std::span<const PointPlaces> places) {
+std::string announce_arrays(Inline& numbers, std::span<const PointArray> arrays,
+                            std::span<const PointPositions> positions) {
   std::string xml = "<PointData>\n";
   for (const PointArray& array : arrays)
     xml += numbers.announce(
         "Float32", array.name, array.components, array.values.size() * sizeof(float),
         [&array](Base64Text& file) { file.write(array.values.data(), array.values.size() * sizeof(float)); });
-  for (const PointPlaces& each : places)
+  for (const PointPositions& each : positions)
     xml += numbers.announce("Float64", each.name, 3, each.values.size_bytes(),
                             [&each](Base64Text& file) { file.write(each.values.data(), each.values.size_bytes()); });
   return xml + "</PointData>\n";
@@ -76,17 +77,17 @@ void check_array(const std::filesystem::path& path, const std::string& name, std
 template <class Real>
 void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points, std::span<const Triangle> triangles,
            std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-           const std::string& field_data, std::span<const PointPlaces> places) {
+           const std::string& field_data, std::span<const PointPositions> positions) {
   for (const PointArray& array : arrays)
     check_array(path, array.name, array.values.size(), array.components, points.size());
-  for (const PointPlaces& each : places) check_array(path, each.name, 3 * each.values.size(), 3, points.size());
+  for (const PointPositions& each : positions) check_array(path, each.name, 3 * each.values.size(), 3, points.size());
   Inline numbers;
   std::string xml = poly_data_start(time, field_data);
   xml += fmt::format(
       "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
       "NumberOfPolys=\"{}\">\n",
       points.size(), triangles.empty() ? points.size() : 0, triangles.size());
-  xml += announce_arrays(numbers, arrays, places) + announce_cell_data(numbers, triangles.size(), cells);
+  xml += announce_arrays(numbers, arrays, positions) + announce_cell_data(numbers, triangles.size(), cells);
   xml += announce_points(numbers, points);
   xml += announce_cells(numbers, points.size(), triangles) + "</Piece>\n</PolyData>\n</VTKFile>\n";
 
@@ -99,8 +100,8 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-               const std::string& field_data, std::span<const PointPlaces> places) {
-  write<double>(file, points, triangles, arrays, time, cells, field_data, places);
+               const std::string& field_data, std::span<const PointPositions> positions) {
+  write<double>(file, points, triangles, arrays, time, cells, field_data, positions);
 }
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,

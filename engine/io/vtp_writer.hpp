@@ -14,7 +14,7 @@
 namespace nacre {
 
 /// A position per point, in the precision of the points themselves.
-struct PointPlaces {
+struct PointPositions {
   std::string name;
   std::span<const Vec3d> values;
 };
@@ -22,12 +22,12 @@ struct PointPlaces {
 /// Writes `points`, `triangles` (empty: every point becomes a vertex cell) and `arrays` (one tuple per point each) as
 /// VTK XML PolyData: little-endian numbers in base64, 64-bit headers, no compression; coordinates keep their type.
 /// `time` becomes the field array TimeValue, or `field_data` is a complete <FieldData> element; `cells` are arrays on
-/// the triangles, `places` more arrays on the points. Data are written directly, never through a second copy. Throws
+/// the triangles, `positions` more arrays on the points. Data are written directly, never through a second copy. Throws
 /// Error if the file cannot be written, or if the length of an array is not that of the points.
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt,
                std::span<const CellNumbers> cells = {}, const std::string& field_data = "",
-               std::span<const PointPlaces> places = {});
+               std::span<const PointPositions> positions = {});
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt);
 

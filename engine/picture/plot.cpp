@@ -23,8 +23,8 @@ constexpr double left = 84, right = 540, top = 48, bottom = 392;  // of the plot
 constexpr std::array<const char*, 8> colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#000000", "#999999"};
 
-const char* colour_of(int colour, std::size_t place) {
-  return colours[(colour >= 0 ? std::size_t(colour) : place) % colours.size()];
+const char* colour_of(int colour, std::size_t index) {
+  return colours[(colour >= 0 ? std::size_t(colour) : index) % colours.size()];
 }
 
 std::string escaped(const std::string& text) {

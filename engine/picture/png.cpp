@@ -14,9 +14,9 @@
 #include "engine/system/output_file.hpp"
 
 /// stb does not ask whether it gets the memory that it asks for.
-static void* checked_memory(void* place) {
-  if (!place) throw std::bad_alloc();
-  return place;
+static void* checked_memory(void* pointer) {
+  if (!pointer) throw std::bad_alloc();
+  return pointer;
 }
 
 #if defined(__GNUC__)
@@ -26,8 +26,8 @@ static void* checked_memory(void* place) {
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
 #define STBIW_MALLOC(size) checked_memory(std::malloc(size))
-#define STBIW_REALLOC(place, size) checked_memory(std::realloc(place, size))
-#define STBIW_FREE(place) std::free(place)
+#define STBIW_REALLOC(pointer, size) checked_memory(std::realloc(pointer, size))
+#define STBIW_FREE(pointer) std::free(pointer)
 #include <stb_image_write.h>
 
 namespace nacre {

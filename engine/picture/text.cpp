@@ -39,15 +39,15 @@ const stbtt_fontinfo* font() {
   return loaded.usable ? &loaded.info : nullptr;
 }
 
-/// Calls place(glyph, x) for each glyph, x in pixels from the left edge, and returns the width of the line in pixels.
-template <class Place>
-float lay_out(const stbtt_fontinfo& face, std::string_view text, float scale, Place&& place) {
+/// Calls visit(glyph, x) for each glyph, x in pixels from the left edge, and returns the width of the line in pixels.
+template <class Visit>
+float lay_out(const stbtt_fontinfo& face, std::string_view text, float scale, Visit&& visit) {
   float x = 0;
   int previous = 0;
   while (!text.empty()) {
     const int glyph = stbtt_FindGlyphIndex(&face, int(take_code_point(text)));
     if (previous != 0) x += scale * float(stbtt_GetGlyphKernAdvance(&face, previous, glyph));
-    place(glyph, x);
+    visit(glyph, x);
     int advance = 0;
     stbtt_GetGlyphHMetrics(&face, glyph, &advance, nullptr);
     x += scale * float(advance);

@@ -18,7 +18,7 @@ ArrowPass::ArrowPass() : program_("arrows.vert", "arrows.frag") {
     glVertexArrayAttribFormat(array_, number, size, GL_FLOAT, GL_FALSE, GLuint(offset));
     glVertexArrayAttribBinding(array_, number, 0);
   };
-  attribute(0, 3, offsetof(Arrow, place));
+  attribute(0, 3, offsetof(Arrow, position));
   attribute(1, 3, offsetof(Arrow, vector));
   attribute(2, 3, offsetof(Arrow, normal));
   attribute(3, 1, offsetof(Arrow, shade));

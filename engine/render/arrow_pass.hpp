@@ -11,7 +11,7 @@
 namespace nacre {
 
 struct Arrow {
-  Vec3f place;      ///< of its tail, in model coordinates
+  Vec3f position;   ///< of its tail, in model coordinates
   Vec3f vector;     ///< from tail to tip, in world coordinates
   Vec3f normal;     ///< of the surface, unit
   float shade = 0;  ///< 0..1, position in the colour map

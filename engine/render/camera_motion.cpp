@@ -83,6 +83,18 @@ Camera look_at_depth(const Camera& camera, const Vec3d& point) {
   return moved;
 }
 
+Camera approach(const Camera& camera, const Vec3d& point, const Vec3d& back, const Vec3d& normal, double height) {
+  const double facing = dot(normal, back);
+  const bool along = length(normal) > 0 && std::fabs(facing) < 0.3;
+  const Vec3d from = along ? normalized(back + normal * (facing < 0 ? -0.6 : 0.6)) : back;
+  const double nearer = std::min(1.0, height / camera.height);
+  Camera moved = camera;
+  moved.target = point;
+  moved.eye = point + from * (length(camera.eye - camera.target) * nearer);
+  moved.height = camera.height * nearer;
+  return moved;
+}
+
 double limited_zoom(const Camera& camera, double factor, double extent) {
   constexpr double nearest = 1e-4, farthest = 10;
   const double least = std::min(nearest * extent, camera.height), most = std::max(farthest * extent, camera.height);

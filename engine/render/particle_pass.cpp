@@ -24,9 +24,9 @@ void ParticlePass::set_map(std::span<const std::array<float, 3>> colours) {
   map_ = ColourTexture(linear);
 }
 
-void ParticlePass::draw(const View& view, const Placement& placement, const Buffer& place, const Buffer& direction,
+void ParticlePass::draw(const View& view, const Placement& placement, const Buffer& position, const Buffer& direction,
                         std::size_t first, std::size_t count, const ParticleStyle& style) const {
-  if (count == 0 || !place || !direction) return;
+  if (count == 0 || !position || !direction) return;
   constexpr std::size_t record = 4 * sizeof(float);
   set_view(program_, view, placement);
   program_.set("size", style.size);
@@ -35,7 +35,7 @@ void ParticlePass::draw(const View& view, const Placement& placement, const Buff
   program_.set("range", style.range);
   map_.bind(0);
   program_.set("colours", 0);
-  glVertexArrayVertexBuffer(array_, 0, place.id(), GLintptr(first * record), record);
+  glVertexArrayVertexBuffer(array_, 0, position.id(), GLintptr(first * record), record);
   glVertexArrayVertexBuffer(array_, 1, direction.id(), GLintptr(first * record), record);
   glBindVertexArray(array_);
   glEnable(GL_DEPTH_TEST);

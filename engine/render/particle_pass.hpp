@@ -18,7 +18,7 @@ struct ParticleStyle {
   std::array<float, 2> range{0, 1};  ///< of the colour map
 };
 
-/// Draws directly from the arrays of the solver (ParticleSet): `place` x, y, z, h and `direction` nx, ny, nz, energy.
+/// Draws directly from the arrays of the solver (ParticleSet): `position` x, y, z, h and `direction` nx, ny, nz, energy.
 class ParticlePass {
  public:
   ParticlePass();
@@ -30,7 +30,7 @@ class ParticlePass {
   void set_map(std::span<const std::array<float, 3>> colours);
 
   /// Draws particles first .. first + count - 1 into what is bound.
-  void draw(const View& view, const Placement& placement, const Buffer& place, const Buffer& direction,
+  void draw(const View& view, const Placement& placement, const Buffer& position, const Buffer& direction,
             std::size_t first, std::size_t count, const ParticleStyle& style) const;
 
  private:

@@ -20,7 +20,7 @@ void SlicePass::set_image(const Image& image, bool smooth) {
   glTextureParameteri(id, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-void SlicePass::set_place(const Vec3d& corner, const Vec3d& across, const Vec3d& up) {
+void SlicePass::set_frame(const Vec3d& corner, const Vec3d& across, const Vec3d& up) {
   const Vec3d third = cross(across, up);  // it has no depth of its own, but the map must be invertible
   const double scale = length(across) / length(third);
   const auto column = [](const Vec3d& v, double w) { return glm::dvec4(v.x, v.y, v.z, w); };

@@ -19,7 +19,7 @@ class SlicePass {
   /// nothing.
   void set_image(const Image& image, bool smooth);
   /// Its position: from `corner`, the image's x runs along `across` and its y along `up` (world, to the far side).
-  void set_place(const Vec3d& corner, const Vec3d& across, const Vec3d& up);
+  void set_frame(const Vec3d& corner, const Vec3d& across, const Vec3d& up);
   void draw(const View& view) const;
 
  private:

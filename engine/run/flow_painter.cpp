@@ -38,7 +38,7 @@ Image FlowPainter::paint(int frame) {
   if (input_.colored()) {
     scalar = input_.scalar(pipeline_.flow().time());
     if (part_) scalar = part_->take(scalar);
-    scalar = colours_.range.places(scalar);
+    scalar = colours_.range.on_axis(scalar);
     options.scalar = scalar;
     options.low = colours_.range.bottom();
     options.high = colours_.range.top();
@@ -50,8 +50,10 @@ Image FlowPainter::paint(int frame) {
   image.width = settings_.width;
   image.height = settings_.height;
   image.pixels = pipeline_.flow().render(options);
-  if (settings_.topology)
-    draw_skeleton(image, camera, flow_skeleton(input_, pipeline_.flow().time(), settings_.persistence));
+  const double now = pipeline_.flow().time();
+  if (settings_.streamlines)
+    draw_streamlines(image, camera, flow_streamlines(input_, now, settings_.line_spacing, nullptr));
+  if (settings_.topology) draw_skeleton(image, camera, flow_skeleton(input_, now, settings_.persistence));
   FlowCaption caption;
   caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;
   caption.low = colours_.range.low;

@@ -1,16 +1,18 @@
-// Nacre: the topology of the flow at one time: computed, reported, written.
+// Nacre: the topology and the streamlines of the flow at one time: computed, reported, written.
 #include "engine/run/flow_skeleton.hpp"
 
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
-#include "compute/topology/even_lines.hpp"
 #include "engine/io/vtp_writer.hpp"
 #include "engine/scene/surface/winding.hpp"
 
 namespace nacre {
 namespace {
+
+constexpr double least_strength = 1;  // neighbours come nearer by a factor of e, or part by as much
 
 /// The triangles with one number for all points at one position; each sheet by itself.
 std::vector<Triangle> welded(const PreparedSurface& surface) {
@@ -29,20 +31,53 @@ std::vector<Triangle> welded(const PreparedSurface& surface) {
   return triangles;
 }
 
+/// The tangential vectors at a time, on the shape that the surface has then.
+class FieldAtTime {
+ public:
+  FieldAtTime(VectorsInTime& input, double t, PreparedSurface& shape) {
+    shape = input.moves() ? input.shape(t) : input.surface();
+    std::vector<Vec3f> vectors(shape.points.size());
+    input.vectors(t, vectors);
+    triangles_ = welded(shape);
+    field_.emplace(shape.points, triangles_, vectors);
+  }
+  const TangentField& operator()() const { return *field_; }
+
+ private:
+  std::vector<Triangle> triangles_;
+  std::optional<TangentField> field_;
+};
+
+double longest_side(const PreparedSurface& shape) {
+  Vec3d low(1e300), high(-1e300);
+  for (const Triangle& each : shape.triangles)
+    for (int k = 0; k < 3; ++k) {
+      low = min(low, shape.points[each[k]]);
+      high = max(high, shape.points[each[k]]);
+    }
+  const Vec3d size = high - low;
+  return std::max({size.x, size.y, size.z});
+}
+
 }  // namespace
 
 FlowSkeleton flow_skeleton(VectorsInTime& input, double t, double persistence) {
   FlowSkeleton skeleton;
-  skeleton.shape = input.moves() ? input.shape(t) : input.surface();
+  const FieldAtTime field(input, t, skeleton.shape);
   skeleton.time = t;
   skeleton.least_persistence = persistence * input.statistics().percentile_98;
-  std::vector<Vec3f> vectors(skeleton.shape.points.size());
-  input.vectors(t, vectors);
-  const std::vector<Triangle> triangles = welded(skeleton.shape);
-  const TangentField field(skeleton.shape.points, triangles, vectors);
-  skeleton.topology = find_critical_points(field, skeleton.least_persistence);
-  skeleton.separatrices = separatrices(field, skeleton.topology.points);
+  skeleton.topology = find_critical_points(field(), skeleton.least_persistence);
+  skeleton.separatrices = separatrices(field(), skeleton.topology.points);
+  skeleton.separation = separation_lines(field(), least_strength);
   return skeleton;
+}
+
+FlowStreamlines flow_streamlines(VectorsInTime& input, double t, double spacing, const std::atomic<bool>* stop) {
+  FlowStreamlines streamlines;
+  const FieldAtTime field(input, t, streamlines.shape);
+  streamlines.time = t;
+  streamlines.lines = even_lines(field(), spacing * longest_side(streamlines.shape), stop);
+  return streamlines;
 }
 
 nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
@@ -61,6 +96,8 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
   }
   double area = 0;
   for (const ZeroRegion& region : all.zero_regions) area += region.area;
+  const auto separating = std::count_if(skeleton.separation.begin(), skeleton.separation.end(),
+                                        [](const SeparationLine& line) { return line.separation; });
   std::map<LineEnd, int> ends;
   for (const SurfaceLine& line : skeleton.separatrices) ++ends[line.end];
   return {{"time", skeleton.time},
@@ -77,61 +114,54 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
             {"to_critical_point", ends[LineEnd::critical_point]},
             {"to_rim", ends[LineEnd::rim]},
             {"to_still_flow", ends[LineEnd::still]},
-            {"circling", ends[LineEnd::circling]}}}};
+            {"circling", ends[LineEnd::circling]}}},
+          {"separation_lines", separating},
+          {"attachment_lines", std::ptrdiff_t(skeleton.separation.size()) - separating}};
 }
 
 void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton, const std::string& origin) {
   std::vector<Vec3d> points;
-  PointArray kind{"kind", 1, {}}, index{"index", 1, {}}, persistence{"persistence", 1, {}};
+  PointArray kind{"kind", 1, {}}, index{"index", 1, {}}, persistence{"persistence", 1, {}}, strength{"strength", 1, {}};
   PointArray real{"eigenvalue_real", 2, {}}, imaginary{"eigenvalue_imaginary", 2, {}};
-  const auto add = [&](const Vec3d& p, int k, int i, double persists, std::complex<double> first,
+  const auto add = [&](const Vec3d& p, int k, int i, double persists, double strong, std::complex<double> first,
                        std::complex<double> second) {
     points.push_back(p);
     kind.values.push_back(float(k));
     index.values.push_back(float(i));
     persistence.values.push_back(float(persists));
+    strength.values.push_back(float(strong));
     real.values.insert(real.values.end(), {float(first.real()), float(second.real())});
     imaginary.values.insert(imaginary.values.end(), {float(first.imag()), float(second.imag())});
   };
   const std::vector<CriticalPoint>& zeros = skeleton.topology.points;
-  for (const CriticalPoint& p : zeros) add(p.position, int(p.kind), p.index, p.persistence, p.first, p.second);
+  for (const CriticalPoint& p : zeros) add(p.position, int(p.kind), p.index, p.persistence, 0, p.first, p.second);
   std::vector<std::uint64_t> starts{points.size()};
   for (const SurfaceLine& line : skeleton.separatrices) {
-    for (const Vec3d& p : line.points) add(p, line.forward ? 6 : 7, 0, zeros[line.from].persistence, 0, 0);
+    for (const Vec3d& p : line.points) add(p, line.forward ? 6 : 7, 0, zeros[line.from].persistence, 0, 0, 0);
     starts.push_back(points.size());
   }
-  if (skeleton.separatrices.empty()) starts.clear();
+  for (const SeparationLine& line : skeleton.separation) {
+    for (const Vec3d& p : line.points) add(p, line.separation ? 8 : 9, 0, 0, line.strength, 0, 0);
+    starts.push_back(points.size());
+  }
+  if (starts.size() == 1) starts.clear();
   write_vtp_lines(file, points, zeros.size(), starts,
-                  std::vector<PointArray>{kind, index, persistence, real, imaginary}, skeleton.time,
+                  std::vector<PointArray>{kind, index, persistence, strength, real, imaginary}, skeleton.time,
                   xml_origin(origin));
 }
 
-std::size_t write_streamlines(const std::filesystem::path& file, VectorsInTime& input, double t, double spacing,
-                              const std::string& origin, const std::atomic<bool>* stop) {
-  const PreparedSurface shape = input.moves() ? input.shape(t) : input.surface();
-  std::vector<Vec3f> vectors(shape.points.size());
-  input.vectors(t, vectors);
-  const std::vector<Triangle> triangles = welded(shape);
-  Vec3d low(1e300), high(-1e300);
-  for (const Triangle& each : triangles)
-    for (int k = 0; k < 3; ++k) {
-      low = min(low, shape.points[each[k]]);
-      high = max(high, shape.points[each[k]]);
-    }
-  const Vec3d size = high - low;
-  const TangentField field(shape.points, triangles, vectors);
-  const std::vector<EvenLine> lines = even_lines(field, spacing * std::max({size.x, size.y, size.z}), stop);
+void write_streamlines(const std::filesystem::path& file, const FlowStreamlines& streamlines,
+                       const std::string& origin) {
   std::vector<Vec3d> points;
   PointArray speed{"speed", 1, {}};
   std::vector<std::uint64_t> starts{0};
-  for (const EvenLine& line : lines) {
+  for (const EvenLine& line : streamlines.lines) {
     points.insert(points.end(), line.points.begin(), line.points.end());
     speed.values.insert(speed.values.end(), line.speed.begin(), line.speed.end());
     starts.push_back(points.size());
   }
-  if (lines.empty()) starts.clear();
-  write_vtp_lines(file, points, 0, starts, std::vector<PointArray>{speed}, t, xml_origin(origin));
-  return lines.size();
+  if (streamlines.lines.empty()) starts.clear();
+  write_vtp_lines(file, points, 0, starts, std::vector<PointArray>{speed}, streamlines.time, xml_origin(origin));
 }
 
 }  // namespace nacre

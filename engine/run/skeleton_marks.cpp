@@ -1,9 +1,12 @@
-// Nacre: critical points and separatrices, drawn over a picture.
+// Nacre: critical points, separatrices and streamlines, drawn over a picture.
 #include "engine/run/skeleton_marks.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
+#include <span>
+#include <utility>
 
 #include "compute/raycast/triangle_tree.hpp"
 #include "engine/picture/compose.hpp"
@@ -11,20 +14,7 @@
 namespace nacre {
 namespace {
 
-constexpr Rgba outline{20, 20, 20, 255}, hole{255, 255, 255, 255};
-constexpr Rgba with_flow{255, 150, 30, 255}, against_flow{120, 220, 255, 255};
-
-Rgba colour_of(CriticalKind kind) {
-  switch (kind) {
-    case CriticalKind::saddle: return {255, 225, 40, 255};
-    case CriticalKind::source:
-    case CriticalKind::focus_source: return {225, 40, 40, 255};
-    case CriticalKind::sink:
-    case CriticalKind::focus_sink: return {40, 90, 230, 255};
-    case CriticalKind::centre: return {40, 170, 70, 255};
-  }
-  return outline;
-}
+constexpr Rgba hole{255, 255, 255, 255};
 
 struct Pixel {
   double x = 0, y = 0;
@@ -84,8 +74,8 @@ void draw_mark(Image& image, const Pixel& at, CriticalKind kind, double radius) 
       return diamond ? (u + v - 1.4 * size) * 0.7071 : std::hypot(u, v) - size;
     });
   };
-  put(radius + 0.3 * radius, outline);
-  put(radius, colour_of(kind));
+  put(radius + 0.3 * radius, mark_outline);
+  put(radius, mark_colour(kind));
   if (kind == CriticalKind::focus_source || kind == CriticalKind::focus_sink) put(0.4 * radius, hole);
 }
 
@@ -116,30 +106,58 @@ class LineSheet {
   std::vector<float> cover_;
 };
 
+double line_unit(const Image& image) { return std::max(0.5, std::min(image.width, image.height) / 768.0); }
+
+/// Adds what is seen of a line to each of the sheets, as wide as it says.
+void add_line(const Projection& project, std::span<const Vec3d> points,
+              std::initializer_list<std::pair<LineSheet*, double>> sheets) {
+  Pixel before;
+  for (const Vec3d& p : points) {
+    const Pixel now = project(p);
+    if (before.seen && now.seen)
+      for (const auto& [sheet, half_width] : sheets) sheet->add(before, now, half_width);
+    before = now;
+  }
+}
+
 }  // namespace
+
+Rgba mark_colour(CriticalKind kind) {
+  switch (kind) {
+    case CriticalKind::saddle: return {255, 225, 40, 255};
+    case CriticalKind::source:
+    case CriticalKind::focus_source: return {225, 40, 40, 255};
+    case CriticalKind::sink:
+    case CriticalKind::focus_sink: return {40, 90, 230, 255};
+    case CriticalKind::centre: return {40, 170, 70, 255};
+  }
+  return mark_outline;
+}
 
 void draw_skeleton(Image& image, const Camera& camera, const FlowSkeleton& skeleton) {
   const Projection project(camera, image.width, image.height, skeleton.shape);
-  const double unit = std::max(0.5, std::min(image.width, image.height) / 768.0);
-  LineSheet edge(image.width, image.height), forward = edge, backward = edge;
-  for (const SurfaceLine& line : skeleton.separatrices) {
-    Pixel before;
-    for (const Vec3d& p : line.points) {
-      const Pixel now = project(p);
-      if (before.seen && now.seen) {
-        edge.add(before, now, 1.6 * unit);
-        (line.forward ? forward : backward).add(before, now, 0.9 * unit);
-      }
-      before = now;
-    }
-  }
-  edge.blend(image, {outline.r, outline.g, outline.b, 170});
-  backward.blend(image, against_flow);
-  forward.blend(image, with_flow);
+  const double unit = line_unit(image);
+  LineSheet edge(image.width, image.height), forward = edge, backward = edge, leaving = edge, arriving = edge;
+  for (const SeparationLine& line : skeleton.separation)
+    add_line(project, line.points, {{&edge, 1.9 * unit}, {line.separation ? &leaving : &arriving, 1.2 * unit}});
+  for (const SurfaceLine& line : skeleton.separatrices)
+    add_line(project, line.points, {{&edge, 1.6 * unit}, {line.forward ? &forward : &backward, 0.9 * unit}});
+  edge.blend(image, {mark_outline.r, mark_outline.g, mark_outline.b, 170});
+  arriving.blend(image, attachment_colour);
+  leaving.blend(image, separation_colour);
+  backward.blend(image, separatrix_against_flow);
+  forward.blend(image, separatrix_with_flow);
   for (const CriticalPoint& point : skeleton.topology.points) {
     const Pixel at = project(point.position);
     if (at.seen) draw_mark(image, at, point.kind, 4.5 * unit);
   }
+}
+
+void draw_streamlines(Image& image, const Camera& camera, const FlowStreamlines& streamlines) {
+  const Projection project(camera, image.width, image.height, streamlines.shape);
+  LineSheet sheet(image.width, image.height);
+  for (const EvenLine& line : streamlines.lines) add_line(project, line.points, {{&sheet, 0.7 * line_unit(image)}});
+  sheet.blend(image, streamline_ink);
 }
 
 }  // namespace nacre

@@ -124,7 +124,7 @@ class Flow:
     """A flow run: an iterator of `Frame`, with the knobs as attributes.
 
     Knobs of pictures and filters may be changed at any time. With those of the embedding, `ttl`, `warmup` and `seed`,
-    the texture is made anew at the time that was reached.
+    the texture is made again at the time that was reached.
     """
 
     _native: _core.Flow
@@ -275,9 +275,9 @@ def flow_input(
             scalars = {str(color): _array_of(surface, str(color))}
     if triangles is None or velocity is None:
         raise Error("the surface needs triangles and a velocity", "", "nacre.flow(points, triangles, velocity)")
-    places = rows(points, 3, "points", np.float64)
+    positions = rows(points, 3, "points", np.float64)
     corners = rows(triangles, 3, "triangles", np.int64)
-    n = len(places)
+    n = len(positions)
     vectors, moments, analytic = _velocity(velocity, times, n)
     numbers = {str(key): real_array(value, f"scalars {key!r}") for key, value in (scalars or {}).items()}
     for key, array in numbers.items():
@@ -291,7 +291,7 @@ def flow_input(
     title = analytic or title or "velocity"
     if analytic is None and title.startswith("@"):
         raise Error(f"no vectors may be called {title!r}", "names with @ are those of analytic fields")
-    return FlowInput(places, corners, moments, vectors, scalar, list(numbers), title)
+    return FlowInput(positions, corners, moments, vectors, scalar, list(numbers), title)
 
 
 def flow(

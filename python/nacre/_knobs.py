@@ -92,3 +92,5 @@ class FlowKnobs(TypedDict, total=False):
     time_stamp: bool  #: draw the time of the data
     topology: bool  #: draw the critical points of the flow and the separatrices of its saddles
     persistence: float  #: critical points that cancel each other at speeds below this share of the reference speed are left out
+    streamlines: bool  #: draw evenly spaced streamlines on the surface
+    line_spacing: float  #: distance between evenly spaced streamlines, as a share of the surface's longest side

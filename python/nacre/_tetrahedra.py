@@ -69,12 +69,12 @@ def save_tetrahedra(
     names : dict, optional
         Names of labels.
     """
-    places = rows(points, 3, "points", np.float64, finite=True)
+    positions = rows(points, 3, "points", np.float64, finite=True)
     corners = rows(cells, 4, "cells", np.int64)
     if len(corners) == 0:
         raise Error("there are no tetrahedra")
-    if corners.min() < 0 or corners.max() >= len(places):
-        raise Error(f"a cell has a corner outside 0 .. {len(places) - 1}")
+    if corners.min() < 0 or corners.max() >= len(positions):
+        raise Error(f"a cell has a corner outside 0 .. {len(positions) - 1}")
     label = np.ones(len(corners), np.int64) if labels is None else rows(np.reshape(labels, (-1, 1)), 1, "labels", np.int64)
     label = label.reshape(-1)
     if len(label) != len(corners):
@@ -83,21 +83,21 @@ def save_tetrahedra(
     material = material.reshape(-1) + 1
     if len(kinds) >= 2**16 - 1:
         raise Error(f"there are {len(kinds)} labels", "", "at most 65534 can be written")
-    corners = _oriented(places, corners)
+    corners = _oriented(positions, corners)
     triangles, sides = _interfaces(corners, material)
     # Files have the points of the interfaces first.
-    is_first = np.zeros(len(places), bool)
+    is_first = np.zeros(len(positions), bool)
     is_first[triangles] = True
     order = np.concatenate([np.flatnonzero(is_first), np.flatnonzero(~is_first)])
-    number = np.empty(len(places), np.int64)
-    number[order] = np.arange(len(places))
-    places = np.ascontiguousarray(places[order])
+    number = np.empty(len(positions), np.int64)
+    number[order] = np.arange(len(positions))
+    positions = np.ascontiguousarray(positions[order])
     outside = 0 if 0 not in kinds else int(kinds.min()) - 1
     known = {int(key): str(name) for key, name in (names or {}).items()}
     materials = [(outside, known.get(outside, ""))] + [(int(kind), known.get(int(kind), "")) for kind in kinds]
-    border = places[: int(is_first.sum())]
+    border = positions[: int(is_first.sum())]
     _core.save_cells(
-        os.fspath(file), border, number[triangles], sides, materials, places, number[corners], material.astype(np.uint16)
+        os.fspath(file), border, number[triangles], sides, materials, positions, number[corners], material.astype(np.uint16)
     )
 
 

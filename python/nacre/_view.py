@@ -73,13 +73,13 @@ def _write_surface(
         )
 
     data = "".join(entry(name, "Float32", v, 3 if v.ndim == 2 else 1) for name, v in arrays.items())
-    places = entry("Points", "Float64", points, 3)
+    positions = entry("Points", "Float64", points, 3)
     corners = entry("connectivity", "Int64", triangles, 1)
     ends = entry("offsets", "Int64", np.arange(1, len(triangles) + 1, dtype=np.int64) * 3, 1)
     head = (
         '<?xml version="1.0"?><VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
         f'<PolyData><Piece NumberOfPoints="{len(points)}" NumberOfPolys="{len(triangles)}"><PointData>{data}</PointData>'
-        f"<Points>{places}</Points><Polys>{corners}{ends}</Polys></Piece></PolyData>"
+        f"<Points>{positions}</Points><Polys>{corners}{ends}</Polys></Piece></PolyData>"
         '<AppendedData encoding="raw">_'
     )
     file.write_bytes(head.encode() + b"".join(blocks) + b"</AppendedData></VTKFile>")

@@ -163,7 +163,7 @@ class NacreSurfaceFlow(_Filter):
     and `texture_colors` (grey, for direct colouring), and has one time step per frame. Where the input has time steps,
     vectors are asked for at all of them, once, and frames are spread evenly over them; a steady input gets the times 1
     to `steps`. One run is kept: the next time step costs one step of the texture. A time before the present one begins
-    anew.
+    again.
     """
 
     def __init__(self):
@@ -275,8 +275,8 @@ class NacreSurfaceFlow(_Filter):
                 return 1
             wanted = out.Get(Pipeline.UPDATE_TIME_STEP()) if out.Has(Pipeline.UPDATE_TIME_STEP()) else None
             self._advance(surface, wanted)
-            places = np.array(vtk_to_numpy(self._surface.GetPoints().GetData()), dtype=float)
-            texture = self._frame.sample(places)
+            positions = np.array(vtk_to_numpy(self._surface.GetPoints().GetData()), dtype=float)
+            texture = self._frame.sample(positions)
         except nacre.Error as error:
             self._reading = self._state = None
             request.Remove(Pipeline.CONTINUE_EXECUTING())

@@ -118,8 +118,8 @@ void bind_flow(nb::module_& module) {
       .def("cells", [](Run& run) { return cells_dict(run.call([](Flow& f) { return f.cells(); })); })
       .def("sample",
            [](Run& run, const Rows<double, 3>& points) {
-             const auto places = to_rows<3>(points);
-             return column(run.call([&](Flow& f) { return f.sample(places); }));
+             const auto positions = to_rows<3>(points);
+             return column(run.call([&](Flow& f) { return f.sample(positions); }));
            })
       .def("save", [](Run& run, const std::string& file) { run.call([&](Flow& f) { f.save(file); }); })
       .def("report", [](Run& run) { return run.call([](Flow& f) { return f.report(); }); });

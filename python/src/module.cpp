@@ -56,12 +56,12 @@ nb::list device_list() {
 
 nb::tuple closest(const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
                   const Rows<double, 3>& queries) {
-  const auto places = to_rows<3>(points), wanted = to_rows<3>(queries);
+  const auto positions = to_rows<3>(points), wanted = to_rows<3>(queries);
   const auto corners = to_corners<3>(triangles);
   ClosestPoints found;
   Worker worker((nb::none()));
   const RunOptions options = worker.options("cpu", 0);
-  worker.run([&] { found = closest_points(places, corners, wanted, options.stop); });
+  worker.run([&] { found = closest_points(positions, corners, wanted, options.stop); });
   std::vector<std::int64_t> numbers(found.triangles.begin(), found.triangles.end());
   return nb::make_tuple(rows(std::move(found.points)), column(std::move(numbers)), column(std::move(found.distance)));
 }

@@ -1,5 +1,5 @@
 // Nacre: pictures that someone has looked at and approved, and what the viewer draws today. After a change that is
-// meant, NACRE_APPROVE=1 writes them anew: look at each before it is committed.
+// meant, NACRE_APPROVE=1 writes them again: look at each before it is committed.
 #include <cstdlib>
 
 #include "engine/picture/compose.hpp"
@@ -13,7 +13,7 @@ namespace {
 struct Approved {
   std::string name;
   Words words;
-  bool crowd = false;  ///< of particles, whose places follow from the last bit of a sum
+  bool crowd = false;  ///< of particles, whose positions follow from the last bit of a sum
 };
 
 const Words flow_words = {"--sample", "torus", "--detail", "48", "--resolution", "160", "--steps", "6"};
@@ -33,6 +33,7 @@ const std::vector<Approved> all = {
     of_flow("flow", {}),
     of_flow("flow_octree", {"--method", "octree", "--background", "#203040"}),
     of_flow("flow_arrows", {"--set", "arrows=true", "--set", "arrow_count=400", "--color", "none"}),
+    of_flow("flow_topology", {"--topology", "--streamlines", "--line-spacing", "0.05"}),
     of_flow("flow_boxes", {"--method", "octree", "--set", "boxes=true", "--color", "none"}),
     of_flow("flow_source", {"--method", "octree", "--octree", "source", "--set", "resolution=96"}),
     of_flow("flow_clip", {"--set", "clip=x", "--set", "edges=true", "--set", "light_azimuth=60"}),

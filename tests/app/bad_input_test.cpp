@@ -115,7 +115,7 @@ TEST_F(BadInput, VectorsThatAreNotFinite) {
   Surface surface = square();
   surface.arrays[0].values[30] = not_a_number;
   surface.arrays[0].values[60] = float(infinite);
-  expect_warning(flow(save("s.vtp", surface)), {"velocity", "2 of 81 places"});
+  expect_warning(flow(save("s.vtp", surface)), {"velocity", "2 of 81 positions"});
 }
 
 TEST_F(BadInput, TrianglesWithoutArea) {

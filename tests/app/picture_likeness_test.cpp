@@ -15,7 +15,7 @@ namespace {
 
 /// A crowd of discs on white, as particles on a ball are seen; what is drawn of it can be changed.
 struct Crowd {
-  double moved = 0;        ///< how far each disc may be from its place, in radii
+  double moved = 0;        ///< how far each disc may be from its position, in radii
   double other_value = 0;  ///< how much each colour may differ, of the whole map
   double radius = 2.5;
   bool lines = true;

@@ -168,7 +168,7 @@ TEST_F(ViewMesh, LiveOneEndsWhenItIsDone) {
   EXPECT_TRUE(exists("v.vtp"));
 }
 
-/// The memory of the particles' places is there, that of their directions is not.
+/// The memory of the particles' positions is there, that of their directions is not.
 TEST_F(ViewMesh, AWindowOutlivesMemoryThatItDoesNotGet) {
   const Outcome run = in_window(quick + Words{"--frames-count", "20"}, "export NACRE_FAULTS=graphics-memory@2");
   if (run.status == 77) GTEST_SKIP() << run.err;

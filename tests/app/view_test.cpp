@@ -57,7 +57,7 @@ TEST_F(View, PictureIsThatOfTheHeadlessCommand) {
                         "--steps",  "3",      "--size",   "320x240", "--quiet"};
   for (const Words& more : {Words{}, Words{"--set", "legend=false", "--set", "time_stamp=false"},
                             Words{"--background", "#102030"}, Words{"--color-range", "-1:4", "--colormap", "gray"},
-                            Words{"--color", "none", "--background", "transparent"}, Words{"--method", "octree"}}) {
+                            Words{"--color", "none", "--background", "transparent"}, Words{"--method", "octree"}, Words{"--topology", "--streamlines"}}) {
     ASSERT_EQ(nacre(Words{"view", "--offscreen", "--image", view.string()} + common + more).status, 0);
     ASSERT_EQ(nacre(Words{"flow", "--image", flow.string()} + common + more).status, 0);
     const Image a = read_png(view), b = read_png(flow);
@@ -109,7 +109,7 @@ Outcome with_faults(const std::string& faults, const Words& words) {
 TEST_F(View, AResetGraphicsDeviceIsBornAndTheSessionGoesOn) {
   const fs::path png = folder / "view.png", json = folder / "view.json", whole = folder / "whole.png";
   ASSERT_EQ(nacre(small_view + Words{"--image", whole.string()}).status, 0);
-  // In the second frame: the flow begins anew, so that six frames show what four do without it.
+  // In the second frame: the flow starts over, so that six frames show what four do without it.
   const Outcome outcome =
       with_faults("lost-context@2", {"--frames-count", "6", "--image", png.string(), "--report", json.string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -1,7 +1,7 @@
 # Nacre: a viewer in a window, for scripts that play its user; to be sourced. They wait for what they see, not for times.
 
 # on_display SCREEN TOOLS...: brings up an Xvfb with a screen of that size, which dies with the script; ends with 77 where
-# it or a tool is missing. The server picks its number itself, as others may be starting. It does not begin anew when its
+# it or a tool is missing. The server picks its number itself, as others may be starting. It does not start over when its
 # last client goes: meanwhile it would refuse the next.
 on_display() {
   local screen=$1 tool number

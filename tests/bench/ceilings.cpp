@@ -3,7 +3,7 @@
 // bench_ceilings [threads=0]
 //
 // Prints JSON: bytes a second of a copy (read and written) and of reads alone in order, 64-byte lines a second at
-// random places of an array far larger than the caches (as many under way as the processor likes, and one after
+// random positions of an array far larger than the caches (as many under way as the processor likes, and one after
 // another), single-precision multiply-adds a second in vectors and one by one, and additions of whole numbers a second.
 // The best of five runs each.
 #include <oneapi/tbb/global_control.h>

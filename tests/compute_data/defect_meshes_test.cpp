@@ -53,7 +53,7 @@ bool check_file(const fs::path& path, int resolution, std::uint32_t samples) {
   const auto cells = std::uint32_t(grid.offset.size());
   for (std::uint32_t at = 0; at < cells; at += std::max(1u, cells / samples))
     if (grid.offset[at].w <= band) check_stored(grid, brute, at, faults);
-  Random random(61);  // and places anywhere in the box: what is near the surface must be stored
+  Random random(61);  // and positions anywhere in the box: what is near the surface must be stored
   for (std::uint32_t k = 0; k < samples / 4; ++k) {
     const Vec3d at(grid.view.dims());
     const Int3 cell{int(at.x * random()), int(at.y * random()), int(at.z * random())};

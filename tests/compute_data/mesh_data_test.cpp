@@ -106,7 +106,7 @@ TEST(MeshData, FourSpheresAsIndicators) {  // they fill the volume: all interfac
   EXPECT_NEAR(-report.materials[0].volume, 28 * 28 * 28, 0.01 * 28 * 28 * 28);
 }
 
-TEST(MeshData, NestedHead) {  // shells that touch in a few places at most
+TEST(MeshData, NestedHead) {  // shells that touch in a few positions at most
   NACRE_NEEDS_SHARED_DATA("labels/nested-head");
   MeshParameters parameters;
   parameters.min_size = 2;

@@ -34,7 +34,7 @@ mutant() {
   mkdir -p "$work/tree"
   if [[ -n $file ]]; then
     text=$(<"$root/$file")
-    [[ $text == *"$from"* ]] || { echo "mutate: $name: $file has changed; say anew what to replace" >&2; exit 2; }
+    [[ $text == *"$from"* ]] || { echo "mutate: $name: $file has changed; say again what to replace" >&2; exit 2; }
     mkdir -p "$work/tree/${file%/*}"
     printf '%s\n' "${text/"$from"/"$to"}" >"$work/tree/$file"
   fi

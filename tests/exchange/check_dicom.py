@@ -52,7 +52,7 @@ if __name__ == "__main__":
     found, expected = (tetrahedra_by_label(folder / f"{name}.vtu") for name in ("segments", "numbered"))
     for number in (1, 2):
         assert abs(found[number] / expected[number] - 1) < 0.02, f"{found}, not {expected}"
-    print(f"a segmentation of highdicom: names, voxels and place; volumes {found}")
+    print(f"a segmentation of highdicom: names, voxels and position; volumes {found}")
 
     overlapping = read(folder, "overlapping.dcm")
     assert "overlap" in overlapping["warnings"][0], overlapping["warnings"]

@@ -26,7 +26,7 @@ void on_malloc(const volatile void*, std::size_t size) {
   std::abort();
 }
 
-void on_free(const volatile void* place) { in_use -= __sanitizer_get_allocated_size(place); }
+void on_free(const volatile void* position) { in_use -= __sanitizer_get_allocated_size(position); }
 
 /// Bounds what is allocated during its life.
 class Bound {

@@ -37,7 +37,7 @@ class BackendRuns {
   virtual std::uint64_t sum(std::span<const std::uint32_t> in) = 0;
   virtual float maximum(std::span<const float> in) = 0;  ///< -1 for none
   /// A repeated part, called once for each of `sizes`: clears n numbers, makes number i random, adds all up, puts sums
-  /// of those before in their place. Returns the numbers and their sum after each call.
+  /// of those before in their position. Returns the numbers and their sum after each call.
   virtual std::vector<std::vector<std::uint64_t>> repeat(std::span<const std::int64_t> sizes) = 0;
   virtual long graphs_made() const = 0;  ///< by all calls of `repeat` so far; 0 where there are none
   /// Calls of a repeated part of ten launches, of which the fifth asks to stop; how many of `calls` were interrupted.

@@ -33,12 +33,12 @@ MeshOnDevice run(Device& device, const MeshVolume& volume, const MeshParameters&
   pipeline->load(volume);
   pipeline->build_fields();
   MeshOnDevice result;
-  std::vector<Vec3d> places;
+  std::vector<Vec3d> positions;
   for (double z = 0; z < volume.dims.z - 1; z += 1.3)
     for (double y = 0; y < volume.dims.y - 1; y += 1.1)
-      for (double x = 0; x < volume.dims.x - 1; x += 0.9) places.push_back({x, y, z});
-  result.material = pipeline->material_at(places);
-  result.size = pipeline->field_at(MeshField::size, places);
+      for (double x = 0; x < volume.dims.x - 1; x += 0.9) positions.push_back({x, y, z});
+  result.material = pipeline->material_at(positions);
+  result.size = pipeline->field_at(MeshField::size, positions);
   pipeline->relax();
   result.mesh = pipeline->triangulate();
   result.distance = pipeline->surface_distance(result.mesh);
@@ -113,7 +113,7 @@ void expect_alike(const char* what, const MeshOnDevice& a, const MeshOnDevice& b
   const double count = double(b.info.final) / double(a.info.final) - 1, ratio = b.ratio - a.ratio;
   std::printf(
       "CPU and CUDA, %s: %lld and %lld particles (%+.2f%%), mean ratio %.4f and %.4f; materials differ at %.1e, "
-      "sizes at %.1e of the places\n",
+      "sizes at %.1e of the positions\n",
       what, static_cast<long long>(a.info.final), static_cast<long long>(b.info.final), 100 * count, a.ratio, b.ratio,
       differing(a.material, b.material, 0), differing(a.size, b.size, 0.01));
   testing::Test::RecordProperty(std::string(what) + "_particles", std::to_string(count));

@@ -25,6 +25,7 @@ ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
 # Folder of the broken line: test programs that are asked, in this order, until one notices. Longest prefix wins.
 JUDGES = {
     "compute": ["compute", "app"],
+    "engine/run": ["app"],
     "engine/scene": ["scene", "app"],
     "engine/io": ["io", "app"],
     "engine/picture": ["picture", "app"],
@@ -35,7 +36,7 @@ JUDGES = {
 }
 # Of the program's own tests only those without a window: they are quick and quiet.
 FILTER = {"app": "-View*:*Scripts*:*ApprovedPicture*:CtrlC*:*/CtrlC*:MeshCtrlC*:Limits*:BenchTables*"}
-NOT_JUDGED = re.compile(r"^engine/io/vtk_import/|cuda")  # what no test on a CPU runs in its own process
+NOT_JUDGED = re.compile(r"^engine/(io/vtk_import|parallel)/|cuda")  # what no test on a CPU runs in its own process
 TIME_LIMIT = 1800  # seconds for one test program: a loop that does not end is noticed, too
 
 OPERATORS = [

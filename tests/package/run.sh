@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Nacre: builds the library without the program, installs it into an empty folder, builds examples/ against it by
 # find_package (or with Nacre as a subfolder), and runs them.
-# Usage: run.sh static|shared|subfolder NACRE WORK CMAKE GENERATOR MARCH
+# Usage: run.sh static|shared|subfolder NACRE WORK CMAKE GENERATOR OPTION...
+# With the options of the program's build, ccache need not compile the library again.
 set -euo pipefail
-kind=$1 nacre=$2 work=$3 cmake=$4 generator=$5 march=$6
-options=(-G "$generator" -DCMAKE_BUILD_TYPE=Release -DNACRE_PROGRAM=OFF -DNACRE_TESTS=OFF -DNACRE_CUDA=OFF
-  "-DNACRE_MARCH=$march")
+kind=$1 nacre=$2 work=$3 cmake=$4 generator=$5
+options=(-G "$generator" -DCMAKE_BUILD_TYPE=Release -DNACRE_PROGRAM=OFF -DNACRE_TESTS=OFF -DNACRE_CUDA=OFF "${@:6}")
 if command -v ccache >/dev/null; then
   options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
@@ -19,16 +19,14 @@ rm -rf "$work/prefix" "$work/examples/CMakeCache.txt" "$work/out"
 mkdir -p "$work/out"
 if [[ $kind == subfolder ]]; then
   "$cmake" -S "$nacre/examples" -B "$work/examples" "${options[@]}" "-DNACRE_FOLDER=$nacre" \
-    -DCMAKE_CXX_FLAGS_RELEASE=-O1 >"$work/configure.log"  # its speed is not looked at
+    >"$work/configure.log"
   # Nothing that only the program needs may be asked for.
   if grep -E 'CLI11|pugixml|teem|nifti|tinyobj|ffmpeg|GLFW|GLEW|VTK' "$work/configure.log"; then
     fail "the library asks for the packages above, which only the program needs"
   fi
 else
   [[ $kind == shared ]] && shared=ON || shared=OFF
-  # Both kinds, and the Python module, are compiled in the same way, so that ccache compiles once for all three.
-  "$cmake" -S "$nacre" -B "$work/build" "${options[@]}" -DBUILD_SHARED_LIBS=$shared -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
-    -DCMAKE_CXX_VISIBILITY_PRESET=hidden -DCMAKE_VISIBILITY_INLINES_HIDDEN=ON
+  "$cmake" -S "$nacre" -B "$work/build" "${options[@]}" -DBUILD_SHARED_LIBS=$shared
   "$cmake" --build "$work/build" -j "$(nproc)" --target nacre_installed
   "$cmake" --install "$work/build" --prefix "$work/prefix" --component library
   "$cmake" -S "$nacre/examples" -B "$work/examples" -G "$generator" -DCMAKE_BUILD_TYPE=Release \

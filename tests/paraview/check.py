@@ -49,9 +49,9 @@ def torus_in_time(times, n=64, m=32):
     files = []
     for k, time in enumerate(times):
         surface = vtkPolyData()
-        place = vtkPoints()
-        place.SetData(numpy_to_vtk(points, deep=True))
-        surface.SetPoints(place)
+        position = vtkPoints()
+        position.SetData(numpy_to_vtk(points, deep=True))
+        surface.SetPoints(position)
         cells = vtkCellArray()
         for quad in quads:
             for corners in (quad[[0, 1, 2]], quad[[0, 2, 3]]):

@@ -64,7 +64,7 @@ std::vector<Polyline> junction_curves(const LabelImage& image, const Surface& su
   std::map<std::uint32_t, std::set<std::uint32_t>> next;
   for (const auto& [edge, count] : facets)
     if (count > 2) next[edge.first].insert(edge.second), next[edge.second].insert(edge.first);
-  const auto place = [&](std::uint32_t v) {
+  const auto position = [&](std::uint32_t v) {
     const Vec3d p = image.to_index(surface.points[v]) + Vec3d(border);
     return Kernel::Point_3(p.x, p.y, p.z);
   };

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Nacre: makes an environment, installs the module there with pip, and runs pytest against the program.
-# Usage: run.sh NACRE WORK PROGRAM MARCH [PYTEST ARGUMENTS]. Ends with 77 where PyPI cannot be reached.
+# Usage: run.sh NACRE WORK PROGRAM MARCH WERROR [PYTEST ARGUMENTS]. Ends with 77 where PyPI cannot be reached.
 set -euo pipefail
 nacre=$1 work=$2 program=$3 march=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -22,8 +22,10 @@ fi
 if command -v ccache >/dev/null; then
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
-# Compiled for the same processor as the program: only then are results equal to the byte.
+# Compiled for the same processor as the program: only then are results equal to the byte. With the same options, ccache
+# need not compile the library again.
 PATH="$work/venv/bin:$PATH" "${pip[@]}" install "$nacre" --no-build-isolation --no-deps --force-reinstall \
-  -C "build-dir=$work/build" -C "cmake.define.NACRE_MARCH=$march" -C "cmake.define.NACRE_CUDA=OFF"
+  -C "build-dir=$work/build" -C "cmake.define.NACRE_MARCH=$march" \
+  -C "cmake.define.NACRE_WERROR=$5" -C "cmake.define.NACRE_CUDA=OFF"
 cd "$work"
-NACRE_PROGRAM="$program" NACRE_FOLDER="$nacre" "$work/venv/bin/python" -m pytest -q "$here" -p no:cacheprovider "${@:5}"
+NACRE_PROGRAM="$program" NACRE_FOLDER="$nacre" "$work/venv/bin/python" -m pytest -q "$here" -p no:cacheprovider "${@:6}"

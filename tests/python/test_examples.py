@@ -9,12 +9,12 @@ nbclient = pytest.importorskip("nbclient")
 pytest.importorskip("ipykernel")
 
 
-def run(folder, name, place):
+def run(folder, name, position):
     """Everything that the cells of a notebook gave: text, and data by kind."""
     notebook = nbformat.read(folder / "python/examples" / name, as_version=4)
     nbformat.validate(notebook)
     assert not any(cell.get("outputs") for cell in notebook.cells), "notebooks are kept without their outputs"
-    nbclient.NotebookClient(notebook, timeout=900, resources={"metadata": {"path": str(place)}}).execute()
+    nbclient.NotebookClient(notebook, timeout=900, resources={"metadata": {"path": str(position)}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     text = "".join(output["text"] for output in outputs if output.output_type == "stream")
     return text, [output["data"] for output in outputs if "data" in output]

@@ -1,5 +1,5 @@
 // Nacre: faults injected into a running program by LD_PRELOAD, each at the n-th call of its kind, so that a run fails
-// in the same place every time. NACRE_FAULT is KIND:N, or none to count only; NACRE_FAULT_COUNTS names a file that gets
+// in the same position every time. NACRE_FAULT is KIND:N, or none to count only; NACRE_FAULT_COUNTS names a file that gets
 // the number of calls of each kind. Counting begins when main installs its signal handlers: what fails before, the C++
 // library cannot survive.
 //   new      the N-th operator new throws std::bad_alloc
@@ -23,7 +23,7 @@
 extern "C" {
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* place, std::size_t size);
+void* __libc_realloc(void* position, std::size_t size);
 void* __libc_memalign(std::size_t alignment, std::size_t size);
 }
 
@@ -75,9 +75,9 @@ void* allocate(std::size_t size, std::size_t alignment) {
   if (due(of_sigint)) raise(SIGINT);
   if (due(of_sigterm)) raise(SIGTERM);
   if (due(of_new)) throw std::bad_alloc();
-  void* place = alignment == 0 ? __libc_malloc(size) : __libc_memalign(alignment, size);
-  if (!place) throw std::bad_alloc();
-  return place;
+  void* position = alignment == 0 ? __libc_malloc(size) : __libc_memalign(alignment, size);
+  if (!position) throw std::bad_alloc();
+  return position;
 }
 
 bool is_own(std::FILE* stream) { return stream != stdout && stream != stderr && stream != nullptr; }
@@ -120,14 +120,14 @@ void* calloc(std::size_t count, std::size_t size) {
   if (due(of_malloc)) return errno = ENOMEM, nullptr;
   return __libc_calloc(count, size);
 }
-void* realloc(void* place, std::size_t size) {
+void* realloc(void* position, std::size_t size) {
   if (due(of_malloc)) return errno = ENOMEM, nullptr;
-  return __libc_realloc(place, size);
+  return __libc_realloc(position, size);
 }
-int posix_memalign(void** place, std::size_t alignment, std::size_t size) {
+int posix_memalign(void** position, std::size_t alignment, std::size_t size) {
   if (due(of_malloc)) return ENOMEM;
-  *place = __libc_memalign(alignment, size);
-  return *place ? 0 : ENOMEM;
+  *position = __libc_memalign(alignment, size);
+  return *position ? 0 : ENOMEM;
 }
 
 std::size_t fwrite(const void* data, std::size_t size, std::size_t count, std::FILE* stream) {

@@ -56,7 +56,7 @@ std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
     asked_ = hit.position;
     asked_step_ = taken_;
   }
-  if (sampled_ && length(sampled_->place - hit.position) <= near)
+  if (sampled_ && length(sampled_->position - hit.position) <= near)
     lines.push_back(fmt::format("texture: {:.2f}", sampled_->value));
   return lines;
 }

@@ -10,7 +10,7 @@ auto of_embedding(const FlowParameters& p) {
   return std::tie(p.method, p.octree, p.neighbour_index, p.resolution, p.refine, p.subcells, p.radius);
 }
 
-// With the speed: the vectors in the slots are scaled already; a start fills them anew.
+// With the speed: the vectors in the slots are scaled already; a start fills them again.
 auto of_start(const Settings& s) {
   const FlowParameters& p = s.flow;
   return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power);
@@ -24,6 +24,10 @@ auto of_arrows(const ViewSettings& l) { return std::tie(l.arrows, l.arrow_count)
 
 }  // namespace
 
+auto of_lines(const Settings& s) { return std::tie(s.topology, s.persistence, s.streamlines, s.line_spacing); }
+
+bool has_lines(const Settings& s) { return s.topology || s.streamlines; }
+
 void FlowRerun::add(const FlowRerun& other) {
   for (std::size_t k = 0; k < has_.size(); ++k) has_[k] = has_[k] || other.has_[k];
 }
@@ -35,6 +39,8 @@ FlowRerun flow_rerun(const Settings& before, const Settings& after) {
   if (before.vectors != after.vectors || of_motion(before) != of_motion(after)) rerun.add({vectors, start});
   if (before.color != after.color) rerun.add(colours);
   if (of_arrows(before.view) != of_arrows(after.view)) rerun.add(arrows);
+  const bool other_field = rerun.has(surface) || rerun.has(vectors);
+  if (has_lines(after) ? other_field || of_lines(before) != of_lines(after) : has_lines(before)) rerun.add(lines);
   if (of_embedding(before.flow) != of_embedding(after.flow)) rerun.add({embed, start});
   if (of_start(before) != of_start(after)) rerun.add(start);
   if (of_steps(before.flow) != of_steps(after.flow)) rerun.add(step);

@@ -15,11 +15,12 @@ enum class FlowStage {
   vectors,  ///< the choice of the vectors
   colours,  ///< the array to colour by
   arrows,   ///< their positions
+  lines,    ///< topology and streamlines
   embed,    ///< from the triangles
   start,    ///< from the noise
   step      ///< one more, which takes new values
 };
-inline constexpr int flow_stages = 7;
+inline constexpr int flow_stages = 8;
 
 /// A set of stages.
 class FlowRerun {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/flow/flow_lines.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/triangle_tree.hpp"
 #include "engine/run/shown_colours.hpp"
@@ -45,6 +46,7 @@ struct FlowResults {
   ShownColours colours;                    ///< what the knobs make of them
   double time = 0;                         ///< that is shown, or will be first
   int steps = 0;                           ///< since the start
+  std::shared_ptr<const FlowLines> lines;  ///< of that time; null: they are off
   std::vector<float> step_seconds;         ///< of the last ones
   std::optional<EmbeddingInfo> embedding;  ///< that is shown
 };

@@ -250,7 +250,7 @@ void FlowScene::show_colours(const std::vector<float>& scalar) {
   if (scalar.empty())
     colours_.clear_scalar();
   else
-    colours_.set_scalar(results_.colours.range.places(scalar), results_.colours.range.bottom(),
+    colours_.set_scalar(results_.colours.range.on_axis(scalar), results_.colours.range.bottom(),
                         results_.colours.range.top());
   scalar_ = scalar;
   colour_focus();
@@ -259,6 +259,17 @@ void FlowScene::show_colours(const std::vector<float>& scalar) {
 void FlowScene::take(FlowArrows& told) {
   arrows_ = std::move(told);
   move_arrows();
+}
+
+void FlowScene::take(FlowLinesFound& told) {
+  if (looks_back_) return;  // of another time; the frame has its own
+  set_lines(std::move(told.lines));
+  ++version_;
+}
+
+void FlowScene::set_lines(std::shared_ptr<const FlowLines> lines) {
+  lines_pass_.set_lines(std::move(lines), surface_);
+  results_.lines = lines_pass_.lines();
 }
 
 void FlowScene::take(FlowEmbedded& told) {
@@ -304,26 +315,25 @@ void FlowScene::take(FlowStepped& told) {
   results_.step_seconds.push_back(float(told.seconds));
   if (results_.step_seconds.size() > 240) results_.step_seconds.erase(results_.step_seconds.begin());
   newest_ = position_after(told.number);
-  kept_.keep(newest_, shown_->values.shown(), told.time, told.scalar, told.vectors, told.shape);
+  kept_.keep(newest_, shown_->values.shown(), told.moment);
   shown_->values.drawn();
   if (looks_back_) return;  // at another time; this one is at hand from now on
   position_ = newest_;
   warming_ = false;
-  show_moment(told.time, told.scalar, std::move(told.vectors), told.shape);
+  show_moment(told.moment);
 }
 
-/// Colours, arrows and the stamp of a time, and the shape of a surface that moves.
-void FlowScene::show_moment(double time, const std::vector<float>& scalar,
-                            std::shared_ptr<const std::vector<Vec3f>> vectors,
-                            const std::shared_ptr<const MovedSurface>& shape) {
-  if (shape) {
-    surface_ = SurfaceBuffers(shape->geometry);
-    results_.tree = std::shared_ptr<const TriangleTree>(shape, &shape->tree);
+/// Colours, arrows, lines and the stamp of a time, and the shape of a surface that moves.
+void FlowScene::show_moment(const FlowMoment& moment) {
+  if (moment.shape) {
+    surface_ = SurfaceBuffers(moment.shape->geometry);
+    results_.tree = std::shared_ptr<const TriangleTree>(moment.shape, &moment.shape->tree);
   }
-  results_.time = time;
-  show_colours(scalar);
-  vectors_ = std::move(vectors);
+  results_.time = moment.time;
+  show_colours(moment.scalar);
+  vectors_ = moment.vectors;
   move_arrows();
+  if (moment.lines != results_.lines || moment.shape) set_lines(moment.lines);
   if (settings_.time_stamp) ++time_version_;
 }
 
@@ -348,6 +358,7 @@ void FlowScene::draw(const View& view) {
   if (!kept) draw_focus(view);
   if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.view.arrows) draw_arrows(view);
+  lines_pass_.draw(view, surface_.placement());
   if (settings_.view.boxes && shown_ && shown_->boxed) draw_boxes(view);
   if (shown_) shown_->values.drawn();
 }
@@ -366,24 +377,24 @@ void FlowScene::draw_boxes(const View& view) const {
 
 /// As far as the reference speed goes at length 1.
 double FlowScene::arrow_spacing() const {
-  return arrows_.places.empty() ? 0 : std::sqrt(area_ / double(arrows_.places.size()));
+  return arrows_.positions.empty() ? 0 : std::sqrt(area_ / double(arrows_.positions.size()));
 }
 
 /// The vectors of the time that is shown, where arrows stand.
 void FlowScene::move_arrows() {
   std::vector<Arrow> arrows;
   const double speed = std::max(results_.data.statistics.percentile_98, 1e-300), spacing = arrow_spacing();
-  for (std::size_t k = 0; k < arrows_.places.size() && vectors_ && results_.tree; ++k) {
-    const SurfacePoint& place = arrows_.places[k];
+  for (std::size_t k = 0; k < arrows_.positions.size() && vectors_ && results_.tree; ++k) {
+    const SurfacePoint& position = arrows_.positions[k];
     // Places on other triangles: new ones are on their way.
-    if (place.triangle >= results_.tree->triangles().size()) continue;
-    const Triangle& t = results_.tree->triangles()[place.triangle];
+    if (position.triangle >= results_.tree->triangles().size()) continue;
+    const Triangle& t = results_.tree->triangles()[position.triangle];
     Vec3d point{};
     Vec3f vector{};
     if (std::max({t.a, t.b, t.c}) >= vectors_->size()) continue;
     for (int c = 0; c < 3; ++c) {
-      point += results_.tree->points()[t[c]] * double(place.weights[c]);
-      vector += (*vectors_)[t[c]] * place.weights[c];
+      point += results_.tree->points()[t[c]] * double(position.weights[c]);
+      vector += (*vectors_)[t[c]] * position.weights[c];
     }
     const Vec3f normal = arrows_.normals[k], along = vector - normal * dot(vector, normal);
     const float share = float(length(along) / speed);

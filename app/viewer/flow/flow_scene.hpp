@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/flow/flow_lines_pass.hpp"
 #include "app/viewer/flow/flow_worker.hpp"
 #include "app/viewer/flow/kept_frames.hpp"
 #include "app/viewer/scene/scene.hpp"
@@ -111,6 +112,7 @@ class FlowScene : public Scene {
   void take(FlowOffer& told) { results_.offer = std::move(told); }
   void take(FlowData& told);
   void take(FlowArrows& told);
+  void take(FlowLinesFound& told);
   void take(FlowEmbedded& told);
   void take(FlowBoxed& told);
   void take(FlowMoment& told);
@@ -158,8 +160,8 @@ class FlowScene : public Scene {
   /// That of the newest embedding; null: there is none.
   Texture* written() const { return !no_texture_.empty() ? nullptr : next_ ? next_.get() : shown_.get(); }
   void show_colours(const std::vector<float>& scalar);
-  void show_moment(double time, const std::vector<float>& scalar, std::shared_ptr<const std::vector<Vec3f>> vectors,
-                   const std::shared_ptr<const MovedSurface>& shape = {});
+  void show_moment(const FlowMoment& moment);
+  void set_lines(std::shared_ptr<const FlowLines> lines);
   void find_range();
   FlowCaption caption() const;
   void draw_arrows(const View& view);
@@ -174,6 +176,7 @@ class FlowScene : public Scene {
   SurfacePass surface_pass_;
   EdgePass edge_pass_;
   ArrowPass arrow_pass_;
+  FlowLinesPass lines_pass_;
   BoxPass box_pass_;
   std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
   /// Drawn; waits for its first values; drawn below the first until that is faded in; still written to.

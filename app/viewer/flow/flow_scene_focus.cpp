@@ -206,7 +206,7 @@ void FlowScene::colour_focus() {
     if (scalar_.empty())
       texture->colours.clear_scalar();
     else
-      texture->colours.set_scalar(texture->part->take(c.range.places(scalar_)), c.range.bottom(), c.range.top());
+      texture->colours.set_scalar(texture->part->take(c.range.on_axis(scalar_)), c.range.bottom(), c.range.top());
     texture->colours.set_beyond(c.below, c.above, c.no_number);
   }
 }

@@ -50,6 +50,7 @@ FlowOffer offer_of(const Surface& surface) {
 }  // namespace
 
 void FlowWorker::read() {
+  lines_.reset();
   std::string reason;
   std::vector<std::string> warnings;
   bool told_surface = false;
@@ -86,6 +87,7 @@ void FlowWorker::read() {
 
 /// Vectors and colours, whichever have changed.
 void FlowWorker::choose() {
+  if (doing_ == FlowStage::vectors) lines_.reset();
   std::string reason;
   std::vector<std::string> warnings;
   {
@@ -127,15 +129,39 @@ void FlowWorker::tell_data(VectorsInTime& vectors, const Range& time, std::strin
   tell(std::move(told));
 }
 
+/// What the knobs want of them. Those of a steady flow are kept.
+std::shared_ptr<const FlowLines> FlowWorker::lines_at(double time) {
+  if (!settings_.topology && !settings_.streamlines) return nullptr;
+  const bool steady = vectors_->series().times.size() == 1;
+  if (lines_ && steady) return lines_;
+  StageTimers::Scope scope(pipeline_->timers(), "topology");
+  auto found = std::make_shared<FlowLines>();
+  if (settings_.topology) found->skeleton = flow_skeleton(*vectors_, time, settings_.persistence);
+  if (settings_.streamlines)
+    found->streamlines = flow_streamlines(*vectors_, time, settings_.line_spacing, &interrupt_);
+  found->skeleton.shape = found->streamlines.shape = {};
+  lines_ = found;
+  return found;
+}
+
+void FlowWorker::find_lines() {
+  lines_.reset();
+  tell(FlowLinesFound{lines_at(shown_time_)});
+}
+
+FlowMoment FlowWorker::moment_at(double time) {
+  return {time, scalar(*vectors_, time), vectors_at(*vectors_, time), moved_surface(time), lines_at(time)};
+}
+
 void FlowWorker::place_arrows() {
   FlowArrows told;
   const PreparedSurface& surface = vectors_->surface();
   if (settings_.view.arrows)
-    told.places = spread_points(surface.points, surface.triangles, settings_.view.arrow_count, settings_.flow.seed);
-  for (const SurfacePoint& place : told.places) {
+    told.positions = spread_points(surface.points, surface.triangles, settings_.view.arrow_count, settings_.flow.seed);
+  for (const SurfacePoint& position : told.positions) {
     Vec3f normal{};
     for (int k = 0; k < 3; ++k)
-      normal += surface.corner_normals[3 * place.triangle + std::size_t(k)] * place.weights[k];
+      normal += surface.corner_normals[3 * position.triangle + std::size_t(k)] * position.weights[k];
     told.normals.push_back(normalized(normal));
   }
   tell(std::move(told));
@@ -190,7 +216,7 @@ void FlowWorker::start() {
   pipeline_->parameters = parameters();
   pipeline_->parameters.steps = steps_in_all_;
   const double first = wrapped(span_.start + span_.frame_time);  // of the first frame
-  tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first)});
+  tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first), nullptr, nullptr});
   if (motion_->start(vectors)) {
     ++embeddings_;
     tell_embedded();
@@ -223,10 +249,8 @@ void FlowWorker::make_step() {
   told.focus = focus_memory_.first && step_focus(focus_memory_.first, focus_memory_.second);
   told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   told.number = steps_made_;
-  told.time = shown_time_ = wrapped(pipeline_->flow().time());
-  told.scalar = scalar(*vectors_, told.time);
-  told.vectors = vectors_at(*vectors_, told.time);
-  told.shape = moved_surface(told.time);
+  shown_time_ = wrapped(pipeline_->flow().time());
+  told.moment = moment_at(shown_time_);
   take_timers(*pipeline_);
   check_device();
   tell(std::move(told));
@@ -242,8 +266,8 @@ std::shared_ptr<const MovedSurface> FlowWorker::moved_surface(double time) {
   return moved;
 }
 
-void FlowWorker::answer_sample(const Vec3d& place) {
-  if (has_values_) tell(FlowSampled{place, pipeline_->flow().sample_shown({&place, 1}).front()});
+void FlowWorker::answer_sample(const Vec3d& position) {
+  if (has_values_) tell(FlowSampled{position, pipeline_->flow().sample_shown({&position, 1}).front()});
 }
 
 void FlowWorker::write_boxes(std::uint64_t* memory, int embedding) {

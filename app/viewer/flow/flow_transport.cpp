@@ -1,4 +1,4 @@
-// Nacre: the time of a flow in the viewer: what is shown again, what is computed, and where it begins anew.
+// Nacre: the time of a flow in the viewer: what is shown again, what is computed, and where it starts over.
 #include <algorithm>
 #include <cmath>
 
@@ -16,14 +16,14 @@ FlowRerun FlowScene::pass_on(const Settings& settings, bool jumps) {
   const int position = position_;
   FlowRerun arrows{FlowStage::arrows};
   if (!(rerun == FlowRerun()) && !(rerun == arrows)) forget_frames();
-  if (rerun.has(FlowStage::start) || position_ < 0) {  // anew, from where the knob says
+  if (rerun.has(FlowStage::start) || position_ < 0) {  // again, from where the knob says
     if (begun_at_ == settings.begin_at) return rerun;
     begun_at_ = settings.begin_at;
     rerun.add(worker_.set_settings(settings));
   } else if (jumps) {
     const int steps = steps_in_all(), skipped = std::clamp(int(std::lround(settings.begin_at * steps)), 0, steps);
     seek(position_after(skipped + 1 - skipped_));
-  } else if (back && rerun.has(FlowStage::colours)) {  // what was shown is gone
+  } else if (back && (rerun.has(FlowStage::colours) || rerun.has(FlowStage::lines))) {  // what was shown is gone
     restart_at(position);
   }
   return rerun;
@@ -72,11 +72,11 @@ void FlowScene::show_kept(int position) {
   position_ = position;
   looks_back_ = position != newest_;
   warming_ = stale_ = false;
-  show_moment(frame.time, frame.scalar, frame.vectors, frame.shape);
+  show_moment(frame.moment);
   ++version_;
 }
 
-/// Goes on from a frame that was looked back at, as far as frames are at hand; then the worker goes on, or begins anew.
+/// Goes on from a frame that was looked back at, as far as frames are at hand; then the worker goes on, or starts over.
 /// False: the next frame is the worker's.
 bool FlowScene::play_kept() {
   if (!looks_back_ || stale_) return looks_back_ = looks_back_ && !stale_, false;
@@ -94,7 +94,7 @@ void FlowScene::forget_frames() {
 
 void FlowScene::take(FlowMoment& told) {
   if (!warming_) return;
-  show_moment(told.time, told.scalar, std::move(told.vectors));
+  show_moment(told);
 }
 
 Transport FlowScene::transport() const {

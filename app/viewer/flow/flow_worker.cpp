@@ -39,6 +39,7 @@ FlowWorker::FlowWorker(const Session& session, std::unique_ptr<Device> device, b
       due_{FlowStage::surface, FlowStage::embed, FlowStage::start},
       wanted_(session.settings) {
   if (wanted_.view.arrows) due_.add(FlowStage::arrows);
+  if (wanted_.topology || wanted_.streamlines) due_.add(FlowStage::lines);
   pipeline_->watch(&interrupt_);
   thread_ = std::thread([this] { run(); });
 }
@@ -111,10 +112,10 @@ bool FlowWorker::cancelled() const {
   return cancelled_;
 }
 
-void FlowWorker::sample(const Vec3d& place) {
+void FlowWorker::sample(const Vec3d& position) {
   {
     std::scoped_lock lock(mutex_);
-    sample_ = place;
+    sample_ = position;
   }
   wake_.notify_all();
 }
@@ -144,6 +145,7 @@ std::string FlowWorker::stage() const {
     case FlowStage::vectors: return "reading";
     case FlowStage::colours: return "colours";
     case FlowStage::arrows: return "arrows";
+    case FlowStage::lines: return "topology";
     case FlowStage::embed: return "embedding";
     case FlowStage::start: return "starting the texture";
     case FlowStage::step: break;
@@ -186,14 +188,14 @@ void FlowWorker::run() {
 /// What was asked for between two stages.
 void FlowWorker::run_errands(std::unique_lock<std::mutex>& lock) {
   const auto file = std::exchange(file_, {});
-  const auto place = std::exchange(sample_, {});
+  const auto position = std::exchange(sample_, {});
   const auto boxes = std::exchange(boxes_, {});
   interrupt_ = false;  // it was meant for a stage
   lock.unlock();
   try {
     if (file) tell(FlowWritten{failure_of([&] { write_values(*file); })});
     const std::string failure = failure_of([&] {
-      if (place) answer_sample(*place);
+      if (position) answer_sample(*position);
       if (boxes) write_boxes(boxes->first, boxes->second);
     });
     if (!failure.empty()) tell(FlowFailed{failure});
@@ -238,7 +240,7 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
 /// Afterwards the thread knows what is still to be done. An empty `failure`: it was interrupted.
 void FlowWorker::undo(FlowStage stage, const std::string& failure) {
   if (!failure.empty()) events_.emplace_back(FlowFailed{failure});
-  const bool choice = stage == FlowStage::vectors || stage == FlowStage::colours || stage == FlowStage::arrows;
+  const bool choice = stage >= FlowStage::vectors && stage <= FlowStage::lines;
   if (choice && !failure.empty()) return;  // all goes on with what was chosen before
   if (stage == FlowStage::step) {
     drop_step();
@@ -260,6 +262,7 @@ void FlowWorker::make(FlowStage stage) {
     case FlowStage::vectors:
     case FlowStage::colours: return choose();
     case FlowStage::arrows: return place_arrows();
+    case FlowStage::lines: return find_lines();
     case FlowStage::embed: return embed();
     case FlowStage::start: return start();
     case FlowStage::step: return make_step();

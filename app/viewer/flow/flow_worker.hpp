@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/viewer/flow/flow_lines.hpp"
 #include "app/viewer/flow/flow_rerun.hpp"
 #include "app/viewer/flow/flow_results.hpp"
 #include "app/viewer/scene/worker.hpp"
@@ -52,7 +53,7 @@ struct MovedSurface {
 
 /// Where arrows stand; none: they are off.
 struct FlowArrows {
-  std::vector<SurfacePoint> places;
+  std::vector<SurfacePoint> positions;
   std::vector<Vec3f> normals;
 };
 
@@ -70,11 +71,24 @@ struct FlowBoxed {
   int embedding = 0;
 };
 
-/// A flow is about to be started: what can be shown of its first frame before there is a texture.
+/// What there is to see at one time of the data, beside the texture. As an event: a flow is about to be started, and
+/// this is of its first frame.
 struct FlowMoment {
   double time = 0;
-  std::vector<float> scalar;
-  std::shared_ptr<const std::vector<Vec3f>> vectors;
+  std::vector<float> scalar;                          ///< one per point; empty: not coloured
+  std::shared_ptr<const std::vector<Vec3f>> vectors;  ///< one per point
+  std::shared_ptr<const MovedSurface> shape;          ///< null: it does not move
+  std::shared_ptr<const FlowLines> lines;             ///< null: none are wanted
+
+  std::size_t bytes() const {
+    return scalar.size() * sizeof(float) + (vectors ? vectors->size() * sizeof(Vec3f) : 0) +
+           (shape ? shape->bytes() : 0) + (lines ? lines->bytes() : 0);
+  }
+};
+
+/// Lines and marks of the time that is shown; null: they are off.
+struct FlowLinesFound {
+  std::shared_ptr<const FlowLines> lines;
 };
 
 /// The first values can be asked for.
@@ -85,12 +99,10 @@ struct FlowStarted {
 
 /// The values are in the memory that `step` was given.
 struct FlowStepped {
-  double time = 0, seconds = 0;  ///< of the data; that it took
-  int number = 0;                ///< steps since the start
-  std::vector<float> scalar;
-  std::shared_ptr<const std::vector<Vec3f>> vectors;  ///< one per point, at that time
-  std::shared_ptr<const MovedSurface> shape;          ///< at that time; null: it does not move
-  bool focus = false;                                 ///< the focus is at that step, too, in the memory given for it
+  FlowMoment moment;
+  double seconds = 0;  ///< that it took
+  int number = 0;      ///< steps since the start
+  bool focus = false;  ///< the focus is at that step, too, in the memory given for it
 };
 
 /// A request for a focus is answered. With a part: it is embedded, warmed up, and one step behind the texture of the
@@ -115,7 +127,7 @@ struct FlowFocusFilled {
 
 /// Shown values at the requested positions.
 struct FlowSampled {
-  Vec3d place;
+  Vec3d position;
   float value = 0;
 };
 
@@ -132,9 +144,9 @@ struct FlowFailed {
   std::string what;
 };
 
-using FlowEvent =
-    std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowEmbedded, FlowBoxed, FlowMoment, FlowStarted,
-                 FlowStepped, FlowFocused, FlowFocusFilled, FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
+using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowLinesFound, FlowEmbedded, FlowBoxed,
+                               FlowMoment, FlowStarted, FlowStepped, FlowFocused, FlowFocusFilled, FlowSampled,
+                               FlowWritten, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
@@ -175,7 +187,7 @@ class FlowWorker : public Worker<FlowEvent> {
   bool busy() const;  ///< with something, or about to be
 
   /// Requests the shown value at a position on the surface; FlowSampled answers. Only the last request counts.
-  void sample(const Vec3d& place);
+  void sample(const Vec3d& position);
   /// Asks for the boxes of an embedding in `memory` of the device; FlowBoxed answers. Memory for one that has been
   /// followed by another is not touched.
   void show_boxes(std::uint64_t* memory, int embedding);
@@ -228,6 +240,9 @@ class FlowWorker : public Worker<FlowEvent> {
   void tell_data(std::string reason, std::vector<std::string> warnings);
   void tell_data(VectorsInTime& vectors, const Range& time, std::string reason, std::vector<std::string> warnings);
   void place_arrows();
+  std::shared_ptr<const FlowLines> lines_at(double time);
+  void find_lines();
+  FlowMoment moment_at(double time);
   void embed();
   void tell_embedded();
   std::shared_ptr<const MovedSurface> moved_surface(double time);
@@ -238,7 +253,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void make_focus(const FocusRequest& wanted, FlowFocused& answer);
   void note_focus_memory();
   bool step_focus(float* memory, int number);
-  void answer_sample(const Vec3d& place);
+  void answer_sample(const Vec3d& position);
   void write_boxes(std::uint64_t* memory, int embedding);
   void write_values(const std::filesystem::path& file);
   double wrapped(double time) const;
@@ -258,6 +273,7 @@ class FlowWorker : public Worker<FlowEvent> {
   FlowSpan span_;
   int steps_made_ = 0, steps_in_all_ = 0;
   double shown_time_ = 0;
+  std::shared_ptr<const FlowLines> lines_;  ///< found last; null: they have to be found again
   bool has_values_ = false;
   float* memory_ = nullptr;                ///< of the step that it makes
   std::pair<float*, int> focus_memory_{};  ///< the same of the focus, and its number

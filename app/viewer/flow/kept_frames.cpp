@@ -6,21 +6,16 @@
 
 namespace nacre {
 
-void KeptFrames::keep(int position, const Buffer& shown, double time, const std::vector<float>& scalar,
-                      std::shared_ptr<const std::vector<Vec3f>> vectors, std::shared_ptr<const MovedSurface> shape) {
+void KeptFrames::keep(int position, const Buffer& shown, const FlowMoment& moment) {
   drop(position);
   KeptFrame frame;
-  frame.bytes = shown.bytes() + scalar.size() * sizeof(float) + (vectors ? vectors->size() * sizeof(Vec3f) : 0) +
-                (shape ? shape->bytes() : 0);
+  frame.bytes = shown.bytes() + moment.bytes();
   if (frame.bytes > most_bytes_) return;
   while (bytes_ + frame.bytes > most_bytes_) drop_oldest();
   frame.values = Buffer(shown.bytes());
   glCopyNamedBufferSubData(shown.id(), frame.values.id(), 0, 0, GLsizeiptr(shown.bytes()));
   frame.texture = BufferTexture(frame.values, GL_R32F);
-  frame.time = time;
-  frame.scalar = scalar;
-  frame.vectors = std::move(vectors);
-  frame.shape = std::move(shape);
+  frame.moment = moment;
   frame.age = ++age_;
   bytes_ += frame.bytes;
   frames_.emplace(position, std::move(frame));

@@ -18,10 +18,7 @@ namespace nacre {
 struct KeptFrame {
   Buffer values;  ///< shown values, one per surface cell, on the graphics device
   BufferTexture texture;
-  double time = 0;
-  std::vector<float> scalar;
-  std::shared_ptr<const std::vector<Vec3f>> vectors;
-  std::shared_ptr<const MovedSurface> shape;  ///< null: the surface does not move
+  FlowMoment moment;
   std::size_t bytes = 0;
   std::uint64_t age = 0;  ///< larger than that of all before
 };
@@ -32,8 +29,7 @@ class KeptFrames {
   explicit KeptFrames(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
   /// Copies `shown` on the graphics device.
-  void keep(int position, const Buffer& shown, double time, const std::vector<float>& scalar,
-            std::shared_ptr<const std::vector<Vec3f>> vectors, std::shared_ptr<const MovedSurface> shape = {});
+  void keep(int position, const Buffer& shown, const FlowMoment& moment);
   /// Null: there is none.
   const KeptFrame* find(int position) const {
     const auto found = frames_.find(position);

@@ -160,7 +160,7 @@ void MeshScene::show_volume_slice(int axis, double at) {
   slice_range_ = volume_range();
   slice_pass_.set_image(volume_slice(volume, plane, palette_, slice_map(), slice_range_[0], slice_range_[1]),
                         slice_values_);
-  slice_pass_.set_place(plane.corner, plane.across, plane.up);
+  slice_pass_.set_frame(plane.corner, plane.across, plane.up);
 }
 
 void MeshScene::take(SliceFilled& told) {
@@ -175,7 +175,7 @@ void MeshScene::take(SliceFilled& told) {
   } else {
     slice_pass_.set_image(colour_materials(told.values, told.columns, told.rows, palette_), false);
   }
-  slice_pass_.set_place(told.plane.corner, told.plane.across, told.plane.up);
+  slice_pass_.set_frame(told.plane.corner, told.plane.across, told.plane.up);
 }
 
 /// Sizes: those of the interfaces and up to what the slice has; distances: as far as any slice has looked.

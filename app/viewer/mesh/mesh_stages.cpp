@@ -144,7 +144,7 @@ void MeshWorker::measure() {
   tell(MeshMeasured{std::move(measures)});
 }
 
-/// The mesh of an earlier time, with what is drawn of it made anew. The pipeline stays as it is.
+/// The mesh of an earlier time, with what is drawn of it made again. The pipeline stays as it is.
 void MeshWorker::bring_back() {
   std::shared_ptr<const KeptMesh> kept;
   {

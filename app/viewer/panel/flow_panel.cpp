@@ -9,10 +9,28 @@
 
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
+#include "engine/render/camera_motion.hpp"
 #include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
 namespace {
+
+/// Goes to a critical point, to the side of the surface that it can be seen from.
+void look_at(const CriticalPoint& point, const TriangleTree& tree, std::optional<Camera>& camera) {
+  if (!camera || point.triangle >= tree.triangles().size()) return;
+  const Triangle& t = tree.triangles()[point.triangle];
+  const Vec3d a = tree.points()[t.a], n = cross(tree.points()[t.b] - a, tree.points()[t.c] - a);
+  const Vec3d normal = length(n) > 0 ? normalized(n) : n, back = normalized(camera->eye - camera->target);
+  const double distance = length(camera->eye - camera->target), slack = 1e-4 * distance;
+  const auto seen_along = [&](const Vec3d& direction) {
+    return approach(*camera, point.position, direction, normal, 0.15 * distance);
+  };
+  const auto hidden = [&](const Camera& from) {
+    return tree.first(point.position, -from.forward(), slack).has_value();
+  };
+  const Camera here = seen_along(back), beyond = seen_along(back - normal * (2 * dot(normal, back)));
+  camera = hidden(here) && !hidden(beyond) ? beyond : here;
+}
 
 std::string range_text(const Range& range) { return fmt::format("{:.7g}:{:.7g}", range.low, range.high); }
 
@@ -56,7 +74,8 @@ void FlowPanel::data_tab(Session& session) {
 }
 
 void FlowPanel::look_tab(Session& session) {
-  for (const char* name : {"fps", "contrast", "edges", "boxes", "isolines", "arrows", "arrow_count", "arrow_length"})
+  for (const char* name : {"fps", "contrast", "edges", "boxes", "isolines", "arrows", "arrow_count", "arrow_length",
+                           "topology", "persistence", "streamlines", "line_spacing"})
     knob_widget(session.settings, name);
 }
 
@@ -68,6 +87,7 @@ void FlowPanel::result_tab(Session& session) {
   ImGui::PopItemWidth();
   ImGui::PopID();
   show_vectors();
+  if (results_.lines && session.settings.topology) critical_points(session);
   if (results_.embedding) show_embedding();
 }
 
@@ -112,6 +132,32 @@ void FlowPanel::show_vectors() const {
   text(fmt::format("{} ({})", results_.data.array, results_.data.reason));
   text(fmt::format("speed: most {:.4g}, 98% below {:.4g}", s.max_speed, s.percentile_98));
   text(fmt::format("normal to the surface {:.1f}%   zero {:.1f}%", 100 * s.normal_share, 100 * s.zero_share));
+}
+
+/// The points of the time that is shown, the most persistent first; one that is clicked is looked at.
+void FlowPanel::critical_points(Session& session) const {
+  const std::vector<CriticalPoint>& points = results_.lines->skeleton.topology.points;
+  const std::string title = fmt::format("{} critical points###critical points", points.size());
+  if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
+  std::vector<const CriticalPoint*> order;
+  for (const CriticalPoint& point : points) order.push_back(&point);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const CriticalPoint* a, const CriticalPoint* b) { return a->persistence > b->persistence; });
+  constexpr float most_rows = 8;
+  const float rows = std::min(most_rows, float(order.size()));
+  if (!ImGui::BeginChild("critical points", ImVec2(0, rows * ImGui::GetTextLineHeightWithSpacing()))) {
+    ImGui::EndChild();
+    return;
+  }
+  ImGuiListClipper clipper;  // hundreds of rows, of which a few are seen
+  clipper.Begin(int(order.size()));
+  while (clipper.Step())
+    for (int k = clipper.DisplayStart; k < clipper.DisplayEnd; ++k) {
+      const CriticalPoint& point = *order[std::size_t(k)];
+      const std::string line = fmt::format("{}   persistence {:.3g}##{}", name_of(point.kind), point.persistence, k);
+      if (ImGui::Selectable(line.c_str())) look_at(point, *results_.tree, session.camera);
+    }
+  ImGui::EndChild();
 }
 
 void FlowPanel::show_embedding() const {

@@ -34,6 +34,7 @@ class FlowPanel : public ScenePanel {
   void colours(Session& session);
   void show_vectors() const;
   void show_embedding() const;
+  void critical_points(Session& session) const;
 
   const FlowResults& results_;
   RangeEdit time_edit_, colours_edit_;

@@ -323,13 +323,13 @@ void Ui::welcome_card(Session& session, const UiFacts& facts, const FreeArea& ar
 }
 
 void Ui::help_windows(const UiFacts& facts, const FreeArea& area) {
-  const auto place = [&] {  // over the picture, and nothing shows through
+  const auto position = [&] {  // over the picture, and nothing shows through
     const ImVec2 middle(float(area.x) + 0.5f * float(area.width), float(area.y) + 0.5f * float(area.height));
     ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     ImGui::SetNextWindowBgAlpha(1);
   };
   if (help_) {
-    place();
+    position();
     if (ImGui::Begin("Keys and mouse", &help_, ImGuiWindowFlags_AlwaysAutoResize) && ImGui::BeginTable("keys", 2)) {
       for (const auto& [key, what] : keys) {
         ImGui::TableNextColumn();
@@ -342,7 +342,7 @@ void Ui::help_windows(const UiFacts& facts, const FreeArea& area) {
     ImGui::End();
   }
   if (about_) {
-    place();
+    position();
     if (ImGui::Begin("About", &about_, ImGuiWindowFlags_AlwaysAutoResize)) {
       ImGui::Text("Nacre %s", NACRE_VERSION);
       ImGui::TextUnformatted("Flow on surfaces, and meshes from volumes.");

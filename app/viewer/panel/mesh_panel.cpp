@@ -9,6 +9,7 @@
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "app/viewer/panel/volume_facts.hpp"
+#include "engine/render/camera_motion.hpp"
 
 namespace nacre {
 namespace {
@@ -91,13 +92,8 @@ void look_at(const SurfaceMesh& mesh, std::uint32_t triangle, std::optional<Came
     normal = normalized(normal);  // to the side of the first material
     const bool outer = mesh.materials[triangle][0] == 0;
     if (outer && dot(normal, back) < 0) back = back - normal * (2 * dot(normal, back));
-    const double facing = dot(normal, back);
-    if (std::fabs(facing) < 0.3) back = normalized(back + normal * (facing < 0 ? -0.6 : 0.6));
   }
-  const double nearer = std::min(1.0, 12 * edge / camera->height), distance = length(camera->eye - camera->target);
-  camera->target = (a + b + c) / 3.0;
-  camera->eye = camera->target + back * (distance * nearer);
-  camera->height *= nearer;
+  camera = approach(*camera, (a + b + c) / 3.0, back, normal, 12 * edge);
 }
 
 void worst_list(const MeshResults& results, Session& session) {

@@ -29,7 +29,7 @@ ImGuiLayer::~ImGuiLayer() {
   ImGui::DestroyContext();
 }
 
-/// Colours and lettering; made anew where they have changed.
+/// Colours and lettering; made again where they have changed.
 void ImGuiLayer::dress(const ViewSettings& look) {
   const float scale = (window_ ? window_->scale() : 1) * float(look.text_size);
   const float size = std::round(14 * scale);

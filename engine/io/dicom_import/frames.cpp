@@ -25,9 +25,9 @@ const gdcm::Tag segment_identification{0x0062, 0x000a}, segment_number{0x0062, 0
 
 /// The first item of a sequence of this frame, else of those that all frames share.
 const gdcm::DataSet* macro(const gdcm::DataSet* frame, const gdcm::DataSet* common, const gdcm::Tag& sequence) {
-  for (const gdcm::DataSet* place : {frame, common})
-    if (place)
-      if (const auto found = items(*place, sequence); !found.empty()) return found.front();
+  for (const gdcm::DataSet* part : {frame, common})
+    if (part)
+      if (const auto found = items(*part, sequence); !found.empty()) return found.front();
   return nullptr;
 }
 

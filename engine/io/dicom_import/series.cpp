@@ -230,13 +230,13 @@ bool is_dicom(const fs::path& file) {
   return stream.read(head, sizeof(head)) && std::memcmp(head + 128, "DICM", 4) == 0;
 }
 
-VolumeFile read_series(const fs::path& place) {
-  if (fs::is_directory(place)) return only_series(headers_in(place), place);
-  const std::optional<Header> own = read_header(place);
+VolumeFile read_series(const fs::path& path) {
+  if (fs::is_directory(path)) return only_series(headers_in(path), path);
+  const std::optional<Header> own = read_header(path);
   if (!own) throw std::runtime_error("it is no DICOM file");
-  if (own->segmentation) return segmentation_of(place);
+  if (own->segmentation) return segmentation_of(path);
   std::vector<Header> files;
-  for (const auto& entry : fs::directory_iterator(place.parent_path().empty() ? fs::path(".") : place.parent_path()))
+  for (const auto& entry : fs::directory_iterator(path.parent_path().empty() ? fs::path(".") : path.parent_path()))
     if (entry.is_regular_file())
       if (auto header = read_header(entry.path()); header && header->series == own->series && !header->segmentation)
         files.push_back(std::move(*header));

@@ -13,6 +13,6 @@ bool is_dicom(const std::filesystem::path& file);
 /// Of a folder: its only series (in it or its folders). Of a file: its frames, or the series that it is one slice of,
 /// from its folder; or, if it is one, the segmentation. Throws std::runtime_error if there is no volume in it, or more
 /// than one.
-VolumeFile read_series(const std::filesystem::path& place);
+VolumeFile read_series(const std::filesystem::path& path);
 
 }  // namespace nacre::dicom_import

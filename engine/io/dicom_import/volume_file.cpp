@@ -35,9 +35,9 @@ std::string vector_text(const Vec& v) {
 }
 
 /// The usual step from slice to slice: the median; without gaps in mind it is also the smallest.
-double usual_step(const std::vector<double>& places, bool gaps) {
+double usual_step(const std::vector<double>& positions, bool gaps) {
   std::vector<double> steps;
-  for (std::size_t i = 1; i < places.size(); ++i) steps.push_back(places[i] - places[i - 1]);
+  for (std::size_t i = 1; i < positions.size(); ++i) steps.push_back(positions[i] - positions[i - 1]);
   std::sort(steps.begin(), steps.end());
   return gaps ? steps.front() : steps[steps.size() / 2];
 }
@@ -65,30 +65,30 @@ SliceStack stack_slices(const SliceGeometry& slices, const std::vector<Vec>& ori
   std::vector<double> along(origins.size());
   for (std::size_t i = 0; i < origins.size(); ++i) {
     along[i] = dot(origins[i], normal);
-    if (!std::isfinite(along[i])) throw std::runtime_error("the place of an image is not a number");
+    if (!std::isfinite(along[i])) throw std::runtime_error("the position of an image is not a number");
   }
-  std::vector<double> places = along;
-  std::sort(places.begin(), places.end());
+  std::vector<double> positions = along;
+  std::sort(positions.begin(), positions.end());
   const double fine = 1e-3 * std::min(slices.spacing[0], slices.spacing[1]);
   const auto same = [&](double a, double b) { return b - a < fine; };
-  const std::size_t given = places.size();
-  places.erase(std::unique(places.begin(), places.end(), same), places.end());
-  if (!repeated && places.size() < given)
+  const std::size_t given = positions.size();
+  positions.erase(std::unique(positions.begin(), positions.end(), same), positions.end());
+  if (!repeated && positions.size() < given)
     throw std::runtime_error(
         "it has several images of one place, such as times or echoes: keep one of them in the folder");
   SliceStack stack;
-  stack.spacing = places.size() > 1 ? usual_step(places, gaps) : thickness > 0 ? thickness : 1;
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const double steps = (places[i] - places[i - 1]) / stack.spacing;
+  stack.spacing = positions.size() > 1 ? usual_step(positions, gaps) : thickness > 0 ? thickness : 1;
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    const double steps = (positions[i] - positions[i - 1]) / stack.spacing;
     const bool even = std::abs(steps - std::round(steps)) < uneven * std::max(1.0, steps) && (gaps || steps < 1.5);
     if (!even)
       throw std::runtime_error("its slices are not evenly spaced, or one is missing: between " +
-                               std::to_string(places[i - 1]) + " and " + std::to_string(places[i]) + " mm");
+                               std::to_string(positions[i - 1]) + " and " + std::to_string(positions[i]) + " mm");
   }
-  if (places.size() > 1) {  // exact over the whole stack
-    const double steps = std::round((places.back() - places.front()) / stack.spacing);
+  if (positions.size() > 1) {  // exact over the whole stack
+    const double steps = std::round((positions.back() - positions.front()) / stack.spacing);
     if (steps > 65536) throw std::runtime_error("its slices are too far apart");
-    stack.spacing = (places.back() - places.front()) / steps;
+    stack.spacing = (positions.back() - positions.front()) / steps;
     stack.count = std::size_t(steps) + 1;
   } else {
     stack.count = 1;

@@ -54,8 +54,8 @@ bool DistanceGrid::voxel_range(const Vec3d& low, const Vec3d& high, Int3& first,
 }
 
 double lattice_random(std::uint32_t seed, int i, int j, int k) {
-  const std::uint32_t place = std::uint32_t(i) + 1024u * std::uint32_t(j) + 1048576u * std::uint32_t(k);
-  return 2 * double(uniform_random(seed, place, 0)) - 1;
+  const std::uint32_t position = std::uint32_t(i) + 1024u * std::uint32_t(j) + 1048576u * std::uint32_t(k);
+  return 2 * double(uniform_random(seed, position, 0)) - 1;
 }
 
 Waves::Waves(std::uint32_t seed, int count, double wave_number) : scale_(float(std::sqrt(2.0 / count))) {

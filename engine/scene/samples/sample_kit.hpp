@@ -27,7 +27,7 @@ struct SampleDefinition {
   std::function<SampleShape(int detail)> shape;
   std::function<SampleField(double time)> flow;  ///< of period 1 in time
   /// Of a shape that moves with period 1: where a point near `shape` is at a time. Then `flow` is that of the material.
-  std::function<Vec3d(const Vec3d& point, double time)> place = {};
+  std::function<Vec3d(const Vec3d& point, double time)> position = {};
 };
 
 SampleDefinition sphere_sample();

@@ -9,7 +9,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 /// Narrow and long at time 1/4, wide and short at 3/4; its ends turn against each other meanwhile.
-Vec3d pulse_place(const Vec3d& p, double time) {
+Vec3d pulse_position(const Vec3d& p, double time) {
   const double beat = std::sin(2 * kPi * time), twist = 0.5 * beat * p.z;
   const double width = (1 - 0.16 * beat) * (1 - 0.18 * p.z), c = std::cos(twist) * width, s = std::sin(twist) * width;
   return {c * p.x - s * p.y, s * p.x + c * p.y, 1.25 * (1 + 0.08 * beat) * p.z};
@@ -39,7 +39,7 @@ SampleDefinition pulse_sample() {
           20,
           unit_sphere_shape,
           pulse_flow,
-          pulse_place};
+          pulse_position};
 }
 
 }  // namespace nacre

@@ -56,9 +56,9 @@ Surface moved_surface(const SampleShape& shape, const SampleDefinition& definiti
   PointArray velocity{"velocity", 3, std::vector<float>(3 * n)};
   tbb::parallel_for(std::size_t(0), n, [&](std::size_t i) {
     const Vec3d p = shape.points[i], v = tangential(field(p, shape.normals[i]), shape.normals[i]);
-    surface.points[i] = definition.place(p, time);
-    const Vec3d own = (definition.place(p, time + dt) - definition.place(p, time - dt)) / (2 * dt);
-    const Vec3d along = (definition.place(p + v * ds, time) - definition.place(p - v * ds, time)) / (2 * ds);
+    surface.points[i] = definition.position(p, time);
+    const Vec3d own = (definition.position(p, time + dt) - definition.position(p, time - dt)) / (2 * dt);
+    const Vec3d along = (definition.position(p + v * ds, time) - definition.position(p - v * ds, time)) / (2 * ds);
     for (int axis = 0; axis < 3; ++axis) velocity.values[3 * i + axis] = float((own + along)[axis]);
   });
   surface.arrays.push_back(std::move(velocity));
@@ -91,12 +91,12 @@ SurfaceSeries make_sample(const std::string& name, int detail) {
   SurfaceSeries series;
   series.name = name;
   for (int k = 0; k < definition.steps; ++k) series.times.push_back(double(k) / definition.steps);
-  series.moves = bool(definition.place);
+  series.moves = bool(definition.position);
   series.load = [shape, &definition, flow = definition.flow, times = series.times, name](std::size_t step) {
     if (step >= times.size())
       throw Error(fmt::format("the sample '{}' has no time step {}", name, step),
                   fmt::format("it has {}, counted from 0", times.size()));
-    if (definition.place) return moved_surface(*shape, definition, times[step]);
+    if (definition.position) return moved_surface(*shape, definition, times[step]);
     return Surface{shape->points, shape->triangles, {velocity_array(*shape, flow(times[step]))}};
   };
   return series;

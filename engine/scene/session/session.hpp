@@ -69,7 +69,7 @@ std::string session_text(const Session& session);
 /// What has to happen (at time 0) to `before` so that it becomes `after`: inputs, knobs, camera. None where they agree.
 std::optional<SessionEvent> session_change(const Session& before, const Session& after);
 
-/// Does the event leave the camera to be fitted anew?
+/// Does the event leave the camera to be fitted again?
 bool fits_camera(const SessionEvent& event);
 
 /// Makes the whole change; a camera that is to be fitted is removed. Throws Error where a knob is unknown or out of

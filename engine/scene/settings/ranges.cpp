@@ -79,15 +79,15 @@ ColourSpread ColourSurvey::spread() && {
   return std::move(spread_);
 }
 
-float ColourRange::place(float value) const {
+float ColourRange::on_axis(float value) const {
   if (!log || std::isnan(value)) return value;
   const double first = std::log10(low), last = std::log10(high);
   return float(value > 0 ? std::log10(double(value)) : 2 * first - last);
 }
 
-std::vector<float> ColourRange::places(std::vector<float> values) const {
+std::vector<float> ColourRange::on_axis(std::vector<float> values) const {
   if (log)
-    for (float& value : values) value = place(value);
+    for (float& value : values) value = on_axis(value);
   return values;
 }
 

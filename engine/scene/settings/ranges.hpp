@@ -49,11 +49,11 @@ struct ColourRange {
   bool log = false;  ///< equal ratios are equal distances on the map; both ends are above 0
 
   /// On a scale that is linear on the map: the value, or its logarithm. What has no logarithm lies below the low end.
-  float place(float value) const;
-  double bottom() const { return log ? place(float(low)) : low; }
-  double top() const { return log ? place(float(high)) : high; }
-  /// `place` of each; as they are where it is not logarithmic.
-  std::vector<float> places(std::vector<float> values) const;
+  float on_axis(float value) const;
+  double bottom() const { return log ? on_axis(float(low)) : low; }
+  double top() const { return log ? on_axis(float(high)) : high; }
+  /// `on_axis` of each; as they are where it is not logarithmic.
+  std::vector<float> on_axis(std::vector<float> values) const;
 };
 
 /// Throws Error where the knobs `color_range`, `color_scale` and `color_symmetric` contradict themselves or each other.
@@ -67,7 +67,7 @@ ColourRange color_range(const Settings& settings, const ColourSpread& of_data);
 /// What a run goes over.
 struct FlowSpan {
   double start = 0, end = 0;  ///< time of the data at the first frame's step and after the last
-  double first = 0;           ///< where it begins anew when it has come round: the start, less what `begin_at` skips
+  double first = 0;           ///< where it starts over when it has come round: the start, less what `begin_at` skips
   int steps = 0;              ///< from start to end
   double frame_time = 0;      ///< of the data, from frame to frame
 };

@@ -109,7 +109,8 @@ struct Settings {
   std::string background = "#ffffff";
   int fps = 25;
   bool legend = true, time_stamp = true;
-  bool topology = false;       ///< pictures show critical points and separatrices
+  bool topology = false;       ///< critical points and separatrices are drawn
+  bool streamlines = false;    ///< evenly spaced streamlines are drawn
   double persistence = 0.02;   ///< share of the reference speed; zeros that cancel below it are left out
   double line_spacing = 0.02;  ///< of evenly spaced streamlines; share of the longest side of the bounding box
 };

@@ -1,4 +1,4 @@
-// Nacre: a flow on a surface that moves: when its shape is embedded anew, and what is shown.
+// Nacre: a flow on a surface that moves: when its shape is embedded again, and what is shown.
 #include "engine/scene/surface/flow_motion.hpp"
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace nacre {
 namespace {
 
-constexpr double lost_share = 0.5;  // of the cells, above which a texture has not been carried but begun anew
+constexpr double lost_share = 0.5;  // of the cells, above which a texture has not been carried but started over
 
 double longest_side(const PreparedSurface& surface) {
   Vec3d low(1e300), high(-1e300);
@@ -38,12 +38,12 @@ void FlowMotion::embed(double t) {
 }
 
 bool FlowMotion::start(const FlowVectors& vectors) {
-  const bool anew = input_.moves() && (input_.enter(data_time(vectors.start)) || is_stretched(vectors.start));
-  if (anew) embed(vectors.start);
+  const bool embed_again = input_.moves() && (input_.enter(data_time(vectors.start)) || is_stretched(vectors.start));
+  if (embed_again) embed(vectors.start);
   vectors_ = vectors;
   pipeline_.flow().start(vectors);
   show();
-  return anew;
+  return embed_again;
 }
 
 bool FlowMotion::follow() {
@@ -59,7 +59,7 @@ bool FlowMotion::follow() {
   if (found < lost_share && warn_)
     warn_(
         fmt::format("at time {:.6g} the surface has jumped farther than the band around it: {:.0f}% of the texture "
-                    "begins anew",
+                    "starts over",
                     data_time(t), 100 * (1 - found)));
   return true;
 }

@@ -1,4 +1,4 @@
-// Nacre: a flow on a surface that moves: when its shape is embedded anew, and what is shown.
+// Nacre: a flow on a surface that moves: when its shape is embedded again, and what is shown.
 #pragma once
 
 #include <functional>
@@ -25,7 +25,7 @@ class FlowMotion {
 
   /// Embeds the shape at a time of the data.
   void embed(double t);
-  /// Starts the flow, embedding anew if that must be at the flow's start; true if it was. Vectors as from
+  /// Starts the flow, embedding again if that must be at the flow's start; true if it was. Vectors as from
   /// `flow_vectors`.
   bool start(const FlowVectors& vectors);
   /// Before each step: embeds the shape of the coming frame if that must be; true if it did.

@@ -45,7 +45,7 @@ class Kept {
 };
 
 struct Dart {
-  SurfacePoint place;
+  SurfacePoint position;
   Vec3d point;
 };
 
@@ -79,8 +79,8 @@ std::vector<SurfacePoint> spread_points(std::span<const Vec3d> points, std::span
   std::vector<double> area_before{0};  // each triangle; at the end all of it
   for (const Triangle& t : triangles) area_before.push_back(area_before.back() + area_of(points, t));
   const double area = area_before.back();
-  std::vector<SurfacePoint> places;
-  if (count < 1 || !(area > 0)) return places;
+  std::vector<SurfacePoint> positions;
+  if (count < 1 || !(area > 0)) return positions;
   const auto wanted = std::size_t(count);
   std::vector<Dart> darts = throw_darts(points, triangles, area_before, wanted * (wanted < 10000 ? 12 : 4), seed);
   Vec3d low = darts.front().point;
@@ -88,20 +88,20 @@ std::vector<SurfacePoint> spread_points(std::span<const Vec3d> points, std::span
   // Darts fill a plane to this distance and no further; what is missing then comes in at smaller ones.
   double distance = 0.8 * std::sqrt(area / count);
   Kept kept(low, distance);
-  for (int round = 0; round < 12 && places.size() < wanted; ++round, distance *= 0.85) {
+  for (int round = 0; round < 12 && positions.size() < wanted; ++round, distance *= 0.85) {
     std::vector<Dart> left;
     for (const Dart& dart : darts) {
-      if (places.size() == wanted) break;
+      if (positions.size() == wanted) break;
       if (!kept.is_free(dart.point, distance)) {
         left.push_back(dart);
         continue;
       }
       kept.add(dart.point);
-      places.push_back(dart.place);
+      positions.push_back(dart.position);
     }
     darts = std::move(left);
   }
-  return places;
+  return positions;
 }
 
 }  // namespace nacre

@@ -16,7 +16,7 @@ namespace {
 struct MeshWorkerRun {
   std::atomic<bool> stop{false};
   Session session;
-  std::vector<Float4> place, direction;
+  std::vector<Float4> position, direction;
   /// A letter per event: Volume, Preview, Begun, Iterated (once), Triangulated, Measured, Slice, Written, Failed.
   std::string order;
   int iterations = 0, lease = 0, turns = 0;
@@ -48,10 +48,10 @@ struct MeshWorkerRun {
   }
 
   void lend() {
-    place.assign(std::size_t(capacity), {});
+    position.assign(std::size_t(capacity), {});
     direction.assign(std::size_t(capacity), {});
     LentMemory memory;
-    memory.particles = {place.data(), direction.data(), capacity};
+    memory.particles = {position.data(), direction.data(), capacity};
     memory.lease = lease;
     worker->lend(memory);
   }
@@ -77,7 +77,7 @@ struct MeshWorkerRun {
       iterations += iterated->step;
       if (iterated->shown) {
         counts.push_back(iterated->shown->total());
-        last_places.assign(place.begin(), place.begin() + iterated->shown->total());
+        last_places.assign(position.begin(), position.begin() + iterated->shown->total());
         lend();
       }
     }
@@ -149,10 +149,10 @@ TEST(MeshWorker, TellsInOrder) {
   EXPECT_GT(run.counts.back(), 300);
   for (const Float4& p : run.last_places) {
     ASSERT_GT(p.w, 0);
-    const Vec3d place = run.frame.to_world(Vec3d(p.x, p.y, p.z));
+    const Vec3d position = run.frame.to_world(Vec3d(p.x, p.y, p.z));
     for (int a = 0; a < 3; ++a) {
-      ASSERT_GT(place[a], run.corners.front()[a] - 1);
-      ASSERT_LT(place[a], run.corners.back()[a] + 1);
+      ASSERT_GT(position[a], run.corners.front()[a] - 1);
+      ASSERT_LT(position[a], run.corners.back()[a] + 1);
     }
   }
 }

@@ -121,7 +121,7 @@ TEST_F(UiTest, TheRulerTakesPointsUnderTheMouse) {
     type("d");
   }
   EXPECT_EQ(session_.settings.view.ruler, "0 0 0;2 0 0;2 2 0");
-  type("d");  // begins anew
+  type("d");  // starts over
   EXPECT_EQ(session_.settings.view.ruler, "2 2 0");
 }
 

@@ -60,8 +60,9 @@ const std::map<std::string, FlowRerun>& expected() {
       {"focus", {}},
       {"orbit", {}},
       {"fps", {}},
-      {"topology", {}},
-      {"persistence", {}},
+      {"topology", {lines}},
+      {"persistence", {}},  // of lines that are off
+      {"streamlines", {lines}},
       {"line_spacing", {}},
   };
   return table;
@@ -104,6 +105,20 @@ TEST(FlowRerun, NoKnobIsForgotten) {
       EXPECT_TRUE(flow_rerun(Settings(), with_changed(knob.name)) == FlowRerun()) << knob.name;
     }
   }
+}
+
+TEST(FlowRerun, LinesFollowTheFieldWhileTheyAreShown) {
+  Settings shown;
+  shown.topology = true;
+  Settings after = shown;
+  after.persistence = 0.3;
+  EXPECT_TRUE(flow_rerun(shown, after) == FlowRerun({lines}));
+  after = shown;
+  after.vectors = "other";
+  EXPECT_TRUE(flow_rerun(shown, after) == FlowRerun({vectors, lines, start}));
+  after = shown;
+  after.flow.ttl = 2;
+  EXPECT_TRUE(flow_rerun(shown, after) == FlowRerun({start}));
 }
 
 TEST(FlowRerun, ChangesAddUp) {

@@ -27,7 +27,8 @@ struct WorkerRun {
   std::optional<std::string> written;  ///< how that went
   FlowData told;
   FlowStepped last;
-  std::size_t places = 0;
+  std::size_t positions = 0;
+  std::shared_ptr<const FlowLines> lines;
 
   explicit WorkerRun(
       bool loop = false, const std::function<void(Settings&)>& preset = [](Settings&) {}) {
@@ -50,7 +51,8 @@ struct WorkerRun {
     starts += std::holds_alternative<FlowStarted>(event);
     interruptions += std::holds_alternative<FlowInterrupted>(event);
     if (auto* read = std::get_if<FlowData>(&event)) ++data, told = *read;
-    if (auto* placed = std::get_if<FlowArrows>(&event)) ++arrows, places = placed->places.size();
+    if (auto* placed = std::get_if<FlowArrows>(&event)) ++arrows, positions = placed->positions.size();
+    if (auto* found = std::get_if<FlowLinesFound>(&event)) lines = found->lines;
     if (auto* stepped = std::get_if<FlowStepped>(&event)) ++steps, last = *stepped;
     if (const auto* embedded = std::get_if<FlowEmbedded>(&event)) {
       ++embeddings;
@@ -95,11 +97,11 @@ TEST(FlowWorker, StepsWriteWhatIsToBeShown) {
 }
 
 TEST(FlowWorker, MayEndWhileItAnswers) {
-  const Vec3d place = make_sample("sphere", 24).load(0).points[5];
+  const Vec3d position = make_sample("sphere", 24).load(0).points[5];
   for (int k = 0; k < 100; ++k) {
     WorkerRun run;
     run.step();
-    run.worker->sample(place);
+    run.worker->sample(position);
     std::this_thread::sleep_for(std::chrono::microseconds(k));
     run.worker->finish();  // an interruption that left the thread would end the program
   }
@@ -169,7 +171,7 @@ TEST(FlowWorker, AChoiceThatFailsLeavesWhatThereWas) {
   EXPECT_NE(run.failure.find("nosuch"), std::string::npos) << run.failure;
   run.step();
   EXPECT_EQ(run.last.number, 2);
-  EXPECT_FALSE(run.last.scalar.empty());
+  EXPECT_FALSE(run.last.moment.scalar.empty());
   run.change([](Settings& s) { s.vectors = "nosuch"; });
   EXPECT_NE(run.failure.find("nosuch"), std::string::npos) << run.failure;
   run.step();
@@ -183,10 +185,32 @@ TEST(FlowWorker, ArrowsArePlacedWhereTheyAreOn) {
   WorkerRun run;
   EXPECT_EQ(run.arrows, 0);
   run.change([](Settings& s) { s.view.arrows = true, s.view.arrow_count = 50; });
-  EXPECT_EQ(run.places, 50u);
+  EXPECT_EQ(run.positions, 50u);
   run.change([](Settings& s) { s.view.arrows = false; });
-  EXPECT_EQ(run.places, 0u);
+  EXPECT_EQ(run.positions, 0u);
   EXPECT_EQ(run.starts, 1);
+}
+
+TEST(FlowWorker, LinesAreFoundWhereTheyAreOnAndComeWithEachStep) {
+  WorkerRun run;
+  run.step();
+  EXPECT_EQ(run.last.moment.lines, nullptr);
+  run.change([](Settings& s) { s.topology = true; });
+  ASSERT_NE(run.lines, nullptr);
+  EXPECT_GT(run.lines->skeleton.topology.points.size(), 1u);
+  EXPECT_TRUE(run.lines->streamlines.lines.empty());
+  EXPECT_EQ(run.starts, 1);
+  const auto found = run.lines;
+  run.change([](Settings& s) { s.streamlines = true; });
+  EXPECT_NE(run.lines, found);
+  EXPECT_GT(run.lines->streamlines.lines.size(), 10u);
+  run.step();
+  ASSERT_NE(run.last.moment.lines, nullptr);
+  EXPECT_EQ(run.last.moment.lines->skeleton.time, run.last.moment.time);
+  run.change([](Settings& s) { s.topology = s.streamlines = false; });
+  EXPECT_EQ(run.lines, nullptr);
+  run.step();
+  EXPECT_EQ(run.last.moment.lines, nullptr);
 }
 
 TEST(FlowWorker, AChangeInterruptsWhatIsUnderWay) {
@@ -254,16 +278,16 @@ TEST(FlowWorker, AJumpIsAFlowThatBeginsThere) {
   EXPECT_EQ(run.calls("embed"), 1);
   for (const double share : {0.75, 0.0, 0.25}) {  // of four steps, and round
     run.step();
-    EXPECT_NEAR(run.last.time, data.low + share * (data.high - data.low), 1e-12);
+    EXPECT_NEAR(run.last.moment.time, data.low + share * (data.high - data.low), 1e-12);
   }
   run.change([](Settings& s) { s.begin_at = 0, s.time = "0.2:0.6"; });
   for (const double time : {0.3, 0.4, 0.5, 0.2}) {
     run.step();
-    EXPECT_NEAR(run.last.time, time, 1e-12);
+    EXPECT_NEAR(run.last.moment.time, time, 1e-12);
   }
   WorkerRun once(false, [](Settings& s) { s.begin_at = 0.5; });
   for (int k = 0; k < 3; ++k) once.step();
-  EXPECT_DOUBLE_EQ(once.last.time, data.high);
+  EXPECT_DOUBLE_EQ(once.last.moment.time, data.high);
 }
 
 TEST(FlowWorker, WritesWhatIsShown) {

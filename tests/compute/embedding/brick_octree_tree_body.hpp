@@ -16,7 +16,7 @@
 namespace nacre::test::brick_octree_bodies {
 
 using Place = std::tuple<int, int, int>;
-inline Place place(const Int3& c) { return {c.x, c.y, c.z}; }
+inline Place position(const Int3& c) { return {c.x, c.y, c.z}; }
 
 inline Mesh tree_mesh() {
   Mesh mesh = sphere({30.3, 29.1, 33.8}, 14, 12);
@@ -31,10 +31,10 @@ void NeighboursAndWalksAgreeWithTheCodes(Executor<Backend>& exec) {
   for (std::uint32_t b = 0; b < tree.view.brick_count; ++b) {
     ASSERT_TRUE(b == 0 || tree.brick_code[b - 1] < tree.brick_code[b]);
     ASSERT_GT(tree.brick[b].band.count(), 0);
-    bricks[place(morton_cell(tree.brick_code[b]))] = b;
+    bricks[position(morton_cell(tree.brick_code[b]))] = b;
   }
   auto number = [&](const Int3& p) {
-    const auto found = bricks.find(place(p));
+    const auto found = bricks.find(position(p));
     return found == bricks.end() ? none : found->second;
   };
   std::size_t absent = 0;
@@ -91,13 +91,13 @@ void CursorsFindWhatIsStored(Executor<Backend>& exec) {
       }
       const bool touched = brick.surface.word[k >> 6] >> (k & 63) & 1;
       const Int3 c = morton_cell(tree.brick_code[b]) * Int3(8) + Int3(k & 7, k >> 3 & 7, k >> 6);
-      cells[place(c)] = {band++, touched ? surface : no_cell};
+      cells[position(c)] = {band++, touched ? surface : no_cell};
       surface += touched;
     }
   ASSERT_EQ(band, tree.view.cells);
   ASSERT_EQ(surface, tree.view.surface_cells);
   auto look = [&](const Int3& c) {
-    const auto found = cells.find(place(c));
+    const auto found = cells.find(position(c));
     return found == cells.end() ? std::pair(no_cell, no_cell) : found->second;
   };
   BrickOctreeView::Cursor walker(tree.view);

@@ -1,4 +1,4 @@
-// Nacre: closest points of eight places at once against those of each place by itself.
+// Nacre: closest points of eight positions at once against those of each position by itself.
 #include "compute/embedding/closest_of_eight.hpp"
 
 #include <gtest/gtest.h>

@@ -33,12 +33,12 @@ HostField ball_field(float radius, const Vec3f& cells_per_unit = {1, 1, 1}, cons
 }
 
 std::vector<Vec3f> places_near(const Vec3f& p, float spread, int count) {
-  std::vector<Vec3f> places;
+  std::vector<Vec3f> positions;
   for (int k = 0; k < count; ++k)
-    places.push_back(
+    positions.push_back(
         p + Vec3f(uniform_random(3, k, 0) - 0.5f, uniform_random(3, k, 1) - 0.5f, uniform_random(3, k, 2) - 0.5f) *
                 (2 * spread));
-  return places;
+  return positions;
 }
 
 TEST(Junction, KnowsItsMaterialsAndOrder) {

@@ -13,7 +13,7 @@ namespace {
 
 float number(std::uint32_t a, std::uint32_t b) { return 2 * uniform_random(5, a, b) - 1; }
 
-/// `m` curved functions of the place: value and exact gradient at p.
+/// `m` curved functions of the position: value and exact gradient at p.
 std::vector<FieldSample> functions_at(int m, std::uint32_t seed, const Vec3f& p) {
   std::vector<FieldSample> f;
   for (int i = 0; i < m; ++i) {

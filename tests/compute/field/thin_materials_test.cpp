@@ -14,21 +14,21 @@
 namespace nacre::test {
 namespace {
 
-/// Materials of `count` random places: each voxel has that of the nearest.
+/// Materials of `count` random positions: each voxel has that of the nearest.
 std::vector<std::uint16_t> cells_of(const Int3& dims, int count, unsigned seed) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> x(0, dims.x), y(0, dims.y), z(0, dims.z);
-  std::vector<Vec3d> places;
-  for (int i = 0; i < count; ++i) places.push_back({x(generator), y(generator), z(generator)});
+  std::vector<Vec3d> positions;
+  for (int i = 0; i < count; ++i) positions.push_back({x(generator), y(generator), z(generator)});
   std::vector<std::uint16_t> material;
   for (int k = 0; k < dims.z; ++k)
     for (int j = 0; j < dims.y; ++j)
       for (int i = 0; i < dims.x; ++i) {
         const Vec3d p(i, j, k);
-        const auto nearest = std::min_element(places.begin(), places.end(), [&](const Vec3d& s, const Vec3d& t) {
+        const auto nearest = std::min_element(positions.begin(), positions.end(), [&](const Vec3d& s, const Vec3d& t) {
           return dot(s - p, s - p) < dot(t - p, t - p);
         });
-        material.push_back(std::uint16_t(nearest - places.begin() + 1));
+        material.push_back(std::uint16_t(nearest - positions.begin() + 1));
       }
   return material;
 }

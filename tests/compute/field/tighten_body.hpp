@@ -59,10 +59,10 @@ void WithoutWidthTheLabelsAreLeftAlone(Executor<Backend>& exec) {
 
 /// Angles between the interface's normals and `normal`, degrees, at places along it.
 template <class Backend>
-std::vector<double> normal_errors(Executor<Backend>& exec, const MaterialBricks& b, const std::vector<Vec3f>& places,
+std::vector<double> normal_errors(Executor<Backend>& exec, const MaterialBricks& b, const std::vector<Vec3f>& positions,
                                   const std::function<Vec3f(const Vec3f&)>& normal) {
   std::vector<double> errors;
-  for (const JunctionPoint& at : bring_onto(exec, b, Junction(0, 1), places))
+  for (const JunctionPoint& at : bring_onto(exec, b, Junction(0, 1), positions))
     errors.push_back(length(at.direction) > 0 ? degrees_between(at.direction, normal(at.p)) : 90);
   return errors;
 }
@@ -72,17 +72,17 @@ void AnObliquePlaneHasNoStaircase(Executor<Backend>& exec) {
   const Vec3d n = normalized(Vec3d(0.8, 0.33, 0.21)), c(20.2, 17.1, 16.6);
   const MeshVolume volume = label_volume({40, 34, 33}, 2, [&](const Vec3d& p) { return dot(p - c, n) > 0; });
   const Vec3d s = normalized(cross(n, Vec3d(0, 0, 1))), t = cross(n, s);
-  std::vector<Vec3f> places;
+  std::vector<Vec3f> positions;
   for (int i = -40; i <= 40; ++i)
-    for (int j = -40; j <= 40; ++j) places.push_back(in_fields(c + s * (i * 0.23) + t * (j * 0.23)));
+    for (int j = -40; j <= 40; ++j) positions.push_back(in_fields(c + s * (i * 0.23) + t * (j * 0.23)));
   const auto normal = [&](const Vec3f&) { return Vec3f(n); };
-  const auto smooth = normal_errors(exec, bricks_of(exec, volume), places, normal);
-  const auto staircase = normal_errors(exec, bricks_of(exec, volume, 0), places, normal);
+  const auto smooth = normal_errors(exec, bricks_of(exec, volume), positions, normal);
+  const auto staircase = normal_errors(exec, bricks_of(exec, volume, 0), positions, normal);
   std::printf("oblique plane: median normal error %.2f degrees, largest %.2f; untightened %.2f\n", median_of(smooth),
               *std::max_element(smooth.begin(), smooth.end()), median_of(staircase));
   EXPECT_LE(median_of(smooth), 3);
   EXPECT_GE(median_of(staircase), 4 * median_of(smooth));
-  for (const JunctionPoint& at : bring_onto(exec, bricks_of(exec, volume), Junction(0, 1), places))
+  for (const JunctionPoint& at : bring_onto(exec, bricks_of(exec, volume), Junction(0, 1), positions))
     EXPECT_LT(std::fabs(dot(Vec3d(at.p) - Vec3d(volume_padding + 0.5) - c, n)), 0.5);
 }
 
@@ -92,15 +92,15 @@ template <class Backend>
 double slope_error(Executor<Backend>& exec, double run, double other_run, double staircase) {
   const Vec3d n = normalized(Vec3d(-1 / run, -1 / other_run, 1)), c(40.2, 40.1, 16.6);
   const MeshVolume volume = label_volume({80, 80, 33}, 2, [&](const Vec3d& p) { return dot(p - c, n) > 0; });
-  std::vector<Vec3f> places;
+  std::vector<Vec3f> positions;
   for (int i = -60; i <= 60; ++i)
     for (int j = -60; j <= 60; ++j) {
       const double x = 0.43 * i, y = 0.43 * j;
-      places.push_back(in_fields(c + Vec3d(x, y, x / run + y / other_run)));
+      positions.push_back(in_fields(c + Vec3d(x, y, x / run + y / other_run)));
     }
   const std::size_t mark = exec.arena().mark();
   const MaterialBricks b = bricks_of(exec, volume, 1.2, CubicKernel::catmull_rom, nullptr, wide_range, staircase);
-  const double error = median_of(normal_errors(exec, b, places, [&](const Vec3f&) { return Vec3f(n); }));
+  const double error = median_of(normal_errors(exec, b, positions, [&](const Vec3f&) { return Vec3f(n); }));
   exec.arena().rewind(mark);
   return error;
 }
@@ -183,20 +183,20 @@ void ABallOfLabelsBecomesRound(Executor<Backend>& exec) {
   const double radius = 20;
   const MeshVolume volume = label_volume({51, 51, 51}, 2, [&](const Vec3d& p) { return length(p - c) < radius; });
   const MaterialBricks b = bricks_of(exec, volume);
-  std::vector<Vec3f> places;
-  for (const Vec3d& d : even_directions(20000)) places.push_back(in_fields(c + d * radius));
+  std::vector<Vec3f> positions;
+  for (const Vec3d& d : even_directions(20000)) positions.push_back(in_fields(c + d * radius));
   const Vec3f centre = in_fields(c);
-  const auto errors = normal_errors(exec, b, places, [&](const Vec3f& p) { return normalized(p - centre); });
+  const auto errors = normal_errors(exec, b, positions, [&](const Vec3f& p) { return normalized(p - centre); });
   double away = 0, most = 0, outside = 0;
-  for (const JunctionPoint& at : bring_onto(exec, b, Junction(0, 1), places)) {
+  for (const JunctionPoint& at : bring_onto(exec, b, Junction(0, 1), positions)) {
     const double off = std::fabs(length(at.p - centre) - radius);
-    away += off / double(places.size());
+    away += off / double(positions.size());
     most = std::max(most, off);
     outside += in_shell(volume, at.p) ? 0 : 1;
   }
   std::printf(
       "ball of labels: distance mean %.3f max %.3f, median normal error %.2f degrees, out of the shell %.0f of %zu\n",
-      away, most, median_of(errors), outside, places.size());
+      away, most, median_of(errors), outside, positions.size());
   EXPECT_LE(away, 0.25);
   EXPECT_LE(most, 1);
   EXPECT_LE(median_of(errors), 5);

@@ -1,4 +1,4 @@
-// Nacre: tests of attempts at bad places, each of which is kept or taken back by itself.
+// Nacre: tests of attempts at bad positions, each of which is kept or taken back by itself.
 #include "compute/meshing/attempt.hpp"
 
 #include <gtest/gtest.h>
@@ -66,21 +66,21 @@ TEST(Patches, AreTheMarkedPointsWithTheirNeighboursInPieces) {
 }
 
 TEST(Attempt, IsKeptWhereItHelpedAndTakenBackElsewhere) {
-  const TwoBadPlaces places;
-  Attempt attempt = places.attempt();
+  const TwoBadPlaces positions;
+  Attempt attempt = positions.attempt();
   // In the north the one that is too much goes; in the south the two come still closer.
   Marks gone(402, 0);
   gone[400] = 1;
-  std::vector<Vec3d> points = places.points;
+  std::vector<Vec3d> points = positions.points;
   points.erase(points.begin() + 400);
-  points.back() = beside(points[places.south], 0.001);
+  points.back() = beside(points[positions.south], 0.001);
   attempt.change(gone, points.size());
   const Sphere now(points);
   attempt.judge(now.view());
   const Marks open = attempt.open(now.view());
   ASSERT_FALSE(open.empty());
-  EXPECT_TRUE(open[places.south] && open[400]);
-  EXPECT_FALSE(open[places.north]);
+  EXPECT_TRUE(open[positions.south] && open[400]);
+  EXPECT_FALSE(open[positions.north]);
   const std::vector<Attempt::Source> mixed = attempt.taken_back();
   ASSERT_EQ(mixed.size(), 401u);
   for (std::uint32_t i = 0; i < 400; ++i) {
@@ -92,9 +92,9 @@ TEST(Attempt, IsKeptWhereItHelpedAndTakenBackElsewhere) {
 }
 
 TEST(Attempt, GoesOnWithWhatIsOpenAndThenHasNothingToTakeBack) {
-  const TwoBadPlaces places;
-  Attempt attempt = places.attempt();
-  std::vector<Vec3d> points = places.points;
+  const TwoBadPlaces positions;
+  Attempt attempt = positions.attempt();
+  std::vector<Vec3d> points = positions.points;
   Marks gone(402, 0);
   for (const std::uint32_t last : {401u, 400u}) {
     attempt.judge(Sphere(points).view());
@@ -112,11 +112,11 @@ TEST(Attempt, GoesOnWithWhatIsOpenAndThenHasNothingToTakeBack) {
 }
 
 TEST(Attempt, NewPointsShareTheFateOfTheirPatch) {
-  const TwoBadPlaces places;
-  Attempt attempt = places.attempt();
-  std::vector<Vec3d> points = places.points;
+  const TwoBadPlaces positions;
+  Attempt attempt = positions.attempt();
+  std::vector<Vec3d> points = positions.points;
   points.erase(points.begin() + 400);  // the north is mended; in the south comes a third
-  points.push_back(beside(points[places.south], -0.002));
+  points.push_back(beside(points[positions.south], -0.002));
   Marks gone(402, 0);
   gone[400] = 1;
   attempt.change(gone, points.size());
@@ -127,7 +127,7 @@ TEST(Attempt, NewPointsShareTheFateOfTheirPatch) {
 
   points.pop_back();
   points.push_back(normalized((points[100] + points[101] + points[113]) / 3.0));  // far from both
-  Attempt again = places.attempt();
+  Attempt again = positions.attempt();
   again.change(gone, points.size());
   again.judge(Sphere(points).view());
   mixed = again.taken_back();
@@ -137,15 +137,15 @@ TEST(Attempt, NewPointsShareTheFateOfTheirPatch) {
 }
 
 TEST(Attempt, PlacesThatTouchAreWorseThanAnyTriangle) {
-  const TwoBadPlaces places;
-  Sphere before(places.points);
-  before.touching = {{places.north, places.north}};
+  const TwoBadPlaces positions;
+  Sphere before(positions.points);
+  before.touching = {{positions.north, positions.north}};
   Attempt attempt(402, before.view(), before.bad(), worst_defects);
-  const Sphere now(places.points);  // the triangles are as bad as ever, but the surface no longer touches itself
+  const Sphere now(positions.points);  // the triangles are as bad as ever, but the surface no longer touches itself
   attempt.judge(now.view());
   const Marks open = attempt.open(now.view());
-  EXPECT_FALSE(open[places.north]);
-  EXPECT_TRUE(open[places.south]);
+  EXPECT_FALSE(open[positions.north]);
+  EXPECT_TRUE(open[positions.south]);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(Lattice, GrowsWithTheDistanceAndNotTooFast) {
   EXPECT_GE(centre, 1.5 * 0.14);
   EXPECT_LE(centre, 8 * 0.14);
   EXPECT_TRUE(lattice == graded_lattice(points, size, {}));
-  const EdgeLength even = [](std::span<const Vec3d> places) { return std::vector<float>(places.size(), 0.14f); };
+  const EdgeLength even = [](std::span<const Vec3d> positions) { return std::vector<float>(positions.size(), 0.14f); };
   EXPECT_GT(graded_lattice(points, size, even).size(), lattice.size() * 3 / 2);
 }
 

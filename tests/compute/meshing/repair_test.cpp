@@ -152,7 +152,7 @@ TEST(Repair, ACrumbThatTouchesItsOwnMaterialGoes) {
   c.label[c.first] = c.label[c.second] = 2;
   const LabelRepair repair = repair_labels(c.points, c.cells, c.label);
   EXPECT_EQ(repair.left, 0);
-  EXPECT_TRUE(repair.places.empty());
+  EXPECT_TRUE(repair.defects.empty());
   EXPECT_EQ(repair.changed, 1);
   EXPECT_EQ(std::count(c.label.begin(), c.label.end(), 2), 1) << "the material is not lost";
   EXPECT_TRUE(check_topology(extract_interfaces(c.points, c.cells, c.label), 3).sound());
@@ -181,7 +181,7 @@ TEST(Repair, TheLastOfAMaterialStaysAndIsNamed) {
   c.label[c.first] = 2;
   c.label[c.second] = 3;
   const LabelRepair repair = repair_labels(c.points, c.cells, c.label);
-  EXPECT_EQ(repair.left, std::int64_t(repair.places.size()));
+  EXPECT_EQ(repair.left, std::int64_t(repair.defects.size()));
   EXPECT_EQ(c.label[c.first], 2);
   EXPECT_EQ(c.label[c.second], 3);
 }

@@ -35,8 +35,8 @@ TEST(Stars, OnASphereTheyAreItsConvexHull) {
     EXPECT_TRUE(cloud.topology(made).sound());
     for (const Triangle& t : made.triangles) {
       const StarParticles p = cloud.view();
-      const Vec3d a = p.place(t.a), n = normalized(cross(p.place(t.b) - a, p.place(t.c) - a));
-      for (std::size_t i = 0; i < cloud.position.size(); ++i) ASSERT_LT(dot(n, p.place(i) - a), 1e-5) << seed;
+      const Vec3d a = p.point(t.a), n = normalized(cross(p.point(t.b) - a, p.point(t.c) - a));
+      for (std::size_t i = 0; i < cloud.position.size(); ++i) ASSERT_LT(dot(n, p.point(i) - a), 1e-5) << seed;
     }
   }
 }
@@ -177,7 +177,7 @@ TEST(Stars, APerfectLatticeIsDividedInOneWay) {
         int on_faces = 0;
         for (int k = 0; k < 3; ++k)
           if (p[k] == 0 || p[k] == n) normal[k] = p[k] == 0 ? -1 : 1, ++on_faces;
-        bool first = true;  // each place once
+        bool first = true;  // each position once
         for (int k = 0; k < axis; ++k) first = first && p[k] != 0 && p[k] != n;
         if (first) cloud.add(p, 1, normalized(normal));
       }
@@ -202,8 +202,8 @@ TEST(Stars, TheRuleOfAQuadrilateralIsTheSameFromAllItsCorners) {
       Vec3d p(std::cos(angle), std::sin(angle), 0.3 * random(generator));
       if (round % 3 == 0) p = Vec3d(std::cos(angle), std::sin(angle), 0);                    // on one circle
       if (round % 3 == 1) p = Vec3d(k == 1 || k == 2, k > 1, 0) * (1 + lattice(generator));  // on a lattice
-      if (round % 7 == 0 && k == 3) p = items.place[2];                                      // two in one place
-      items.place.push_back(p);
+      if (round % 7 == 0 && k == 3) p = items.position[2];                                   // two in one place
+      items.position.push_back(p);
     }
     items.particle = {3, 9, 4, 7};
     std::shuffle(items.particle.begin(), items.particle.end(), generator);
@@ -243,9 +243,9 @@ TEST(Stars, FoundAnewOnlyWhereSomethingChangedTheyAreTheSame) {
       const Float4 p = cloud.position[i], n = cloud.direction[i];
       changed.add(Vec3d(p.x, p.y, p.z) + 0.5 * p.w * normalized(Vec3d(n.y, -n.x, 0)), p.w, {n.x, n.y, n.z});
     }
-    const StarMesh quick = mesh_from_stars(changed.view(), finder), anew = mesh_from_stars(changed.view());
-    EXPECT_EQ(quick.triangles, anew.triangles) << round;
-    EXPECT_EQ(quick.unsettled, anew.unsettled) << round;
+    const StarMesh quick = mesh_from_stars(changed.view(), finder), from_nothing = mesh_from_stars(changed.view());
+    EXPECT_EQ(quick.triangles, from_nothing.triangles) << round;
+    EXPECT_EQ(quick.unsettled, from_nothing.unsettled) << round;
     EXPECT_LT(finder.cut(), std::int64_t(changed.position.size() / 2));
     EXPECT_GT(finder.cut(), 10);
     cloud = changed;

@@ -101,10 +101,10 @@ TEST(Tetrahedra, LeaveAHollowOpen) {  // a shell: within it is the outside
 TEST(Tetrahedra, GrowInwardsUnlessToldOtherwise) {
   const SurfaceMesh surface = ball();
   const std::size_t graded = fill_with_tetrahedra(surface).points.size();
-  const EdgeLength even = [](std::span<const Vec3d> places) { return std::vector<float>(places.size(), 0.09f); };
-  const EdgeLength fine_at_right = [](std::span<const Vec3d> places) {
+  const EdgeLength even = [](std::span<const Vec3d> positions) { return std::vector<float>(positions.size(), 0.09f); };
+  const EdgeLength fine_at_right = [](std::span<const Vec3d> positions) {
     std::vector<float> edges;
-    for (const Vec3d& p : places) edges.push_back(p.x > 0 ? 0.09f : 10.0f);
+    for (const Vec3d& p : positions) edges.push_back(p.x > 0 ? 0.09f : 10.0f);
     return edges;
   };
   const TetrahedralMesh dense = fill_with_tetrahedra(surface, even),

@@ -62,9 +62,9 @@ void ALonelyParticleOnACurveMakesThree(Executor<Backend>& exec) {
   Relaxation<Backend, Disc> run(exec, {8, 1}, PlainSolver::redblack, one, {Junction(0, 1), Junction(0, 1, 2)}, 100);
   run.control();
   ASSERT_EQ(run.set.count, 3);
-  const auto places = run.places();
-  EXPECT_NEAR(places[1].y, -places[2].y, 1e-5);
-  EXPECT_NEAR(std::fabs(places[1].y), 1, 0.02);
+  const auto positions = run.positions();
+  EXPECT_NEAR(positions[1].y, -positions[2].y, 1e-5);
+  EXPECT_NEAR(std::fabs(positions[1].y), 1, 0.02);
 }
 
 template <class Backend>
@@ -88,7 +88,7 @@ void TooManyParticlesAreRefused(Executor<Backend>& exec) {
   Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1),
                                    std::int64_t(seeds.points.size()) + 10);
   run.iterate(5);
-  const auto before = run.places();
+  const auto before = run.positions();
   try {
     run.control();
     FAIL() << "no error";
@@ -96,7 +96,7 @@ void TooManyParticlesAreRefused(Executor<Backend>& exec) {
     EXPECT_NE(std::string(error.what()).find("at most"), std::string::npos) << error.what();
     EXPECT_FALSE(error.advice().empty());
   }
-  const auto after = run.places();
+  const auto after = run.positions();
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t k = 0; k < before.size(); ++k) EXPECT_EQ(xyz_of(before[k]), xyz_of(after[k]));
 }
@@ -107,14 +107,14 @@ void WhatParticlesCarryGoesWithThem(Executor<Backend>& exec) {
   Seeds seeds = sphere_seeds(2);
   seeds.fixed = 100;
   Relaxation<Backend, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1), 8000);
-  const auto before = run.places();
+  const auto before = run.positions();
   std::vector<float> mark(before.size());
   for (std::size_t k = 0; k < mark.size(); ++k) mark[k] = before[k].x + 3 * before[k].y;  // tells who is who
   run.state.damping.upload(mark);
   const IterationResult result = run.control();
   EXPECT_GT(result.deleted, 300);
   EXPECT_EQ(run.set.count, std::int64_t(before.size()) - result.deleted + result.added);
-  const auto after = run.places();
+  const auto after = run.positions();
   const auto carried = run.state.damping.download(0, after.size());
   std::int64_t fresh = 0;
   for (std::size_t k = 0; k < after.size(); ++k) {

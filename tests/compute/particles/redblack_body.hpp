@@ -13,13 +13,13 @@ void EnergyFallsOnASphere(Executor<Backend>& exec) {
   for (std::size_t k = 1; k < run.energy.size(); ++k) EXPECT_LT(run.energy[k], run.energy[k - 1]) << k;
   EXPECT_GT(run.energy.front(), 1.5);
   EXPECT_LT(run.energy.back(), 1.05 * hexagonal_energy);
-  const auto places = run.places(), directions = run.directions();
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    EXPECT_NEAR(length(xyz_of(places[k])), 10, 1e-4);
-    EXPECT_LT(length(xyz_of(directions[k]) * 10 - xyz_of(places[k])), 1e-4f);
-    EXPECT_EQ(places[k].w, 1);
+  const auto positions = run.positions(), directions = run.directions();
+  for (std::size_t k = 0; k < positions.size(); ++k) {
+    EXPECT_NEAR(length(xyz_of(positions[k])), 10, 1e-4);
+    EXPECT_LT(length(xyz_of(directions[k]) * 10 - xyz_of(positions[k])), 1e-4f);
+    EXPECT_EQ(positions[k].w, 1);
   }
-  const std::vector<double> spacing = spacings(places);
+  const std::vector<double> spacing = spacings(positions);
   EXPECT_GT(*std::min_element(spacing.begin(), spacing.end()), 0.6);
   EXPECT_NEAR(mean(spacing), 0.95, 0.04);
 }
@@ -49,7 +49,7 @@ void SheetsOneVoxelApartIgnoreEachOther(Executor<Backend>& exec) {
   alone.iterate(25);
   EXPECT_NEAR(shell.energy.back(), alone.energy.back(), 0.02);
   std::int64_t outside = 0;
-  for (const Float4& p : shell.places()) outside += length(xyz_of(p)) > 9.5f ? 1 : 0;
+  for (const Float4& p : shell.positions()) outside += length(xyz_of(p)) > 9.5f ? 1 : 0;
   EXPECT_EQ(outside, alone.set.count);  // no one has changed sheets
 }
 
@@ -78,9 +78,9 @@ void AFixedRimStaysAndIsFelt(Executor<Backend>& exec) {
   const float radius = 8;
   const Seeds seeds = disc_seeds(radius, int(0.9 * ideal_count(M_PI * radius * radius)) - int(M_PI * radius));
   Relaxation<Backend, Disc> run(exec, {radius, 1}, PlainSolver::redblack, seeds, disc_table());
-  const std::vector<Float4> before = run.places();
+  const std::vector<Float4> before = run.positions();
   run.iterate(40, 10);
-  const std::vector<Float4> after = run.places();
+  const std::vector<Float4> after = run.positions();
   for (std::int64_t k = 0; k < run.set.fixed; ++k) EXPECT_EQ(xyz_of(after[k]), xyz_of(before[k]));
   // Ideally the rim's particles count half; what is left belongs to the inside.
   const double inside = ideal_count(M_PI * radius * radius) - 0.5 * double(run.set.fixed);
@@ -101,11 +101,12 @@ void ParticlesOfOtherInterfacesAreNotFelt(Executor<Backend>& exec) {
   seeds.fixed = 1;
   Relaxation<Backend, Disc> run(exec, {8, 1}, PlainSolver::redblack, seeds, {Junction(0, 1), Junction(0, 2)});
   run.iterate(3);
-  EXPECT_EQ(xyz_of(run.places()[1]), Vec3f());
+  EXPECT_EQ(xyz_of(run.positions()[1]), Vec3f());
   EXPECT_EQ(run.energy.back(), 0);
   Relaxation<Backend, Disc> rim(exec, {8, 1}, PlainSolver::redblack, seeds, {Junction(0, 1), Junction(0, 1, 2)});
   rim.iterate(20);
-  EXPECT_GT(length(xyz_of(rim.places()[1]) - xyz_of(rim.places()[0])), 1.5f);  // out of its support of 1.73, nearly
+  EXPECT_GT(length(xyz_of(rim.positions()[1]) - xyz_of(rim.positions()[0])),
+            1.5f);  // out of its support of 1.73, nearly
 }
 
 template <class Backend>
@@ -130,13 +131,13 @@ void GradedSizesGiveGradedSpacings(Executor<Backend>& exec) {
   EXPECT_NEAR(double(run.set.count), wanted, 0.06 * wanted);
   EXPECT_LT(run.energy.back(), 1.15 * hexagonal_energy);
   EXPECT_LT(run.energy.back(), run.energy.front());
-  const std::vector<Float4> places = run.places();
-  const std::vector<double> spacing = spacings(places);
+  const std::vector<Float4> positions = run.positions();
+  const std::vector<double> spacing = spacings(positions);
   std::vector<double> fine, coarse;
-  for (std::size_t k = 0; k < places.size(); ++k)
-    if (places[k].w < 0.75f)
+  for (std::size_t k = 0; k < positions.size(); ++k)
+    if (positions[k].w < 0.75f)
       fine.push_back(spacing[k]);
-    else if (places[k].w > 1.2f)
+    else if (positions[k].w > 1.2f)
       coarse.push_back(spacing[k]);
   EXPECT_NEAR(mean(fine), 0.92, 0.06);  // in units of their own h, which differs by a factor of two
   EXPECT_NEAR(mean(coarse), 0.92, 0.06);
@@ -165,9 +166,9 @@ void CurvesAreFilledBetweenFixedPoints(Executor<Backend>& exec) {
   run.iterate(60, 5);
   const double wanted = 2 * M_PI * radius;
   EXPECT_NEAR(double(run.set.count), wanted, 0.08 * wanted);
-  const std::vector<double> spacing = spacings(run.places());
+  const std::vector<double> spacing = spacings(run.positions());
   EXPECT_GT(*std::min_element(spacing.begin(), spacing.end()), 0.7);
-  for (const Float4& p : run.places()) EXPECT_NEAR(length(xyz_of(p)), radius, 1e-4);
+  for (const Float4& p : run.positions()) EXPECT_NEAR(length(xyz_of(p)), radius, 1e-4);
 }
 
 template <class Backend>
@@ -183,7 +184,7 @@ void NothingToMoveIsFine(Executor<Backend>& exec) {
   seeds.fixed = 0;
   Relaxation<Backend, Spheres> same(exec, {{10}, 1}, PlainSolver::redblack, seeds, plain_table(1), 100);
   same.iterate(3);
-  for (const Float4& p : same.places()) EXPECT_TRUE(is_finite(xyz_of(p)));
+  for (const Float4& p : same.positions()) EXPECT_TRUE(is_finite(xyz_of(p)));
 }
 
 NACRE_DEVICE_TEST(Redblack, EnergyFallsOnASphere)

@@ -10,16 +10,16 @@ namespace nacre::test {
 namespace {
 
 TEST(Redblack, OneThreadAndTwoGiveTheSame) {
-  std::vector<Float4> places[2];
+  std::vector<Float4> positions[2];
   for (const int threads : {1, 2}) {
     const auto device = make_cpu_device(threads);
     Executor<Cpu> exec(*device);
     Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::redblack, sphere_seeds(1.4), plain_table(1));
     run.iterate(12, 4);
-    places[threads - 1] = run.places();
+    positions[threads - 1] = run.positions();
   }
-  ASSERT_EQ(places[0].size(), places[1].size());
-  EXPECT_EQ(std::memcmp(places[0].data(), places[1].data(), places[0].size() * sizeof(Float4)), 0);
+  ASSERT_EQ(positions[0].size(), positions[1].size());
+  EXPECT_EQ(std::memcmp(positions[0].data(), positions[1].data(), positions[0].size() * sizeof(Float4)), 0);
 }
 
 TEST(Redblack, AgreesWithTheSerialSolver) {
@@ -115,10 +115,10 @@ TEST(Redblack, MovesOnTheInterfacesOfAField) {
     run.iterate(60, 10);
     energy[int(solver)] = run.energy.back(), count[int(solver)] = run.set.count;
     EXPECT_LT(run.energy.back(), run.energy.front());
-    const auto places = run.places();
-    const auto interface = run.set.interface.download(0, places.size());
-    for (std::size_t k = std::size_t(run.set.fixed); k < places.size(); ++k) {
-      const Vec3f p = xyz_of(places[k]);
+    const auto positions = run.positions();
+    const auto interface = run.set.interface.download(0, positions.size());
+    for (std::size_t k = std::size_t(run.set.fixed); k < positions.size(); ++k) {
+      const Vec3f p = xyz_of(positions[k]);
       JunctionPoint at;
       ASSERT_TRUE(project_by_indicator(host.view(), table[interface[k]], p, 0.1f, at)) << k;
       if (interface[k] == 2) {
@@ -128,7 +128,7 @@ TEST(Redblack, MovesOnTheInterfacesOfAField) {
         EXPECT_NEAR(length(p - Vec3f(interface[k] == 0 ? 9 : 15, 12, 12)), 6, 0.05f);
       }
     }
-    const std::vector<double> spacing = spacings(places, std::size_t(run.set.fixed));
+    const std::vector<double> spacing = spacings(positions, std::size_t(run.set.fixed));
     EXPECT_GT(*std::min_element(spacing.begin(), spacing.end()),
               0.5);  // a seed between two of the rim is deleted in the end
     const double area = 2 * 2 * M_PI * 6 * 9 + M_PI * 27, inside = ideal_count(area) - 1.5 * double(run.set.fixed);

@@ -26,11 +26,11 @@ struct RingRun {
           const TriangleRings& rings)
       : exec(e) {
     Arena& arena = exec.arena();
-    std::vector<Float4> places;
-    for (const Vec3f& p : points) places.push_back({p.x, p.y, p.z, 1});
+    std::vector<Float4> positions;
+    for (const Vec3f& p : points) positions.push_back({p.x, p.y, p.z, 1});
     const Vec3f d = normal_or_tangent;
-    position = arena.template permanent_copy<Float4>(places);
-    moved = arena.template permanent_copy<Float4>(places);
+    position = arena.template permanent_copy<Float4>(positions);
+    moved = arena.template permanent_copy<Float4>(positions);
     direction = arena.template permanent_copy<Float4>(std::vector<Float4>(points.size(), Float4{d.x, d.y, d.z, 7}));
     first = arena.template permanent_copy<std::uint32_t>(rings.first);
     edge = arena.template permanent_copy<RingEdge>(rings.edge);
@@ -113,7 +113,7 @@ void ADisturbedLatticeBecomesEven(Executor<Backend>& exec) {
   }
 }
 
-/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed, another place.
+/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed, another position.
 /// The steps that follow lead back.
 template <class Backend>
 void AShakenLatticeSettlesAgain(Executor<Backend>& exec) {
@@ -155,7 +155,7 @@ struct Line {
   }
 };
 
-/// On a curve they move along it alone; at a point not at all. What a particle carries beside its place stays.
+/// On a curve they move along it alone; at a point not at all. What a particle carries beside its position stays.
 template <class Backend>
 void CurvesAreKeptAndPointsStay(Executor<Backend>& exec) {
   TriangleRings rings;  // of particle 0: two triangles on the side of y > 0, apexes of which lie at x = 0.5 and 1.5
@@ -178,7 +178,7 @@ void NobodyIsSmoothedOverTheRim(Executor<Backend>& exec) {
   TriangleRings rings;
   rings.first = {0, 1, 1, 1};
   rings.edge = {{1, 2}};
-  const std::vector<Vec3f> points = {{9.9f, 0, 0}, {9.4f, -1, 0}, {9.4f, 1, 0}};  // its best place is at 11.1
+  const std::vector<Vec3f> points = {{9.9f, 0, 0}, {9.4f, -1, 0}, {9.4f, 1, 0}};  // its best position is at 11.1
   const Vec3f up(0, 0, 1);
   EXPECT_GT(RingRun<Backend>(exec, points, up, 2, rings).turns(AnalyticProjector<Plane>{{1}}, 1)[0].x, 10);
   EXPECT_TRUE(RingRun<Backend>(exec, points, up, 2, rings).turns(AnalyticProjector<Plane>{{1}, 10}, 1)[0] == points[0]);

@@ -115,10 +115,10 @@ void CurvesAreSeededByTheirLength(Executor<Backend>& exec) {
 template <class Backend>
 void AnotherSeedIsAnotherStart(Executor<Backend>& exec) {
   const Embedding e = embedding_of(exec, sectors());
-  const auto places = [&](std::uint32_t random) {
+  const auto positions = [&](std::uint32_t random) {
     return seeds_of(exec, e, SeedsFrom::embedding, 2, 1, random).position;
   };
-  const std::vector<Float4> one = places(1), two = places(2), again = places(1);
+  const std::vector<Float4> one = positions(1), two = positions(2), again = positions(1);
   ASSERT_EQ(one.size(), two.size());
   std::size_t alike = 0;
   for (std::size_t k = 0; k < one.size(); ++k) {

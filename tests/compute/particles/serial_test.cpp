@@ -16,7 +16,7 @@ TEST(Serial, EnergyFallsOnASphere) {
   run.iterate(30);
   for (std::size_t k = 1; k < run.energy.size(); ++k) EXPECT_LT(run.energy[k], run.energy[k - 1]) << k;
   EXPECT_LT(run.energy.back(), 1.05 * hexagonal_energy);
-  const std::vector<double> spacing = spacings(run.places());
+  const std::vector<double> spacing = spacings(run.positions());
   EXPECT_GT(*std::min_element(spacing.begin(), spacing.end()), 0.6);
 }
 
@@ -33,12 +33,12 @@ TEST(Serial, LeavesEachParticleTheEnergyThatItHas) {
   Executor<Cpu> exec(*device);
   Relaxation<Cpu, Spheres> run(exec, {{4}, 1}, PlainSolver::serial, sphere_seeds(1, 4), plain_table(1));
   run.iterate(200);  // until nothing moves
-  const auto places = run.places(), directions = run.directions();
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  const auto positions = run.positions(), directions = run.directions();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     double energy = 0;
-    for (std::size_t j = 0; j < places.size(); ++j)
+    for (std::size_t j = 0; j < positions.size(); ++j)
       if (j != i) {
-        const float d = length(xyz_of(places[i]) - xyz_of(places[j])) / support;
+        const float d = length(xyz_of(positions[i]) - xyz_of(positions[j])) / support;
         energy += normal_weight(dot(xyz_of(directions[i]), xyz_of(directions[j])), d) * cotangent_energy(d).energy;
       }
     EXPECT_NEAR(directions[i].w, energy, 0.02 * energy + 1e-3);
@@ -52,9 +52,10 @@ TEST(Serial, EachMoveLowersTheMoversEnergy) {  // two particles on a plane push 
   Relaxation<Cpu, Disc> run(exec, {20, 1}, PlainSolver::serial, seeds, plain_table(1), 10);
   run.iterate(40);
   for (std::size_t k = 1; k < run.energy.size(); ++k) EXPECT_LE(run.energy[k], run.energy[k - 1]);
-  const auto places = run.places();
-  EXPECT_GT(length(xyz_of(places[0]) - xyz_of(places[1])), 0.9f * support);
-  EXPECT_NEAR((places[0].y - places[1].y) / (places[0].x - places[1].x), 1.0 / 6, 1e-3);  // along their line
+  const auto positions = run.positions();
+  EXPECT_GT(length(xyz_of(positions[0]) - xyz_of(positions[1])), 0.9f * support);
+  EXPECT_NEAR((positions[0].y - positions[1].y) / (positions[0].x - positions[1].x), 1.0 / 6,
+              1e-3);  // along their line
 }
 
 TEST(Serial, StepsAreAsShortAsTheyMustBe) {
@@ -64,9 +65,9 @@ TEST(Serial, StepsAreAsShortAsTheyMustBe) {
   parameters.step = 0.1f;
   const Seeds seeds = sphere_seeds(2);
   Relaxation<Cpu, Spheres> run(exec, {{10}, 1}, PlainSolver::serial, seeds, plain_table(1), 0, parameters);
-  const auto before = run.places();
+  const auto before = run.positions();
   run.iterate(1);
-  const auto after = run.places();
+  const auto after = run.positions();
   bool moved = false;
   for (std::size_t k = 0; k < before.size(); ++k) {
     const float displacement = length(xyz_of(after[k]) - xyz_of(before[k]));
@@ -102,7 +103,7 @@ TEST(Serial, StaysWhereTheSurfaceIs) {
   const Seeds seeds{{{0, 0, 0}, {0.2f, 0, 0}}, {0, 0}, 0};
   Relaxation<Cpu, Strip> run(exec, {0.5f}, PlainSolver::serial, seeds, plain_table(1), 10);
   run.iterate(30);
-  for (const Float4& p : run.places()) EXPECT_LE(std::fabs(p.x), 0.5f);
+  for (const Float4& p : run.positions()) EXPECT_LE(std::fabs(p.x), 0.5f);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ struct Relaxation {
   }
   IterationResult control() { return control_population(exec, set, state, table, surface, parameters); }
 
-  std::vector<Float4> places() const { return set.position.download(0, std::size_t(set.count)); }
+  std::vector<Float4> positions() const { return set.position.download(0, std::size_t(set.count)); }
   std::vector<Float4> directions() const { return set.direction.download(0, std::size_t(set.count)); }
 };
 

@@ -64,7 +64,7 @@ struct TreeRun {
   }
 
   std::size_t count() const { return std::size_t(solver.particles().count); }
-  std::vector<Float4> places() const { return solver.particles().position.download(0, count()); }
+  std::vector<Float4> positions() const { return solver.particles().position.download(0, count()); }
   std::vector<Float4> directions() const { return solver.particles().direction.download(0, count()); }
   std::vector<std::uint32_t> interfaces() const { return solver.particles().interface.download(0, count()); }
 
@@ -114,7 +114,7 @@ void WithoutThetaTheWalkMissesNothing(Executor<Backend>& exec) {
   std::vector<Float4> gradient;
   std::vector<float> energy;
   run.forces(0, gradient, energy);
-  const auto exact = all_pairs(run.places(), run.directions(), run.interfaces());
+  const auto exact = all_pairs(run.positions(), run.directions(), run.interfaces());
   for (std::size_t i = 0; i < exact.size(); ++i) {
     ASSERT_NEAR(energy[i], exact[i].energy, 2e-4 * exact[i].energy + 2e-4) << i;
     const Vec3d g(gradient[i].x, gradient[i].y, gradient[i].z);
@@ -147,7 +147,7 @@ template <class Backend>
 void ErrorsGrowWithTheta(Executor<Backend>& exec) {
   // Dense: many particles within a support, so that there are nodes to stand for them.
   TreeRun<Backend> run(exec, graded_case(8000));
-  const auto exact = all_pairs(run.places(), run.directions(), run.interfaces());
+  const auto exact = all_pairs(run.positions(), run.directions(), run.interfaces());
   double before = 0;
   const struct {
     float theta;
@@ -197,7 +197,7 @@ template <class Backend>
 void NodesHoldTheirParticles(Executor<Backend>& exec) {
   const TreeCase c = graded_case(3000);
   TreeRun<Backend> run(exec, c);
-  const std::vector<Float4> position = run.places();
+  const std::vector<Float4> position = run.positions();
   const std::vector<std::uint32_t> interface = run.interfaces();
   ASSERT_EQ(position.size(), c.position.size());
   EXPECT_TRUE(std::is_sorted(interface.begin(), interface.end()));

@@ -70,7 +70,7 @@ struct TreeSolverRun {
   }
 
   std::size_t count() const { return std::size_t(solver.particles().count); }
-  std::vector<Float4> places() const { return solver.particles().position.download(0, count()); }
+  std::vector<Float4> positions() const { return solver.particles().position.download(0, count()); }
   std::vector<Float4> directions() const { return solver.particles().direction.download(0, count()); }
   std::vector<std::uint32_t> interfaces() const { return solver.particles().interface.download(0, count()); }
   std::vector<Float4> velocities() { return solver.velocity().download(0, count()); }
@@ -98,7 +98,7 @@ void AnIterationIsForcesAndAMove(Executor<Backend>& exec) {
     const auto bytes = [](const std::vector<Float4>& v) {
       return std::string(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(Float4));
     };
-    EXPECT_EQ(bytes(at_once.places()), bytes(apart.places())) << k;
+    EXPECT_EQ(bytes(at_once.positions()), bytes(apart.positions())) << k;
     EXPECT_EQ(bytes(at_once.directions()), bytes(apart.directions())) << k;
     EXPECT_NE(bytes(at_once.velocities()), std::string(500 * sizeof(Float4), 0)) << k;
   }
@@ -121,7 +121,7 @@ void APairStepsApartAsTheFormulaSays(Executor<Backend>& exec) {
       EXPECT_NEAR(energy, force.energy, 1e-4 * force.energy + 1e-6);
       const float newton = run.rule.step / (0.5f * force.stiffness) * std::fabs(force.gradient.x);
       const float expected = std::min(newton, longest);
-      std::vector<Float4> position = run.places();
+      std::vector<Float4> position = run.positions();
       if (position[0].x > position[1].x) std::swap(position[0], position[1]);
       EXPECT_NEAR(position[0].x, a.x - expected, 1e-4) << distance;
       EXPECT_NEAR(position[1].x, b.x + expected, 1e-4) << distance;
@@ -133,7 +133,7 @@ void APairStepsApartAsTheFormulaSays(Executor<Backend>& exec) {
     run.rule.step = 0.1f;
     run.seed(projector, {a, b}, {0, 0});
     run.step(projector, 2);
-    const std::vector<Float4> once = run.places(), first = run.velocities();
+    const std::vector<Float4> once = run.positions(), first = run.velocities();
     run.step(projector, 2);
     const float gap = std::fabs(once[0].x - once[1].x);
     const PairForce next = pair_force({0, 0, 0}, 1, {gap, 0, 0}, 1);
@@ -151,7 +151,7 @@ void NobodyStepsOverTheRim(Executor<Backend>& exec) {
     TreeSolverRun<Backend> run = one_surface(exec, 100);
     run.seed(projector, {pushed, pusher}, {0, 0});
     run.step(projector, 2);
-    const std::vector<Float4> position = run.places(), velocity = run.velocities();
+    const std::vector<Float4> position = run.positions(), velocity = run.velocities();
     const std::size_t k = position[0].x > position[1].x ? 0 : 1;
     const float expected = rim > 10.2f ? 0.3f : rim > 9.98f ? 0.075f : 0;
     EXPECT_NEAR(position[k].x, 9.9f + expected, 1e-5) << rim;
@@ -173,10 +173,10 @@ void RandomParticlesSpreadEvenlyOnASphere(Executor<Backend>& exec) {
   for (std::size_t k = 20; k < energy.size(); ++k) EXPECT_LT(energy[k], 1.005 * energy[k - 1]) << k;
   EXPECT_NEAR(energy.back(), hexagonal_energy, 0.05 * hexagonal_energy);
   EXPECT_EQ(run.count(), std::size_t(n));
-  const std::vector<double> nearest = spacings(run.places());
+  const std::vector<double> nearest = spacings(run.positions());
   EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0.7);
   EXPECT_GT(mean(nearest), 0.93);
-  const std::vector<Float4> position = run.places(), direction = run.directions();
+  const std::vector<Float4> position = run.positions(), direction = run.directions();
   for (std::size_t k = 0; k < position.size(); ++k) {
     ASSERT_NEAR(length(xyz_of(position[k])), 10, 1e-4) << k;
     ASSERT_LT(length(xyz_of(direction[k]) - normalized(xyz_of(position[k]))), 1e-5) << k;
@@ -208,7 +208,7 @@ void LowerOrdersAreFeltAndStay(Executor<Backend>& exec) {
   EXPECT_EQ(run.solver.movers(exec, run.view, 2), inside);
   const auto of_interface = [&](std::uint32_t which) {
     std::vector<Vec3f> result;
-    const std::vector<Float4> position = run.places();
+    const std::vector<Float4> position = run.positions();
     const std::vector<std::uint32_t> on = run.interfaces();
     for (std::size_t k = 0; k < position.size(); ++k)
       if (on[k] == which) result.push_back(xyz_of(position[k]));
@@ -228,7 +228,7 @@ void LowerOrdersAreFeltAndStay(Executor<Backend>& exec) {
   EXPECT_NEAR(energy, expected, 0.01 * expected);
   for (int k = 0; k < 120; ++k) run.step(projector, 2);
   EXPECT_EQ(of_interface(1), rim) << "order 1 is done";
-  const std::vector<double> nearest = spacings(run.places());
+  const std::vector<double> nearest = spacings(run.positions());
   EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0.65) << "from the rim, too";
 }
 
@@ -275,8 +275,8 @@ void BothProjectorsLandOnTheSurface(Executor<Backend>& exec) {
   ball.seed(exact, 1);
   for (int k = 0; k < 10; ++k) run.step(ball.projector(), 2), exact.step(ball.fields(), 2);
   double embedded = 0, fields = 0;
-  for (const Float4& p : run.places()) embedded = std::max(embedded, ball.off(p));
-  for (const Float4& p : exact.places()) fields = std::max(fields, ball.off(p));
+  for (const Float4& p : run.positions()) embedded = std::max(embedded, ball.off(p));
+  for (const Float4& p : exact.positions()) fields = std::max(fields, ball.off(p));
   EXPECT_LT(embedded, 0.03);
   EXPECT_LT(fields, 0.02);
   EXPECT_GT(embedded, 0);
@@ -306,7 +306,7 @@ void TheTreesPopulationSettlesFromAnyStart(Executor<Backend>& exec) {
     EXPECT_LE(last, std::int64_t(0.01 * ball.ideal()));
     EXPECT_EQ(std::int64_t(run.count()), std::int64_t(share * ball.ideal()) + added - deleted);
     EXPECT_TRUE(share == 1 || (share < 1 ? added > 3 * deleted : deleted > 3 * added)) << added << ' ' << deleted;
-    const std::vector<double> nearest = spacings(run.places());
+    const std::vector<double> nearest = spacings(run.positions());
     EXPECT_GT(*std::min_element(nearest.begin(), nearest.end()), 0.6);
   }
 }
@@ -319,14 +319,14 @@ void NewParticlesKeepTheirDistance(Executor<Backend>& exec) {
   TreeSolverRun<Backend> run = one_surface(exec, 4000);
   ball.seed(run, 0.4);
   for (int k = 0; k < 20; ++k) run.step(ball.fields(), 2);
-  const auto before = run.places();
+  const auto before = run.positions();
   const IterationResult changed = control_once(run, ball, PopulationRule(), 1);
   EXPECT_GT(changed.added, 20);
   EXPECT_EQ(changed.deleted, 0);
   ASSERT_EQ(run.count(), before.size() + std::size_t(changed.added));
   const auto same = [](const Float4& a, const Float4& b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   std::vector<Float4> born;
-  const std::vector<Float4> after = run.places(), velocity = run.velocities();
+  const std::vector<Float4> after = run.positions(), velocity = run.velocities();
   for (std::size_t k = 0; k < after.size(); ++k) {
     if (std::any_of(before.begin(), before.end(), [&](const Float4& p) { return same(p, after[k]); })) continue;
     born.push_back(after[k]);
@@ -345,10 +345,10 @@ void DeletedParticlesWereNoNeighbours(Executor<Backend>& exec) {
   const BallCase<Backend> ball(exec);
   TreeSolverRun<Backend> run = one_surface(exec, 4000);
   ball.seed(run, 2.5);
-  const auto before = run.places();
+  const auto before = run.positions();
   const IterationResult changed = control_once(run, ball, PopulationRule(), 1);
   EXPECT_GT(changed.deleted, 50);
-  const auto after = run.places();
+  const auto after = run.positions();
   std::vector<Float4> gone;
   for (const Float4& p : before)
     if (std::none_of(after.begin(), after.end(),

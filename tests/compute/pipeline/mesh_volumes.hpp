@@ -103,7 +103,7 @@ inline PlaceFunction ball(const Vec3d& centre, double radius) {
   return [=](const Vec3d& p) { return radius - length(p - centre); };
 }
 
-/// Where a place of the volume is in the fields' voxels, at a spacing of one.
+/// Where a position of the volume is in the fields' voxels, at a spacing of one.
 inline Vec3f in_fields(const Vec3d& position) { return Vec3f(position + Vec3d(volume_padding + 0.5)); }
 
 /// Directions spread evenly over the sphere (a spiral of golden angles).

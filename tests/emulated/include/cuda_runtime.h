@@ -28,11 +28,11 @@ extern Index thread_index, block_index, block_size, grid_size;
 /// Of the block that runs.
 unsigned char* shared_memory();
 
-/// Both end when all lanes (of the block, of the warp) have come to the same place in the code.
-void barrier(const void* place);
-unsigned ballot(const void* place, bool mine);
+/// Both end when all lanes (of the block, of the warp) have come to the same position in the code.
+void barrier(const void* position);
+unsigned ballot(const void* position, bool mine);
 
-/// Where its caller goes on: another value for each place in the code that it is called from.
+/// Where its caller goes on: another value for each position in the code that it is called from.
 [[gnu::noinline]] inline const void* here() { return __builtin_return_address(0); }
 
 }  // namespace emulated

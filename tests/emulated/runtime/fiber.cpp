@@ -64,7 +64,7 @@ void acquire(void*) {}
 #if defined(__SANITIZE_THREAD__)
   sanitizer_ = __tsan_create_fiber(0);
 #endif
-  // Not all at the same place of their stacks: these would share a few lines of the caches.
+  // Not all at the same position of their stacks: these would share a few lines of the caches.
   static std::size_t made = 0;
   const std::size_t colour = made++ % 64 * 17 * 64;
   constexpr int kept_registers = 6;

@@ -174,7 +174,7 @@ cudaError_t cudaMemsetAsync(void* to, int value, std::size_t bytes, cudaStream_t
 
 namespace nacre {
 
-// In place of compute/device/cuda_reservation.cpp, in smaller pieces: what touches memory that was not asked for,
+// In position of compute/device/cuda_reservation.cpp, in smaller pieces: what touches memory that was not asked for,
 // crashes.
 CudaReservation::CudaReservation(int device, std::size_t bytes) : device_(device), piece_bytes_(std::size_t(1) << 16) {
   const std::scoped_lock held(lock());

@@ -100,7 +100,7 @@ bool TeamRun::count_votes(int first) {
   unsigned votes = 0;
   for (int k = first; k < first + warp; ++k) {
     if (lane_[k].state != State::at_vote) return false;
-    if (lane_[k].position != lane_[first].position) broken("lanes of a warp vote at different places", kernel_);
+    if (lane_[k].position != lane_[first].position) broken("lanes of a warp vote at different positions", kernel_);
     votes |= unsigned(lane_[k].mine) << (k - first);
   }
   for (int k = first; k < first + warp; ++k) {

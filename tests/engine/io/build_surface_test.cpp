@@ -142,7 +142,7 @@ TEST(BuildSurface, BadValuesBecomeZeroAndAreCounted) {
   EXPECT_EQ(surface.find("short"), nullptr);
   ASSERT_EQ(warnings.size(), 2u);
   EXPECT_EQ(warnings[0], "test: array 'short' dropped: it has 2 entries where 3 belong.");
-  EXPECT_EQ(warnings[1], "test: array 'u' is NaN or infinite at 2 of 3 places, set to 0.");
+  EXPECT_EQ(warnings[1], "test: array 'u' is NaN or infinite at 2 of 3 positions, set to 0.");
 }
 
 TEST(BuildSurface, WhatOnlyColoursKeepsItsGaps) {
@@ -157,7 +157,7 @@ TEST(BuildSurface, WhatOnlyColoursKeepsItsGaps) {
   EXPECT_TRUE(std::isnan(values[0]) && std::isnan(values[2]));
   EXPECT_EQ(values[1], 2);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0], "test: array 'p' is NaN or infinite at 2 of 3 places, drawn in the colour of NaN.");
+  EXPECT_EQ(warnings[0], "test: array 'p' is NaN or infinite at 2 of 3 positions, drawn in the colour of NaN.");
 }
 
 TEST(BuildSurface, NothingLeftIsAnErrorThatSaysWhy) {

@@ -26,7 +26,7 @@ fs::path write(const TemporaryFolder& folder, const std::string& name, const std
   return folder / name;
 }
 
-/// A shell script in the child's place, for the life of this object.
+/// A shell script in the child's position, for the life of this object.
 class FakeChild {
  public:
   FakeChild(const TemporaryFolder& folder, const std::string& script) {
@@ -39,9 +39,9 @@ class FakeChild {
 
 std::string dicom_like() { return std::string(128, '\0') + "DICM and nothing else"; }
 
-std::string error_of(const fs::path& place) {
+std::string error_of(const fs::path& position) {
   try {
-    read_volume(place);
+    read_volume(position);
   } catch (const Error& error) {
     return error.what();
   }

@@ -163,6 +163,8 @@ TEST_F(LabelFile, HasTheColours) {
   const LabelTable of_freesurfer =
       read_label_table(write("LUT.txt", "17 Left-Hippocampus 255 51 0 0\n4 area 9 0 0 255\n"));
   EXPECT_EQ(of_freesurfer.colours.at(17), (std::array{1.0f, 0.2f, 0.0f}));
+  const LabelTable of_three_numbers = read_label_table(write("a.txt", "1 liver 0 255 51\n2 upper left lung 51 0 0\n"));
+  EXPECT_EQ(of_three_numbers.colours, (LabelColours{{1, {0, 1, 0.2f}}, {2, {0.2f, 0, 0}}}));
   EXPECT_TRUE(read_label_table(write("a.txt", "2 left lung\n")).colours.empty());
   EXPECT_TRUE(read_label_table(write("a.txt", "2 lung 300 0 0\n")).colours.empty());  // no byte
 }

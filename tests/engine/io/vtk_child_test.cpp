@@ -21,7 +21,7 @@ using test::TemporaryFolder;
 #define NEEDS_VTK() \
   if (!vtk_child_available()) GTEST_SKIP() << "nacre-vtk-import was not built (VTK not found)"
 
-/// Puts a shell script in the child's place.
+/// Puts a shell script in the child's position.
 class FakeChild {
  public:
   FakeChild(const TemporaryFolder& folder, const std::string& script) {

@@ -162,6 +162,12 @@ TEST_F(VtkXml, DamagedArraysAreErrors) {
   EXPECT_TRUE(contains(failure("lie.vtp", lie), "is not a count"));
   lie.replace(lie.find("9000000000000"), 13, "900000000");
   EXPECT_TRUE(contains(failure("lie.vtp", lie), "promises 900000000 points"));
+  Writer plain({Encoding::Where::appended_base64});
+  std::string beyond = mixed_vtp(plain);
+  const std::size_t data = beyond.find('_') + 1, end = beyond.find("</AppendedData>");
+  const std::size_t first = beyond.find("offset=\"0\"");
+  beyond.replace(first, 10, "offset=\"" + std::to_string(end - data) + "\"");
+  EXPECT_TRUE(contains(failure("beyond.vtp", beyond), "lies beyond its end"));
 }
 
 TEST_F(VtkXml, SizesOfPackedBlocksThatLieAreErrors) {

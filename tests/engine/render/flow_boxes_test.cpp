@@ -32,7 +32,7 @@ class Boxes : public test::Offscreen {
     return {codes_.begin() + long(boxes_.level_start[l]), codes_.begin() + long(boxes_.level_start[l + 1])};
   }
 
-  /// Every place of the surface is in a box of the finest level.
+  /// Every position of the surface is in a box of the finest level.
   void expect_cover() {
     const std::vector<std::uint64_t> finest = level(levels() - 1);
     const std::set<std::uint64_t> known(finest.begin(), finest.end());

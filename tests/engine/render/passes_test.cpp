@@ -230,9 +230,10 @@ TEST_F(Pass, BoxesOfMortonCodesLieWhereTheCodesSay) {
 }
 
 TEST_F(Pass, ParticlesAreDiscsOnTheirSurface) {
-  const std::vector<std::array<float, 4>> places{{-0.5f, 0, 0, 1}, {0.5f, 0, 0, 1}};
+  const std::vector<std::array<float, 4>> positions{{-0.5f, 0, 0, 1}, {0.5f, 0, 0, 1}};
   const std::vector<std::array<float, 4>> headings{{0, -1, 0, 0}, {1, 0, 0, 1}};  // facing us, and from the side
-  const Buffer place = Buffer::of<std::array<float, 4>>(places), heading = Buffer::of<std::array<float, 4>>(headings);
+  const Buffer position = Buffer::of<std::array<float, 4>>(positions),
+               heading = Buffer::of<std::array<float, 4>>(headings);
   ParticlePass pass;
   pass.set_map(colormap("sea").table);
   View view = front();
@@ -241,7 +242,7 @@ TEST_F(Pass, ParticlesAreDiscsOnTheirSurface) {
     ParticleStyle look;
     look.size = 0.2f;
     look.face_camera = face;
-    return picture(view, [&] { pass.draw(view, world, place, heading, first, count, look); });
+    return picture(view, [&] { pass.draw(view, world, position, heading, first, count, look); });
   };
   const double disc = 3.14159 * 10 * 10 / 10000;  // radius 0.2 is 10 pixels
   EXPECT_NEAR(covered(draw(0, 1, false)), disc, 0.1 * disc);
@@ -328,7 +329,7 @@ TEST_F(Pass, ASliceLiesWhereItIsPutAndIsNotCut) {
   const std::uint8_t red_and_nothing[] = {255, 0, 0, 255, 0, 0, 0, 0};
   std::copy_n(red_and_nothing, 8, image.pixels.begin());
   pass.set_image(image, false);
-  pass.set_place({-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1});
+  pass.set_frame({-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1});
   view.clip = ClipPlane{{1, 0, 0}, 0.9};
   const Image drawn = picture(view, [&] { pass.draw(view); });
   EXPECT_NEAR(covered(drawn), 0.125, 0.01);

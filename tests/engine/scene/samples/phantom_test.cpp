@@ -97,7 +97,7 @@ TEST_P(AnatomyTest, HasTheSizeAndTheLabels) {
 }
 
 // Where particles are 1 voxel apart there are 2 / sqrt(3) = 1.155 of them per unit of area, and up to four times as
-// many in thin and curved places.
+// many in thin and curved positions.
 TEST_P(AnatomyTest, TheAreaIsThatOfTheSourcesParticles) {
   const double area = interface_area(make_phantom(GetParam().name));
   EXPECT_LT(area * 1.155, GetParam().particles * 1.05);

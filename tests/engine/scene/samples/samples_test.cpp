@@ -122,7 +122,7 @@ void expect_worthwhile_speeds(const Surface& surface) {
   std::sort(speeds.begin(), speeds.end());
   const double fast = speeds[speeds.size() * 98 / 100];
   EXPECT_GT(fast, 0.5);
-  EXPECT_GT(speeds[speeds.size() / 10], 0.1 * fast);  // few stagnant places
+  EXPECT_GT(speeds[speeds.size() / 10], 0.1 * fast);  // few stagnant positions
   EXPECT_LT(speeds.back(), 3 * fast);                 // no spikes
 }
 
@@ -228,9 +228,9 @@ TEST(SamplePulse, MovesWithPeriodOneAndItsVelocityHasThatOfTheSurface) {
   const Surface a = series.load(0), b = series.load(1);
   EXPECT_EQ(a.triangles, b.triangles);
   EXPECT_GT(length(a.points[0] - b.points[0]), 1e-3);
-  const auto& place = sample_definition("pulse").place;
+  const auto& position = sample_definition("pulse").position;
   const Vec3d p(0.6, 0, 0.8);
-  EXPECT_LT(length(place(p, 0.2) - place(p, 1.2)), 1e-12);
+  EXPECT_LT(length(position(p, 0.2) - position(p, 1.2)), 1e-12);
   EXPECT_EQ(check_mesh(b.points, b.triangles).open_half_edges, 0u);
 }
 

@@ -68,7 +68,7 @@ TEST(BetweenCameras, OppositeOnesTurnByHalfACircle) {
     }
     EXPECT_NEAR(turned, pi, 1e-4);
   }
-  // The same place, the other way up.
+  // The same position, the other way up.
   const Camera half = between(camera_at({2, 0, 0}), camera_at({2, 0, 0}, {0, 0, -1}), 0.5);
   expect_near(half.eye, {2, 0, 0}, 1e-9);
   EXPECT_NEAR(std::fabs(dot(half.right(), Vec3d(0, 0, 1))), 1, 1e-9);

@@ -77,10 +77,10 @@ TEST(Ranges, ALogarithmicScaleBeginsAboveZero) {
   const ColourRange range = color_range(settings, hundred());
   EXPECT_EQ(range.low, 1);
   EXPECT_EQ(range.high, 100);
-  EXPECT_NEAR(range.place(10), 0.5 * (range.bottom() + range.top()), 1e-6);
-  EXPECT_LT(range.place(0), range.bottom());
-  EXPECT_TRUE(std::isfinite(range.place(-3)));
-  EXPECT_TRUE(std::isnan(range.place(std::nanf(""))));
+  EXPECT_NEAR(range.on_axis(10), 0.5 * (range.bottom() + range.top()), 1e-6);
+  EXPECT_LT(range.on_axis(0), range.bottom());
+  EXPECT_TRUE(std::isfinite(range.on_axis(-3)));
+  EXPECT_TRUE(std::isnan(range.on_axis(std::nanf(""))));
   EXPECT_THROW(color_range(settings, ends(-3, -1)), Error) << "nothing is above 0";
   settings.color_range = "-5:-1";
   EXPECT_THROW(check_color_range(settings), Error);

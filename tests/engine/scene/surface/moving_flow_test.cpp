@@ -66,8 +66,8 @@ TEST_P(MovingFlow, WhatFlowsOnASurfaceThatTurnsFlowsAsIfItStoodStill) {
 
 TEST_P(MovingFlow, ASphereThatBreathesKeepsItsTextureAndTheSizeOfItsCells) {
   if (std::string(GetParam()) == "thesis") GTEST_SKIP() << "there, particles at rest leave no texture";
-  const auto place = [](const Vec3d& p, double t) { return p * (1 + 0.8 * t); };
-  const auto at = [&](double t) { return moved(icosphere(4), t, place); };
+  const auto position = [](const Vec3d& p, double t) { return p * (1 + 0.8 * t); };
+  const auto at = [&](double t) { return moved(icosphere(4), t, position); };
   Settings settings = texture_at_rest();
   settings.surface_velocity = "wall_motion";
   MovingRun run(moving_series(8, at), GetParam(), settings, 8, 64);
@@ -128,14 +128,14 @@ Surface merging(double t) {
 
 /// Around the poles that face away from each other, where the surface moves along its normal.
 std::vector<Vec3d> poles(double t) {
-  std::vector<Vec3d> places;
+  std::vector<Vec3d> positions;
   for (const double side : {-1.0, 1.0})
     for (int i = -8; i <= 8; ++i)
       for (int j = -8; j <= 8; ++j) {
         const Vec3d d = normalized(Vec3d(side, 0.03 * i, 0.03 * j));
-        places.push_back(Vec3d(side * (0.95 - 0.5 * t), 0, 0) + d * 0.7);
+        positions.push_back(Vec3d(side * (0.95 - 0.5 * t), 0, 0) + d * 0.7);
       }
-  return places;
+  return positions;
 }
 
 TEST_P(MovingFlow, TwoBallsThatMergeTakeTheirTextureAlong) {
@@ -190,8 +190,8 @@ TEST_P(MovingFlow, AShapeThatCannotBeEmbeddedLeavesTheFlowAsItWas) {
 }
 
 TEST_P(MovingFlow, PicturesShowTheSurfaceWhereItIs) {
-  const auto place = [](const Vec3d& p, double t) { return p + Vec3d(3 * t, 0, 0); };
-  const auto at = [&](double t) { return moved(icosphere(3), t, place); };
+  const auto position = [](const Vec3d& p, double t) { return p + Vec3d(3 * t, 0, 0); };
+  const auto at = [&](double t) { return moved(icosphere(3), t, position); };
   MovingRun run(moving_series(4, at), GetParam(), Settings(), 4, 48);
   RenderOptions options;
   options.width = options.height = 64;

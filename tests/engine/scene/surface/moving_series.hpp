@@ -28,15 +28,15 @@ inline SurfaceSeries moving_series(std::size_t n, std::function<Surface(double t
   return series;
 }
 
-/// A surface with its points where `place` puts them, and with `velocity` on them: that of the points and `along`.
-inline Surface moved(Surface surface, double t, const std::function<Vec3d(const Vec3d&, double)>& place,
+/// A surface with its points where `position` puts them, and with `velocity` on them: that of the points and `along`.
+inline Surface moved(Surface surface, double t, const std::function<Vec3d(const Vec3d&, double)>& position,
                      const std::function<Vec3d(const Vec3d&, double)>& along = {}) {
   constexpr double d = 1e-6;
   PointArray velocity{"velocity", 3, {}}, own{"wall_motion", 3, {}};
   for (Vec3d& p : surface.points) {
-    const Vec3d wall = (place(p, t + d) - place(p, t - d)) / (2 * d);
+    const Vec3d wall = (position(p, t + d) - position(p, t - d)) / (2 * d);
     const Vec3d v = along ? wall + along(p, t) : wall;
-    p = place(p, t);
+    p = position(p, t);
     for (int axis = 0; axis < 3; ++axis) {
       velocity.values.push_back(float(v[axis]));
       own.values.push_back(float(wall[axis]));
@@ -81,10 +81,10 @@ struct MovingRun {
   /// Shown at the middles of the triangles as they are now.
   std::vector<float> shown_on_triangles() {
     const std::vector<Vec3d> points = input->points(pipeline->flow().time());
-    std::vector<Vec3d> places;
+    std::vector<Vec3d> positions;
     for (const Triangle& t : input->surface().triangles)
-      places.push_back((points[t.a] + points[t.b] + points[t.c]) / 3.0);
-    return pipeline->flow().sample_shown(places);
+      positions.push_back((points[t.a] + points[t.b] + points[t.c]) / 3.0);
+    return pipeline->flow().sample_shown(positions);
   }
 
   bool warned_of(const std::string& words) const {

@@ -129,8 +129,8 @@ TEST(RelativeVectors, VelocitiesAreWallShearNeverIs) {
 }
 
 TEST(RelativeVectors, TheMotionOfTheSurfaceIsTakenAway) {
-  const auto place = [](const Vec3d& p, double t) { return p * (1 + 0.2 * t * t) + Vec3d(t, 0, 0); };
-  SurfaceSeries series = examine_motion(moving_series(20, [&](double t) { return moved(icosphere(2), t, place); }),
+  const auto position = [](const Vec3d& p, double t) { return p * (1 + 0.2 * t * t) + Vec3d(t, 0, 0); };
+  SurfaceSeries series = examine_motion(moving_series(20, [&](double t) { return moved(icosphere(2), t, position); }),
                                         [](const std::string&) {});
   PreparedSurface surface = prepare(series.load(0));
   MotionChoice motion;
@@ -141,6 +141,20 @@ TEST(RelativeVectors, TheMotionOfTheSurfaceIsTakenAway) {
     input.vectors(t, v);
     for (const Vec3f& each : v) ASSERT_LT(length(each), 0.01f) << "exact for a parabola at a step";
   }
+}
+
+TEST(VectorsInMotion, ColoursHaveTheRangeOfAllSteps) {
+  SurfaceSeries series = examine_motion(moving_series(4,
+                                                      [&](double t) {
+                                                        Surface s = moved(icosphere(2), t, still);
+                                                        std::vector<float> values(s.points.size(), float(8 * t));
+                                                        s.arrays.push_back({"number", 1, std::move(values)});
+                                                        return s;
+                                                      }),
+                                        [](const std::string&) {});
+  const VectorsInTime input(series, prepare(series.load(0)), "velocity", "number");
+  EXPECT_EQ(input.color_spread().low, 0);
+  EXPECT_EQ(input.color_spread().high, 8);
 }
 
 TEST(Period, TimeComesRoundWithoutAJump) {

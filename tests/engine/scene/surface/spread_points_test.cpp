@@ -1,4 +1,4 @@
-// Nacre: places for arrows: even, by area, the same for one seed.
+// Nacre: positions for arrows: even, by area, the same for one seed.
 #include "engine/scene/surface/spread_points.hpp"
 
 #include <gtest/gtest.h>
@@ -11,22 +11,22 @@
 namespace nacre {
 namespace {
 
-Vec3d point_at(const Surface& s, const SurfacePoint& place) {
-  const Triangle& t = s.triangles[place.triangle];
-  return s.points[t.a] * double(place.weights.x) + s.points[t.b] * double(place.weights.y) +
-         s.points[t.c] * double(place.weights.z);
+Vec3d point_at(const Surface& s, const SurfacePoint& position) {
+  const Triangle& t = s.triangles[position.triangle];
+  return s.points[t.a] * double(position.weights.x) + s.points[t.b] * double(position.weights.y) +
+         s.points[t.c] * double(position.weights.z);
 }
 
 TEST(SpreadPlaces, KeepTheirDistance) {
   const Surface sphere = make_sample("sphere", 24).load(0);
   const int count = 400;
-  const auto places = spread_points(sphere.points, sphere.triangles, count, 1);
-  ASSERT_EQ(places.size(), std::size_t(count));
+  const auto positions = spread_points(sphere.points, sphere.triangles, count, 1);
+  ASSERT_EQ(positions.size(), std::size_t(count));
   const double room = std::sqrt(surface_area(sphere.points, sphere.triangles) / count);
   double nearest = 1e300;
-  for (std::size_t a = 0; a < places.size(); ++a)
+  for (std::size_t a = 0; a < positions.size(); ++a)
     for (std::size_t b = 0; b < a; ++b)
-      nearest = std::min(nearest, length(point_at(sphere, places[a]) - point_at(sphere, places[b])));
+      nearest = std::min(nearest, length(point_at(sphere, positions[a]) - point_at(sphere, positions[b])));
   EXPECT_GT(nearest, 0.5 * room);  // uniform ones would be at 0.03 of it
 }
 
@@ -41,9 +41,10 @@ TEST(SpreadPlaces, CountByAreaNotByTriangles) {
     triangles.push_back({n, n + 1, n + 2});
     triangles.push_back({n + 2, n + 1, n + 3});
   }
-  const auto places = spread_points(points, triangles, 500, 3);
-  ASSERT_EQ(places.size(), 500u);
-  const auto large = std::count_if(places.begin(), places.end(), [](const SurfacePoint& p) { return p.triangle == 0; });
+  const auto positions = spread_points(points, triangles, 500, 3);
+  ASSERT_EQ(positions.size(), 500u);
+  const auto large =
+      std::count_if(positions.begin(), positions.end(), [](const SurfacePoint& p) { return p.triangle == 0; });
   EXPECT_NEAR(double(large), 500 * 2 / 3.0, 25);
 }
 

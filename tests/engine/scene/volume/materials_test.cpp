@@ -70,7 +70,7 @@ TEST(LabelMaterials, Merging) {
   options.merge = {{4, 9}};
   EXPECT_EQ(materials_of(gaps(), options).labels, (Labels{0, 9, 200}));
   EXPECT_EQ(materials_of(gaps(), options).material, (Materials{0, 1, 1, 1, 0, 2, 1, 1}));
-  options.merge = {{4, 9}, {9, 4}};  // all at once: they change places
+  options.merge = {{4, 9}, {9, 4}};  // all at once: they change positions
   EXPECT_EQ(materials_of(gaps(), options).material, (Materials{0, 2, 2, 1, 0, 3, 1, 1}));
   options.merge = {{200, 0}};
   EXPECT_EQ(materials_of(gaps(), options).labels, (Labels{0, 4, 9}));
