@@ -55,9 +55,10 @@ TEST_F(View, PictureIsThatOfTheHeadlessCommand) {
   const fs::path view = folder / "view.png", flow = folder / "flow.png";
   const Words common = {"--sample", "sphere", "--detail", "24",      "--resolution", "96",
                         "--steps",  "3",      "--size",   "320x240", "--quiet"};
-  for (const Words& more : {Words{}, Words{"--set", "legend=false", "--set", "time_stamp=false"},
-                            Words{"--background", "#102030"}, Words{"--color-range", "-1:4", "--colormap", "gray"},
-                            Words{"--color", "none", "--background", "transparent"}, Words{"--method", "octree"}, Words{"--topology", "--streamlines"}}) {
+  for (const Words& more :
+       {Words{}, Words{"--set", "legend=false", "--set", "time_stamp=false"}, Words{"--background", "#102030"},
+        Words{"--color-range", "-1:4", "--colormap", "gray"}, Words{"--color", "none", "--background", "transparent"},
+        Words{"--method", "octree"}, Words{"--topology", "--streamlines"}}) {
     ASSERT_EQ(nacre(Words{"view", "--offscreen", "--image", view.string()} + common + more).status, 0);
     ASSERT_EQ(nacre(Words{"flow", "--image", flow.string()} + common + more).status, 0);
     const Image a = read_png(view), b = read_png(flow);
