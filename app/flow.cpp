@@ -18,6 +18,7 @@
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/run/flow_maps.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
 #include "engine/run/flow_skeleton.hpp"
@@ -38,7 +39,7 @@ using nlohmann::json;
 struct FlowOptions {
   CommonOptions common;
   InputOptions input;
-  std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out;
+  std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out, ftle_out;
   std::string chunk;  ///< I/N: this part of the steps only
   int lead_in = 256;  ///< steps before it
 };
@@ -72,10 +73,12 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   check_output(options.haemodynamics, "--haemodynamics", ".vtp");
   check_output(options.topology_out, "--topology-out", ".vtp");
   check_output(options.streamlines_out, "--streamlines-out", ".vtp");
+  check_output(options.ftle_out, "--ftle-out", ".vtp");
   check_output(options.common.report, "--report", "");
   check_output(options.common.save_session, "--save-session", "");
-  for (const std::string& output : {options.image, options.frames, options.video, options.out, options.haemodynamics,
-                                    options.topology_out, options.streamlines_out, options.common.report})
+  for (const std::string& output :
+       {options.image, options.frames, options.video, options.out, options.haemodynamics, options.topology_out,
+        options.streamlines_out, options.ftle_out, options.common.report})
     if (!output.empty()) return;
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
@@ -85,13 +88,17 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   SurfaceSeries series = session.sample.empty()
                              ? open_surface(session.inputs, session.settings.patch)
                              : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
+  Settings settings = session.settings;
   FlowLog log;
+  log.read = [&](const Surface& first) {  // these colours are computed afterwards
+    if (is_ftle(settings.color) && !first.find(settings.color)) settings.color = "none";
+  };
   log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
   log.note = [&](const std::string& sentence) { say(options.common, sentence); };
   log.chosen = [&](const VectorChoice& choice) {
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
-  return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
+  return make_flow_input(std::move(series), settings, log, &interrupt_flag());
 }
 
 /// What the knob `resolution` leaves to the picture.
@@ -186,7 +193,8 @@ Origin flow_origin(const FlowOptions& options, const Session& session, const std
                       {"out", options.out},
                       {"haemodynamics", options.haemodynamics},
                       {"topology-out", options.topology_out},
-                      {"streamlines-out", options.streamlines_out}});
+                      {"streamlines-out", options.streamlines_out},
+                      {"ftle-out", options.ftle_out}});
   return origin;
 }
 
@@ -221,6 +229,22 @@ void write_haemodynamics(const std::string& file, VectorsInTime& input, const Or
   const PreparedSurface& surface = input.surface();
   write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays, std::nullopt, {},
             xml_origin(origin_of_output(origin, "haemodynamics")));
+}
+
+/// Where it is asked for, as a file or as colours. Returns its part of the report.
+json make_flow_map(const FlowOptions& options, VectorsInTime& input, const FlowSpan& span, const Settings& settings,
+                   const Origin& origin, std::vector<std::string>& outputs) {
+  const bool colours = is_ftle(settings.color) && !input.colored();
+  const bool writes = !options.ftle_out.empty() && is_first_process();
+  if (!colours && !writes) return json::object();
+  SurfaceFlowMap map = surface_flow_map(input, span, settings.ftle_time, &interrupt_flag());
+  if (writes) {
+    write_flow_map(options.ftle_out, map, origin_of_output(origin, "ftle-out"));
+    outputs.push_back(options.ftle_out);
+  }
+  const json report = flow_map_report(map);
+  if (colours) input.show_scalar(settings.color, std::move(map.ftle));
+  return {{"flow_map", report}};
 }
 
 double median(std::vector<double> seconds) {
@@ -305,6 +329,10 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
   if (ranks) require_same_input(*ranks, input, span.start, knob_values(settings).dump());
+  const json map_report = [&] {
+    StageTimers::Scope scope(pipeline->timers(), "flow_map");
+    return make_flow_map(options, input, span, settings, origin, first_outputs);
+  }();
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 
@@ -348,6 +376,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
                     steps.first);
     if (ranks) report["processes"] = processes_report(*ranks, *pipeline, report, seconds);
     report.update(lines);
+    report.update(map_report);
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     if (is_first_process()) write_report(options.common, std::move(report), outputs, origin);
   }
@@ -371,6 +400,8 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
                       "write critical points and separatrices of the last frame as .vtp");
   command->add_option("--streamlines-out", options->streamlines_out,
                       "write evenly spaced streamlines of the last frame as .vtp");
+  command->add_option("--ftle-out", options->ftle_out,
+                      "write Lyapunov exponents (FTLE) and the flow map over `ftle_time` as .vtp, on the points");
   command->add_option("--chunk", options->chunk,
                       "I/N: only part I of N of the steps, with the frames of the whole run (`nacre join` joins them)");
   command

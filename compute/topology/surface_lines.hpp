@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compute/topology/critical_points.hpp"
+#include "compute/topology/surface_walk.hpp"
 
 namespace nacre {
 
@@ -19,17 +20,14 @@ enum class LineEnd {
   circling  ///< round and round, or longer than `longest`
 };
 
-struct SurfaceLine {
-  std::vector<Vec3d> points;             ///< world units, on the surface: edges are crossed at a point of the line
-  std::vector<std::uint32_t> triangles;  ///< of each point
+struct SurfaceLine : SurfacePath {
   LineEnd end = LineEnd::still;
   std::uint32_t from = none, to = none;  ///< critical points that it joins
   bool forward = true;                   ///< drawn with the flow
 };
 
-/// Follows one field. The step is the midpoint rule, 0.4 edges long; it unfolds the triangles that it crosses into a
-/// plane, as K. Polthier and M. Schmies (Straightest geodesics on polyhedral surfaces, 1998) do. The field and the
-/// points must outlive it.
+/// Follows one field. The step is the midpoint rule, 0.4 edges long, straight over the triangles (SurfaceWalk). The
+/// field and the points must outlive it.
 class LineTracer {
  public:
   /// Lines end at `points`; `longest`, world units: what is longer circles.
@@ -53,20 +51,11 @@ class LineTracer {
   SurfaceLine leave(std::uint32_t saddle, const Vec3d& axis, bool forward) const;
 
  private:
-  struct At {
-    std::uint32_t triangle;
-    Vec2d x, along;  ///< in the triangle's frame, from its first corner; unit direction
-  };
-  bool walk(At& at, double distance, SurfaceLine* path) const;
-  std::array<Vec2d, 3> corners(std::uint32_t t) const;
-  Vec3d in_space(std::uint32_t t, const Vec2d& x) const;
-  Vec2d direction(const At& at, bool forward) const;
-  double step_in(std::uint32_t t) const;
-  void follow(At at, bool forward, SurfaceLine& line, const MayGoOn& may) const;
-  Vec2d in_plane(std::uint32_t t, const Vec3d& p) const;
-  Vec3d weights(std::uint32_t t, const Vec2d& x) const;
+  Vec2d direction(const SurfacePosition& at, bool forward) const;
+  void follow(SurfacePosition at, bool forward, SurfaceLine& line, const MayGoOn& may) const;
 
   const TangentField& field_;
+  SurfaceWalk walk_;
   std::span<const CriticalPoint> points_;
   double longest_;
   std::vector<std::uint32_t> near_;  ///< of each triangle: the critical point in it or beside it

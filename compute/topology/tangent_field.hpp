@@ -7,13 +7,9 @@
 #include <vector>
 
 #include "compute/math/vec.hpp"
+#include "compute/topology/plane.hpp"
 
 namespace nacre {
-
-/// Two numbers in a tangent plane.
-struct Vec2d {
-  double x = 0, y = 0;
-};
 
 /// The tangential part of one vector per point. Half-edge h = 3 t + k goes from corner k of triangle t to corner k + 1;
 /// corners have the same numbers. A *vertex* is a fan of triangles around a point that edges of exactly two triangles,

@@ -7,29 +7,12 @@
 #include <optional>
 
 #include "engine/io/vtp_writer.hpp"
-#include "engine/scene/surface/winding.hpp"
+#include "engine/scene/surface/welded.hpp"
 
 namespace nacre {
 namespace {
 
 constexpr double least_strength = 1;  // neighbours come nearer by a factor of e, or part by as much
-
-/// The triangles with one number for all points at one position; each sheet by itself.
-std::vector<Triangle> welded(const PreparedSurface& surface) {
-  const std::vector<std::uint32_t> same = first_at_position(surface.points);
-  std::vector<std::uint32_t> second(surface.points.size(), none);  // the first of the second sheet, by position
-  std::vector<Triangle> triangles = surface.triangles;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const bool on_second = !surface.second_sheet.empty() && surface.second_sheet[t] != 0;
-    const auto number = [&](std::uint32_t point) {
-      if (!on_second) return same[point];
-      std::uint32_t& first = second[same[point]];
-      return first = first == none ? point : first;
-    };
-    triangles[t] = {number(triangles[t].a), number(triangles[t].b), number(triangles[t].c)};
-  }
-  return triangles;
-}
 
 /// The tangential vectors at a time, on the shape that the surface has then.
 class FieldAtTime {
@@ -38,7 +21,7 @@ class FieldAtTime {
     shape = input.moves() ? input.shape(t) : input.surface();
     std::vector<Vec3f> vectors(shape.points.size());
     input.vectors(t, vectors);
-    triangles_ = welded(shape);
+    triangles_ = welded_triangles(shape);
     field_.emplace(shape.points, triangles_, vectors);
   }
   const TangentField& operator()() const { return *field_; }

@@ -34,7 +34,7 @@ class Input : public AppTest {
   Outcome last_;
 };
 
-const Words small = {"--resolution", "48", "--steps", "2", "--size", "64x48"};
+const Words small_input = {"--resolution", "48", "--steps", "2", "--size", "64x48"};
 
 class EverySample : public AppTest, public ::testing::WithParamInterface<const char*> {};
 
@@ -55,20 +55,20 @@ TEST_F(Input, MeshesWithoutVectorsTakeAnalyticOnes) {
   surface.arrays.clear();
   write_surface(path("o.off"), surface);
   for (const char* field : {"@swirl", "@rotation"}) {
-    const json report = flow(small + Words{path("o.off"), "--vectors", field});
+    const json report = flow(small_input + Words{path("o.off"), "--vectors", field});
     EXPECT_EQ(report["input"]["vectors"], field);
     EXPECT_EQ(report["input"]["zero_share"].get<double>() < 0.9, true);
   }
-  expect_failure(nacre(Words{"flow", path("o.off"), "--quiet"} + small), 1, {"no vectors", "--vectors @swirl"});
+  expect_failure(nacre(Words{"flow", path("o.off"), "--quiet"} + small_input), 1, {"no vectors", "--vectors @swirl"});
 }
 
 TEST_F(Input, SteadyInputIsUnsteadyInputWithOneStep) {
   write_surface(path("o.vtp"), octahedron(2));
-  const json report = flow(small + Words{path("o.vtp"), "--frames", path("f")});
+  const json report = flow(small_input + Words{path("o.vtp"), "--frames", path("f")});
   EXPECT_EQ(report["input"]["time"], json({0.0, 0.0}));
   EXPECT_NE(content("f/frame_0000.png"), content("f/frame_0001.png")) << "the texture still moves";
   // Nothing to stamp: the time stands still.
-  flow(small + Words{path("o.vtp"), "--frames", path("g"), "--no-time"});
+  flow(small_input + Words{path("o.vtp"), "--frames", path("g"), "--no-time"});
   EXPECT_EQ(content("f/frame_0001.png"), content("g/frame_0001.png"));
 }
 
@@ -78,12 +78,12 @@ TEST_F(Input, NumberedFilesAreOneSeries) {
     files.push_back(path("step_" + std::to_string(k) + ".vtp"));
     write_surface(files.back(), octahedron(float(k + 1)), 0.5 * k);
   }
-  EXPECT_EQ(flow(small + files)["input"]["time"], json({0.0, 1.0}));
+  EXPECT_EQ(flow(small_input + files)["input"]["time"], json({0.0, 1.0}));
 }
 
 TEST_F(Input, APartOfTheTime) {
   for (int k = 0; k < 3; ++k) write_surface(path("s" + std::to_string(k) + ".vtp"), octahedron(float(k + 1)), k);
-  const Words files = small + Words{path("s0.vtp"), path("s1.vtp"), path("s2.vtp")};
+  const Words files = small_input + Words{path("s0.vtp"), path("s1.vtp"), path("s2.vtp")};
   EXPECT_EQ(flow(files + Words{"--time", "0.5:1.5"})["input"]["time"], json({0.5, 1.5}));
   const auto with = [&](const std::string& time) { return nacre(Words{"flow", "--quiet", "--time", time} + files); };
   expect_failure(with("5:6"), 1, {"5:6", "0:2"});
@@ -99,7 +99,7 @@ TEST_F(Input, StepsOfOtherTrianglesAreFollowed) {
   other.triangles.pop_back();
   write_surface(path("s0.vtp"), octahedron(1), 0);
   write_surface(path("s1.vtp"), other, 1);
-  const Outcome run = nacre(Words{"flow", path("s0.vtp"), path("s1.vtp"), "--image", path("a.png")} + small);
+  const Outcome run = nacre(Words{"flow", path("s0.vtp"), path("s1.vtp"), "--image", path("a.png")} + small_input);
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "triangles of the surface change 1 times")) << run.err;
 }
@@ -109,14 +109,14 @@ TEST_F(Input, AnArrayThatALaterStepLacksIsNamed) {
   bare.arrays.clear();
   write_surface(path("s0.vtp"), octahedron(1), 0);
   write_surface(path("s1.vtp"), bare, 1);
-  expect_failure(nacre(Words{"flow", "--quiet", path("s0.vtp"), path("s1.vtp")} + small), 1, {"velocity"});
+  expect_failure(nacre(Words{"flow", "--quiet", path("s0.vtp"), path("s1.vtp")} + small_input), 1, {"velocity"});
 }
 
 TEST_F(Input, ColourByAnArray) {
   Surface surface = octahedron(1);
   surface.arrays.push_back({"pressure", 1, {1, 2, 3, 4, 5, 6}});
   write_surface(path("o.vtp"), surface);
-  const Words words = small + Words{path("o.vtp"), "--no-legend", "--image", path("a.png")};
+  const Words words = small_input + Words{path("o.vtp"), "--no-legend", "--image", path("a.png")};
   flow(words + Words{"--color", "pressure"});
   const std::string by_pressure = content("a.png");
   flow(words + Words{"--color", "none"});
@@ -129,7 +129,7 @@ TEST_F(Input, ColourByAnArray) {
 TEST_F(Input, AFamilyOfArraysIsASeries) {
   NACRE_NEEDS_SHARED_DATA("flow/wind-sphere/wind_sphere_9steps.vtp");
   const fs::path file = shared_data("flow/wind-sphere/wind_sphere_9steps.vtp");
-  const json report = flow(small + Words{file.string(), "--image", path("a.png")});
+  const json report = flow(small_input + Words{file.string(), "--image", path("a.png")});
   EXPECT_LT(report["input"]["time"][0], report["input"]["time"][1]);
   EXPECT_TRUE(contains(last_.err, "vectors: ")) << last_.err;
 }

@@ -49,12 +49,13 @@ TEST_F(Rerun, PartOfARunAndMeansOverTime) {
   expect_same("means.vtp");
 }
 
-TEST_F(Rerun, TopologyAndStreamlines) {
+TEST_F(Rerun, TopologyStreamlinesAndFlowMaps) {
   ASSERT_EQ(nacre(small_flow + Words{"--topology-out", path("points.vtp"), "--streamlines-out", path("lines.vtp"),
-                                     "--persistence", "0.1", "--report", path("a.json")})
+                                     "--persistence", "0.1", "--ftle-out", path("map.vtp"), "--ftle-time=-0.4",
+                                     "--report", path("a.json")})
                 .status,
             0);
-  for (const char* name : {"points.vtp", "lines.vtp", "a.json"}) expect_same(name);
+  for (const char* name : {"points.vtp", "lines.vtp", "map.vtp", "a.json"}) expect_same(name);
 }
 
 TEST_F(Rerun, CameraOfASession) {

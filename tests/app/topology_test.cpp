@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-const Words small = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
+const Words small_topology = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
 
 /// A sphere with the gradient of x^2 + 2 y^2 + 3 z^2: two sources, saddles and sinks, on the axes x, y and z.
 class Topology : public AppTest {
@@ -31,7 +31,7 @@ class Topology : public AppTest {
 };
 
 TEST_F(Topology, IsReportedAndWritten) {
-  const Outcome done = nacre(Words{"flow", six_points(), "--quiet"} + small +
+  const Outcome done = nacre(Words{"flow", six_points(), "--quiet"} + small_topology +
                              Words{"--topology-out", path("t.vtp"), "--report", path("r.json")});
   ASSERT_EQ(done.status, 0) << done.err;
   const json report = json::parse(content("r.json"));
@@ -57,7 +57,7 @@ TEST_F(Topology, IsReportedAndWritten) {
 }
 
 TEST_F(Topology, IsDrawnWhereTheCameraSeesIt) {
-  const Words from_x = Words{"flow", six_points(), "--quiet", "--camera", "+x", "--color", "none"} + small;
+  const Words from_x = Words{"flow", six_points(), "--quiet", "--camera", "+x", "--color", "none"} + small_topology;
   ASSERT_EQ(nacre(from_x + Words{"--image", path("with.png"), "--topology"}).status, 0);
   ASSERT_EQ(nacre(from_x + Words{"--image", path("without.png")}).status, 0);
   const Image with = read_png(path("with.png")), without = read_png(path("without.png"));
@@ -80,7 +80,7 @@ TEST_F(Topology, IsDrawnWhereTheCameraSeesIt) {
 
 TEST_F(Topology, StreamlinesAreWritten) {
   const auto lines_at = [&](const std::string& spacing) {
-    const Outcome done = nacre(Words{"flow", six_points(), "--quiet", "--line-spacing", spacing} + small +
+    const Outcome done = nacre(Words{"flow", six_points(), "--quiet", "--line-spacing", spacing} + small_topology +
                                Words{"--streamlines-out", path("s.vtp"), "--report", path("r.json")});
     EXPECT_EQ(done.status, 0) << done.err;
     const json report = json::parse(content("r.json"));
@@ -95,9 +95,10 @@ TEST_F(Topology, StreamlinesAreWritten) {
 }
 
 TEST_F(Topology, BadInputIsNamed) {
-  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small), 2,
-                 {"--topology-out", ".vtp"});
-  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--persistence", "2"} + small), 2,
+  expect_failure(
+      nacre(Words{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small_topology), 2,
+      {"--topology-out", ".vtp"});
+  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--persistence", "2"} + small_topology), 2,
                  {"--persistence"});
 }
 

@@ -6,7 +6,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/../..}"
 # Top folders, and the folders of compute and of engine/scene, from the highest to the lowest: a file includes its own and
 # lower ones.
 top_order=(app api engine compute include)
-compute_order=(pipeline raycast topology flow particles meshing embedding field math device)
+compute_order=(pipeline raycast transport topology flow particles meshing embedding field math device)
 scene_order=(session samples volume surface settings)
 
 # FOLDER:WORD... what a folder of the engine may not include, although it stands beside it.

@@ -112,6 +112,7 @@ struct Settings {
   bool topology = false;       ///< critical points and separatrices are drawn
   bool streamlines = false;    ///< evenly spaced streamlines are drawn
   double persistence = 0.02;   ///< share of the reference speed; zeros that cancel below it are left out
+  double ftle_time = 0;        ///< of flow maps, time of the data; below 0: backward; 0: chosen
   double line_spacing = 0.02;  ///< of evenly spaced streamlines; share of the longest side of the bounding box
 };
 

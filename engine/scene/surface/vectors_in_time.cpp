@@ -132,6 +132,17 @@ void VectorsInTime::set_color(const std::string& color) {
   }
 }
 
+void VectorsInTime::show_scalar(const std::string& name, std::vector<float> values) {
+  color_ = name;
+  for (Step& step : steps_) step = {};
+  derived_ = true;
+  derived_scalar_ = std::move(values);
+  ColourSurvey survey;
+  const std::size_t stride = derived_scalar_.size() / largest_sample | 1;
+  for (std::size_t i = 0; i < derived_scalar_.size(); ++i) survey.add(derived_scalar_[i], i % stride == 0);
+  scalars_ = std::move(survey).spread();
+}
+
 VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
   Step step;
   step.number = number;

@@ -45,6 +45,8 @@ class VectorsInTime {
   void set_vectors(const std::string& vectors);
   void set_color(const std::string& color);
   void set_motion(const MotionChoice& motion);
+  /// Colours by numbers that were computed from the vectors, one per point, the same at all times.
+  void show_scalar(const std::string& name, std::vector<float> values);
 
   // Of a surface that moves.
 
@@ -120,8 +122,8 @@ class VectorsInTime {
   std::vector<Vec3f> point_normals_;
   std::string vectors_, color_;
   bool analytic_;
-  bool derived_ = false;               ///< the colours are a mean over time of the vectors
-  std::vector<float> derived_scalar_;  ///< that mean
+  bool derived_ = false;               ///< the colours were computed from the vectors, for all times
+  std::vector<float> derived_scalar_;  ///< those numbers
   double start_, end_;
   ColourSpread speeds_, scalars_;  ///< of the vectors; of the array that colours
   VectorStatistics statistics_;

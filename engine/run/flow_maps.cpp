@@ -1,0 +1,148 @@
+// Nacre: the flow map of a run.
+#include "engine/run/flow_maps.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "compute/device/error.hpp"
+#include "compute/transport/flow_map.hpp"
+#include "engine/io/vtp_writer.hpp"
+#include "engine/scene/surface/welded.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr double most_crossings = 1000;  ///< of the surface, by a particle
+constexpr int least_intervals = 64;      ///< in which a neighbour's leaving is noticed
+
+struct Extent {
+  double longest = 0, diagonal = 0;
+  explicit Extent(const PreparedSurface& surface) {
+    Vec3d low(1e300), high(-1e300);
+    for (const Triangle& t : surface.triangles)
+      for (int k = 0; k < 3; ++k) {
+        low = min(low, surface.points[t[k]]);
+        high = max(high, surface.points[t[k]]);
+      }
+    const Vec3d size = high - low;
+    longest = std::max({size.x, size.y, size.z});
+    diagonal = length(size);
+  }
+};
+
+/// From the beginning to the end: all steps of the data between, and enough times more.
+std::vector<double> moments(const VectorsInTime& input, double from, double duration) {
+  const double low = std::min(from, from + duration), high = std::max(from, from + duration);
+  const bool analytic = input.array().starts_with('@');
+  const int intervals =
+      std::max(least_intervals, analytic ? int(std::ceil(least_intervals * std::min(1e4, high - low))) : 0);
+  std::vector<double> times;
+  for (int k = 0; k <= intervals; ++k) times.push_back(low + (high - low) * k / intervals);
+  const double period = input.motion().period, first = input.series().times.front();
+  const double cycles = period > 0 ? std::floor((low - first) / period) : 0;
+  for (double shift = cycles * period; shift <= high - first; shift += period) {
+    for (const double t : input.series().times)
+      if (t + shift > low && t + shift < high) times.push_back(t + shift);
+    if (!(period > 0)) break;
+  }
+  std::sort(times.begin(), times.end());
+  const double least = 1e-9 * (high - low);
+  times.erase(std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < least; }), times.end());
+  times.back() = high;
+  if (duration < 0) std::reverse(times.begin(), times.end());
+  return times;
+}
+
+double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double wanted, const Extent& extent) {
+  if (input.moves() && input.series().motion->groups > 1)
+    throw Error("a flow map needs the same triangles in all steps", "those of " + input.series().name + " change");
+  const double speed = input.statistics().percentile_98;
+  if (!(speed > 0) && !input.moves())
+    throw Error("there is no flow map of " + input.array(), "it is zero everywhere", "choose others with `vectors`");
+  const bool steady = !(input.end() > input.start());
+  double duration = wanted;
+  if (duration == 0) duration = steady ? extent.longest / speed : shown.end - shown.first;
+  const double from = duration > 0 ? shown.first : shown.end, to = from + duration;
+  const double slack = 1e-9 * (input.end() - input.start());
+  const bool endless = steady || input.motion().period > 0 || input.array().starts_with('@');
+  if (!endless && (to < input.start() - slack || to > input.end() + slack))
+    throw Error(
+        fmt::format("`ftle_time` {:g} goes beyond the data", wanted),
+        fmt::format("from {:g} to {:g}, and the data are those of {:g} to {:g}", from, to, input.start(), input.end()),
+        fmt::format("use {:g} or less, or `period` if the data come round",
+                    duration > 0 ? input.end() - from : input.start() - from));
+  const double longest = most_crossings * extent.diagonal / std::max(speed, 1e-300);
+  if (!(std::fabs(duration) <= longest))
+    throw Error(fmt::format("`ftle_time` {:g} is too long", duration),
+                fmt::format("particles would go {:.3g} times across the surface",
+                            std::fabs(duration) * speed / extent.diagonal),
+                fmt::format("use {:.3g} or less", longest));
+  return duration;
+}
+
+}  // namespace
+
+SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, double duration,
+                                const std::atomic<bool>* stop) {
+  SurfaceFlowMap map;
+  map.duration = chosen_duration(input, shown, duration, Extent(input.surface()));
+  map.from = map.duration > 0 ? shown.first : shown.end;
+  input.enter(map.from);
+  input.rebase(map.from);
+  map.points = input.surface().points;
+  map.triangles = input.surface().triangles;
+  const std::vector<Triangle> triangles = welded_triangles(input.surface());
+  SurfaceFlow flow{map.points, triangles, moments(input, map.from, map.duration), {}};
+  flow.vectors = [&](double t, std::span<Vec3f> out) { input.material_vectors(t, out); };
+  if (input.moves()) flow.shape = [&](double t) { return input.points(t); };
+  const FlowMap found = flow_map(flow, stop);
+  map.left = found.left;
+  map.ftle.assign(map.points.size(), std::numeric_limits<float>::quiet_NaN());
+  map.time.assign(map.points.size(), 0);
+  map.end = map.points;
+  for (std::size_t c = 0; c < found.vertex.size(); ++c) {
+    const std::uint32_t point = map.triangles[c / 3][int(c % 3)], v = found.vertex[c];
+    map.ftle[point] = float(found.ftle[v]);
+    map.time[point] = float(found.time[v]);
+    map.end[point] = found.end[v];
+  }
+  return map;
+}
+
+bool is_ftle(const std::string& color) {
+  return color.size() == 4 && std::equal(color.begin(), color.end(), "ftle", [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) == b;
+         });
+}
+
+nlohmann::json flow_map_report(const SurfaceFlowMap& map) {
+  double low = 1e300, high = -1e300, sum = 0;
+  std::size_t known = 0;
+  for (const float each : map.ftle)
+    if (std::isfinite(each)) {
+      low = std::min(low, double(each));
+      high = std::max(high, double(each));
+      sum += each;
+      ++known;
+    }
+  nlohmann::json report = {{"time", map.from},
+                           {"duration", map.duration},
+                           {"points", map.points.size()},
+                           {"left", map.left},
+                           {"unknown", map.points.size() - known}};
+  if (known > 0) report["ftle"] = {{"min", low}, {"mean", sum / double(known)}, {"max", high}};
+  return report;
+}
+
+void write_flow_map(const std::filesystem::path& file, const SurfaceFlowMap& map, const std::string& origin) {
+  const std::vector<PointArray> arrays{{"FTLE", 1, map.ftle}, {"ftle_time", 1, map.time}};
+  const PointPositions end{"flow_map", map.end};
+  write_vtp(file, std::span<const Vec3d>(map.points), map.triangles, arrays, std::nullopt, {}, xml_origin(origin),
+            std::span(&end, 1));
+}
+
+}  // namespace nacre
