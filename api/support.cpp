@@ -21,7 +21,8 @@ const char* command_of(Job job) { return job == Job::mesh ? "mesh" : "flow"; }
 bool is_offered(const Knob& knob, Job job) {
   if (!knob.concerns(command_of(job))) return false;
   if (job == Job::mesh) return knob.group != "picture" && knob.name != "names" && knob.name != "layer";
-  return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus";
+  return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus" &&
+         knob.name != "ftle_time";
 }
 
 KnobValue value_of(const Knob& knob) {
