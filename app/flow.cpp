@@ -22,6 +22,7 @@
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
 #include "engine/run/flow_skeleton.hpp"
+#include "engine/run/flow_tracks.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/run/report.hpp"
 #include "engine/scene/samples/samples.hpp"
@@ -39,7 +40,7 @@ using nlohmann::json;
 struct FlowOptions {
   CommonOptions common;
   InputOptions input;
-  std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out, ftle_out;
+  std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out, ftle_out, tracks_out;
   std::string chunk;  ///< I/N: this part of the steps only
   int lead_in = 256;  ///< steps before it
 };
@@ -74,11 +75,12 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   check_output(options.topology_out, "--topology-out", ".vtp");
   check_output(options.streamlines_out, "--streamlines-out", ".vtp");
   check_output(options.ftle_out, "--ftle-out", ".vtp");
+  check_output(options.tracks_out, "--tracks-out", ".vtp");
   check_output(options.common.report, "--report", "");
   check_output(options.common.save_session, "--save-session", "");
   for (const std::string& output :
        {options.image, options.frames, options.video, options.out, options.haemodynamics, options.topology_out,
-        options.streamlines_out, options.ftle_out, options.common.report})
+        options.streamlines_out, options.ftle_out, options.tracks_out, options.common.report})
     if (!output.empty()) return;
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
@@ -194,7 +196,8 @@ Origin flow_origin(const FlowOptions& options, const Session& session, const std
                       {"haemodynamics", options.haemodynamics},
                       {"topology-out", options.topology_out},
                       {"streamlines-out", options.streamlines_out},
-                      {"ftle-out", options.ftle_out}});
+                      {"ftle-out", options.ftle_out},
+                      {"tracks-out", options.tracks_out}});
   return origin;
 }
 
@@ -269,13 +272,14 @@ json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& ow
   return {{"count", ranks.count()}, {"imbalance", sum > 0 ? most * ranks.count() / sum : 1}, {"each", std::move(all)}};
 }
 
-/// Topology and streamlines of the last frame, as far as they were asked for. Returns their part of the report.
-json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTime& input, const Settings& settings,
-                 const Origin& origin, std::vector<std::string>& outputs) {
+/// Topology and streamlines of the last frame, and the critical points of all times, as far as they were asked for. Returns their part of the report.
+json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTime& input, const FlowSpan& span,
+                 const Settings& settings, const Origin& origin, std::vector<std::string>& outputs) {
   json report = json::object();
   const bool points = settings.topology || !options.topology_out.empty();
   const bool lines = settings.streamlines || !options.streamlines_out.empty();
-  if (!points && !lines) return report;
+  const bool tracks = !options.tracks_out.empty();
+  if (!points && !lines && !tracks) return report;
   const double t = pipeline.flow().time();
   StageTimers::Scope scope(pipeline.timers(), "topology");
   if (points) {
@@ -293,6 +297,12 @@ json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTi
       write_streamlines(options.streamlines_out, streamlines, origin_of_output(origin, "streamlines-out"));
       outputs.push_back(options.streamlines_out);
     }
+  }
+  if (tracks) {
+    const FlowTracks followed = flow_tracks(input, {span.first, span.end}, settings.persistence, &interrupt_flag());
+    report["tracks"] = tracks_report(followed);
+    write_tracks(options.tracks_out, followed, origin_of_output(origin, "tracks-out"));
+    outputs.push_back(options.tracks_out);
   }
   return report;
 }
@@ -368,7 +378,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films, origin);
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
   const json lines =
-      is_first_process() ? write_lines(options, *pipeline, input, settings, origin, outputs) : json::object();
+      is_first_process() ? write_lines(options, *pipeline, input, span, settings, origin, outputs) : json::object();
   progress.clear();
   if (!options.common.report.empty()) {
     json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
@@ -400,6 +410,8 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
                       "write critical points and separatrices of the last frame as .vtp");
   command->add_option("--streamlines-out", options->streamlines_out,
                       "write evenly spaced streamlines of the last frame as .vtp");
+  command->add_option("--tracks-out", options->tracks_out,
+                      "write the critical points, followed through the steps of the data, as .vtp");
   command->add_option("--ftle-out", options->ftle_out,
                       "write Lyapunov exponents (FTLE) and the flow map over `ftle_time` as .vtp, on the points");
   command->add_option("--chunk", options->chunk,

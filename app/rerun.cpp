@@ -31,7 +31,7 @@ struct RerunOptions {
 bool is_harmless(const Origin& origin) {
   static const std::regex option("--(per-material|surface-only|cut-away|chunk=[0-9]+/[0-9]+|lead-in=[0-9]+)");
   static const std::regex output(
-      "image|video|out|particles-out|haemodynamics|topology-out|streamlines-out|ftle-out|report");
+      "image|video|out|particles-out|haemodynamics|topology-out|streamlines-out|ftle-out|tracks-out|report");
   static const std::regex extension("(\\.[a-z0-9]+)?");
   const auto fits = [](const std::string& text, const std::regex& form) { return std::regex_match(text, form); };
   return (origin.command == "flow" || origin.command == "mesh") && fits(origin.output, output) &&

@@ -55,6 +55,12 @@ FlowSkeleton flow_skeleton(VectorsInTime& input, double t, double persistence) {
   return skeleton;
 }
 
+std::vector<CriticalPoint> flow_critical_points(VectorsInTime& input, double t, double persistence) {
+  PreparedSurface shape;
+  const FieldAtTime field(input, t, shape);
+  return find_critical_points(field(), persistence * input.statistics().percentile_98).points;
+}
+
 FlowStreamlines flow_streamlines(VectorsInTime& input, double t, double spacing, const std::atomic<bool>* stop) {
   FlowStreamlines streamlines;
   const FieldAtTime field(input, t, streamlines.shape);

@@ -30,6 +30,8 @@ struct FlowSkeleton {
 /// one, but for those of a second sheet. `persistence`: a share of the reference speed; zeros that cancel below it are
 /// left out.
 FlowSkeleton flow_skeleton(VectorsInTime& input, double t, double persistence);
+/// Its critical points alone.
+std::vector<CriticalPoint> flow_critical_points(VectorsInTime& input, double t, double persistence);
 
 /// The report's key `topology`.
 nlohmann::json skeleton_report(const FlowSkeleton& skeleton);

@@ -52,10 +52,10 @@ TEST_F(Rerun, PartOfARunAndMeansOverTime) {
 TEST_F(Rerun, TopologyStreamlinesAndFlowMaps) {
   ASSERT_EQ(nacre(small_flow + Words{"--topology-out", path("points.vtp"), "--streamlines-out", path("lines.vtp"),
                                      "--persistence", "0.1", "--ftle-out", path("map.vtp"), "--ftle-time=-0.4",
-                                     "--report", path("a.json")})
+                                     "--tracks-out", path("tracks.vtp"), "--report", path("a.json")})
                 .status,
             0);
-  for (const char* name : {"points.vtp", "lines.vtp", "map.vtp", "a.json"}) expect_same(name);
+  for (const char* name : {"points.vtp", "lines.vtp", "map.vtp", "tracks.vtp", "a.json"}) expect_same(name);
 }
 
 TEST_F(Rerun, CameraOfASession) {

@@ -94,6 +94,25 @@ TEST_F(Topology, StreamlinesAreWritten) {
   EXPECT_GT(many, few);
 }
 
+TEST_F(Topology, PointsAreFollowedThroughTheSteps) {
+  const Outcome done = nacre(Words{"flow", "--quiet", "--sample", "torus", "--detail", "32", "--tracks-out",
+                                   path("t.vtp"), "--report", path("r.json")} +
+                             small_topology);
+  ASSERT_EQ(done.status, 0) << done.err;
+  const json report = json::parse(content("r.json"));
+  const json tracks = report["tracks"];
+  EXPECT_GT(tracks["count"], 0);
+  EXPECT_GE(tracks["longest"], 2);
+  EXPECT_LE(tracks["longest"], tracks["times"]);
+  EXPECT_LE(tracks["through_all_times"].get<int>() + tracks["appear"].get<int>(), tracks["count"].get<int>());
+  const std::string file = content("t.vtp");
+  for (const char* name : {"track", "time", "kind", "index", "persistence"})
+    EXPECT_TRUE(contains(file, "Name=\"" + std::string(name) + "\"")) << name;
+  EXPECT_EQ(report["outputs"], json({path("t.vtp")}));
+  expect_failure(nacre(Words{"flow", six_points(), "--quiet", "--tracks-out", path("t.vtp")} + small_topology), 1,
+                 {"followed in time", "one time only"});
+}
+
 TEST_F(Topology, BadInputIsNamed) {
   expect_failure(
       nacre(Words{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small_topology), 2,
