@@ -73,6 +73,7 @@ Rates rates_at(const TangentField& field, std::size_t v, const Matrix& gradient)
 }
 
 struct Crossing {
+  std::uint32_t triangle;
   Vec3d point;
   Rates rates;
   Vec3d velocity;
@@ -106,7 +107,8 @@ class Finder {
     const double s = std::clamp(ra.turning / (ra.turning - rb.turning), 0.0, 1.0);
     const auto between = [s](double x, double y) { return x + s * (y - x); };
     const Vec3d p = field_.corner_point(h), q = field_.corner_point(TangentField::next(h));
-    return {p + (q - p) * s,
+    return {h / 3,
+            p + (q - p) * s,
             {0, between(ra.along, rb.along), between(ra.across, rb.across), between(ra.squared, rb.squared)},
             field_.value(a) + (field_.value(b) - field_.value(a)) * s};
   }
@@ -163,6 +165,7 @@ class Finder {
       line.separation = kind > 0;
       for (std::size_t k = i; k < end; ++k) {
         line.points.push_back(curve[k].point);
+        line.triangles.push_back(curve[k].triangle);
         if (k == i) continue;
         const Rates &a = curve[k - 1].rates, &b = curve[k].rates;
         // Seconds along the piece, times the rate across: only what the flow itself follows counts.

@@ -10,6 +10,7 @@ namespace nacre {
 /// A line that neighbouring streamlines run towards (separation) or away from (attachment).
 struct SeparationLine {
   bool separation = true;
+  std::vector<std::uint32_t> triangles;  ///< of each point, one of the two at its edge
   std::vector<Vec3d> points;  ///< world units, one on each edge that is crossed; the first again as the last: closed
   /// By how many powers of e the distance of neighbours shrinks, or grows, while they follow the line once.
   double strength = 0;

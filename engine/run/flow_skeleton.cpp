@@ -2,6 +2,7 @@
 #include "engine/run/flow_skeleton.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +14,8 @@ namespace nacre {
 namespace {
 
 constexpr double least_strength = 1;  // neighbours come nearer by a factor of e, or part by as much
+
+constexpr double least_multiplier = 1e-6;  // of an orbit, for its strength
 
 /// The tangential vectors at a time, on the shape that the surface has then.
 class FieldAtTime {
@@ -52,6 +55,7 @@ FlowSkeleton flow_skeleton(VectorsInTime& input, double t, double persistence) {
   skeleton.topology = find_critical_points(field(), skeleton.least_persistence);
   skeleton.separatrices = separatrices(field(), skeleton.topology.points);
   skeleton.separation = separation_lines(field(), least_strength);
+  skeleton.orbits = closed_orbits(field(), skeleton.topology.points, skeleton.separatrices, skeleton.separation);
   return skeleton;
 }
 
@@ -87,6 +91,8 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
   for (const ZeroRegion& region : all.zero_regions) area += region.area;
   const auto separating = std::count_if(skeleton.separation.begin(), skeleton.separation.end(),
                                         [](const SeparationLine& line) { return line.separation; });
+  const auto attracting = std::count_if(skeleton.orbits.begin(), skeleton.orbits.end(),
+                                        [](const ClosedOrbit& orbit) { return orbit.attracting; });
   std::map<LineEnd, int> ends;
   for (const SurfaceLine& line : skeleton.separatrices) ++ends[line.end];
   return {{"time", skeleton.time},
@@ -105,7 +111,9 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton) {
             {"to_still_flow", ends[LineEnd::still]},
             {"circling", ends[LineEnd::circling]}}},
           {"separation_lines", separating},
-          {"attachment_lines", std::ptrdiff_t(skeleton.separation.size()) - separating}};
+          {"attachment_lines", std::ptrdiff_t(skeleton.separation.size()) - separating},
+          {"closed_orbits",
+           {{"attracting", attracting}, {"repelling", std::ptrdiff_t(skeleton.orbits.size()) - attracting}}}};
 }
 
 void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton, const std::string& origin) {
@@ -131,6 +139,11 @@ void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skele
   }
   for (const SeparationLine& line : skeleton.separation) {
     for (const Vec3d& p : line.points) add(p, line.separation ? 8 : 9, 0, 0, line.strength, 0, 0);
+    starts.push_back(points.size());
+  }
+  for (const ClosedOrbit& orbit : skeleton.orbits) {
+    const double strong = -std::log(std::max(orbit.multiplier, least_multiplier));
+    for (const Vec3d& p : orbit.points) add(p, orbit.attracting ? 10 : 11, 0, 0, strong, 0, 0);
     starts.push_back(points.size());
   }
   if (starts.size() == 1) starts.clear();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "compute/topology/closed_orbits.hpp"
 #include "compute/topology/critical_points.hpp"
 #include "compute/topology/even_lines.hpp"
 #include "compute/topology/separation_lines.hpp"
@@ -16,7 +17,7 @@
 
 namespace nacre {
 
-/// Critical points, the separatrices between them, and lines of separation and attachment.
+/// Critical points, the separatrices between them, lines of separation and attachment, and closed orbits.
 struct FlowSkeleton {
   PreparedSurface shape;  ///< as it is at that time
   double time = 0;
@@ -24,6 +25,7 @@ struct FlowSkeleton {
   FlowTopology topology;
   std::vector<SurfaceLine> separatrices;
   std::vector<SeparationLine> separation;  ///< and attachment; of strength 1 and more
+  std::vector<ClosedOrbit> orbits;
 };
 
 /// Of the tangential vectors at time `t` of the data, on the surface as it is then. Points at one position count as
@@ -36,11 +38,12 @@ std::vector<CriticalPoint> flow_critical_points(VectorsInTime& input, double t, 
 /// The report's key `topology`.
 nlohmann::json skeleton_report(const FlowSkeleton& skeleton);
 
-/// As .vtp: a vertex cell for each critical point, and after them a polyline for each separatrix, then for each line of
-/// separation or attachment. Point arrays: `kind` (0 saddle, 1 source, 2 sink, 3 focus source, 4 focus sink, 5 centre; 6
-/// a separatrix with the flow, 7 against it; 8 separation, 9 attachment), `index` (0 on lines), `persistence` (on a
-/// separatrix that of the saddle; else 0), `strength` (of lines of separation and attachment; else 0),
-/// `eigenvalue_real` and `eigenvalue_imaginary` (two components; 0 on lines). `origin`: how it came about (origin.hpp).
+/// As .vtp: a vertex cell for each critical point, and after them a polyline for each separatrix, line of separation or
+/// attachment, and closed orbit. Point arrays: `kind` (0 saddle, 1 source, 2 sink, 3 focus source, 4 focus sink, 5
+/// centre; 6 a separatrix with the flow, 7 against it; 8 separation, 9 attachment; 10 an orbit that attracts, 11 one that
+/// repels), `index` (0 on lines), `persistence` (on a separatrix that of the saddle; else 0), `strength` (by how many
+/// powers of e neighbours come nearer along a line of separation, or in a round; else 0), `eigenvalue_real` and
+/// `eigenvalue_imaginary` (two components; 0 on lines). `origin`: how it came about (origin.hpp).
 /// Throws Error if the file cannot be written.
 void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton, const std::string& origin);
 

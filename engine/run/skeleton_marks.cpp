@@ -137,7 +137,10 @@ Rgba mark_colour(CriticalKind kind) {
 void draw_skeleton(Image& image, const Camera& camera, const FlowSkeleton& skeleton) {
   const Projection project(camera, image.width, image.height, skeleton.shape);
   const double unit = line_unit(image);
-  LineSheet edge(image.width, image.height), forward = edge, backward = edge, leaving = edge, arriving = edge;
+  LineSheet edge(image.width, image.height), forward = edge, backward = edge, leaving = edge, arriving = edge,
+                                             attracting = edge, repelling = edge;
+  for (const ClosedOrbit& orbit : skeleton.orbits)
+    add_line(project, orbit.points, {{&edge, 2.6 * unit}, {orbit.attracting ? &attracting : &repelling, 1.8 * unit}});
   for (const SeparationLine& line : skeleton.separation)
     add_line(project, line.points, {{&edge, 1.9 * unit}, {line.separation ? &leaving : &arriving, 1.2 * unit}});
   for (const SurfaceLine& line : skeleton.separatrices)
@@ -147,6 +150,8 @@ void draw_skeleton(Image& image, const Camera& camera, const FlowSkeleton& skele
   leaving.blend(image, separation_colour);
   backward.blend(image, separatrix_against_flow);
   forward.blend(image, separatrix_with_flow);
+  attracting.blend(image, mark_colour(CriticalKind::sink));
+  repelling.blend(image, mark_colour(CriticalKind::source));
   for (const CriticalPoint& point : skeleton.topology.points) {
     const Pixel at = project(point.position);
     if (at.seen) draw_mark(image, at, point.kind, 4.5 * unit);

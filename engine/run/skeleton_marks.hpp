@@ -16,7 +16,8 @@ inline constexpr Rgba mark_outline{20, 20, 20, 255}, separatrix_with_flow{255, 1
 
 /// Draws what the camera sees of it and nothing of the surface hides: sources red, sinks blue, centres green, as discs,
 /// a focus with a hole; saddles as yellow diamonds; separatrices in orange with the flow and in light blue against it;
-/// separation in magenta, attachment in light green.
+/// separation in magenta, attachment in light green; closed orbits, thicker, in blue if
+/// they attract, in red if they repel.
 void draw_skeleton(Image& image, const Camera& camera, const FlowSkeleton& skeleton);
 
 /// Draws what the camera sees of them, as thin dark lines.

@@ -17,6 +17,7 @@ struct FlowLines {
     for (const SurfaceLine& line : skeleton.separatrices)
       sum += line.points.size() * (sizeof(Vec3d) + sizeof(std::uint32_t));
     for (const SeparationLine& line : skeleton.separation) sum += line.points.size() * sizeof(Vec3d);
+    for (const ClosedOrbit& orbit : skeleton.orbits) sum += orbit.points.size() * sizeof(Vec3d);
     for (const EvenLine& line : streamlines.lines) sum += line.points.size() * (sizeof(Vec3d) + sizeof(float));
     return sum;
   }

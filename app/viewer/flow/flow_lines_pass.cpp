@@ -34,7 +34,7 @@ Buffer buffer_of(const std::vector<Segment>& segments) {
 
 void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const SurfaceBuffers& surface) {
   lines_ = std::move(lines);
-  std::vector<Segment> streamlines, separation, attachment, with_flow, against_flow;
+  std::vector<Segment> streamlines, separation, attachment, attracting, repelling, with_flow, against_flow;
   std::vector<Mark> marks;
   if (lines_) {
     const auto in_model = [&](const Vec3d& p) { return Vec3f((p - surface.origin()) / surface.size()); };
@@ -47,12 +47,19 @@ void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const Surf
       add(line.forward ? with_flow : against_flow, line.points);
     for (const SeparationLine& line : lines_->skeleton.separation)
       add(line.separation ? separation : attachment, line.points);
+    for (const ClosedOrbit& orbit : lines_->skeleton.orbits)
+      add(orbit.attracting ? attracting : repelling, orbit.points);
     for (const CriticalPoint& point : lines_->skeleton.topology.points)
       marks.push_back({in_model(point.position), encoded(mark_colour(point.kind)), float(shape_of(point.kind))});
   }
   std::vector<Segment> separatrices = with_flow;
   separatrices.insert(separatrices.end(), against_flow.begin(), against_flow.end());
   streamlines_ = buffer_of(streamlines);
+  std::vector<Segment> orbits = attracting;
+  orbits.insert(orbits.end(), repelling.begin(), repelling.end());
+  orbits_ = buffer_of(orbits);
+  attracting_ = buffer_of(attracting);
+  repelling_ = buffer_of(repelling);
   separation_ = buffer_of(separation);
   attachment_ = buffer_of(attachment);
   separatrices_ = buffer_of(separatrices);
@@ -74,6 +81,9 @@ void FlowLinesPass::draw(const View& view, const Placement& placement) const {
   draw_segments(separatrices_, mark_outline, 3.2f);
   draw_segments(against_flow_, separatrix_against_flow, 1.8f);
   draw_segments(with_flow_, separatrix_with_flow, 1.8f);
+  draw_segments(orbits_, mark_outline, 5.2f);
+  draw_segments(attracting_, mark_colour(CriticalKind::sink), 3.6f);
+  draw_segments(repelling_, mark_colour(CriticalKind::source), 3.6f);
   mark_pass_.draw(view, placement, 4.5f * unit, encoded(mark_outline));
 }
 
