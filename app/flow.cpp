@@ -18,6 +18,7 @@
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/run/dye_run.hpp"
 #include "engine/run/flow_maps.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
@@ -64,6 +65,7 @@ void check_options(const FlowOptions& options, const Settings& settings) {
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
     if (!settings.time.empty()) parse_time_range(settings);
     check_color_range(settings);
+    if (!settings.dye.empty()) parse_dye(settings.dye);
   });
   check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty() || !options.frames.empty(),
@@ -163,8 +165,17 @@ Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, P
   return films;
 }
 
+/// Null where there is none. Where vectors are steady, it goes as far in a step as the texture.
+std::unique_ptr<DyeRun> make_dye(FlowPipeline& pipeline, VectorsInTime& input, const Settings& settings, double start) {
+  if (settings.dye.empty()) return {};
+  StageTimers::Scope scope(pipeline.timers(), "dye");
+  const double speed = input.statistics().percentile_98;
+  const double step = settings.flow.step_cells * pipeline.flow().embedding().cell_size / (speed > 0 ? speed : 1);
+  return std::make_unique<DyeRun>(input, settings, start, step, &interrupt_flag());
+}
+
 /// Returns how long each took, seconds.
-std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const FrameRange& steps,
+std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const FrameRange& steps, DyeRun* dye,
                                FlowPainter& painter, Films& films, Progress& progress) {
   std::vector<double> seconds;
   for (int k = steps.first; k < steps.last; ++k) {
@@ -173,6 +184,10 @@ std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const
     pipeline.flow().step();
     seconds.push_back(now() - before);
     motion.show();
+    if (dye) {
+      StageTimers::Scope scope(pipeline.timers(), "dye");
+      dye->go_to(pipeline.flow().time());
+    }
     if (films.asked) {
       const Image image = painter.paint(k);
       StageTimers::Scope scope(pipeline.timers(), "write");
@@ -203,7 +218,7 @@ Origin flow_origin(const FlowOptions& options, const Session& session, const std
 
 /// Returns the files. All processes paint, and the first one writes.
 std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline& pipeline, const FrameRange& steps,
-                                       FlowPainter& painter, Films& films, const Origin& origin) {
+                                       const DyeRun* dye, FlowPainter& painter, Films& films, const Origin& origin) {
   std::vector<std::string> outputs;
   Image image;
   if (!options.image.empty()) image = painter.paint(std::max(0, steps.last - 1));
@@ -216,9 +231,12 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
     write_png(options.image, image, origin_of_output(origin, "image")), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
-  if (!options.out.empty())
-    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time(), origin_of_output(origin, "out")),
-        outputs.push_back(options.out);
+  if (!options.out.empty()) {
+    std::function<std::vector<float>(std::span<const Vec3d>)> at;
+    if (dye) at = [dye](std::span<const Vec3d> points) { return dye->at(points); };
+    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time(), origin_of_output(origin, "out"), at);
+    outputs.push_back(options.out);
+  }
   return outputs;
 }
 
@@ -326,6 +344,8 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   VectorsInTime input = read_input(options, session, pipeline->timers());
   if (!options.chunk.empty() && input.moves())
     throw Error("--chunk needs a surface that does not move", "the shape before a part is not known to it");
+  if (!options.chunk.empty() && !settings.dye.empty())
+    throw Error("--chunk cannot be made with --dye", "where the dye is before a part is not known to it");
   if (ranks && input.moves()) throw Error("a surface that moves needs one process", "", "leave mpirun away");
   const Origin origin = flow_origin(options, session, device->backend());
   for (const OriginFile& each : origin.others) watch.add({each.file});
@@ -373,9 +393,11 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   pipeline->parameters.lead_in = options.lead_in;
   progress.update("warm-up", 0.02);
   motion.start(vectors);
-  const std::vector<double> seconds = take_steps(*pipeline, motion, steps, painter, films, progress);
+  const std::unique_ptr<DyeRun> dye = make_dye(*pipeline, input, settings, span.start);
+  if (dye) painter.show_dye(*dye);
+  const std::vector<double> seconds = take_steps(*pipeline, motion, steps, dye.get(), painter, films, progress);
   watch.check();
-  std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, painter, films, origin);
+  std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, dye.get(), painter, films, origin);
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
   const json lines =
       is_first_process() ? write_lines(options, *pipeline, input, span, settings, origin, outputs) : json::object();
@@ -387,6 +409,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     if (ranks) report["processes"] = processes_report(*ranks, *pipeline, report, seconds);
     report.update(lines);
     report.update(map_report);
+    if (dye) report["dye"] = dye->report();
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     if (is_first_process()) write_report(options.common, std::move(report), outputs, origin);
   }

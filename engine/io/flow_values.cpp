@@ -11,7 +11,8 @@
 namespace nacre {
 
 void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time,
-                       const std::string& origin) {
+                       const std::string& origin,
+                       const std::function<std::vector<float>(std::span<const Vec3d>)>& dye) {
   const FlowValues v = flow.values();
   const std::size_t n = v.value.size();
   const auto vectors = [&](std::string name, const std::vector<Vec3f>& from) {
@@ -20,8 +21,8 @@ void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file
       for (int k = 0; k < 3; ++k) array.values[3 * i + k] = from[i][k];
     return array;
   };
-  const std::vector<PointArray> arrays{
-      {"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal)};
+  std::vector<PointArray> arrays{{"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal)};
+  if (dye) arrays.push_back({"dye", 1, dye(v.closest_point)});
   const PointPositions closest{"closest_point", v.closest_point};
   write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time, {}, xml_origin(origin), std::span(&closest, 1));
 }

@@ -11,6 +11,7 @@
 #include "compute/device/error.hpp"
 #include "compute/transport/flow_map.hpp"
 #include "engine/io/vtp_writer.hpp"
+#include "engine/run/moments.hpp"
 #include "engine/scene/surface/welded.hpp"
 
 namespace nacre {
@@ -33,29 +34,6 @@ struct Extent {
     diagonal = length(size);
   }
 };
-
-/// From the beginning to the end: all steps of the data between, and enough times more.
-std::vector<double> moments(const VectorsInTime& input, double from, double duration) {
-  const double low = std::min(from, from + duration), high = std::max(from, from + duration);
-  const bool analytic = input.array().starts_with('@');
-  const int intervals =
-      std::max(least_intervals, analytic ? int(std::ceil(least_intervals * std::min(1e4, high - low))) : 0);
-  std::vector<double> times;
-  for (int k = 0; k <= intervals; ++k) times.push_back(low + (high - low) * k / intervals);
-  const double period = input.motion().period, first = input.series().times.front();
-  const double cycles = period > 0 ? std::floor((low - first) / period) : 0;
-  for (double shift = cycles * period; shift <= high - first; shift += period) {
-    for (const double t : input.series().times)
-      if (t + shift > low && t + shift < high) times.push_back(t + shift);
-    if (!(period > 0)) break;
-  }
-  std::sort(times.begin(), times.end());
-  const double least = 1e-9 * (high - low);
-  times.erase(std::unique(times.begin(), times.end(), [&](double a, double b) { return b - a < least; }), times.end());
-  times.back() = high;
-  if (duration < 0) std::reverse(times.begin(), times.end());
-  return times;
-}
 
 double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double wanted, const Extent& extent) {
   if (input.moves() && input.series().motion->groups > 1)
@@ -96,7 +74,7 @@ SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, dou
   map.points = input.surface().points;
   map.triangles = input.surface().triangles;
   const std::vector<Triangle> triangles = welded_triangles(input.surface());
-  SurfaceFlow flow{map.points, triangles, moments(input, map.from, map.duration), {}};
+  SurfaceFlow flow{map.points, triangles, moments(input, map.from, map.duration, least_intervals), {}};
   flow.vectors = [&](double t, std::span<Vec3f> out) { input.material_vectors(t, out); };
   if (input.moves()) flow.shape = [&](double t) { return input.points(t); };
   const FlowMap found = flow_map(flow, stop);

@@ -50,6 +50,7 @@ Image FlowPainter::paint(int frame) {
   image.width = settings_.width;
   image.height = settings_.height;
   image.pixels = pipeline_.flow().render(options);
+  if (dye_) dye_->draw(image, camera);
   const double now = pipeline_.flow().time();
   if (settings_.streamlines)
     draw_streamlines(image, camera, flow_streamlines(input_, now, settings_.line_spacing, nullptr));

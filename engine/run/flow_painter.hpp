@@ -6,6 +6,7 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/image.hpp"
+#include "engine/run/dye_run.hpp"
 #include "engine/run/shown_colours.hpp"
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/surface/surface_part.hpp"
@@ -25,6 +26,9 @@ class FlowPainter {
   /// The pipeline works on this part of the surface only; it must outlive the painter.
   void show_part(const SurfacePart& part) { part_ = &part; }
 
+  /// Blends it over the pictures; it must outlive the painter.
+  void show_dye(const DyeRun& dye) { dye_ = &dye; }
+
   /// The frame that is shown now; `frame` counts from 0, and turns the camera by the knob `orbit`.
   Image paint(int frame);
 
@@ -37,6 +41,7 @@ class FlowPainter {
   const ShownColours colours_;
   Camera camera_;
   const SurfacePart* part_ = nullptr;
+  const DyeRun* dye_ = nullptr;
   std::array<float, 3> background_{1, 1, 1};
   bool transparent_ = false;
 };

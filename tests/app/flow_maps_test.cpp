@@ -1,4 +1,4 @@
-// Nacre: flow maps and Lyapunov exponents of `nacre flow`, as a user gets them.
+// Nacre: flow maps, Lyapunov exponents and dye of `nacre flow`, as a user gets them.
 #include <algorithm>
 #include <cmath>
 
@@ -102,6 +102,117 @@ TEST_F(FlowMaps, BadInputIsNamed) {
   other.arrays = {{"velocity", 3, std::vector<float>(3 * other.points.size(), 1)}};
   write_surface(path("o_1.vtp"), other);
   expect_failure(nacre(Words{"flow", poles(), path("o_1.vtp")} + to_file), 1, {"flow map", "same triangles"});
+}
+
+const Words few_dyed = {"--resolution", "64", "--size", "192x192", "--no-legend"};
+
+class DyeOfFlow : public AppTest {
+ protected:
+  /// The unit sphere, turning about z by a radian in the data's unit of time; with an array that is 3 where x > 0.7.
+  std::string turning(const std::string& name, double radius = 1) {
+    Surface s = make_sample("sphere", 48).load(0);
+    PointArray velocity{"velocity", 3, {}}, part{"part", 1, {}};
+    for (Vec3d& p : s.points) {
+      p = normalized(p);
+      part.values.push_back(p.x > 0.7 ? 3.0f : 0.0f);
+      p *= radius;
+      for (const double each : {-p.y, p.x, 0.0}) velocity.values.push_back(float(each));
+    }
+    s.arrays = {velocity, part};
+    write_surface(path(name), s);
+    return path(name);
+  }
+  json dye_report() { return json::parse(content("r.json"))["dye"]; }
+};
+
+TEST_F(DyeOfFlow, IsReportedInMass) {
+  const std::string sphere = turning("s.vtp");
+  const Words run = Words{"flow", sphere, "--quiet", "--steps", "5", "--report", path("r.json")} + few_dyed;
+  for (const std::string source : {"1,0,0,0.77", "0.7,-2,-2:2,2,2", "part", "part=3", "1,0,0,0.4;part"}) {
+    ASSERT_EQ(nacre(run + Words{"--dye", source}).status, 0) << source;
+    const json dye = dye_report();
+    ASSERT_EQ(dye["steps"].size(), 6u);
+    const double begun = dye["steps"][0]["mass"].get<double>();
+    EXPECT_NEAR(begun, 2 * 3.1416 * 0.3, 0.15) << source;
+    EXPECT_NEAR(dye["steps"][5]["mass"].get<double>(), begun, 1e-9);
+    EXPECT_EQ(dye["steps"][5]["left"], 0);
+  }
+  ASSERT_EQ(nacre(run + Words{"--dye", "part", "--dye-release", "always"}).status, 0);
+  const json dye = dye_report();
+  EXPECT_GT(dye["steps"][5]["mass"].get<double>(), 1.01 * dye["steps"][0]["mass"].get<double>());
+  EXPECT_NEAR(dye["steps"][5]["mass"].get<double>(), dye["steps"][5]["released"].get<double>(), 1e-9);
+}
+
+TEST_F(DyeOfFlow, IsCarriedInTheTimeOfTheData) {
+  const Words pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4", "--dye", "part"};
+  ASSERT_EQ(nacre(pair + few_dyed + Words{"--out", path("v.vtp"), "--report", path("r.json")}).status, 0);
+  EXPECT_EQ(dye_report()["steps"][4]["time"], 1);
+  const Surface values = open_surface({path("v.vtp")}).load(0);
+  const PointArray* dye = values.find("dye");
+  ASSERT_TRUE(dye);
+  double whole = 0;
+  Vec3d middle;
+  for (std::size_t i = 0; i < values.points.size(); ++i) {
+    whole += dye->values[i];
+    middle += values.points[i] * double(dye->values[i]);
+  }
+  EXPECT_GT(whole, 100);
+  EXPECT_NEAR(std::atan2(middle.y, middle.x), 1, 0.02) << "it has turned by a radian";
+}
+
+TEST_F(DyeOfFlow, IsBlendedOverPictures) {
+  const Words seen =
+      Words{"flow", turning("s.vtp"), "--quiet", "--steps", "1", "--camera", "+x", "--color", "none"} + few_dyed;
+  ASSERT_EQ(nacre(seen + Words{"--dye", "1,0,0,0.5", "--image", path("with.png")}).status, 0);
+  ASSERT_EQ(nacre(seen + Words{"--dye", "-1,0,0,0.5", "--image", path("behind.png")}).status, 0);
+  const auto red = [&](const std::string& name) {
+    const Image image = read_png(path(name));
+    int inside = 0, outside = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x) {
+        const std::uint8_t* p = image.at(x, y);
+        if (p[0] > p[1] + 30) ++(std::hypot(x - 96, y - 96) < 70 ? inside : outside);
+      }
+    return std::array{inside, outside};
+  };
+  EXPECT_GT(red("with.png")[0], 2000);
+  EXPECT_EQ(red("with.png")[1], 0);
+  EXPECT_EQ(red("behind.png"), (std::array{0, 0}));
+}
+
+TEST_F(DyeOfFlow, StaysWithASurfaceThatGrows) {
+  const Words growing = {"flow", turning("g_0.vtp"), turning("g_1.vtp", 1.5), "--quiet", "--steps", "3"};
+  ASSERT_EQ(nacre(growing + few_dyed + Words{"--dye", "part=3", "--report", path("r.json")}).status, 0);
+  const json steps = dye_report()["steps"];
+  EXPECT_NEAR(steps[3]["mass"].get<double>(), steps[0]["mass"].get<double>(), 1e-9);
+}
+
+TEST_F(DyeOfFlow, BadInputIsNamed) {
+  const std::string sphere = turning("s.vtp");
+  const auto with = [&](const std::string& source) {
+    return nacre(Words{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", source} +
+                 few_dyed);
+  };
+  for (const std::string text : {"1,2,3", "0,0,0,-1", "0,0:1,1", "=2", "part=x"})
+    expect_failure(with(text), 2, {"--dye", text});
+  expect_failure(with("9,0,0,1"), 1, {"--dye", "no point of the surface", "7 away"});
+  expect_failure(with("part=4"), 1, {"--dye", "no point has such a value"});
+  expect_failure(with("labels"), 1, {"--dye", "no array \"labels\""});
+  expect_failure(nacre(Words{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", "part",
+                             "--dye-diffusion", "1e9"} +
+                       few_dyed),
+                 1, {"sub-steps", "--dye-diffusion"});
+  expect_failure(nacre(Words{"flow", sphere, "--quiet", "--steps", "4", "--image", path("a.png"), "--dye", "part",
+                             "--chunk", "1/2"} +
+                       few_dyed),
+                 1, {"--chunk", "--dye"});
+  Surface other = make_sample("sphere", 24).load(0);
+  other.arrays = {{"velocity", 3, std::vector<float>(3 * other.points.size(), 1)}};
+  write_surface(path("o_1.vtp"), other);
+  expect_failure(nacre(Words{"flow", sphere, path("o_1.vtp"), "--quiet", "--steps", "1", "--image", path("a.png"),
+                             "--dye", "1,0,0,0.5"} +
+                       few_dyed),
+                 1, {"--dye", "same triangles"});
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ enum class PanelSide { left, right };
 enum class PanelTab { data, knobs, look, timings, result };
 enum class Theme { dark, light };
 enum class RelativeVectors { when_velocity, on, off };
+enum class DyeRelease { once, always };
 enum class ColourScale { linear, log };
 
 /// What the viewer draws, and how. Nothing here changes a result.
@@ -109,9 +110,12 @@ struct Settings {
   std::string background = "#ffffff";
   int fps = 25;
   bool legend = true, time_stamp = true;
-  bool topology = false;       ///< critical points and separatrices are drawn
-  bool streamlines = false;    ///< evenly spaced streamlines are drawn
-  double persistence = 0.02;   ///< share of the reference speed; zeros that cancel below it are left out
+  bool topology = false;      ///< critical points and separatrices are drawn
+  bool streamlines = false;   ///< evenly spaced streamlines are drawn
+  double persistence = 0.02;  ///< share of the reference speed; zeros that cancel below it are left out
+  std::string dye;            ///< sources (engine/run/dye_sources.hpp); empty: none
+  DyeRelease dye_release = DyeRelease::once;
+  double dye_diffusion = 0;    ///< area per time of the data
   double ftle_time = 0;        ///< of flow maps, time of the data; below 0: backward; 0: chosen
   double line_spacing = 0.02;  ///< of evenly spaced streamlines; share of the longest side of the bounding box
 };

@@ -1,0 +1,119 @@
+// Nacre: where dye is put on a surface.
+#include "engine/run/dye_sources.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "compute/device/error.hpp"
+
+namespace nacre {
+namespace {
+
+std::vector<std::string> split(const std::string& text, char at) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == at)
+      parts.emplace_back();
+    else
+      parts.back() += c;
+  }
+  return parts;
+}
+
+std::optional<double> number(std::string text) {
+  const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
+  if (begin == text.npos) return {};
+  text = text.substr(begin, end - begin + 1);
+  double value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
+/// "A,B,..." where all are numbers.
+std::optional<std::vector<double>> numbers(const std::string& text) {
+  std::vector<double> all;
+  for (const std::string& part : split(text, ',')) {
+    const std::optional<double> each = number(part);
+    if (!each) return {};
+    all.push_back(*each);
+  }
+  return all;
+}
+
+DyeSource parse_source(const std::string& text) {
+  const auto bad = [&](const std::string& why) {
+    return Error("`dye` takes no source '" + text + "'", why, "use X,Y,Z,R or X,Y,Z:X,Y,Z or ARRAY or ARRAY=VALUE");
+  };
+  DyeSource source;
+  source.text = text;
+  if (const auto ball = numbers(text)) {
+    if (ball->size() != 4) throw bad("a ball has four numbers");
+    source.ball = true;
+    source.low = {(*ball)[0], (*ball)[1], (*ball)[2]};
+    source.radius = (*ball)[3];
+    if (!(source.radius > 0)) throw bad("its radius is not above 0");
+    return source;
+  }
+  const std::vector<std::string> ends = split(text, ':');
+  if (ends.size() == 2 && numbers(ends[0]) && numbers(ends[1])) {
+    const std::vector<double> a = *numbers(ends[0]), b = *numbers(ends[1]);
+    if (a.size() != 3 || b.size() != 3) throw bad("a box has two corners of three numbers");
+    source.box = true;
+    source.low = min(Vec3d(a[0], a[1], a[2]), Vec3d(b[0], b[1], b[2]));
+    source.high = max(Vec3d(a[0], a[1], a[2]), Vec3d(b[0], b[1], b[2]));
+    return source;
+  }
+  const std::size_t sign = text.rfind('=');
+  source.array = text.substr(0, sign);
+  if (source.array.empty()) throw bad("it names no array");
+  if (sign == text.npos) return source;
+  const std::optional<double> value = number(text.substr(sign + 1));
+  if (!value) throw bad("what follows = is no number");
+  source.by_value = true;
+  source.value = *value;
+  return source;
+}
+
+}  // namespace
+
+std::vector<DyeSource> parse_dye(const std::string& text) {
+  std::vector<DyeSource> sources;
+  for (const std::string& part : split(text, ';')) sources.push_back(parse_source(part));
+  return sources;
+}
+
+std::vector<std::uint32_t> points_in(const DyeSource& source, const PreparedSurface& shape,
+                                     const std::vector<Triangle>& triangles, const Surface& first) {
+  const PointArray* array = source.array.empty() ? nullptr : first.find(source.array);
+  if (!source.array.empty() && (!array || array->components != 1 || array->size() != shape.points.size()))
+    throw Error("`dye`: the surface has no array \"" + source.array + "\" of one number per point");
+  double nearest = 1e300;
+  std::vector<std::uint32_t> points;
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const Vec3d& p = shape.points[triangles[t][k]];
+      double distance = 0;  // to the source
+      if (source.ball) distance = std::max(0.0, length(p - source.low) - source.radius);
+      if (source.box) distance = length(p - min(max(p, source.low), source.high));
+      if (array) {
+        const double value = array->values[shape.triangles[t][k]];
+        distance = (source.by_value ? value == source.value : value != 0 && !std::isnan(value)) ? 0 : 1e300;
+      }
+      nearest = std::min(nearest, distance);
+      if (distance == 0) points.push_back(triangles[t][k]);
+    }
+  if (points.empty())
+    throw Error("`dye`: no point of the surface lies in the source '" + source.text + "'",
+                array ? "no point has such a value" : fmt::format("the nearest is {:.3g} away from it", nearest),
+                array ? "" : "move it, or make it larger");
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+}  // namespace nacre
