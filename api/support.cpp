@@ -22,7 +22,7 @@ bool is_offered(const Knob& knob, Job job) {
   if (!knob.concerns(command_of(job))) return false;
   if (job == Job::mesh) return knob.group != "picture" && knob.name != "names" && knob.name != "layer";
   return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus" &&
-         knob.name != "ftle_time";
+         knob.name != "ftle_time" && !knob.name.starts_with("dye");
 }
 
 KnobValue value_of(const Knob& knob) {

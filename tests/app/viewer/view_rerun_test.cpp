@@ -64,6 +64,9 @@ const std::map<std::string, FlowRerun>& expected() {
       {"persistence", {}},  // of lines that are off
       {"streamlines", {lines}},
       {"ftle_time", {}},
+      {"dye", {}},
+      {"dye_release", {}},
+      {"dye_diffusion", {}},
       {"line_spacing", {}},
   };
   return table;
