@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/commands.hpp"
+#include "app/flow_results.hpp"
 #include "app/picture_options.hpp"
 #include "app/ranks.hpp"
 #include "app/run.hpp"
@@ -13,8 +14,6 @@
 #include "engine/io/flow_values.hpp"
 #include "engine/io/named_files.hpp"
 #include "engine/io/reader.hpp"
-#include "engine/io/vtk_inline.hpp"
-#include "engine/io/vtp_writer.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
@@ -22,29 +21,19 @@
 #include "engine/run/flow_maps.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
-#include "engine/run/flow_skeleton.hpp"
-#include "engine/run/flow_tracks.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/run/report.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/session/session.hpp"
+#include "engine/scene/settings/knobs.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/flow_motion.hpp"
-#include "engine/scene/surface/haemodynamics.hpp"
 
 namespace nacre {
 namespace {
 
 using nlohmann::json;
-
-struct FlowOptions {
-  CommonOptions common;
-  InputOptions input;
-  std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out, ftle_out, tracks_out;
-  std::string chunk;  ///< I/N: this part of the steps only
-  int lead_in = 256;  ///< steps before it
-};
 
 /// The steps of a run that are made: all of them, or part I of N. Parts differ by one step at most. Throws UsageError.
 FrameRange wanted_steps(const std::string& chunk, int steps) {
@@ -240,34 +229,6 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   return outputs;
 }
 
-/// The first shape with the means of the vectors over time.
-void write_haemodynamics(const std::string& file, VectorsInTime& input, const Origin& origin) {
-  input.enter(input.start());
-  input.rebase(input.start());
-  const Haemodynamics all = haemodynamics(input);
-  std::vector<PointArray> arrays;
-  for (const std::string& name : haemodynamic_names()) arrays.push_back({name, 1, haemodynamic_array(all, name)});
-  const PreparedSurface& surface = input.surface();
-  write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays, std::nullopt, {},
-            xml_origin(origin_of_output(origin, "haemodynamics")));
-}
-
-/// Where it is asked for, as a file or as colours. Returns its part of the report.
-json make_flow_map(const FlowOptions& options, VectorsInTime& input, const FlowSpan& span, const Settings& settings,
-                   const Origin& origin, std::vector<std::string>& outputs) {
-  const bool colours = is_ftle(settings.color) && !input.colored();
-  const bool writes = !options.ftle_out.empty() && is_first_process();
-  if (!colours && !writes) return json::object();
-  SurfaceFlowMap map = surface_flow_map(input, span, settings.ftle_time, &interrupt_flag());
-  if (writes) {
-    write_flow_map(options.ftle_out, map, origin_of_output(origin, "ftle-out"));
-    outputs.push_back(options.ftle_out);
-  }
-  const json report = flow_map_report(map);
-  if (colours) input.show_scalar(settings.color, std::move(map.ftle));
-  return {{"flow_map", report}};
-}
-
 double median(std::vector<double> seconds) {
   std::sort(seconds.begin(), seconds.end());
   return seconds.empty() ? 0 : seconds[seconds.size() / 2];
@@ -288,41 +249,6 @@ json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& ow
     sum += each["surface_cells"].get<double>();
   }
   return {{"count", ranks.count()}, {"imbalance", sum > 0 ? most * ranks.count() / sum : 1}, {"each", std::move(all)}};
-}
-
-/// Topology and streamlines of the last frame, and the critical points of all times, as far as they were asked for. Returns their part of the report.
-json write_lines(const FlowOptions& options, FlowPipeline& pipeline, VectorsInTime& input, const FlowSpan& span,
-                 const Settings& settings, const Origin& origin, std::vector<std::string>& outputs) {
-  json report = json::object();
-  const bool points = settings.topology || !options.topology_out.empty();
-  const bool lines = settings.streamlines || !options.streamlines_out.empty();
-  const bool tracks = !options.tracks_out.empty();
-  if (!points && !lines && !tracks) return report;
-  const double t = pipeline.flow().time();
-  StageTimers::Scope scope(pipeline.timers(), "topology");
-  if (points) {
-    const FlowSkeleton skeleton = flow_skeleton(input, t, settings.persistence);
-    report["topology"] = skeleton_report(skeleton);
-    if (!options.topology_out.empty()) {
-      write_skeleton(options.topology_out, skeleton, origin_of_output(origin, "topology-out"));
-      outputs.push_back(options.topology_out);
-    }
-  }
-  if (lines) {
-    const FlowStreamlines streamlines = flow_streamlines(input, t, settings.line_spacing, &interrupt_flag());
-    report["streamlines"] = {{"time", t}, {"count", streamlines.lines.size()}};
-    if (!options.streamlines_out.empty()) {
-      write_streamlines(options.streamlines_out, streamlines, origin_of_output(origin, "streamlines-out"));
-      outputs.push_back(options.streamlines_out);
-    }
-  }
-  if (tracks) {
-    const FlowTracks followed = flow_tracks(input, {span.first, span.end}, settings.persistence, &interrupt_flag());
-    report["tracks"] = tracks_report(followed);
-    write_tracks(options.tracks_out, followed, origin_of_output(origin, "tracks-out"));
-    outputs.push_back(options.tracks_out);
-  }
-  return report;
 }
 
 void run_flow(FlowOptions options, const KnobOptions& knob_options) {
