@@ -86,6 +86,7 @@ struct Meshing::State {
   std::unique_ptr<Device> device;
   std::unique_ptr<MeshPipeline> pipeline;
   MeshInput input;
+  MeshVolume volume;  ///< its voxels' materials, which the mesh is compared with; no values
   MeshResult result;
   MeshParameters used;  ///< those that the stages up to `stage` were computed with
   double used_max_cell = 0;
@@ -116,9 +117,10 @@ struct Meshing::State {
     for (const VolumeView& view : views) volumes.push_back(volume_of(view));
     if (volumes.empty()) throw Error("no volume is given");
     const auto warn = [this](const std::string& sentence) { tell(options, sentence); };
-    const MeshVolume volume = make_materials(volumes, false, settings().materials, input, warn);
+    volume = make_materials(volumes, false, settings().materials, input, warn);
     volumes.clear();
     pipeline->load(volume);
+    volume.values = {};
   }
 
   void build_fields() {
@@ -297,6 +299,7 @@ std::string Meshing::report() const {
     State& s = *state_;
     const Caller caller(s.mutex, s.options.threads);
     s.measure();
+    if (s.result.voxels.empty()) compare_with_voxels(s.result, s.volume, s.pipeline->timers(), s.options.stop);
     nlohmann::json report = report_frame("mesh", *s.device, s.pipeline->timers(), s.pipeline->peak_bytes());
     add_mesh_report(report, s.input, s.settings(), s.pipeline->info(), s.result);
     report["seconds"] = s.seconds;

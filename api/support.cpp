@@ -20,7 +20,8 @@ const char* command_of(Job job) { return job == Job::mesh ? "mesh" : "flow"; }
 /// Knobs that belong to a command line; library users set these in other ways.
 bool is_offered(const Knob& knob, Job job) {
   if (!knob.concerns(command_of(job))) return false;
-  if (job == Job::mesh) return knob.group != "picture" && knob.name != "names" && knob.name != "layer";
+  if (job == Job::mesh)
+    return knob.group != "picture" && knob.name != "names" && knob.name != "layer" && knob.name != "size_image";
   return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus" &&
          knob.name != "ftle_time" && !knob.name.starts_with("dye");
 }

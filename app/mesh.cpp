@@ -50,7 +50,9 @@ MeshVolume read_input(const MeshOptions& options, const Session& session, StageT
   const bool sample = !session.sample.empty();
   const std::vector<Volume> volumes = sample ? with_usage_errors(read) : read();
   if (interrupt_flag()) throw Interrupted();
-  return make_materials(volumes, sample, session.settings.materials, input, say_warning);
+  MeshVolume volume = make_materials(volumes, sample, session.settings.materials, input, say_warning);
+  volume.sizes = read_size_image(session.settings.materials);
+  return volume;
 }
 
 void show_progress(MeshPipeline& pipeline, Progress& bar) {
@@ -93,6 +95,8 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   measure_triangles(result, volume.materials(), pipeline.timers());
   result.distance = pipeline.surface_distance(result.mesh);
   check_interrupt(kept);
+  if (!options.common.report.empty())
+    compare_with_voxels(result, volume, pipeline.timers(), kept ? nullptr : &interrupt_flag());
   if (wants_cells(options)) {
     bar.update("tetrahedra", 0.97);
     fill_result(result, settings.max_cell, input, pipeline.timers(), kept ? nullptr : &interrupt_flag());
@@ -102,7 +106,10 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
 
 /// How the run's results come about.
 Origin mesh_origin(const MeshOptions& options, const Session& session, const std::string& backend) {
-  Origin origin = origin_of(session, "mesh", backend, named_files(session.inputs));
+  std::vector<std::filesystem::path> named = named_files(session.inputs);
+  if (const std::string& sizes = session.settings.materials.size_image; !sizes.empty())
+    for (const std::filesystem::path& file : named_files({sizes})) named.push_back(file);
+  Origin origin = origin_of(session, "mesh", backend, named);
   add_beside(origin, {{"out", options.out}, {"particles-out", options.particles_out}, {"image", options.image}});
   if (options.per_material) origin.options.push_back("--per-material");
   if (options.surface_only) origin.options.push_back("--surface-only");
@@ -120,7 +127,8 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   Progress bar(options.common.quiet);
   bar.update("read", 0);
   MeshInput input;
-  const InputWatch watch(session.inputs);
+  InputWatch watch(session.inputs);
+  if (const std::string& sizes = session.settings.materials.size_image; !sizes.empty()) watch.add({sizes});
   const MeshVolume volume = read_input(options, session, pipeline->timers(), input);
   Origin origin = mesh_origin(options, session, device->backend());
   watch.check();

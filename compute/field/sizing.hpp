@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compute/field/distance.hpp"
+#include "compute/field/size_limits.hpp"
 
 namespace nacre {
 
@@ -30,29 +31,10 @@ struct SizingRule {
   bool operator==(const SizingRule&) const = default;
 };
 
-/// The largest size in a material or in a region, in place of SizingRule::max_size; lengths in voxels.
-struct SizeBound {
-  enum class Kind : std::uint32_t { material, box, ball };
-  Kind kind = Kind::material;
-  float size = 1;
-  std::uint32_t material = 0;
-  Vec3f centre, row[3];  ///< of a region: row * (p - centre) maps it to the cube or ball of half width 1 around zero
-
-  /// Whether it holds at a point of this interface.
-  NACRE_HD bool holds(const Vec3f& p, const Junction& surface) const {
-    if (kind == Kind::material) return surface.has(material);
-    const Vec3f r = p - centre, u{dot(row[0], r), dot(row[1], r), dot(row[2], r)};
-    if (kind == Kind::ball) return dot(u, u) <= 1;
-    return std::fabs(u.x) <= 1 && std::fabs(u.y) <= 1 && std::fabs(u.z) <= 1;
-  }
-  bool operator==(const SizeBound& b) const {
-    return kind == b.kind && size == b.size && material == b.material && centre == b.centre && row[0] == b.row[0] &&
-           row[1] == b.row[1] && row[2] == b.row[2];
-  }
-};
-
 /// The rule with the largest of all sizes as `max_size`: what reaches far enough for each of them.
-inline SizingRule widest_rule(SizingRule rule, const std::vector<SizeBound>& bounds) {
+inline SizingRule widest_rule(SizingRule rule, const std::vector<SizeBound>& bounds,
+                              const SizeWishes* wishes = nullptr) {
+  if (wishes) rule.max_size = std::max(rule.max_size, wishes->most);
   for (const SizeBound& bound : bounds) rule.max_size = std::max(rule.max_size, bound.size);
   return rule;
 }
@@ -124,10 +106,12 @@ struct LargestSize {
   float usual;
   const SizeBound* bound;
   int bounds;
+  SizeWishesView wish;
 
-  /// Of several bounds the smallest holds, whether or not it is below the usual largest size.
+  /// Of several bounds and a wish the smallest holds, whether or not it is below the usual largest size.
   NACRE_HD float operator()(const InterfacePoint& q) const {
     float least = 3e38f;
+    if (const float wanted = wish({q.position.x, q.position.y, q.position.z}); wanted > 0) least = wanted;
     for (int b = 0; b < bounds; ++b)
       if (bound[b].holds({q.position.x, q.position.y, q.position.z}, q.surface)) least = min(least, bound[b].size);
     return least < 3e38f ? least : usual;
@@ -276,10 +260,10 @@ struct SizingField {
 /// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball
 /// (with `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On
 /// the lattice of `distance`; a body that its reach does not see across counts as wide. `bounds` hold where they are,
-/// in place of the rule's largest size.
+/// in place of the rule's largest size, and so do `wishes` (may be null).
 template <class Backend>
 SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule,
-                         const std::vector<SizeBound>& bounds = {}) {
+                         const std::vector<SizeBound>& bounds = {}, const SizeWishes* wishes = nullptr) {
   Arena& arena = exec.arena();
   SizingField field;
   field.lattice = distance.lattice;
@@ -288,18 +272,22 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   Arena::Scope scope(arena);
   const DistanceFieldView view = distance.view();
   Array<float> at_point = arena.temporary<float>(points);
-  const SizingRule widest = widest_rule(rule, bounds);
+  const SizingRule widest = widest_rule(rule, bounds, wishes);
   Array<SizeBound> bound = arena.temporary<SizeBound>(std::max<std::size_t>(bounds.size(), 1));
   if (!bounds.empty()) bound.upload(bounds);
-  const detail::LargestSize largest{rule.max_size, bound.data(), int(bounds.size())};
+  Array<float> wish = arena.temporary<float>(wishes ? wishes->size.size() : 1);
+  SizeWishesView wished;
+  if (wishes) {
+    wish.upload(wishes->size);
+    wished = {wishes->dims, wishes->origin, {wishes->row[0], wishes->row[1], wishes->row[2]}, wish.data()};
+  }
+  const detail::LargestSize largest{rule.max_size, bound.data(), int(bounds.size()), wished};
+  const detail::LargestSize widest_of_all{widest.max_size, bound.data(), int(bounds.size()), wished};
   const Vec3f& s = field.lattice.spacing;
   const float free = widest.reach() + 0.5f, most = std::min(free, distance.reach - 1.5f);
-  exec.for_each(points, detail::SizeAtInterface{{view, most, free, 0.1f * std::max({s.x, s.y, s.z})},
-                                                rule,
-                                                widest.max_size,
-                                                bound.data(),
-                                                int(bounds.size()),
-                                                at_point.data()});
+  exec.for_each(points,
+                detail::SizeAtInterface{
+                    {view, most, free, 0.1f * std::max({s.x, s.y, s.z})}, rule, widest_of_all, at_point.data()});
   const detail::SizeRange range =
       exec.reduce(points, detail::SizeRange{}, detail::SizeRangeAt{at_point.data()}, detail::JoinSizeRanges{});
   field.smallest = range.low;

@@ -17,7 +17,7 @@ int FieldRecipe::alike(const FieldRecipe& other) const {
 }
 
 FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
-                         std::vector<SizeBound> bounds, float small) {
+                         std::vector<SizeBound> bounds, const SizeWishes* wishes, float small) {
   FieldRecipe recipe;
   if (kind == MeshVolume::Kind::labels) recipe.width = parameters.tighten;
   if (recipe.width > 0) recipe.stairs = parameters.stairs;
@@ -27,9 +27,10 @@ FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind
   recipe.bounds = std::move(bounds);
   float least = recipe.rule.min_size;
   for (const SizeBound& bound : recipe.bounds) least = std::min(least, bound.size);
+  if (wishes) least = std::min(least, wishes->least);
   recipe.spacing = 0.5f * least;
   recipe.lattice = lattice_over(bricks, recipe.spacing);
-  recipe.reach = std::min(widest_rule(recipe.rule, recipe.bounds).reach() + 2, 64.0f);
+  recipe.reach = std::min(widest_rule(recipe.rule, recipe.bounds, wishes).reach() + 2, 64.0f);
   // Cells of two thirds of the smallest distance of particles suffice for the stencils. They are searched voxel by
   // voxel for what meets there, so that a few are no cheaper than many, and one that is larger than the volume takes
   // forever.

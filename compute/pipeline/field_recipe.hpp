@@ -29,9 +29,9 @@ struct FieldRecipe {
 };
 
 /// The recipe that `parameters` ask for on a volume of this kind, laid out as `bricks`; `bounds` are what its `sizes`
-/// say. The cells of the embedding are limited by `small`, SizingField::small of the present sizing field: where that
-/// is built again, so is the embedding.
+/// say, `wishes` (may be null) those of the volume. The cells of the embedding are limited by `small`,
+/// SizingField::small of the present sizing field: where that is built again, so is the embedding.
 FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
-                         std::vector<SizeBound> bounds, float small);
+                         std::vector<SizeBound> bounds, const SizeWishes* wishes, float small);
 
 }  // namespace nacre

@@ -16,6 +16,7 @@
 #include "compute/pipeline/field_recipe.hpp"
 #include "compute/pipeline/mesh_choices.hpp"
 #include "compute/pipeline/size_bounds.hpp"
+#include "compute/pipeline/size_wishes.hpp"
 #include "compute/pipeline/stage_progress.hpp"
 #include "compute/pipeline/volume_frame.hpp"
 
@@ -42,6 +43,7 @@ class MeshFields {
 
   const VolumeFrame& frame() const { return frame_; }
   std::vector<SizeBound> bounds(const MeshParameters& p) const { return size_bounds(p.sizes, described_); }
+  const SizeWishes* wishes() const { return wishes_ ? &*wishes_ : nullptr; }  ///< null: the volume has none
   double least_area() const { return least_area_; }  ///< of all boundaries, squares of the smallest spacing
   const MaterialBricks& bricks() const { return bricks_; }
   const DistanceField& distance() const { return distance_; }
@@ -59,7 +61,7 @@ class MeshFields {
 
  private:
   FieldRecipe recipe(const MeshParameters& p) const {
-    return field_recipe(p, *kind_, bricks_, size_bounds(p.sizes, described_), size_.small);
+    return field_recipe(p, *kind_, bricks_, size_bounds(p.sizes, described_), wishes(), size_.small);
   }
   void build_stage(FieldStage which, const MeshParameters& parameters, MeshInfo& info);
   void relate_interfaces(MeshInfo& info);
@@ -69,6 +71,7 @@ class MeshFields {
   VolumeFrame frame_;
   MeshVolume described_;                  ///< the volume without its voxels
   std::optional<MeshVolume::Kind> kind_;  ///< of the volume; none: none is loaded
+  std::optional<SizeWishes> wishes_;
   MaterialBricks bricks_;
   double least_area_ = 0;
   DistanceField distance_;
@@ -93,7 +96,8 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
   arena.rewind(0);
   frame_ = VolumeFrame(volume);
   described_ = {volume.kind, volume.dims, volume.spacing, volume.origin, volume.axes, {},
-                {},          {},          volume.labels,  volume.names};
+                {},          {},          volume.labels,  volume.names,  {}};
+  wishes_ = volume.sizes ? std::optional(size_wishes(volume)) : std::nullopt;
   size_bounds(parameters.sizes, described_);  // what cannot be read is said before the long work
   std::vector<std::uint16_t> thinned;
   if (volume.kind == MeshVolume::Kind::labels && volume.materials() > max_block_materials) {
@@ -153,7 +157,7 @@ void MeshFields<Backend>::build_stage(FieldStage which, const MeshParameters& pa
   switch (which) {
     case tighten_stage: info.constrained_voxels = tighten(exec_, bricks_, recipe_.width, recipe_.stairs).held; break;
     case distance_stage: distance_ = distance_field(exec_, bricks_, recipe_.spacing, recipe_.reach); break;
-    case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule, recipe_.bounds); break;
+    case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule, recipe_.bounds, wishes()); break;
     default:
       recipe_.cells_per_voxel = recipe(parameters).cells_per_voxel;  // now that the sizing field is known
       grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,6 +53,14 @@ struct MeshParameters {
   std::uint32_t seed = 1;
 };
 
+/// Wanted sizes on a grid of its own, placed in the world as a MeshVolume.
+struct SizeImage {
+  Int3 dims{};
+  Vec3d spacing{1, 1, 1}, origin{};
+  std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};
+  std::vector<float> size;  ///< per voxel, the largest distance of particles there, world units; 0: no wish
+};
+
 /// A volume on the host. Voxel (i, j, k), x fastest, has its centre at origin + axes * (index * spacing).
 struct MeshVolume {
   enum class Kind {
@@ -70,6 +79,7 @@ struct MeshVolume {
   std::vector<float> levels;               ///< ascending
   std::vector<std::int64_t> labels;        ///< per material: its label in the file; [0]: the outside's
   std::vector<std::string> names;          ///< per material; may be empty
+  std::optional<SizeImage> sizes;          ///< in place of `max_size` where it has wishes
 
   int materials() const { return int(labels.size()); }
   std::size_t voxels() const { return std::size_t(dims.x) * dims.y * dims.z; }

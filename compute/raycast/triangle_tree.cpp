@@ -127,20 +127,17 @@ double TriangleTree::distance_to_box(std::size_t node, const Vec3d& from) const 
   return dot(off, off) * (1 - 1e-12);
 }
 
-void TriangleTree::closest_in_leaf(std::size_t leaf, const Vec3d& from, double& nearest,
-                                   std::optional<TriangleHit>& hit) const {
-  const std::size_t end = std::min(order_.size(), (leaf + 1) * leaf_size);
-  for (std::size_t i = leaf * leaf_size; i < end; ++i) {
-    const Triangle& t = triangles_[order_[i]];
-    const Vec3d p = closest_point(Corners{points_[t.a], points_[t.b], points_[t.c]}, from), off = p - from;
-    const double squared = dot(off, off);
-    if (squared > nearest || (squared == nearest && hit && order_[i] >= hit->triangle)) continue;
-    nearest = squared;
-    hit = TriangleHit{order_[i], 0, p, {}};
-  }
+void TriangleTree::try_closest(std::uint32_t triangle, const Vec3d& from, double& nearest,
+                               std::optional<TriangleHit>& hit) const {
+  const Triangle& t = triangles_[triangle];
+  const Vec3d p = closest_point(Corners{points_[t.a], points_[t.b], points_[t.c]}, from), off = p - from;
+  const double squared = dot(off, off);
+  if (squared > nearest || (squared == nearest && hit && triangle >= hit->triangle)) return;
+  nearest = squared;
+  hit = TriangleHit{triangle, 0, p, {}};
 }
 
-std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from) const {
+std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from, std::optional<std::uint32_t> guess) const {
   std::optional<TriangleHit> hit;
   if (triangles_.empty()) return hit;
   struct Entry {
@@ -148,20 +145,23 @@ std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from) const {
     double squared;
   };
   double nearest = std::numeric_limits<double>::infinity();
-  std::vector<Entry> open{{1, distance_to_box(1, from)}};
-  while (!open.empty()) {
-    const Entry entry = open.back();
-    open.pop_back();
+  if (guess) try_closest(*guess, from, nearest, hit);
+  std::array<Entry, 66> open;  // one for each level, and one more
+  std::size_t count = 0;
+  open[count++] = {1, distance_to_box(1, from)};
+  while (count > 0) {
+    const Entry entry = open[--count];
     if (entry.squared > nearest) continue;
     if (entry.node >= leaves_) {
-      closest_in_leaf(entry.node - leaves_, from, nearest, hit);
+      const std::size_t begin = (entry.node - leaves_) * leaf_size, end = std::min(order_.size(), begin + leaf_size);
+      for (std::size_t i = begin; i < end; ++i) try_closest(order_[i], from, nearest, hit);
       continue;
     }
     Entry near{2 * entry.node, distance_to_box(2 * entry.node, from)};
     Entry far{2 * entry.node + 1, distance_to_box(2 * entry.node + 1, from)};
     if (far.squared < near.squared) std::swap(near, far);
-    if (far.squared <= nearest && std::isfinite(far.squared)) open.push_back(far);
-    if (near.squared <= nearest && std::isfinite(near.squared)) open.push_back(near);
+    if (far.squared <= nearest && std::isfinite(far.squared)) open[count++] = far;
+    if (near.squared <= nearest && std::isfinite(near.squared)) open[count++] = near;
   }
   if (hit) hit->distance = length(hit->position - from);
   return hit;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "engine/scene/session/mesh_materials.hpp"
@@ -13,5 +14,9 @@ namespace nacre {
 /// `read_volume` and `make_phantom` do, and Interrupted soon after `*stop` (may be null) is set.
 std::vector<Volume> read_mesh_volumes(const SessionInput& input, const MaterialSettings& settings,
                                       const std::atomic<bool>* stop, const WarningSink& warn = {});
+
+/// What the knob `size_image` (may be empty) names: any format of volumes, in a frame of its own. Values that are not
+/// finite or not above 0 are no wishes. Throws Error as `read_volume` does.
+std::optional<SizeImage> read_size_image(const MaterialSettings& settings);
 
 }  // namespace nacre

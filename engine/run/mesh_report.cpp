@@ -104,7 +104,20 @@ json ratio_json(const TriangleQuality& q) {
   return {{"mean", q.radius_ratio_mean}, {"min", q.radius_ratio_min}, {"histogram", q.radius_ratio_histogram}};
 }
 
-json materials_json(const MeshInput& input, const TopologyReport& topology) {
+/// The mesh of a material against its voxels; lengths and volumes in the units of the data.
+json against_voxels_json(double volume, const VoxelDistance& v) {
+  json compared = {{"voxel_volume", v.voxel_volume}, {"difference", volume - v.voxel_volume}};
+  compared["relative_difference"] = v.voxel_volume > 0 ? json(volume / v.voxel_volume - 1) : json();
+  if (!v.measured) return compared;
+  compared["mean_distance"] = v.mean();
+  compared["hausdorff_distance"] = v.hausdorff();
+  compared["from_mesh"] = {{"mean", v.mesh_mean}, {"max", v.mesh_max}};
+  compared["from_voxels"] = {{"mean", v.faces_mean}, {"max", v.faces_max}};
+  return compared;
+}
+
+json materials_json(const MeshInput& input, const MeshResult& result) {
+  const TopologyReport& topology = result.topology;
   json materials = json::array();
   for (std::size_t m = 1; m < std::min(input.labels.size(), topology.materials.size()); ++m) {
     const MaterialTopology& t = topology.materials[m];
@@ -116,6 +129,7 @@ json materials_json(const MeshInput& input, const TopologyReport& topology) {
                          {"components", t.components},
                          {"vertices", t.vertices},
                          {"triangles", t.facets}});
+    if (m < result.voxels.size()) materials.back()["against_voxels"] = against_voxels_json(t.volume, result.voxels[m]);
   }
   return materials;
 }
@@ -172,7 +186,7 @@ json mesh_json(const MeshInput& input, const MeshResult& r) {
             {"angle_degrees", angles_json(away)},
             {"share_under_25_degrees", away.share_under_25}}},
           {"surface_distance_voxels", distance_json(r)},
-          {"materials", materials_json(input, r.topology)}};
+          {"materials", materials_json(input, r)}};
 }
 
 json cells_json(const MeshInput& input, const MeshResult& r) {

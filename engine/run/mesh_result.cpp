@@ -49,6 +49,12 @@ void measure_triangles(MeshResult& result, int materials, StageTimers& timers) {
   result.quality = surface_quality(result.mesh);
 }
 
+void compare_with_voxels(MeshResult& result, const MeshVolume& volume, StageTimers& timers,
+                         const std::atomic<bool>* stop) {
+  StageTimers::Scope scope(timers, "fidelity");
+  result.voxels = voxel_distances(result.mesh, volume, stop);
+}
+
 void fill_result(MeshResult& result, double max_cell, const MeshInput& input, StageTimers& timers,
                  const std::atomic<bool>* stop) {
   StageTimers::Scope scope(timers, "tetrahedra");

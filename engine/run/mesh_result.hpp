@@ -9,6 +9,7 @@
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
+#include "compute/pipeline/voxel_distance.hpp"
 #include "engine/scene/session/mesh_materials.hpp"
 
 namespace nacre {
@@ -18,6 +19,7 @@ struct MeshResult {
   TopologyReport topology;
   SurfaceQuality quality;
   SurfaceDistance distance;
+  std::vector<VoxelDistance> voxels;  ///< per material, how the mesh compares with the voxels
   std::optional<TetrahedralMesh> cells;
   CellQuality cell_quality;
   bool interrupted = false;  ///< the particles were stopped before they were done
@@ -35,6 +37,10 @@ FieldRemarks remarks_on_fields(const MeshInfo& info, const MeshParameters& param
 
 /// Topology and shape of `result.mesh` (stage quality).
 void measure_triangles(MeshResult& result, int materials, StageTimers& timers);
+
+/// `result.mesh` against the voxels that it was made of (stage fidelity). Of `volume` everything but `values` is read.
+void compare_with_voxels(MeshResult& result, const MeshVolume& volume, StageTimers& timers,
+                         const std::atomic<bool>* stop);
 
 /// Fills `result.mesh` with tetrahedra (stage tetrahedra), whose longest edge is the knob `max_cell`, and measures
 /// them. `input` is the volume that the mesh was made of. Throws as fill_with_tetrahedra does.

@@ -135,7 +135,10 @@ Origin origin_of(const Session& session, const std::string& command, const std::
     if (!file.empty()) origin.others.push_back(read_origin_file(file));
   };
   if (!session.camera && is_camera_file(settings.camera)) add_named(settings.camera);
-  if (command == "mesh") add_named(settings.materials.names);
+  if (command == "mesh") {
+    add_named(settings.materials.names);
+    add_named(settings.materials.size_image);
+  }
   return origin;
 }
 

@@ -164,5 +164,28 @@ TEST_F(MeshInputTest, MoreParticlesThanFitAreRefusedBeforeTheWork) {
   EXPECT_FALSE(exists("never.vtp"));
 }
 
+TEST_F(MeshInputTest, SizesComeFromAnImageOnAnotherGrid) {
+  const std::string file = write("a.nrrd", ball_nrrd("spacings: 0.5 0.5 0.5\n"));
+  // 4 x 4 x 4 voxels of 3 mm over the 8 mm of the ball: 0.3 mm in the half with small x, no wish in the other.
+  const auto wish = [](int i, int, int) { return i < 2 ? 0.3 : -1; };
+  const std::string frame =
+      "space dimension: 3\nspace directions: (3,0,0) (0,3,0) (0,0,3)\nspace origin: (-0.75,-0.75,-0.75)\n";
+  const std::string sizes = write("s.nrrd", nrrd<double>({4, 4, 4}, "float", frame, wish));
+  const auto triangles = [&](const Words& more) {
+    return mesh(file, Words{"--max-size", "2", "--epsilon", "2"} + more)["mesh"]["triangles"].get<int>();
+  };
+  const int coarse = triangles({}), half = triangles({"--size-image", sizes});
+  EXPECT_GT(half, 2 * coarse);
+  EXPECT_LT(half, 8 * coarse) << "the other half is as it was";
+}
+
+TEST_F(MeshInputTest, AnImageOfSizesThatSaysNothingOrDoesNotExistIsRefused) {
+  const std::string file = write("a.nrrd", ball_nrrd());
+  const std::string empty =
+      write("s.nrrd", nrrd<int>({4, 4, 4}, "uchar", "spacings: 3 3 3\n", [](int, int, int) { return 0; }));
+  expect_refused(file, 1, {"the image of sizes asks for nothing"}, {"--size-image", empty});
+  expect_refused(file, 1, {"missing.nrrd"}, {"--size-image", path("missing.nrrd")});
+}
+
 }  // namespace
 }  // namespace nacre::test

@@ -52,6 +52,24 @@ TEST_F(MeshReport, HasEveryKeyOfTheContract) {
   for (const json& material : m["materials"]) EXPECT_NEAR(material["volume"], 7958.7, 0.07 * 7958.7);
 }
 
+TEST_F(MeshReport, EachMaterialIsComparedWithItsVoxelsInTheUnitsOfTheData) {
+  const std::string file = write("a.nrrd", ball_nrrd("spacings: 0.5 0.5 0.5\n"));
+  const json r = mesh(file), m = r["mesh"]["materials"][0], v = m["against_voxels"];
+  EXPECT_EQ(v["voxel_volume"], 0.125 * r["input"]["materials"][0]["voxels"].get<double>());
+  EXPECT_NEAR(v["difference"], m["volume"].get<double>() - v["voxel_volume"].get<double>(), 1e-9);
+  EXPECT_NEAR(v["relative_difference"], v["difference"].get<double>() / v["voxel_volume"].get<double>(), 1e-9);
+  EXPECT_LT(std::abs(v["relative_difference"].get<double>()), 0.1);
+  EXPECT_NEAR(v["mean_distance"], 0.5 * 0.19, 0.5 * 0.06) << "as a perfect ball of this size";
+  EXPECT_LT(v["hausdorff_distance"], 0.5 * 0.9);
+  for (const char* from : {"from_mesh", "from_voxels"}) {
+    EXPECT_LE(v[from]["mean"], v[from]["max"]);
+    EXPECT_LE(v[from]["max"], v["hausdorff_distance"]);
+  }
+  Words stages;
+  for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
+  EXPECT_EQ(std::count(stages.begin(), stages.end(), "fidelity"), 1);
+}
+
 TEST_F(MeshReport, StageNamesAreTheFixedOnes) {
   ASSERT_EQ(nacre(small_mesh + Words{"--report", path("r.json"), "--out", path("a.vtu"), "--image", path("a.png"),
                                      "--size", "64x48"})

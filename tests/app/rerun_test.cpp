@@ -58,6 +58,18 @@ TEST_F(Rerun, TopologyStreamlinesAndFlowMaps) {
   for (const char* name : {"points.vtp", "lines.vtp", "map.vtp", "tracks.vtp", "a.json"}) expect_same(name);
 }
 
+TEST_F(Rerun, MeshWithSizesFromAnImage) {
+  const std::string file = write("a.nrrd", ball_nrrd());
+  const std::string sizes =
+      write("s.nrrd", nrrd<int>({4, 4, 4}, "uchar", "spacings: 5 5 5\n", [](int i, int, int) { return 1 + i; }));
+  ASSERT_EQ(nacre({"mesh", file, "--quiet", "--size-image", sizes, "--out", path("a.vtp")}).status, 0);
+  expect_same("a.vtp");
+  write("s.nrrd", nrrd<int>({4, 4, 4}, "uchar", "spacings: 5 5 5\n", [](int, int, int) { return 2; }));
+  const Outcome changed = nacre({"rerun", path("a.vtp"), "--quiet"});
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_TRUE(contains(changed.err, "s.nrrd")) << changed.err;
+}
+
 TEST_F(Rerun, CameraOfASession) {
   write("s.json", R"({"nacre": "session 1", "sample": "sphere", "detail": 24, "knobs": {"resolution": 64, "steps": 1},
     "camera": {"eye": [3, 2, 1], "target": [0, 0, 0], "up": [0, 0, 1], "height": 2.5, "orthographic": false}})");

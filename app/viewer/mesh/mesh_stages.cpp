@@ -48,6 +48,7 @@ void MeshWorker::choose_materials() {
   {
     StageTimers::Scope scope(pipeline_->timers(), "classify");
     volume = materials_of(words, viewed->input);
+    volume.sizes = read_size_image(words);
     if (volume.kind == MeshVolume::Kind::scalar) viewed->spread = spread_of(volumes_->front());
   }
   pipeline_->load(volume);

@@ -17,7 +17,7 @@ namespace nacre {
 namespace {
 
 auto words(const MaterialSettings& w) {
-  return std::tie(w.labels, w.isovalue, w.threshold, w.materials, w.merge, w.min_component);
+  return std::tie(w.labels, w.isovalue, w.threshold, w.materials, w.merge, w.min_component, w.size_image);
 }
 
 }  // namespace

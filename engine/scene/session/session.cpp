@@ -30,8 +30,8 @@ std::string camera_beside(const path& folder, const std::string& camera) {
 /// Settings that name files, with whole names.
 void find_files_beside(const path& folder, Settings& settings) {
   settings.camera = camera_beside(folder, settings.camera);
-  std::string& names = settings.materials.names;
-  if (!names.empty()) names = beside(folder, names).string();
+  for (std::string* file : {&settings.materials.names, &settings.materials.size_image})
+    if (!file->empty()) *file = beside(folder, *file).string();
 }
 
 /// Only names that a session knows: a misspelt one would be left out in silence.

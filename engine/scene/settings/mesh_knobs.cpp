@@ -36,6 +36,11 @@ std::vector<Knob> material_knobs(Settings& s) {
        .value = &m.min_component,
        .min = 0,
        .max = largest_int},
+      {.name = "size_image",
+       .group = group,
+       .help = "volume file of largest distances between particles, in the units of its spacing, in place of max_size; "
+               "0, negative or no number: max_size",
+       .value = &m.size_image},
   };
 }
 

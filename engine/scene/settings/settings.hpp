@@ -10,14 +10,15 @@ namespace nacre {
 
 /// What becomes a material of a volume, as text; engine/scene/volume/material_options.hpp parses it.
 struct MaterialSettings {
-  bool labels = false;    ///< the values are labels, whatever they look like
-  std::string isovalue;   ///< V[,V...]
-  std::string threshold;  ///< LO:HI
-  std::string materials;  ///< L[,L...]: labels to keep; empty: all
-  std::string merge;      ///< A:B[,A:B...]: label A becomes B
-  int min_component = 0;  ///< drop pieces of fewer voxels
-  std::string names;      ///< a file with the names of labels; empty: those of the volume
-  int layer = -1;         ///< of a segmentation whose segments overlap, from 0; -1: all, later segments over earlier
+  bool labels = false;     ///< the values are labels, whatever they look like
+  std::string isovalue;    ///< V[,V...]
+  std::string threshold;   ///< LO:HI
+  std::string materials;   ///< L[,L...]: labels to keep; empty: all
+  std::string merge;       ///< A:B[,A:B...]: label A becomes B
+  int min_component = 0;   ///< drop pieces of fewer voxels
+  std::string names;       ///< a file with the names of labels; empty: those of the volume
+  std::string size_image;  ///< a volume file of wanted sizes; empty: none
+  int layer = -1;          ///< of a segmentation whose segments overlap, from 0; -1: all, later segments over earlier
 };
 
 enum class PlaneAxis { none, x, y, z };  ///< that a plane of the viewer cuts across; none: there is no plane

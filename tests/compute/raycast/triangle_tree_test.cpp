@@ -106,6 +106,11 @@ TEST(TriangleTree, FindsTheClosestPointOfAllTriangles) {
     EXPECT_EQ(hit->triangle, nearest);
     EXPECT_NEAR(hit->distance, least, 1e-12);  // compiled apart: the last bit may differ
     EXPECT_NEAR(length(hit->position - from), least, 1e-12);
+    for (const std::uint32_t guess : {nearest, 0u, 399u}) {
+      const auto guessed = tree.closest(from, guess);
+      EXPECT_EQ(guessed->triangle, nearest) << "a guess only saves time";
+      EXPECT_EQ(guessed->distance, hit->distance);
+    }
   }
 }
 

@@ -1,0 +1,262 @@
+// Nacre: how far the mesh of each material is from the boundary of its voxels.
+#include "compute/pipeline/voxel_distance.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "compute/device/error.hpp"
+#include "compute/pipeline/volume_frame.hpp"
+#include "compute/raycast/triangle_tree.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// A mean over an area and the largest value.
+struct Spread {
+  double sum = 0, area = 0, most = 0;
+
+  void add(double distance, double weight) {
+    sum += distance * weight;
+    area += weight;
+    most = std::max(most, distance);
+  }
+  void add(const Spread& other) {
+    sum += other.sum;
+    area += other.area;
+    most = std::max(most, other.most);
+  }
+  double mean() const { return area > 0 ? sum / area : 0; }
+};
+
+/// The voxels of a volume in coordinates that are parallel to its axes, with the length of the world: voxel (i, j, k)
+/// is the box around (i, j, k) * spacing.
+class Voxels {
+ public:
+  explicit Voxels(const MeshVolume& volume) : volume_(volume), dims_(volume.dims), spacing_(volume.spacing) {}
+
+  Vec3d local(const Vec3d& world) const {
+    const Vec3d index = world_to_index(world, volume_.origin, spacing_, volume_.axes);
+    return {index.x * spacing_.x, index.y * spacing_.y, index.z * spacing_.z};
+  }
+
+  std::uint16_t at(const Int3& v) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (v[axis] < 0 || v[axis] >= dims_[axis]) return 0;
+    return volume_.material[std::size_t(v.x) + std::size_t(dims_.x) * (v.y + std::size_t(dims_.y) * v.z)];
+  }
+
+  /// Calls visit(voxel, axis) for each voxel of layer `k` beyond which, along the axis, is another material, the layer
+  /// before the first among them.
+  template <class Visit>
+  void each_face(int k, const Visit& visit) const {
+    for (int j = -1; j < dims_.y; ++j)
+      for (int i = -1; i < dims_.x; ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+          const Int3 v(i, j, k);
+          Int3 next = v;
+          ++next[axis];
+          if (at(v) != at(next)) visit(v, axis);
+        }
+  }
+
+  Vec3d centre_of_face(const Int3& v, int axis) const {
+    Vec3d c(v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z);
+    c[axis] += 0.5 * spacing_[axis];
+    return c;
+  }
+  double area_of_face(int axis) const { return spacing_[(axis + 1) % 3] * spacing_[(axis + 2) % 3]; }
+
+  /// From `p` to the nearest face of a voxel of this material, which there must be. Voxels are searched shell by shell.
+  double distance_to_faces(const Vec3d& p, std::uint16_t material) const {
+    Int3 middle;
+    for (int axis = 0; axis < 3; ++axis)
+      middle[axis] = int(std::clamp(std::floor(p[axis] / spacing_[axis] + 0.5), 0.0, double(dims_[axis] - 1)));
+    double best = infinite;  // squared
+    for (int r = 0;; ++r) {
+      search_shell(p, material, middle, r, best);
+      const double known = nearest_beyond(p, middle, r);
+      if (known == infinite || (known > 0 && best <= known * known)) return std::sqrt(best);
+    }
+  }
+
+ private:
+  /// How near anything beyond the shell of this radius can be: infinite where there are no voxels.
+  double nearest_beyond(const Vec3d& p, const Int3& middle, int r) const {
+    double nearest = infinite;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double s = spacing_[axis];
+      if (middle[axis] - r > 0) nearest = std::min(nearest, p[axis] - (middle[axis] - r - 0.5) * s);
+      if (middle[axis] + r + 1 < dims_[axis]) nearest = std::min(nearest, (middle[axis] + r + 0.5) * s - p[axis]);
+    }
+    return nearest;
+  }
+
+  void search_shell(const Vec3d& p, std::uint16_t material, const Int3& middle, int r, double& best) const {
+    const Int3 low = max(middle - Int3(r, r, r), Int3(0, 0, 0));
+    const Int3 high = min(middle + Int3(r, r, r), dims_ - Int3(1, 1, 1));
+    for (int k = low.z; k <= high.z; ++k)
+      for (int j = low.y; j <= high.y; ++j) {
+        const bool whole = std::abs(k - middle.z) == r || std::abs(j - middle.y) == r;
+        const int step = whole ? 1 : std::max(1, 2 * r);
+        for (int i = whole ? low.x : middle.x - r; i <= high.x; i += step)
+          if (i >= 0 && at({i, j, k}) == material) search_voxel(p, material, {i, j, k}, best);
+      }
+  }
+
+  void search_voxel(const Vec3d& p, std::uint16_t material, const Int3& v, double& best) const {
+    const Vec3d centre(v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z), half = spacing_ * 0.5;
+    const Vec3d within = min(max(p, centre - half), centre + half), off = within - p;
+    if (dot(off, off) >= best) return;
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int side : {-1, 1}) {
+        Int3 beside = v;
+        beside[axis] += side;
+        if (at(beside) == material) continue;
+        Vec3d to_face = off;
+        to_face[axis] = centre[axis] + side * half[axis] - p[axis];
+        best = std::min(best, dot(to_face, to_face));
+      }
+  }
+
+  const MeshVolume& volume_;
+  Int3 dims_;
+  Vec3d spacing_;
+};
+
+/// The triangles of one material, with only the points that they use, in the coordinates of Voxels.
+TriangleTree tree_of(const SurfaceMesh& mesh, const std::vector<Vec3d>& points,
+                     const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::uint32_t> used;
+  for (const std::uint32_t t : triangles)
+    for (int k = 0; k < 3; ++k) used.push_back(mesh.triangles[t][k]);
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Vec3d> own;
+  for (const std::uint32_t v : used) own.push_back(points[v]);
+  std::vector<Triangle> of_own;
+  const auto number = [&](std::uint32_t v) {
+    return std::uint32_t(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+  };
+  for (const std::uint32_t t : triangles)
+    of_own.push_back({number(mesh.triangles[t].a), number(mesh.triangles[t].b), number(mesh.triangles[t].c)});
+  return {own, of_own};
+}
+
+std::vector<TriangleTree> trees_of(const SurfaceMesh& mesh, const Voxels& voxels, std::size_t materials) {
+  std::vector<Vec3d> points(mesh.points.size());
+  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) { points[i] = voxels.local(mesh.points[i]); });
+  std::vector<std::vector<std::uint32_t>> triangles(materials);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint16_t m : mesh.materials[t])
+      if (m > 0) triangles[m].push_back(std::uint32_t(t));
+  std::vector<TriangleTree> trees(materials);
+  tbb::parallel_for(std::size_t(1), materials, [&](std::size_t m) { trees[m] = tree_of(mesh, points, triangles[m]); });
+  return trees;
+}
+
+/// From the faces of all voxels to the triangles, per material.
+std::vector<Spread> from_faces(const Voxels& voxels, const std::vector<TriangleTree>& trees, int layers,
+                               const std::atomic<bool>* stop) {
+  struct Found {
+    Spread spread;
+    std::optional<TriangleHit> last;  ///< the next face is near it
+  };
+  std::vector<std::map<std::uint16_t, Found>> found(std::size_t(layers) + 1);
+  tbb::parallel_for(0, layers + 1, [&](int n) {
+    if (stop && *stop) return;
+    voxels.each_face(n - 1, [&](const Int3& v, int axis) {
+      Int3 next = v;
+      ++next[axis];
+      const Vec3d centre = voxels.centre_of_face(v, axis);
+      for (const std::uint16_t m : {voxels.at(v), voxels.at(next)}) {
+        if (m == 0) continue;
+        Found& of = found[std::size_t(n)][m];
+        if (!trees[m].triangles().empty())
+          of.last = trees[m].closest(centre, of.last ? std::optional(of.last->triangle) : std::nullopt);
+        of.spread.add(of.last ? of.last->distance : 0, voxels.area_of_face(axis));
+      }
+    });
+  });
+  check_stop(stop);
+  std::vector<Spread> sum(trees.size());
+  for (const auto& layer : found)
+    for (const auto& [m, of] : layer) sum[m].add(of.spread);
+  return sum;
+}
+
+/// From the triangles [begin, end) of a material, and the points with these numbers, to the faces of its voxels.
+Spread from_triangles(const Voxels& voxels, const TriangleTree& tree, std::uint16_t material, double voxel,
+                      std::size_t begin, std::size_t end) {
+  constexpr int most_parts = 64;  // of an edge
+  Spread spread;
+  const auto points = tree.points();
+  for (std::size_t v = begin; v < std::min(end, points.size()); ++v)
+    spread.most = std::max(spread.most, voxels.distance_to_faces(points[v], material));
+  for (std::size_t t = begin; t < std::min(end, tree.triangles().size()); ++t) {
+    const Triangle& c = tree.triangles()[t];
+    const Vec3d a = points[c.a], u = points[c.b] - a, w = points[c.c] - a;
+    const double longest = std::max({length(u), length(w), length(u - w)});
+    const int parts = std::clamp(int(std::ceil(longest / voxel - 1e-9)), 1, most_parts);
+    const double area = 0.5 * length(cross(u, w)) / (parts * parts);
+    for (int i = 0; i < parts; ++i)
+      for (int j = 0; j < 2 * (parts - i) - 1; ++j) {  // parts^2 small triangles, every second one upside down
+        const double third = j % 2 ? 2 / 3.0 : 1 / 3.0;
+        const Vec3d middle = a + u * ((i + third) / parts) + w * ((j / 2 + third) / parts);
+        spread.add(voxels.distance_to_faces(middle, material), area);
+      }
+  }
+  return spread;
+}
+
+}  // namespace
+
+std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVolume& volume,
+                                           const std::atomic<bool>* stop) {
+  const std::size_t materials = std::size_t(volume.materials());
+  std::vector<VoxelDistance> result(materials);
+  const Voxels voxels(volume);
+  const double voxel_volume = volume.spacing.x * volume.spacing.y * volume.spacing.z;
+  std::vector<std::int64_t> count(materials, 0);
+  for (const std::uint16_t m : volume.material) ++count[m];
+  const std::vector<TriangleTree> trees = trees_of(mesh, voxels, materials);
+  check_stop(stop);
+  const std::vector<Spread> faces = from_faces(voxels, trees, volume.dims.z, stop);
+
+  struct Part {
+    std::uint16_t material;
+    std::size_t begin;
+  };
+  constexpr std::size_t part_size = 4096;
+  std::vector<Part> parts;
+  for (std::size_t m = 1; m < materials; ++m) {
+    result[m].voxel_volume = double(count[m]) * voxel_volume;
+    result[m].measured = count[m] > 0 && !trees[m].triangles().empty();
+    if (!result[m].measured) continue;
+    for (std::size_t t = 0; t < std::max(trees[m].triangles().size(), trees[m].points().size()); t += part_size)
+      parts.push_back({std::uint16_t(m), t});
+  }
+  std::vector<Spread> spread(parts.size());
+  const double voxel = std::min({volume.spacing.x, volume.spacing.y, volume.spacing.z});
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
+    if (stop && *stop) return;
+    const Part& part = parts[i];
+    spread[i] = from_triangles(voxels, trees[part.material], part.material, voxel, part.begin, part.begin + part_size);
+  });
+  check_stop(stop);
+  std::vector<Spread> triangles(materials);
+  for (std::size_t i = 0; i < parts.size(); ++i) triangles[parts[i].material].add(spread[i]);
+  for (std::size_t m = 1; m < materials; ++m) {
+    if (!result[m].measured) continue;
+    result[m].mesh_mean = triangles[m].mean(), result[m].mesh_max = triangles[m].most;
+    result[m].faces_mean = faces[m].mean(), result[m].faces_max = faces[m].most;
+  }
+  return result;
+}
+
+}  // namespace nacre
