@@ -72,8 +72,10 @@ void TriangleTree::make_boxes() {
   }
 }
 
+/// Rays along an edge must not slip between its two triangles for rounding: they end a little beyond it.
 void TriangleTree::hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& along, double near, double& far,
                             std::optional<TriangleHit>& hit) const {
+  constexpr double slack = 1e-12;  // of the weights
   const std::size_t end = std::min(order_.size(), (leaf + 1) * leaf_size);
   for (std::size_t i = leaf * leaf_size; i < end; ++i) {
     const Triangle& t = triangles_[order_[i]];
@@ -82,9 +84,10 @@ void TriangleTree::hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& al
     if (determinant == 0) continue;
     const Vec3d s = from - a, q = cross(s, u);
     const double b = dot(s, p) / determinant, c = dot(along, q) / determinant, t_hit = dot(v, q) / determinant;
-    if (!(b >= 0 && c >= 0 && b + c <= 1 && t_hit >= near && t_hit < far)) continue;
+    if (!(b >= -slack && c >= -slack && b + c <= 1 + slack && t_hit >= near && t_hit < far)) continue;
     far = t_hit;
-    hit = TriangleHit{order_[i], t_hit, from + along * t_hit, Vec3d(1 - b - c, b, c)};
+    const Vec3d w = max(Vec3d(1 - b - c, b, c), Vec3d(0.0));
+    hit = TriangleHit{order_[i], t_hit, from + along * t_hit, w / (w.x + w.y + w.z)};
   }
 }
 

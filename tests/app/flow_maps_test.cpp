@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/io/reader.hpp"
+#include "engine/io/registry.hpp"
 #include "engine/io/surface_writer.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/scene/samples/samples.hpp"
@@ -147,11 +148,12 @@ TEST_F(DyeOfFlow, IsCarriedInTheTimeOfTheData) {
   const Words pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4", "--dye", "part"};
   ASSERT_EQ(nacre(pair + few_dyed + Words{"--out", path("v.vtp"), "--report", path("r.json")}).status, 0);
   EXPECT_EQ(dye_report()["steps"][4]["time"], 1);
-  const Surface values = open_surface({path("v.vtp")}).load(0);
-  const PointArray* dye = values.find("dye");
-  ASSERT_TRUE(dye);
+  const RawMesh values = read_raw(path("v.vtp")).mesh;
+  const auto dye = std::find_if(values.point_arrays.begin(), values.point_arrays.end(),
+                                [](const RawArray& array) { return array.name == "dye"; });
+  ASSERT_NE(dye, values.point_arrays.end());
   double whole = 0;
-  Vec3d middle;
+  Vec3d middle{};
   for (std::size_t i = 0; i < values.points.size(); ++i) {
     whole += dye->values[i];
     middle += values.points[i] * double(dye->values[i]);

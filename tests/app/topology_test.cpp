@@ -53,7 +53,10 @@ TEST_F(Topology, IsReportedAndWritten) {
   EXPECT_EQ(topology["separatrices"]["count"], 8);
   EXPECT_EQ(topology["separatrices"]["to_critical_point"], 8);
   const std::string file = content("t.vtp");
-  EXPECT_TRUE(contains(file, "NumberOfVerts=\"6\" NumberOfLines=\"8\"")) << file.substr(0, 600);
+  EXPECT_EQ(topology["closed_orbits"], (json{{"attracting", 0}, {"repelling", 0}}));
+  const int lines = 8 + topology["separation_lines"].get<int>() + topology["attachment_lines"].get<int>();
+  EXPECT_TRUE(contains(file, "NumberOfVerts=\"6\" NumberOfLines=\"" + std::to_string(lines) + "\""))
+      << file.substr(0, 600);
 }
 
 TEST_F(Topology, IsDrawnWhereTheCameraSeesIt) {

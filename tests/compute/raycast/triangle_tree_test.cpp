@@ -84,6 +84,22 @@ TEST(TriangleTree, RaysAlongAxesAndBetweenBounds) {
   EXPECT_FALSE(tree.first({0.8, 0.8, 5}, down));
 }
 
+TEST(TriangleTree, RaysAlongEdgesDoNotSlipBetweenTriangles) {
+  // Fans around points at odd coordinates; every ray goes through an edge that two triangles share.
+  int missed = 0;
+  for (std::uint32_t k = 0; k < 300; ++k) {
+    const Vec3d middle = random_place(k, 0), a = random_place(k, 3), b = random_place(k, 6), c = random_place(k, 9),
+                d = (a + b) * 0.7 - c;
+    const Soup s{{a, b, c, d}, {{0, 1, 2}, {1, 0, 3}}};
+    const TriangleTree tree(s.points, s.triangles);
+    for (std::uint32_t i = 1; i < 50; ++i) {
+      const Vec3d on_edge = a + (b - a) * (i / 50.0), from = on_edge + (middle - on_edge) * 10.0;
+      missed += !tree.first(from, normalized(on_edge - from)).has_value();
+    }
+  }
+  EXPECT_EQ(missed, 0);
+}
+
 TEST(TriangleTree, OfNothingFindsNothing) {
   EXPECT_FALSE(TriangleTree().first({0, 0, 0}, {1, 0, 0}));
   EXPECT_FALSE(TriangleTree({}, {}).first({0, 0, 0}, {1, 0, 0}));
