@@ -285,10 +285,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
   if (ranks) require_same_input(*ranks, input, span.start, knob_values(settings).dump());
-  const json map_report = [&] {
-    StageTimers::Scope scope(pipeline->timers(), "flow_map");
-    return make_flow_map(options, input, span, settings, origin, first_outputs);
-  }();
+  const json map_report = make_flow_map(options, pipeline->timers(), input, span, settings, origin, first_outputs);
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
 

@@ -29,11 +29,12 @@ void write_haemodynamics(const std::string& file, VectorsInTime& input, const Or
             xml_origin(origin_of_output(origin, "haemodynamics")));
 }
 
-json make_flow_map(const FlowOptions& options, VectorsInTime& input, const FlowSpan& span, const Settings& settings,
-                   const Origin& origin, std::vector<std::string>& outputs) {
+json make_flow_map(const FlowOptions& options, StageTimers& timers, VectorsInTime& input, const FlowSpan& span,
+                   const Settings& settings, const Origin& origin, std::vector<std::string>& outputs) {
   const bool colours = is_ftle(settings.color) && !input.colored();
   const bool writes = !options.ftle_out.empty() && is_first_process();
   if (!colours && !writes) return json::object();
+  StageTimers::Scope scope(timers, "flow_map");
   SurfaceFlowMap map = surface_flow_map(input, span, settings.ftle_time, &interrupt_flag());
   if (writes) {
     write_flow_map(options.ftle_out, map, origin_of_output(origin, "ftle-out"));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/run.hpp"
+#include "compute/device/stage_timers.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/run/origin.hpp"
 #include "engine/scene/settings/ranges.hpp"
@@ -24,9 +25,11 @@ struct FlowOptions {
 /// The first shape with the means of the vectors over time.
 void write_haemodynamics(const std::string& file, VectorsInTime& input, const Origin& origin);
 
-/// The flow map where it is asked for, as a file or as colours. Returns its part of the report, and adds to the outputs.
-nlohmann::json make_flow_map(const FlowOptions& options, VectorsInTime& input, const FlowSpan& span,
-                             const Settings& settings, const Origin& origin, std::vector<std::string>& outputs);
+/// The flow map where it is asked for, as a file or as colours. Returns its part of the report, and adds to the
+/// outputs.
+nlohmann::json make_flow_map(const FlowOptions& options, StageTimers& timers, VectorsInTime& input,
+                             const FlowSpan& span, const Settings& settings, const Origin& origin,
+                             std::vector<std::string>& outputs);
 
 /// Topology and streamlines of the last frame, and the critical points of all times, as far as they are asked for.
 /// Returns their part of the report, and adds to the outputs.

@@ -120,8 +120,8 @@ struct SplineWeights {
   }
 };
 
-/// Runs `kernel(cell, position, cursor)` on every cell of the band, or `kernel(surface_cell, cell, position, cursor)` on
-/// those that the surface passes through.
+/// Runs `kernel(cell, position, cursor)` on every cell of the band, or `kernel(surface_cell, cell, position, cursor)`
+/// on those that the surface passes through.
 template <class View, class Kernel>
 struct OnCells {
   View view;

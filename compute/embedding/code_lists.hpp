@@ -90,8 +90,8 @@ struct WriteRun {
 
 }  // namespace detail
 
-/// The runs among `n` sorted codes, without their lowest `shift` bits; 16 bytes a run in temporary memory of the caller's
-/// scope.
+/// The runs among `n` sorted codes, without their lowest `shift` bits; 16 bytes a run in temporary memory of the
+/// caller's scope.
 template <class Backend>
 CodeRuns runs_of(Executor<Backend>& exec, const std::uint64_t* code, std::uint64_t n, int shift) {
   Arena& arena = exec.arena();

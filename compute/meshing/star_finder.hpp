@@ -8,8 +8,8 @@
 
 namespace nacre {
 
-/// Finds stars. Items of the last call are known again by their surface and position; the stars that have the same items
-/// within reach are taken from there. What it gives depends on the items alone.
+/// Finds stars. Items of the last call are known again by their surface and position; the stars that have the same
+/// items within reach are taken from there. What it gives depends on the items alone.
 class StarFinder {
  public:
   /// All stars, settled, with what is agreed marked.

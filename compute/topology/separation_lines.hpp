@@ -19,9 +19,9 @@ struct SeparationLine {
 /// The parallel vector lines of D. N. Kenwright, C. Henze and C. Levit (Feature extraction of separation and attachment
 /// lines, 1999): the vector u is an eigenvector of its own gradient J, det(u, J u) = 0, and the eigenvalue across it is
 /// below that along it, and below 0 (separation), or above both (attachment). J of a vertex is the mean of its
-/// triangles', weighted by their areas, averaged once more with those around it; det(u, J u) is linear on each triangle.
-/// Only what goes the way of the flow, within 30 degrees, counts. Lines whose strength is below `least_strength` are left
-/// out. The same to the byte in every run.
+/// triangles', weighted by their areas, averaged once more with those around it; det(u, J u) is linear on each
+/// triangle. Only what goes the way of the flow, within 30 degrees, counts. Lines whose strength is below
+/// `least_strength` are left out. The same to the byte in every run.
 std::vector<SeparationLine> separation_lines(const TangentField& field, double least_strength);
 
 }  // namespace nacre

@@ -34,9 +34,9 @@ Camera dolly(const Camera& camera, double factor, double x, double y, double asp
 /// `dolly` and `pan` move what is there with the cursor. For a perspective camera `point` must lie before the eye.
 Camera look_at_depth(const Camera& camera, const Vec3d& point);
 
-/// Goes to a point of a surface until the picture there is `height` high; no farther away than it is. `back`: unit, from
-/// the point to the eye; where that is along the surface with this `normal` (unit, or 0), the camera looks from the side
-/// of `back`, but from more in front.
+/// Goes to a point of a surface until the picture there is `height` high; no farther away than it is. `back`: unit,
+/// from the point to the eye; where that is along the surface with this `normal` (unit, or 0), the camera looks from
+/// the side of `back`, but from more in front.
 Camera approach(const Camera& camera, const Vec3d& point, const Vec3d& back, const Vec3d& normal, double height);
 
 /// `factor` as far as `dolly` may go in a scene of this `extent` (world; > 0): the picture's height at the target stays

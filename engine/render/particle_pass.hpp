@@ -18,7 +18,7 @@ struct ParticleStyle {
   std::array<float, 2> range{0, 1};  ///< of the colour map
 };
 
-/// Draws directly from the arrays of the solver (ParticleSet): `position` x, y, z, h and `direction` nx, ny, nz, energy.
+/// Draws directly from the arrays of the solver (ParticleSet): `position` x, y, z, h; `direction` nx, ny, nz, energy.
 class ParticlePass {
  public:
   ParticlePass();

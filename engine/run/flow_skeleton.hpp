@@ -40,11 +40,11 @@ nlohmann::json skeleton_report(const FlowSkeleton& skeleton);
 
 /// As .vtp: a vertex cell for each critical point, and after them a polyline for each separatrix, line of separation or
 /// attachment, and closed orbit. Point arrays: `kind` (0 saddle, 1 source, 2 sink, 3 focus source, 4 focus sink, 5
-/// centre; 6 a separatrix with the flow, 7 against it; 8 separation, 9 attachment; 10 an orbit that attracts, 11 one that
-/// repels), `index` (0 on lines), `persistence` (on a separatrix that of the saddle; else 0), `strength` (by how many
-/// powers of e neighbours come nearer along a line of separation, or in a round; else 0), `eigenvalue_real` and
-/// `eigenvalue_imaginary` (two components; 0 on lines). `origin`: how it came about (origin.hpp).
-/// Throws Error if the file cannot be written.
+/// centre; 6 a separatrix with the flow, 7 against it; 8 separation, 9 attachment; 10 an orbit that attracts, 11 one
+/// that repels), `index` (0 on lines), `persistence` (on a separatrix that of the saddle; else 0), `strength` (by how
+/// many powers of e neighbours come nearer along a line of separation, or in a round; else 0), `eigenvalue_real` and
+/// `eigenvalue_imaginary` (two components; 0 on lines). `origin`: how it came about (origin.hpp). Throws Error if the
+/// file cannot be written.
 void write_skeleton(const std::filesystem::path& file, const FlowSkeleton& skeleton, const std::string& origin);
 
 /// Streamlines that lie evenly (compute/topology/even_lines.hpp).

@@ -18,16 +18,16 @@ struct FlowTracks {
   std::vector<PointTrack> tracks;
 };
 
-/// Through the steps of the data that lie in `shown`, and its two ends. `persistence`: as of `flow_skeleton`. Throws Error
-/// where the data have one time only; Interrupted where `stop` is set.
+/// Through the steps of the data that lie in `shown`, and its two ends. `persistence`: as of `flow_skeleton`. Throws
+/// Error where the data have one time only; Interrupted where `stop` is set.
 FlowTracks flow_tracks(VectorsInTime& input, const Range& shown, double persistence, const std::atomic<bool>* stop);
 
 /// The report's key `tracks`.
 nlohmann::json tracks_report(const FlowTracks& tracks);
 
 /// As .vtp: a polyline through the positions of each point, with the point arrays `track` (its number), `time`, `kind`,
-/// `index` and `persistence` (as in `write_skeleton`); one that is there at one time only is a vertex cell. Throws Error
-/// if the file cannot be written.
+/// `index` and `persistence` (as in `write_skeleton`); one that is there at one time only is a vertex cell. Throws
+/// Error if the file cannot be written.
 void write_tracks(const std::filesystem::path& file, const FlowTracks& tracks, const std::string& origin);
 
 }  // namespace nacre

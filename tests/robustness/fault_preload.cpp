@@ -1,5 +1,5 @@
 // Nacre: faults injected into a running program by LD_PRELOAD, each at the n-th call of its kind, so that a run fails
-// in the same position every time. NACRE_FAULT is KIND:N, or none to count only; NACRE_FAULT_COUNTS names a file that gets
+// at the same call every time. NACRE_FAULT is KIND:N, or none to count only; NACRE_FAULT_COUNTS names a file that gets
 // the number of calls of each kind. Counting begins when main installs its signal handlers: what fails before, the C++
 // library cannot survive.
 //   new      the N-th operator new throws std::bad_alloc

@@ -113,8 +113,8 @@ void ADisturbedLatticeBecomesEven(Executor<Backend>& exec) {
   }
 }
 
-/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed, another position.
-/// The steps that follow lead back.
+/// A shaken step goes anywhere in the plane, by no more than 0.3 heights along each axis; another seed gives another
+/// position. The steps that follow lead back.
 template <class Backend>
 void AShakenLatticeSettlesAgain(Executor<Backend>& exec) {
   const SurfaceMesh even = lattice_mesh(12, 10);

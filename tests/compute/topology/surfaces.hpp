@@ -19,7 +19,7 @@ struct Shape {
   std::vector<Triangle> triangles;
 };
 
-/// The unit sphere from an octahedron that was divided `levels` times, turned so that no point is at a special position.
+/// The unit sphere from an octahedron that was divided `levels` times, turned so that no point is anywhere special.
 inline Shape divided_sphere(int levels) {
   Shape s;
   s.points = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
