@@ -147,13 +147,8 @@ class OrbitFinder {
 std::vector<ClosedOrbit> closed_orbits(const TangentField& field, std::span<const CriticalPoint> points,
                                        std::span<const SurfaceLine> separatrices,
                                        std::span<const SeparationLine> separation) {
-  Vec3d low(1e300), high(-1e300);
-  for (std::size_t v = 0; v < field.vertices(); ++v) {
-    low = min(low, field.vertex_point(v));
-    high = max(high, field.vertex_point(v));
-  }
   if (field.vertices() == 0) return {};
-  OrbitFinder finder(field, points, 40 * length(high - low));
+  OrbitFinder finder(field, points, 40 * field.diagonal());
   for (const SurfaceLine& line : separatrices) finder.add(line);
   const Vec3d middle(1.0 / 3);
   for (const CriticalPoint& point : points) {

@@ -51,7 +51,7 @@ class Samples {
 class EvenLines {
  public:
   EvenLines(const TangentField& field, double spacing, const std::atomic<bool>* stop)
-      : field_(field), spacing_(spacing), stop_(stop), tracer_(field, {}, longest()), samples_(spacing) {}
+      : field_(field), spacing_(spacing), stop_(stop), tracer_(field, {}, 4 * field_.diagonal()), samples_(spacing) {}
 
   std::vector<EvenLine> all() {
     for (std::uint32_t t = 0; t < field_.triangles(); ++t) {
@@ -72,15 +72,6 @@ class EvenLines {
   }
 
  private:
-  double longest() const {
-    Vec3d low(1e300), high(-1e300);
-    for (std::size_t v = 0; v < field_.vertices(); ++v) {
-      low = min(low, field_.vertex_point(v));
-      high = max(high, field_.vertex_point(v));
-    }
-    return field_.vertices() == 0 ? 0 : 4 * length(high - low);
-  }
-
   Vec3d normal(std::uint32_t t) const { return field_.frame(t)[2]; }
 
   void try_seed(std::uint32_t triangle, const Vec3d& weights, const Vec3d& position) {

@@ -130,14 +130,9 @@ SurfaceLine LineTracer::leave(std::uint32_t saddle, const Vec3d& axis, bool forw
 }
 
 std::vector<SurfaceLine> separatrices(const TangentField& field, std::span<const CriticalPoint> points) {
-  Vec3d low(1e300), high(-1e300);
-  for (std::size_t v = 0; v < field.vertices(); ++v) {
-    low = min(low, field.vertex_point(v));
-    high = max(high, field.vertex_point(v));
-  }
   std::vector<SurfaceLine> lines;
   if (points.empty()) return lines;
-  const LineTracer tracer(field, points, 4 * length(high - low));
+  const LineTracer tracer(field, points, 4 * field.diagonal());
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     if (points[i].kind != CriticalKind::saddle) continue;
     for (const bool forward : {true, false})

@@ -201,6 +201,15 @@ std::array<Vec3d, 3> TangentField::frame(std::size_t t) const {
   return {x, cross(normal, x), normal};
 }
 
+double TangentField::diagonal() const {
+  Vec3d low(1e300), high(-1e300);
+  for (std::size_t v = 0; v < vertices(); ++v) {
+    low = min(low, vertex_point(v));
+    high = max(high, vertex_point(v));
+  }
+  return vertices() == 0 ? 0 : length(high - low);
+}
+
 std::array<Vec2d, 3> TangentField::corner_vectors(std::size_t t) const {
   const auto h = std::uint32_t(3 * t);
   const std::array<Vec3d, 3> axes = frame(t);

@@ -42,6 +42,7 @@ class TangentField {
   double speed(std::size_t v) const { return length(value_[v]); }
   int index(std::size_t t) const { return index_[t]; }
   const std::vector<Rim>& rims() const { return rims_; }
+  double diagonal() const;                             ///< of the bounds of its vertices, world units; 0 without any
   int euler_characteristic() const { return euler_; }  ///< vertices - edges + triangles
 
   /// The least speed along the edge of a half-edge, between its two ends linearly.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 
+#include "engine/render/blended.hpp"
 namespace nacre {
 namespace {
 
@@ -15,10 +16,8 @@ void draw_lines(const Program& program, std::array<float, 4> colour, const Draw&
   program.use();
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const Blended blended;
   draw();
-  glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "engine/render/blended.hpp"
 namespace nacre {
 
 MarkPass::MarkPass() : program_("marks.vert", "marks.frag") {
@@ -30,16 +31,14 @@ void MarkPass::draw(const View& view, const Placement& placement, float radius,
   set_view(program_, view, placement);
   program_.set("radius", 1.3f * radius);
   program_.set("outline", outline);
-  program_.set("lift", view.camera.orthographic ? 1e-5f : 8e-4f);
+  program_.set("lift", lift_of(view));
   program_.use();
   glVertexArrayVertexBuffer(array_, 0, marks_.id(), 0, sizeof(Mark));
   glBindVertexArray(array_);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const Blended blended;
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, count_);
-  glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
 }
 

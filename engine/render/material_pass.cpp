@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "engine/render/blended.hpp"
 namespace nacre {
 
 void MaterialPass::set_materials(std::span<const std::array<std::uint16_t, 2>> materials) {
@@ -33,12 +34,10 @@ void MaterialPass::draw(const View& view, const SurfaceBuffers& surface, const P
   surface.draw_triangles();
   if (!ghosts_) return;
   program_.set("ghosts", 1);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const Blended blended;
   glDepthMask(GL_FALSE);
   surface.draw_triangles();
   glDepthMask(GL_TRUE);
-  glDisable(GL_BLEND);
 }
 
 }  // namespace nacre

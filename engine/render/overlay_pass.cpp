@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "engine/render/blended.hpp"
 namespace nacre {
 namespace {
 
@@ -60,10 +61,8 @@ void OverlayPass::draw(const View& view) const {
   program_.use();
   glBindVertexArray(array_);
   glDisable(GL_DEPTH_TEST);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const Blended blended;
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, tile_count_);
-  glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "engine/render/blended.hpp"
 namespace nacre {
 
 SegmentPass::SegmentPass() : program_("segments.vert", "lines.frag") {
@@ -24,7 +25,7 @@ void SegmentPass::draw(const View& view, const Placement& placement, const Buffe
   set_view(program_, view, placement);
   program_.set("colour", style.colour);
   program_.set("width", style.width);
-  program_.set("lift", view.camera.orthographic ? 1e-5f : 8e-4f);
+  program_.set("lift", lift_of(view));
   program_.use();
   glVertexArrayVertexBuffer(array_, 0, segments.id(), 0, sizeof(Segment));
   glBindVertexArray(array_);
@@ -33,10 +34,8 @@ void SegmentPass::draw(const View& view, const Placement& placement, const Buffe
   else
     glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
-  glEnable(GL_BLEND);
-  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+  const Blended blended;
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(segments.bytes() / sizeof(Segment)));
-  glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
 }

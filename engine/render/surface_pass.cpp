@@ -5,26 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "engine/render/blended.hpp"
 namespace nacre {
 namespace {
-
-/// Blends over what was drawn before, while it lives.
-class Blended {
- public:
-  explicit Blended(bool blends) : blends_(blends) {
-    if (!blends_) return;
-    glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  }
-  ~Blended() {
-    if (blends_) glDisable(GL_BLEND);
-  }
-  Blended(const Blended&) = delete;
-  Blended& operator=(const Blended&) = delete;
-
- private:
-  bool blends_;
-};
 
 /// Depths are larger where they are nearer.
 void set_nearer(float steps) {

@@ -38,6 +38,10 @@ Vec3d mesh_light(const Camera& camera);
 /// `height`, at most to straight above or below; degrees.
 Vec3d turned_light(const Vec3d& light, const Camera& camera, double azimuth, double height);
 
+/// By how much lines and marks are drawn nearer, so that the triangles that they lie on do not hide them: the uniform
+/// `lift` of their shaders.
+inline float lift_of(const View& view) { return view.camera.orthographic ? 1e-5f : 8e-4f; }
+
 /// Where model coordinates (grid cells, voxels, world) are in the world: an affine map.
 using Placement = glm::dmat4;
 

@@ -12,6 +12,7 @@
 #include "compute/transport/flow_map.hpp"
 #include "engine/io/vtp_writer.hpp"
 #include "engine/run/moments.hpp"
+#include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/welded.hpp"
 
 namespace nacre {
@@ -19,21 +20,6 @@ namespace {
 
 constexpr double most_crossings = 1000;  ///< of the surface, by a particle
 constexpr int least_intervals = 64;      ///< in which a neighbour's leaving is noticed
-
-struct Extent {
-  double longest = 0, diagonal = 0;
-  explicit Extent(const PreparedSurface& surface) {
-    Vec3d low(1e300), high(-1e300);
-    for (const Triangle& t : surface.triangles)
-      for (int k = 0; k < 3; ++k) {
-        low = min(low, surface.points[t[k]]);
-        high = max(high, surface.points[t[k]]);
-      }
-    const Vec3d size = high - low;
-    longest = std::max({size.x, size.y, size.z});
-    diagonal = length(size);
-  }
-};
 
 double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double wanted, const Extent& extent) {
   if (input.moves() && input.series().motion->groups > 1)
@@ -43,7 +29,7 @@ double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double
     throw Error("there is no flow map of " + input.array(), "it is zero everywhere", "choose others with `vectors`");
   const bool steady = !(input.end() > input.start());
   double duration = wanted;
-  if (duration == 0) duration = steady ? extent.longest / speed : shown.end - shown.first;
+  if (duration == 0) duration = steady ? extent.longest_side() / speed : shown.end - shown.first;
   const double from = duration > 0 ? shown.first : shown.end, to = from + duration;
   const double slack = 1e-9 * (input.end() - input.start());
   const bool endless = steady || input.motion().period > 0 || input.array().starts_with('@');
@@ -53,11 +39,11 @@ double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double
         fmt::format("from {:g} to {:g}, and the data are those of {:g} to {:g}", from, to, input.start(), input.end()),
         fmt::format("use {:g} or less, or `period` if the data come round",
                     duration > 0 ? input.end() - from : input.start() - from));
-  const double longest = most_crossings * extent.diagonal / std::max(speed, 1e-300);
+  const double longest = most_crossings * extent.diagonal() / std::max(speed, 1e-300);
   if (!(std::fabs(duration) <= longest))
     throw Error(fmt::format("`ftle_time` {:g} is too long", duration),
                 fmt::format("particles would go {:.3g} times across the surface",
-                            std::fabs(duration) * speed / extent.diagonal),
+                            std::fabs(duration) * speed / extent.diagonal()),
                 fmt::format("use {:.3g} or less", longest));
   return duration;
 }
@@ -67,7 +53,7 @@ double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double
 SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, double duration,
                                 const std::atomic<bool>* stop) {
   SurfaceFlowMap map;
-  map.duration = chosen_duration(input, shown, duration, Extent(input.surface()));
+  map.duration = chosen_duration(input, shown, duration, Extent(input.surface().points, input.surface().triangles));
   map.from = map.duration > 0 ? shown.first : shown.end;
   input.enter(map.from);
   input.rebase(map.from);

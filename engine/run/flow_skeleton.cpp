@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/io/vtp_writer.hpp"
+#include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/welded.hpp"
 
 namespace nacre {
@@ -34,17 +35,6 @@ class FieldAtTime {
   std::optional<TangentField> field_;
 };
 
-double longest_side(const PreparedSurface& shape) {
-  Vec3d low(1e300), high(-1e300);
-  for (const Triangle& each : shape.triangles)
-    for (int k = 0; k < 3; ++k) {
-      low = min(low, shape.points[each[k]]);
-      high = max(high, shape.points[each[k]]);
-    }
-  const Vec3d size = high - low;
-  return std::max({size.x, size.y, size.z});
-}
-
 }  // namespace
 
 FlowSkeleton flow_skeleton(VectorsInTime& input, double t, double persistence) {
@@ -69,7 +59,8 @@ FlowStreamlines flow_streamlines(VectorsInTime& input, double t, double spacing,
   FlowStreamlines streamlines;
   const FieldAtTime field(input, t, streamlines.shape);
   streamlines.time = t;
-  streamlines.lines = even_lines(field(), spacing * longest_side(streamlines.shape), stop);
+  streamlines.lines =
+      even_lines(field(), spacing * Extent(streamlines.shape.points, streamlines.shape.triangles).longest_side(), stop);
   return streamlines;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 
 namespace nacre {
@@ -107,17 +108,6 @@ std::optional<Depths> visible_depths(const Projection& project, const FlowView& 
   return Depths{*hundredth, *std::max_element(buffer.begin(), buffer.end())};
 }
 
-double longest_side(const PreparedSurface& surface) {
-  Vec3d lower(1e300), upper(-1e300);
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) {
-      lower = min(lower, surface.points[t[k]]);
-      upper = max(upper, surface.points[t[k]]);
-    }
-  const Vec3d size = upper - lower;
-  return surface.triangles.empty() ? 0 : std::max({size.x, size.y, size.z});
-}
-
 double area_of(const PreparedSurface& surface) {
   double twice = 0;
   for (const Triangle& t : surface.triangles) {
@@ -154,7 +144,8 @@ int picture_resolution(const FlowView& view, const PreparedSurface& surface, con
     throw Error("`resolution` " + std::to_string(parameters.resolution) + " is too coarse", "",
                 "use " + std::to_string(least_resolution) + " or more, or 0");
   const Camera fitted = fit_camera(view.camera, triangle_corners(surface), view.width, view.height);
-  const double longest = longest_side(surface), pixels = double(view.width) * view.height;
+  const double longest = Extent(surface.points, surface.triangles).longest_side(),
+               pixels = double(view.width) * view.height;
   const double cell = std::max(std::max(fitted.height, view.camera.height) / view.height / cells_along_pixel,
                                std::sqrt(area_of(surface) / (picture_cells * pixels)));
   if (!(longest > 0) || !(cell > 0)) return least_resolution;
@@ -171,7 +162,7 @@ double window_budget(const FlowView& view) {
 std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
                               std::size_t available, double budget) {
   const Projection project(view);
-  const double coarse = longest_side(whole) / parameters.resolution;
+  const double coarse = Extent(whole.points, whole.triangles).longest_side() / parameters.resolution;
   if (!(coarse > 0) || !(project.distance() > 0) || !(view.camera.height > 0)) return {};
   const SurfacePart seen = cut_surface(whole, project.sides(0));
   if (seen.whole_triangles == whole.triangles.size()) return {};  // all of it
@@ -190,7 +181,7 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
     focus.part = cut_surface(whole, inside);
     cell = std::max(cell, std::sqrt(area_of(focus.part.surface) / budget));
   }
-  const double longest = longest_side(focus.part.surface);
+  const double longest = Extent(focus.part.surface.points, focus.part.surface.triangles).longest_side();
   if (!(longest > 0)) return {};
   focus.wanted = int(std::min<double>(std::ceil(longest / cell), most_cells(parameters)));
   focus.resolution = affordable(focus.part.surface, parameters, focus.wanted, double(available));

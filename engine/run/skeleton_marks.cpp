@@ -10,6 +10,7 @@
 
 #include "compute/raycast/triangle_tree.hpp"
 #include "engine/picture/compose.hpp"
+#include "engine/scene/surface/extent.hpp"
 
 namespace nacre {
 namespace {
@@ -26,13 +27,7 @@ class Projection {
  public:
   Projection(const Camera& camera, int width, int height, const PreparedSurface& shape)
       : camera_(camera), width_(width), height_(height), tree_(shape.points, shape.triangles) {
-    Vec3d low(1e300), high(-1e300);
-    for (const Triangle& t : shape.triangles)
-      for (int k = 0; k < 3; ++k) {
-        low = min(low, shape.points[t[k]]);
-        high = max(high, shape.points[t[k]]);
-      }
-    slack_ = shape.triangles.empty() ? 0 : 1e-3 * length(high - low);
+    slack_ = 1e-3 * Extent(shape.points, shape.triangles).diagonal();
   }
 
   Pixel operator()(const Vec3d& p) const {

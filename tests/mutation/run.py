@@ -273,7 +273,7 @@ def main():
     arguments = parser.parse_args()
 
     dice = random.Random(arguments.seed)
-    drawn = [(place, dice.choice(changes_of(place[2]))) for place in dice.sample(list(candidates()), 4 * arguments.count)]
+    drawn = [(line, dice.choice(changes_of(line[2]))) for line in dice.sample(list(candidates()), 4 * arguments.count)]
     if arguments.list:
         for number, ((path, line, old), (kind, new)) in enumerate(drawn[:arguments.count], 1):
             print(f"{number:3} {path}:{line + 1} {kind}\n    - {old.strip()}\n    + {new.strip()}")

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/material_map.hpp"
 
@@ -13,14 +14,6 @@ namespace nacre {
 namespace {
 
 constexpr double lost_share = 0.5;  // of the cells, above which a texture has not been carried but started over
-
-double longest_side(const PreparedSurface& surface) {
-  Vec3d low(1e300), high(-1e300);
-  for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) low = min(low, surface.points[t[k]]), high = max(high, surface.points[t[k]]);
-  const Vec3d side = high - low;
-  return std::max({side.x, side.y, side.z});
-}
 
 }  // namespace
 
@@ -34,7 +27,7 @@ void FlowMotion::embed(double t) {
   cell_size_ = 0;
   pipeline_.embed(mesh());
   cell_size_ = pipeline_.flow().embedding().cell_size;
-  longest_ = longest_side(input_.surface());
+  longest_ = Extent(input_.surface().points, input_.surface().triangles).longest_side();
 }
 
 bool FlowMotion::start(const FlowVectors& vectors) {
@@ -87,7 +80,7 @@ FlowMesh FlowMotion::mesh() const {
   FlowMesh mesh = flow_mesh(surface);
   mesh.moves = input_.moves();
   if (cell_size_ > 0) {
-    const double growth = longest_side(surface) / longest_;
+    const double growth = Extent(surface.points, surface.triangles).longest_side() / longest_;
     mesh.cell_size = cell_size_ * std::clamp(1.0, 0.5 * growth, 2 * growth);
   }
   return mesh;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
@@ -16,25 +17,6 @@ namespace {
 
 constexpr double other_unit = 9.5;       // times as large from one step to the next: no surface grows so
 constexpr double least_fullness = 1e-3;  // of the box's volume, below which the sign of a volume says nothing
-
-struct Extent {
-  Vec3d low{1e300, 1e300, 1e300}, high{-1e300, -1e300, -1e300};
-  bool finite = true;
-
-  explicit Extent(const Surface& surface) {
-    for (const Triangle& t : surface.triangles)
-      for (int k = 0; k < 3; ++k) {
-        const Vec3d& p = surface.points[t[k]];
-        finite = finite && is_finite(p);
-        low = min(low, p);
-        high = max(high, p);
-      }
-  }
-  double size() const {
-    const Vec3d side = high - low;
-    return std::max({side.x, side.y, side.z});
-  }
-};
 
 /// Whether every edge has a triangle on either side: then the volume inside has a sign.
 bool is_closed(const std::vector<Triangle>& triangles) {
@@ -61,9 +43,9 @@ class Examiner {
   /// Why the step cannot be what is meant; empty: it can. `other`: it has other triangles than the one before.
   std::string judge(const Surface& surface, bool& other) {
     if (surface.triangles.empty()) return "the surface vanishes: it has no triangles";
-    const Extent extent(surface);
+    const Extent extent(surface.points, surface.triangles);
     if (!extent.finite) return "its points are not all finite";
-    const double size = extent.size();
+    const double size = extent.longest_side();
     if (!(size > 0)) return "the surface vanishes: it has no extent";
     other = !known_ || surface.points.size() != points_ || surface.triangles != triangles_;
     if (known_ && (size > other_unit * size_ || size < size_ / other_unit))
@@ -92,8 +74,8 @@ class Examiner {
     prepared_ = prepare(surface).triangles;
     closed_ = is_closed(prepared_);
     volume_ = 0;
-    const Extent extent(surface);
-    const double size = extent.size();
+    const Extent extent(surface.points, surface.triangles);
+    const double size = extent.longest_side();
     thickness_ = closed_ ? std::abs(volume(surface.points, prepared_, extent.low)) / (size * size * size) : 0;
   }
 
@@ -121,7 +103,7 @@ SurfaceSeries examine_motion(SurfaceSeries series, const std::function<void(cons
     }
     if (other) ++motion->groups;
     motion->group.push_back(motion->groups - 1);
-    const Extent extent(surface);
+    const Extent extent(surface.points, surface.triangles);
     motion->low.push_back(extent.low);
     motion->high.push_back(extent.high);
     kept.push_back(k);
