@@ -37,7 +37,7 @@ TEST_F(Rerun, PictureAndValuesOfAFlow) {
   const std::string said = of_origin("a.png");
   for (const char* part : {"\"command\":\"flow\"", "\"sample\":\"sphere\"", "\"seed\":\"5\"", "\"step_cells\":\"3.7\""})
     EXPECT_TRUE(contains(said, part)) << part << "\n" << said;
-  for (const std::string word : {path("").c_str(), "threads", "a.png"})  // nothing of this machine, nothing of the name
+  for (const std::string& word : Words{path(""), "threads", "a.png"})  // nothing of this machine, nothing of the name
     EXPECT_FALSE(contains(content("a.png"), word)) << word;
 }
 
