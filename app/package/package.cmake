@@ -11,9 +11,8 @@ if(NACRE_LEVELS)
   nacre_build_levels(nacre)
   add_executable(nacre_launcher ${here}/launcher.cpp)  # for any x86-64: without nacre_options
   target_compile_features(nacre_launcher PRIVATE cxx_std_20)
-  set_target_properties(nacre_launcher PROPERTIES OUTPUT_NAME nacre
-    RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/launcher)
-  install(TARGETS nacre_launcher RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  # Not with OUTPUT_NAME: ninja would take "nacre" for the launcher.
+  install(PROGRAMS $<TARGET_FILE:nacre_launcher> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME nacre COMPONENT program)
   install(TARGETS nacre RUNTIME DESTINATION libexec/nacre/${NACRE_MARCH} COMPONENT program)
   foreach(level IN LISTS NACRE_LEVELS)
     install(PROGRAMS ${PROJECT_BINARY_DIR}/levels/${level}/bin/nacre DESTINATION libexec/nacre/${level} COMPONENT program)
