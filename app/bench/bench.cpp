@@ -72,7 +72,8 @@ const std::vector<BenchPart>& bench_parts() {
                                             {"6.2", bench_neighbour_index},
                                             {"arena", bench_arena},
                                             {"grid-octree", bench_grid_octree},
-                                            {"methods", bench_methods}};
+                                            {"methods", bench_methods},
+                                            {"transport", bench_transport}};
   return parts;
 }
 

@@ -83,5 +83,6 @@ void bench_arena(Bench& bench);             ///< sec. 5.3
 void bench_gathering(Bench& bench);         ///< sec. 3.3.3
 void bench_grid_octree(Bench& bench);       ///< sec. 6.3.2
 void bench_methods(Bench& bench);           ///< sec. 6.3.1, with pictures
+void bench_transport(Bench& bench);         ///< docs/method/topology.md, transport.md
 
 }  // namespace nacre

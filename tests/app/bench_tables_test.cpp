@@ -53,6 +53,7 @@ class BenchTables : public AppTest {
   void expect_material_tables() const;
   void expect_flow_tables() const;
   void expect_side_results() const;
+  void expect_transport() const;
 
   json report_;
   int status_ = -1;
@@ -134,6 +135,13 @@ void BenchTables::expect_side_results() const {
   }
 }
 
+void BenchTables::expect_transport() const {
+  for (const char* sample : {"train", "torus", "pulse"})
+    for (const char* what : {"topology, s", "streamlines, s", "flow map, s", "dye step, s"})
+      EXPECT_GT(ours(row("transport", sample, 0), what), 0) << sample;
+  EXPECT_GT(ours(row("transport", "pulse", 0), "tracks, s"), 0);
+}
+
 void BenchTables::expect_flow_tables() const {
   for (const char* name : {"train", "aircraft (F6)", "cylinder"}) {
     const json values = row("5.1", name, 3);
@@ -144,6 +152,7 @@ void BenchTables::expect_flow_tables() const {
     const json coarse = row("6.1", sample + " 64", 0), fine = row("6.1", sample + " 128", 0);
     EXPECT_FALSE(coarse.contains("growth of voxels"));
     EXPECT_NEAR(ours(fine, "growth of voxels"), ours(fine, "voxels") / ours(coarse, "voxels"), 1e-9);
+    EXPECT_NEAR(ours(fine, "growth of voxels"), 4, 1) << "twice as fine: four times the surface, in a band of cells";
     EXPECT_NEAR(ours(fine, "sparseness, %"), 100 * (1 - ours(fine, "voxels") / (128.0 * 128 * 128)), 1e-9);
     EXPECT_GT(ours(fine, "voxels"), ours(fine, "bricks: voxels")) << "the source's radius is twice ours";
   }
@@ -163,13 +172,14 @@ TEST_F(BenchTables, EveryTableAndOneThatIsMissing) {
   EXPECT_EQ(status_, 1);
   EXPECT_TRUE(contains(errors_, "has no value where") && contains(errors_, "Table 9.9, a row")) << errors_;
   EXPECT_EQ(lines_with(errors_, "nacre"), 1) << errors_;
-  EXPECT_EQ(report_["tables"].size(), 14u);
+  EXPECT_EQ(report_["tables"].size(), 15u);
   for (const char* table : {"3.1", "3.2", "3.3", "3.4", "4.1", "4.2", "4.3", "5.1", "6.1", "6.2"})
     EXPECT_EQ(lines_with(printed_, std::string("Table ") + table + " "), 1) << table;
   expect_scalar_tables();
   expect_material_tables();
   expect_flow_tables();
   expect_side_results();
+  expect_transport();
 }
 
 TEST_F(BenchTables, TheSerialSolversRowsAreOfTheCpuBesideAGpu) {

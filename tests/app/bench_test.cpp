@@ -126,21 +126,6 @@ TEST_F(BenchTest, KnobsTurnWhatTheTableDoesNotSet) {
   expect_failure(compared, 1, {"iterations 1", "max_size 3"});
 }
 
-TEST_F(BenchTest, FlowTablesGrow) {
-  const Outcome run = nacre(small_bench + Words{"6.2", "--json", path("bench.json")});
-  ASSERT_EQ(run.status, 0) << run.err;
-  const json report = read_json("bench.json");
-  const json* table = find(report["tables"], "6.2");
-  ASSERT_TRUE(table);
-  const json *coarse = find((*table)["rows"], "train 256"), *fine = find((*table)["rows"], "train 512");
-  ASSERT_TRUE(coarse && fine);
-  EXPECT_EQ((*fine)["values"]["voxels"]["source"], 930803);
-  EXPECT_FALSE((*coarse)["values"]["voxels"].contains("source"));
-  // Twice as fine: four times the surface, in a band of the same cells.
-  EXPECT_NEAR((*fine)["values"]["growth of voxels"]["ours"].get<double>(), 4, 0.6);
-  EXPECT_GT((*fine)["values"]["sparseness, %"]["ours"], 98);
-}
-
 TEST_F(BenchTest, LossesFailAndNameTheirRow) {
   const json report = arena_report();
   const Outcome lost = compare(with_ratios_times(report, 10, 0.1));
