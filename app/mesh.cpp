@@ -167,7 +167,7 @@ void add_mesh_command(CLI::App& program, std::function<void()>& run) {
   command->add_option(
       "--out", options->out,
       "surface: .vtp .ply .stl .obj .off .glb; filled with tetrahedra: .vtu, and with the surface .msh .msh4 "
-      "(Gmsh) .inp (Abaqus) .mesh (MFEM) .feb (FEBio) .foam (OpenFOAM)");
+      "(Gmsh) .inp (Abaqus) .mesh (MFEM) .feb (FEBio) .foam (OpenFOAM) .xdmf");
   command->add_flag("--surface-only", options->surface_only,
                     "write only the triangles to a .msh, .msh4 or .inp file, no tetrahedra");
   command->add_flag("--per-material", options->per_material, "write one closed surface per material: NAME_LABEL.ext");

@@ -10,6 +10,7 @@ optional_packages=(ccache)
 viewer_packages=(libglfw3-dev libglew-dev libegl-dev libglm-dev libimgui-dev libgl1-mesa-dri xvfb xauth xdotool)
 vtk_packages=(libvtk9-dev)
 dicom_packages=(libgdcm-dev)
+hdf5_packages=(libhdf5-dev)
 mpi_packages=(libopenmpi-dev openmpi-bin)
 check_packages=(clang-format clang-tidy)
 

@@ -183,7 +183,8 @@ struct PartsFormat {
 constexpr std::array parts_formats{
     PartsFormat{".msh4", write_gmsh4, write_gmsh4}, PartsFormat{".inp", write_abaqus, write_abaqus},
     PartsFormat{".mesh", nullptr, write_mfem},      PartsFormat{".feb", nullptr, write_febio},
-    PartsFormat{".foam", nullptr, write_openfoam},  PartsFormat{".glb", write_gltf, nullptr},
+    PartsFormat{".foam", nullptr, write_openfoam},  PartsFormat{".xdmf", write_xdmf, write_xdmf},
+    PartsFormat{".glb", write_gltf, nullptr},
 };
 
 const PartsFormat* parts_format(const std::string& extension) {

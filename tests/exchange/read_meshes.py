@@ -84,6 +84,19 @@ def check_meshio(folder, volume, area):
     same("meshio surface.inp", "sets", found, {words(k): v for k, v in area.items()})
 
 
+def check_xdmf(folder, volume, area):
+    for file, kind, array, expected in (
+        ("cells.xdmf", "tetra", "material", volume),
+        ("cells_interfaces.xdmf", "triangle", "interface", area),
+        ("surface.xdmf", "triangle", "interface", area),
+    ):
+        mesh = meshio.read(folder / file)
+        names = {tag: name for name, (tag, _) in mesh.field_data.items()}
+        cells, groups = mesh.cells_dict[kind], mesh.cell_data[array][0].ravel()
+        sizes = (volumes if kind == "tetra" else areas)(mesh.points, cells)
+        same(f"meshio {file}", "groups", {names[g]: sizes[groups == g].sum() for g in np.unique(groups)}, expected)
+
+
 def check_abaqus_surfaces(folder, area):
     """meshio leaves *SURFACE out."""
     faces = {"S1": (0, 1, 2), "S2": (0, 3, 1), "S3": (1, 3, 2), "S4": (2, 3, 0)}  # of C3D4, Abaqus manual
@@ -236,6 +249,7 @@ if __name__ == "__main__":
     check_abaqus_surfaces(folder, area)
     check_calculix(folder)
     check_gmsh(folder, volume, area)
+    check_xdmf(folder, volume, area)
     check_mfem(folder, volume, area)
     check_febio(folder, volume, area)
     check_openfoam(folder, volume, area)

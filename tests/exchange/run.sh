@@ -28,9 +28,10 @@ mesh() {
   "$nacre" mesh "$work/labels.seg.nrrd" --max-size 3 --min-size 1.5 --quiet --out "$work/$1" "${@:2}" >/dev/null
 }
 mesh cells.vtu
-for file in cells.msh cells.msh4 cells.inp cells.mesh cells.feb case/liver.foam surface.glb; do mesh "$file"; done
+for file in cells.msh cells.msh4 cells.inp cells.mesh cells.feb cells.xdmf case/liver.foam surface.glb; do mesh "$file"; done
 mesh surface.msh4 --surface-only
 mesh surface.inp --surface-only
+mesh surface.xdmf --surface-only
 "$python" "$here/read_meshes.py" "$work"
 
 info() { "$nacre" info --json "$work/$1" "${@:2}" >"$work/$1.json"; }
