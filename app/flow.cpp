@@ -20,6 +20,7 @@
 #include "engine/run/dye_run.hpp"
 #include "engine/run/flow_maps.hpp"
 #include "engine/run/flow_painter.hpp"
+#include "engine/run/flow_probes.hpp"
 #include "engine/run/flow_report.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/run/report.hpp"
@@ -54,7 +55,8 @@ void check_options(const FlowOptions& options, const Settings& settings) {
     if (settings.vectors.starts_with('@')) choose_vectors({}, settings.vectors);
     if (!settings.time.empty()) parse_time_range(settings);
     check_color_range(settings);
-    if (!settings.dye.empty()) parse_dye(settings.dye);
+    if (!settings.dye.empty()) parse_dyes(settings.dye);
+    parse_probes(settings.probe);
   });
   check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty() || !options.frames.empty(),
@@ -81,17 +83,13 @@ VectorsInTime read_input(const FlowOptions& options, const Session& session, Sta
   SurfaceSeries series = session.sample.empty()
                              ? open_surface(session.inputs, session.settings.patch)
                              : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
-  Settings settings = session.settings;
   FlowLog log;
-  log.read = [&](const Surface& first) {  // these colours are computed afterwards
-    if (is_ftle(settings.color) && !first.find(settings.color)) settings.color = "none";
-  };
   log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
   log.note = [&](const std::string& sentence) { say(options.common, sentence); };
   log.chosen = [&](const VectorChoice& choice) {
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
-  return make_flow_input(std::move(series), settings, log, &interrupt_flag());
+  return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
 }
 
 /// What the knob `resolution` leaves to the picture.
@@ -158,9 +156,10 @@ Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, P
 std::unique_ptr<DyeRun> make_dye(FlowPipeline& pipeline, VectorsInTime& input, const Settings& settings, double start) {
   if (settings.dye.empty()) return {};
   StageTimers::Scope scope(pipeline.timers(), "dye");
-  const double speed = input.statistics().percentile_98;
-  const double step = settings.flow.step_cells * pipeline.flow().embedding().cell_size / (speed > 0 ? speed : 1);
-  return std::make_unique<DyeRun>(input, settings, start, step, &interrupt_flag());
+  const double step = steady_dye_step(input, settings, pipeline.flow().embedding().cell_size);
+  auto dye = std::make_unique<DyeRun>(input, settings, start, step, &interrupt_flag());
+  dye->note();
+  return dye;
 }
 
 /// Returns how long each took, seconds.
@@ -176,6 +175,7 @@ std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const
     if (dye) {
       StageTimers::Scope scope(pipeline.timers(), "dye");
       dye->go_to(pipeline.flow().time());
+      dye->note();
     }
     if (films.asked) {
       const Image image = painter.paint(k);
@@ -221,7 +221,7 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
   if (!options.out.empty()) {
-    std::function<std::vector<float>(std::span<const Vec3d>)> at;
+    std::function<std::vector<PointArray>(std::span<const Vec3d>)> at;
     if (dye) at = [dye](std::span<const Vec3d> points) { return dye->at(points); };
     write_flow_values(pipeline.flow(), options.out, pipeline.flow().time(), origin_of_output(origin, "out"), at);
     outputs.push_back(options.out);
@@ -288,6 +288,8 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   const json map_report = make_flow_map(options, pipeline->timers(), input, span, settings, origin, first_outputs);
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
+  if (settings.tracks)
+    painter.show_tracks(flow_tracks(input, {span.first, span.end}, settings.persistence, &interrupt_flag()));
 
   const FlowView view{painter.camera(), settings.width, settings.height};
   const std::size_t available = first_ones(ranks, device->available_bytes());
@@ -333,6 +335,8 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     report.update(lines);
     report.update(map_report);
     if (dye) report["dye"] = dye->report();
+    if (!settings.probe.empty())
+      report["probes"] = probes_report(flow_probes(input, settings.probe, &interrupt_flag()), input.color());
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     if (is_first_process()) write_report(options.common, std::move(report), outputs, origin);
   }

@@ -5,6 +5,7 @@ in vec3 seen;
 in vec3 direction;
 in vec3 place;
 in float shade;
+in vec4 dyes;
 out vec4 pixel;
 
 uniform bool coloured;
@@ -16,6 +17,9 @@ uniform vec3 no_number;
 uniform sampler1D colours;
 uniform bool neutral;  // these faces are grey
 uniform float opacity;
+uniform bool dyed;
+uniform vec3 inks[4];       // encoded
+uniform vec4 dye_strength;  // cover, least light, full light, least concentration
 
 #if defined(OCTREE)
 #include "octree_texture.glsl"
@@ -24,6 +28,17 @@ uniform float opacity;
 #include "sparse_texture.glsl"
 #include "footprint.glsl"
 #endif
+
+// As engine/run/dye_run.cpp blends them, on encoded colours.
+vec3 with_dyes(vec3 colour) {
+  vec4 mix_of = clamp(dyes, 0.0, 1.0);
+  float sum = dot(mix_of, vec4(1.0));
+  if (!(sum > dye_strength.w)) return colour;
+  float light = dot(colour, vec3(0.3, 0.6, 0.1)) / dye_strength.z;
+  vec3 ink = (inks[0] * mix_of.x + inks[1] * mix_of.y + inks[2] * mix_of.z + inks[3] * mix_of.w) / sum;
+  ink *= mix(dye_strength.y, 1.0, min(light, 1.0));
+  return mix(colour, ink, dye_strength.x * sqrt(min(sum, 1.0)));
+}
 
 void main() {
   if (is_cut(seen)) discard;
@@ -48,5 +63,7 @@ void main() {
 #ifdef TEXTURED
   if (!neutral) light_here *= 0.04 + 1.52 * shown_at(place);
 #endif
-  pixel = vec4(to_encoded(base * light_here), opacity);
+  vec3 colour = to_encoded(base * light_here);
+  if (dyed && !neutral) colour = with_dyes(colour);
+  pixel = vec4(colour, opacity);
 }

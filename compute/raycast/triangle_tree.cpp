@@ -170,4 +170,15 @@ std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from, std::optiona
   return hit;
 }
 
+Vec3d TriangleTree::weights_at(std::uint32_t triangle, const Vec3d& position) const {
+  const Triangle& t = triangles_[triangle];
+  const Vec3d &a = points_[t.a], b = points_[t.b] - a, c = points_[t.c] - a, d = position - a;
+  const Vec3d normal = cross(b, c);
+  const double whole = dot(normal, normal);
+  if (!(whole > 0)) return {1, 0, 0};
+  const double v = std::clamp(dot(cross(d, c), normal) / whole, 0.0, 1.0);
+  const double w = std::clamp(dot(cross(b, d), normal) / whole, 0.0, 1.0 - v);
+  return {1 - v - w, v, w};
+}
+
 }  // namespace nacre

@@ -35,6 +35,9 @@ class TriangleTree {
   /// saves time and changes nothing else.
   std::optional<TriangleHit> closest(const Vec3d& from, std::optional<std::uint32_t> guess = {}) const;
 
+  /// Of the corners of a triangle, for a point of it.
+  Vec3d weights_at(std::uint32_t triangle, const Vec3d& position) const;
+
   std::span<const Vec3d> points() const { return points_; }
   std::span<const Triangle> triangles() const { return triangles_; }
 

@@ -25,6 +25,8 @@ class Dye {
   /// Points at one position have one index. `diffusion`: area per unit of time.
   Dye(std::size_t points, std::span<const Triangle> triangles, double diffusion);
 
+  void set_diffusion(double diffusion) { diffusion_ = diffusion; }  ///< area per unit of time
+
   /// Fills the cells of these points up to the concentration 1. The shape as it is then.
   void release(std::span<const Vec3d> shape, std::span<const std::uint32_t> points);
 
@@ -35,9 +37,10 @@ class Dye {
 
   /// Mass divided by area, per point; 0 where no triangle is.
   std::vector<float> concentration(std::span<const Vec3d> shape) const;
-  double mass() const;                           ///< on the surface: concentration x area
-  double released() const { return released_; }  ///< so far
-  double left() const { return left_; }          ///< over rims, so far
+  std::span<const double> masses() const { return mass_; }  ///< of the cell of each point
+  double mass() const;                                      ///< on the surface: concentration x area
+  double released() const { return released_; }             ///< so far
+  double left() const { return left_; }                     ///< over rims, so far
 
   static constexpr int most_sub_steps = 100000;
 

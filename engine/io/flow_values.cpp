@@ -12,7 +12,7 @@ namespace nacre {
 
 void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file, double time,
                        const std::string& origin,
-                       const std::function<std::vector<float>(std::span<const Vec3d>)>& dye) {
+                       const std::function<std::vector<PointArray>(std::span<const Vec3d>)>& dye) {
   const FlowValues v = flow.values();
   const std::size_t n = v.value.size();
   const auto vectors = [&](std::string name, const std::vector<Vec3f>& from) {
@@ -22,7 +22,8 @@ void write_flow_values(const FlowMethod& flow, const std::filesystem::path& file
     return array;
   };
   std::vector<PointArray> arrays{{"value", 1, v.value}, vectors("velocity", v.velocity), vectors("normal", v.normal)};
-  if (dye) arrays.push_back({"dye", 1, dye(v.closest_point)});
+  if (dye)
+    for (PointArray& array : dye(v.closest_point)) arrays.push_back(std::move(array));
   const PointPositions closest{"closest_point", v.closest_point};
   write_vtp(file, std::span<const Vec3d>(v.centre), {}, arrays, time, {}, xml_origin(origin), std::span(&closest, 1));
 }

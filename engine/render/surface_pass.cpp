@@ -2,6 +2,7 @@
 #include "engine/render/surface_pass.hpp"
 
 #include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -72,6 +73,16 @@ void SurfaceColours::set_scalar(std::span<const float> scalar, double low, doubl
   coloured_ = !scalar.empty();
 }
 
+void SurfaceColours::set_dyes(std::span<const DyeMix> mixes) {
+  dyed_ = !mixes.empty();
+  if (!dyed_) return;
+  if (dye_.bytes() != mixes.size_bytes() || !dye_) {
+    dye_ = Buffer(mixes.size_bytes());
+    dye_texture_ = BufferTexture(dye_, GL_RGBA32F);
+  }
+  dye_.update(mixes);
+}
+
 int SurfaceColours::bind(const Program& program, int unit) const {
   map_.bind(unit);
   program.set("colours", unit);
@@ -83,7 +94,17 @@ int SurfaceColours::bind(const Program& program, int unit) const {
   program.set("below", below_);
   program.set("above", above_);
   program.set("no_number", no_number_);
-  return unit + 2;
+  program.set("dyed", dyed_ ? 1 : 0);
+  dye_texture_.bind(unit + 2);
+  program.set("dye", unit + 2);
+  for (std::size_t d = 0; d < most_dyes; ++d) {
+    std::array<float, 3> ink{};
+    for (std::size_t k = 0; k < 3; ++k) ink[k] = float(dye_inks[d][k]) / 255;
+    program.set(("inks[" + std::to_string(d) + "]").c_str(), ink);
+  }
+  program.set("dye_strength", std::array<float, 4>{float(dye_cover), float(dye_least_light),
+                                                   float(dye_full_light / 255), float(least_drawn_dye)});
+  return unit + 3;
 }
 
 void SurfacePass::set_texture(SurfaceTexture texture, const TextureLayout& layout) {

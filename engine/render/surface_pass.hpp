@@ -9,6 +9,7 @@
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/gl/texture.hpp"
+#include "engine/picture/dye_colours.hpp"
 #include "engine/render/geometry.hpp"
 #include "engine/render/octree_texture.hpp"
 #include "engine/render/sparse_texture.hpp"
@@ -29,6 +30,8 @@ class SurfaceColours {
   void set_beyond(const std::array<float, 3>& below, const std::array<float, 3>& above,
                   const std::array<float, 3>& no_number);
   void clear_scalar() { coloured_ = false; }
+  /// Dyes over the colours, per point of the mesh; none: no dyes.
+  void set_dyes(std::span<const DyeMix> mixes);
 
   int bind(const Program& program, int unit) const;
 
@@ -36,6 +39,9 @@ class SurfaceColours {
   ColourTexture map_;
   Buffer scalar_;
   BufferTexture scalar_texture_;
+  Buffer dye_;
+  BufferTexture dye_texture_;
+  bool dyed_ = false;
   bool coloured_ = false;
   float low_ = 0, high_ = 1, isolines_ = 0;
   std::array<float, 3> below_{}, above_{}, no_number_{0.25f, 0.25f, 0.25f};  ///< as the shader sees them

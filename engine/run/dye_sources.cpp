@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "compute/device/error.hpp"
+#include "engine/picture/dye_colours.hpp"
 
 namespace nacre {
 namespace {
@@ -24,10 +25,13 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-std::optional<double> number(std::string text) {
+std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
-  if (begin == text.npos) return {};
-  text = text.substr(begin, end - begin + 1);
+  return begin == text.npos ? "" : text.substr(begin, end - begin + 1);
+}
+
+std::optional<double> number(const std::string& with_blanks) {
+  const std::string text = trimmed(with_blanks);
   double value = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) return {};
@@ -47,15 +51,21 @@ std::optional<std::vector<double>> numbers(const std::string& text) {
 
 DyeSource parse_source(const std::string& text) {
   const auto bad = [&](const std::string& why) {
-    return Error("`dye` takes no source '" + text + "'", why, "use X,Y,Z,R or X,Y,Z:X,Y,Z or ARRAY or ARRAY=VALUE");
+    return Error("`dye` takes no source '" + text + "'", why,
+                 "use X,Y,Z,R or X,Y,Z/X,Y,Z,R or X,Y,Z:X,Y,Z or ARRAY or ARRAY=VALUE");
   };
   DyeSource source;
   source.text = text;
-  if (const auto ball = numbers(text)) {
-    if (ball->size() != 4) throw bad("a ball has four numbers");
-    source.ball = true;
-    source.low = {(*ball)[0], (*ball)[1], (*ball)[2]};
-    source.radius = (*ball)[3];
+  const std::vector<std::string> points = split(text, '/');
+  if (numbers(points.back())) {
+    for (const std::string& point : points) {
+      const auto p = numbers(point);
+      const std::size_t wanted = &point == &points.back() ? 4 : 3;
+      if (!p || p->size() != wanted)
+        throw bad(points.size() == 1 ? "a ball has four numbers" : "a curve has three numbers a point, and a radius");
+      source.curve.push_back({(*p)[0], (*p)[1], (*p)[2]});
+      if (wanted == 4) source.radius = (*p)[3];
+    }
     if (!(source.radius > 0)) throw bad("its radius is not above 0");
     return source;
   }
@@ -79,12 +89,28 @@ DyeSource parse_source(const std::string& text) {
   return source;
 }
 
+double distance_to_curve(const Vec3d& p, const std::vector<Vec3d>& curve) {
+  double least = length(p - curve.front());
+  for (std::size_t k = 0; k + 1 < curve.size(); ++k) {
+    const Vec3d along = curve[k + 1] - curve[k];
+    const double square = dot(along, along), share = square > 0 ? dot(p - curve[k], along) / square : 0;
+    least = std::min(least, length(p - curve[k] - along * std::clamp(share, 0.0, 1.0)));
+  }
+  return least;
+}
+
 }  // namespace
 
-std::vector<DyeSource> parse_dye(const std::string& text) {
-  std::vector<DyeSource> sources;
-  for (const std::string& part : split(text, ';')) sources.push_back(parse_source(part));
-  return sources;
+std::vector<std::vector<DyeSource>> parse_dyes(const std::string& text) {
+  std::vector<std::vector<DyeSource>> dyes;
+  for (const std::string& dye : split(text, '|')) {
+    dyes.emplace_back();
+    for (const std::string& part : split(dye, ';')) dyes.back().push_back(parse_source(trimmed(part)));
+  }
+  if (dyes.size() > most_dyes)
+    throw Error(fmt::format("`dye` has {} dyes", dyes.size()), fmt::format("there are {} colours", most_dyes),
+                "separate the sources of one dye by ;");
+  return dyes;
 }
 
 std::vector<std::uint32_t> points_in(const DyeSource& source, const PreparedSurface& shape,
@@ -98,7 +124,7 @@ std::vector<std::uint32_t> points_in(const DyeSource& source, const PreparedSurf
     for (int k = 0; k < 3; ++k) {
       const Vec3d& p = shape.points[triangles[t][k]];
       double distance = 0;  // to the source
-      if (source.ball) distance = std::max(0.0, length(p - source.low) - source.radius);
+      if (!source.curve.empty()) distance = std::max(0.0, distance_to_curve(p, source.curve) - source.radius);
       if (source.box) distance = length(p - min(max(p, source.low), source.high));
       if (array) {
         const double value = array->values[shape.triangles[t][k]];

@@ -12,8 +12,8 @@ namespace nacre {
 
 /// One part of the knob `dye`.
 struct DyeSource {
-  std::string text;   ///< as it was written
-  bool ball = false;  ///< around `low`
+  std::string text;          ///< as it was written
+  std::vector<Vec3d> curve;  ///< points within `radius` of it: a ball, if it is one point
   double radius = 0;
   bool box = false;  ///< between `low` and `high`
   Vec3d low, high;
@@ -22,9 +22,10 @@ struct DyeSource {
   double value = 0;  ///< or is this
 };
 
-/// Parts are separated by semicolons: "X,Y,Z,R" a ball, "X,Y,Z:X,Y,Z" a box, "ARRAY" or "ARRAY=VALUE" the points with
-/// such a value. Throws Error that names `dye`.
-std::vector<DyeSource> parse_dye(const std::string& text);
+/// Dyes are separated by bars, and the sources of one by semicolons: "X,Y,Z,R" a ball, "X,Y,Z/.../X,Y,Z,R" a curve with
+/// that radius, "X,Y,Z:X,Y,Z" a box, "ARRAY" or "ARRAY=VALUE" the points with such a value. Throws Error that names
+/// `dye`.
+std::vector<std::vector<DyeSource>> parse_dyes(const std::string& text);
 
 /// The points of the triangles, in the numbers of `triangles`, that lie in a source; ascending. `first`: the surface
 /// with its arrays. Throws Error where no point lies in a source, which says how far the nearest is, and where there is

@@ -48,11 +48,25 @@ double chosen_duration(const VectorsInTime& input, const FlowSpan& shown, double
   return duration;
 }
 
+/// Afterwards the shape is embedded again that was before.
+class Rebased {
+ public:
+  explicit Rebased(VectorsInTime& input) : input_(input), base_(input.base()) {}
+  ~Rebased() { input_.rebase(base_); }
+  Rebased(const Rebased&) = delete;
+  Rebased& operator=(const Rebased&) = delete;
+
+ private:
+  VectorsInTime& input_;
+  double base_;
+};
+
 }  // namespace
 
 SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, double duration,
                                 const std::atomic<bool>* stop) {
   SurfaceFlowMap map;
+  const Rebased shape(input);
   map.duration = chosen_duration(input, shown, duration, Extent(input.surface().points, input.surface().triangles));
   map.from = map.duration > 0 ? shown.first : shown.end;
   input.enter(map.from);
@@ -75,12 +89,6 @@ SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, dou
     map.end[point] = found.end[v];
   }
   return map;
-}
-
-bool is_ftle(const std::string& color) {
-  return color.size() == 4 && std::equal(color.begin(), color.end(), "ftle", [](char a, char b) {
-           return std::tolower(static_cast<unsigned char>(a)) == b;
-         });
 }
 
 nlohmann::json flow_map_report(const SurfaceFlowMap& map) {

@@ -31,9 +31,6 @@ struct SurfaceFlowMap {
 SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, double duration,
                                 const std::atomic<bool>* stop);
 
-/// Whether a colour is this: "FTLE", in any case.
-bool is_ftle(const std::string& color);
-
 /// The report's key `flow_map`.
 nlohmann::json flow_map_report(const SurfaceFlowMap& map);
 

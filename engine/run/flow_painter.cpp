@@ -54,6 +54,7 @@ Image FlowPainter::paint(int frame) {
   const double now = pipeline_.flow().time();
   if (settings_.streamlines)
     draw_streamlines(image, camera, flow_streamlines(input_, now, settings_.line_spacing, nullptr));
+  if (!tracks_.tracks.empty()) draw_tracks(image, camera, tracks_, now, input_.shape(now));
   if (settings_.topology) draw_skeleton(image, camera, flow_skeleton(input_, now, settings_.persistence));
   FlowCaption caption;
   caption.map = settings_.legend && input_.colored() ? &map_ : nullptr;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/image.hpp"
 #include "engine/run/dye_run.hpp"
+#include "engine/run/flow_tracks.hpp"
 #include "engine/run/shown_colours.hpp"
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/surface/surface_part.hpp"
@@ -29,6 +31,9 @@ class FlowPainter {
   /// Blends it over the pictures; it must outlive the painter.
   void show_dye(const DyeRun& dye) { dye_ = &dye; }
 
+  /// Draws them over the pictures.
+  void show_tracks(FlowTracks tracks) { tracks_ = std::move(tracks); }
+
   /// The frame that is shown now; `frame` counts from 0, and turns the camera by the knob `orbit`.
   Image paint(int frame);
 
@@ -42,6 +47,7 @@ class FlowPainter {
   Camera camera_;
   const SurfacePart* part_ = nullptr;
   const DyeRun* dye_ = nullptr;
+  FlowTracks tracks_;
   std::array<float, 3> background_{1, 1, 1};
   bool transparent_ = false;
 };

@@ -23,6 +23,26 @@ FlowTracks flow_tracks(VectorsInTime& input, const Range& shown, double persiste
   return result;
 }
 
+std::vector<TrackPart> parts_of(const FlowTracks& all, const PointTrack& track, double now) {
+  TrackPart past{true, {}}, later{false, {}};
+  for (std::size_t i = 0; i < track.points.size(); ++i) {
+    const double t = all.times[track.first + i];
+    const Vec3d& p = track.points[i].position;
+    if (t > now && later.points.empty() && i > 0) {  // where it is now belongs to both
+      const double before = all.times[track.first + i - 1];
+      const Vec3d& q = track.points[i - 1].position;
+      const Vec3d middle = q + (p - q) * ((now - before) / (t - before));
+      past.points.push_back(middle);
+      later.points.push_back(middle);
+    }
+    (t > now ? later : past).points.push_back(p);
+  }
+  std::vector<TrackPart> parts;
+  for (TrackPart* part : {&later, &past})
+    if (part->points.size() > 1) parts.push_back(std::move(*part));
+  return parts;
+}
+
 nlohmann::json tracks_report(const FlowTracks& all) {
   std::size_t through = 0, appear = 0, vanish = 0, longest = 0;
   for (const PointTrack& track : all.tracks) {

@@ -22,6 +22,13 @@ struct FlowTracks {
 /// Error where the data have one time only; Interrupted where `stop` is set.
 FlowTracks flow_tracks(VectorsInTime& input, const Range& shown, double persistence, const std::atomic<bool>* stop);
 
+/// A track up to `now`, and from then on; what has fewer than two points is left out.
+struct TrackPart {
+  bool past;
+  std::vector<Vec3d> points;
+};
+std::vector<TrackPart> parts_of(const FlowTracks& tracks, const PointTrack& track, double now);
+
 /// The report's key `tracks`.
 nlohmann::json tracks_report(const FlowTracks& tracks);
 

@@ -153,6 +153,19 @@ void draw_skeleton(Image& image, const Camera& camera, const FlowSkeleton& skele
   }
 }
 
+void draw_tracks(Image& image, const Camera& camera, const FlowTracks& tracks, double now,
+                 const PreparedSurface& shape) {
+  const Projection project(camera, image.width, image.height, shape);
+  const double unit = line_unit(image);
+  LineSheet edge(image.width, image.height), past = edge, later = edge;
+  for (const PointTrack& track : tracks.tracks)
+    for (const TrackPart& part : parts_of(tracks, track, now))
+      add_line(project, part.points, {{&edge, 1.9 * unit}, {part.past ? &past : &later, 1.1 * unit}});
+  edge.blend(image, {mark_outline.r, mark_outline.g, mark_outline.b, 170});
+  later.blend(image, later_track_colour);
+  past.blend(image, track_colour);
+}
+
 void draw_streamlines(Image& image, const Camera& camera, const FlowStreamlines& streamlines) {
   const Projection project(camera, image.width, image.height, streamlines.shape);
   LineSheet sheet(image.width, image.height);

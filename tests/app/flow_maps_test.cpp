@@ -123,13 +123,15 @@ class DyeOfFlow : public AppTest {
     write_surface(path(name), s);
     return path(name);
   }
-  json dye_report() { return json::parse(content("r.json"))["dye"]; }
+  json dyes() { return json::parse(content("r.json"))["dye"]["dyes"]; }
+  json dye_report() { return dyes()[0]; }
 };
 
 TEST_F(DyeOfFlow, IsReportedInMass) {
   const std::string sphere = turning("s.vtp");
   const Words run = Words{"flow", sphere, "--quiet", "--steps", "5", "--report", path("r.json")} + few_dyed;
-  for (const std::string source : {"1,0,0,0.77", "0.7,-2,-2:2,2,2", "part", "part=3", "1,0,0,0.4;part"}) {
+  for (const std::string source :
+       {"1,0,0,0.77", "1,0,0/1,0,0/1,0,0,0.77", "0.7,-2,-2:2,2,2", "part", "part=3", "1,0,0,0.4;part"}) {
     ASSERT_EQ(nacre(run + Words{"--dye", source}).status, 0) << source;
     const json dye = dye_report();
     ASSERT_EQ(dye["steps"].size(), 6u);
@@ -138,10 +140,47 @@ TEST_F(DyeOfFlow, IsReportedInMass) {
     EXPECT_NEAR(dye["steps"][5]["mass"].get<double>(), begun, 1e-9);
     EXPECT_EQ(dye["steps"][5]["left"], 0);
   }
+  ASSERT_EQ(nacre(run + Words{"--dye", "1,0,0/0,1,0,0.3"}).status, 0);
+  const double along_a_curve = dye_report()["steps"][0]["mass"].get<double>();
+  ASSERT_EQ(nacre(run + Words{"--dye", "1,0,0,0.3"}).status, 0);
+  EXPECT_GT(along_a_curve, 1.5 * dye_report()["steps"][0]["mass"].get<double>());
   ASSERT_EQ(nacre(run + Words{"--dye", "part", "--dye-release", "always"}).status, 0);
   const json dye = dye_report();
   EXPECT_GT(dye["steps"][5]["mass"].get<double>(), 1.01 * dye["steps"][0]["mass"].get<double>());
   EXPECT_NEAR(dye["steps"][5]["mass"].get<double>(), dye["steps"][5]["released"].get<double>(), 1e-9);
+}
+
+TEST_F(DyeOfFlow, IsOneOfSeveralWithRegionsAndATimeOfResidence) {
+  const Words pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4"};
+  const Words run = pair + few_dyed + Words{"--dye", "part | -1,0,0,0.5 ; 0,0,1,0.3", "--dye-regions", "part"};
+  const Words seen = {"--camera", "+x", "--color", "none", "--report", path("r.json"), "--out", path("v.vtp")};
+  ASSERT_EQ(nacre(run + seen + Words{"--image", path("both.png")}).status, 0);
+  ASSERT_EQ(dyes().size(), 2u);
+  EXPECT_EQ(dyes()[1]["sources"], "-1,0,0,0.5;0,0,1,0.3");
+  EXPECT_NE(dyes()[0]["color"], dyes()[1]["color"]);
+  const json first = dyes()[0]["steps"][0], last = dyes()[0]["steps"][4];
+  EXPECT_EQ(first["regions"]["3"], first["mass"]) << "it begins in its region,";
+  EXPECT_LT(last["regions"]["3"].get<double>(), 0.7 * first["mass"].get<double>()) << "and is carried out of it";
+  EXPECT_NEAR(last["regions"]["3"].get<double>() + last["regions"]["0"].get<double>(), last["mass"].get<double>(),
+              1e-9);
+  EXPECT_NEAR(dyes()[0]["residence_time"].get<double>(), 1, 1e-9) << "nothing leaves in a time of 1";
+  EXPECT_EQ(dyes()[0]["washout"], 0);
+  const RawMesh values = read_raw(path("v.vtp")).mesh;
+  std::vector<std::string> names;
+  for (const RawArray& array : values.point_arrays) names.push_back(array.name);
+  EXPECT_EQ(std::count(names.begin(), names.end(), "dye") + std::count(names.begin(), names.end(), "dye_2"), 2);
+  ASSERT_EQ(nacre(pair + few_dyed + seen + Words{"--dye", "part", "--image", path("one.png")}).status, 0);
+  const auto green = [&](const std::string& name) {
+    const Image image = read_png(path(name));
+    int count = 0;
+    for (int i = 0; i < image.width * image.height; ++i) {
+      const std::uint8_t* p = image.at(i % image.width, i / image.width);
+      count += p[1] > p[0] + 30;
+    }
+    return count;
+  };
+  EXPECT_EQ(green("one.png"), 0);
+  EXPECT_GT(green("both.png"), 50) << "the second dye has another colour";
 }
 
 TEST_F(DyeOfFlow, IsCarriedInTheTimeOfTheData) {
@@ -197,8 +236,9 @@ TEST_F(DyeOfFlow, BadInputIsNamed) {
     return nacre(Words{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", source} +
                  few_dyed);
   };
-  for (const std::string text : {"1,2,3", "0,0,0,-1", "0,0:1,1", "=2", "part=x"})
+  for (const std::string text : {"1,2,3", "0,0,0,-1", "0,0:1,1", "=2", "part=x", "0,0/1,0,0,1"})
     expect_failure(with(text), 2, {"--dye", text});
+  expect_failure(with("part|part|part|part|part"), 2, {"--dye", "5 dyes"});
   expect_failure(with("9,0,0,1"), 1, {"--dye", "no point of the surface", "7 away"});
   expect_failure(with("part=4"), 1, {"--dye", "no point has such a value"});
   expect_failure(with("labels"), 1, {"--dye", "no array \"labels\""});

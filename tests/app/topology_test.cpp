@@ -116,6 +116,64 @@ TEST_F(Topology, PointsAreFollowedThroughTheSteps) {
                  {"followed in time", "one time only"});
 }
 
+TEST_F(Topology, TracksAreDrawn) {
+  // A saddle and its companions that turn with the field about z by a quarter of a circle.
+  const auto turned = [&](const std::string& name, double angle) {
+    Surface s = make_sample("sphere", 64).load(0);
+    PointArray gradient{"gradient", 3, {}};
+    const double c = std::cos(angle), d = std::sin(angle);
+    for (const Vec3d& p : s.points) {
+      const Vec3d n = normalized(p), m(c * n.x + d * n.y, -d * n.x + c * n.y, n.z), h(2 * m.x, 4 * m.y, 6 * m.z);
+      const Vec3d g(c * h.x - d * h.y, d * h.x + c * h.y, h.z), v = g - n * dot(g, n);
+      for (int k = 0; k < 3; ++k) gradient.values.push_back(float(v[k]));
+    }
+    s.arrays = {gradient};
+    write_surface(path(name), s);
+    return path(name);
+  };
+  Words run = {"flow"};
+  for (int k = 0; k <= 6; ++k) run.push_back(turned("g_" + std::to_string(k) + ".vtp", 0.25 * k));
+  const auto yellow = [&](const Words& more) {
+    const Outcome done = nacre(run + Words{"--quiet", "--camera", "+x", "--color", "none", "--image", path("t.png")} +
+                               small_topology + more);
+    EXPECT_EQ(done.status, 0) << done.err;
+    const Image image = read_png(path("t.png"));
+    int count = 0;
+    for (int i = 0; i < image.width * image.height; ++i) {
+      const std::uint8_t* p = image.at(i % image.width, i / image.width);
+      count += p[0] > p[2] + 80 && p[1] > p[2] + 60;
+    }
+    return count;
+  };
+  EXPECT_EQ(yellow({}), 0);
+  EXPECT_GT(yellow({"--tracks"}), 30);
+  expect_failure(nacre(Words{"flow", six_points(), "--quiet", "--tracks", "--image", path("t.png")} + small_topology),
+                 1, {"followed in time", "one time only"});
+}
+
+TEST_F(Topology, ProbesTellTheTimesOfPoints) {
+  const Words run = {"flow", "--quiet", "--sample", "pulse", "--detail", "24", "--report", path("r.json")};
+  ASSERT_EQ(nacre(run + small_topology + Words{"--probe", "1,0,0;0,1,0", "--color", "speed"}).status, 0);
+  const json probes = json::parse(content("r.json"))["probes"];
+  ASSERT_EQ(probes.size(), 2u);
+  for (const json& probe : probes) {
+    EXPECT_GT(probe["times"].size(), 4u);
+    EXPECT_EQ(probe["times"].size(), probe["speeds"].size());
+    EXPECT_EQ(probe["colors"]["array"], "speed");
+    double most = 0;
+    for (std::size_t k = 0; k < probe["speeds"].size(); ++k) {
+      const json& v = probe["vectors"][k];
+      const double length = std::hypot(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+      EXPECT_LE(probe["speeds"][k].get<double>(), length + 1e-5);
+      EXPECT_NEAR(probe["colors"]["values"][k].get<double>(), probe["speeds"][k].get<double>(), 0.1 * length + 1e-5);
+      most = std::max(most, length);
+    }
+    EXPECT_GT(most, 0);
+  }
+  expect_failure(nacre(run + small_topology + Words{"--probe", "1,2"}), 2, {"--probe", "1,2", "three numbers"});
+  expect_failure(nacre(run + small_topology + Words{"--probe", "99,0,0"}), 1, {"--probe", "not on the surface"});
+}
+
 TEST_F(Topology, BadInputIsNamed) {
   expect_failure(
       nacre(Words{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small_topology), 2,

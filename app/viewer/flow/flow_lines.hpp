@@ -2,15 +2,19 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include "engine/run/flow_skeleton.hpp"
+#include "engine/run/flow_tracks.hpp"
 
 namespace nacre {
 
 /// Of one time, without the shape of the surface; what is not wanted is empty.
 struct FlowLines {
+  double time = 0;
   FlowSkeleton skeleton;
   FlowStreamlines streamlines;
+  std::shared_ptr<const FlowTracks> tracks;  ///< of all times; null: none
 
   std::size_t bytes() const {
     std::size_t sum = skeleton.topology.points.size() * sizeof(CriticalPoint);

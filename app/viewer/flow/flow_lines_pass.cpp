@@ -34,7 +34,7 @@ Buffer buffer_of(const std::vector<Segment>& segments) {
 
 void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const SurfaceBuffers& surface) {
   lines_ = std::move(lines);
-  std::vector<Segment> streamlines, separation, attachment, attracting, repelling, with_flow, against_flow;
+  std::vector<Segment> streamlines, separation, attachment, attracting, repelling, with_flow, against_flow, past, later;
   std::vector<Mark> marks;
   if (lines_) {
     const auto in_model = [&](const Vec3d& p) { return Vec3f((p - surface.origin()) / surface.size()); };
@@ -49,6 +49,10 @@ void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const Surf
       add(line.separation ? separation : attachment, line.points);
     for (const ClosedOrbit& orbit : lines_->skeleton.orbits)
       add(orbit.attracting ? attracting : repelling, orbit.points);
+    if (lines_->tracks)
+      for (const PointTrack& track : lines_->tracks->tracks)
+        for (const TrackPart& part : parts_of(*lines_->tracks, track, lines_->time))
+          add(part.past ? past : later, part.points);
     for (const CriticalPoint& point : lines_->skeleton.topology.points)
       marks.push_back({in_model(point.position), encoded(mark_colour(point.kind)), float(shape_of(point.kind))});
   }
@@ -60,6 +64,11 @@ void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const Surf
   orbits_ = buffer_of(orbits);
   attracting_ = buffer_of(attracting);
   repelling_ = buffer_of(repelling);
+  std::vector<Segment> tracks = past;
+  tracks.insert(tracks.end(), later.begin(), later.end());
+  tracks_ = buffer_of(tracks);
+  past_ = buffer_of(past);
+  later_ = buffer_of(later);
   separation_ = buffer_of(separation);
   attachment_ = buffer_of(attachment);
   separatrices_ = buffer_of(separatrices);
@@ -75,6 +84,9 @@ void FlowLinesPass::draw(const View& view, const Placement& placement) const {
     segment_pass_.draw(view, placement, segments, {with_opacity(colour), width * unit, false});
   };
   draw_segments(streamlines_, streamline_ink, 1.4f);
+  draw_segments(tracks_, mark_outline, 3.8f);
+  draw_segments(later_, later_track_colour, 2.2f);
+  draw_segments(past_, track_colour, 2.2f);
   for (const Buffer* lines : {&separation_, &attachment_}) draw_segments(*lines, mark_outline, 3.8f);
   draw_segments(attachment_, attachment_colour, 2.4f);
   draw_segments(separation_, separation_colour, 2.4f);

@@ -22,8 +22,8 @@ class FlowLinesPass {
   std::shared_ptr<const FlowLines> lines_;
   SegmentPass segment_pass_;
   MarkPass mark_pass_;
-  Buffer streamlines_, separation_, attachment_, orbits_, attracting_, repelling_, separatrices_, with_flow_,
-      against_flow_;
+  Buffer streamlines_, tracks_, past_, later_, separation_, attachment_, orbits_, attracting_, repelling_,
+      separatrices_, with_flow_, against_flow_;
 };
 
 }  // namespace nacre

@@ -16,11 +16,13 @@ enum class FlowStage {
   colours,  ///< the array to colour by
   arrows,   ///< their positions
   lines,    ///< topology and streamlines
+  probes,   ///< what is at points through all times
   embed,    ///< from the triangles
   start,    ///< from the noise
+  dyes,     ///< their sources
   step      ///< one more, which takes new values
 };
-inline constexpr int flow_stages = 8;
+inline constexpr int flow_stages = 10;
 
 /// A set of stages.
 class FlowRerun {
@@ -39,6 +41,9 @@ class FlowRerun {
  private:
   std::array<bool, flow_stages> has_{};
 };
+
+/// Whether lines or tracks are drawn.
+bool has_lines(const Settings& settings);
 
 /// The stages that the changed knobs concern, and those that build on them.
 FlowRerun flow_rerun(const Settings& before, const Settings& after);

@@ -12,6 +12,7 @@
 #include "app/viewer/flow/flow_lines.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/triangle_tree.hpp"
+#include "engine/run/flow_probes.hpp"
 #include "engine/run/shown_colours.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
@@ -47,6 +48,7 @@ struct FlowResults {
   double time = 0;                         ///< that is shown, or will be first
   int steps = 0;                           ///< since the start
   std::shared_ptr<const FlowLines> lines;  ///< of that time; null: they are off
+  std::vector<FlowProbe> probes;           ///< at points that are asked for
   std::vector<float> step_seconds;         ///< of the last ones
   std::optional<EmbeddingInfo> embedding;  ///< that is shown
 };

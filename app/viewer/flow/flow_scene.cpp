@@ -300,6 +300,16 @@ void FlowScene::take(FlowStarted& told) {
   failure_.clear();
 }
 
+void FlowScene::take(FlowDyed& told) {
+  if (!looks_back_) show_dyes(std::move(told.mixes));  // else the frame has its own
+}
+
+void FlowScene::show_dyes(std::shared_ptr<const std::vector<DyeMix>> mixes) {
+  dyes_ = std::move(mixes);
+  colours_.set_dyes(dyes_ ? std::span<const DyeMix>(*dyes_) : std::span<const DyeMix>());
+  colour_focus();
+}
+
 void FlowScene::take(FlowStepped& told) {
   written()->values.end_write();
   return_focus(told.focus);
@@ -330,6 +340,7 @@ void FlowScene::show_moment(const FlowMoment& moment) {
     results_.tree = std::shared_ptr<const TriangleTree>(moment.shape, &moment.shape->tree);
   }
   results_.time = moment.time;
+  show_dyes(moment.dyes);
   show_colours(moment.scalar);
   vectors_ = moment.vectors;
   move_arrows();

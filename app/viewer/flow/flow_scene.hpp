@@ -47,6 +47,7 @@ class FlowScene : public Scene {
   const std::vector<Vec3d>& corners() const override { return results_.corners; }
   std::uint64_t seen_version() const override { return surfaces_; }
   bool has_legend() const override;
+  bool is_flow() const override { return true; }
   bool complete() const override { return shown_ != nullptr; }
   bool settled() const override;
   std::string title() const override;
@@ -117,6 +118,8 @@ class FlowScene : public Scene {
   void take(FlowBoxed& told);
   void take(FlowMoment& told);
   void take(FlowStarted& told);
+  void take(FlowDyed& told);
+  void take(FlowProbed& told) { results_.probes = std::move(told.probes); }
   void take(FlowStepped& told);
   void take(FlowFocused& told);
   void take(FlowFocusFilled& told);
@@ -161,6 +164,7 @@ class FlowScene : public Scene {
   Texture* written() const { return !no_texture_.empty() ? nullptr : next_ ? next_.get() : shown_.get(); }
   void show_colours(const std::vector<float>& scalar);
   void show_moment(const FlowMoment& moment);
+  void show_dyes(std::shared_ptr<const std::vector<DyeMix>> mixes);
   void set_lines(std::shared_ptr<const FlowLines> lines);
   void find_range();
   FlowCaption caption() const;
@@ -197,6 +201,7 @@ class FlowScene : public Scene {
   FlowArrows arrows_;
   std::shared_ptr<const std::vector<Vec3f>> vectors_;  ///< at the time that is shown
   std::vector<float> scalar_;
+  std::shared_ptr<const std::vector<DyeMix>> dyes_;  ///< per point; null: there are none
   std::vector<std::string> warnings_;
   std::string name_, failure_;
   std::string no_texture_;              ///< why the newest embedding has none; empty: it has

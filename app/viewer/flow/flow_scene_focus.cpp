@@ -207,6 +207,7 @@ void FlowScene::colour_focus() {
       texture->colours.clear_scalar();
     else
       texture->colours.set_scalar(texture->part->take(c.range.on_axis(scalar_)), c.range.bottom(), c.range.top());
+    texture->colours.set_dyes(dyes_ ? texture->part->take(std::span<const DyeMix>(*dyes_)) : std::vector<DyeMix>());
     texture->colours.set_beyond(c.below, c.above, c.no_number);
   }
 }

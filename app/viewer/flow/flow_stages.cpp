@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "app/parameter_names.hpp"
 #include "app/viewer/flow/flow_worker.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/io/reader.hpp"
+#include "engine/run/flow_maps.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/surface/flow_input.hpp"
@@ -51,6 +53,7 @@ FlowOffer offer_of(const Surface& surface) {
 
 void FlowWorker::read() {
   lines_.reset();
+  tracks_.reset();
   std::string reason;
   std::vector<std::string> warnings;
   bool told_surface = false;
@@ -87,7 +90,7 @@ void FlowWorker::read() {
 
 /// Vectors and colours, whichever have changed.
 void FlowWorker::choose() {
-  if (doing_ == FlowStage::vectors) lines_.reset();
+  if (doing_ == FlowStage::vectors) lines_.reset(), tracks_.reset();
   std::string reason;
   std::vector<std::string> warnings;
   {
@@ -103,7 +106,7 @@ void FlowWorker::choose() {
       reason = choice.reason;
       warn_of_vectors(*vectors_, news);
     } else {
-      vectors_->set_color(settings_.color);
+      choose_colours();
     }
   }
   tell_data(reason, std::move(warnings));
@@ -129,13 +132,32 @@ void FlowWorker::tell_data(VectorsInTime& vectors, const Range& time, std::strin
   tell(std::move(told));
 }
 
+/// Those of the knob `color`. What does not work leaves all as it was.
+void FlowWorker::choose_colours() {
+  if (!is_ftle(settings_.color) || vectors_->series().load(0).find(settings_.color))  // an array may have that name
+    return vectors_->set_color(settings_.color);
+  StageTimers::Scope scope(pipeline_->timers(), "flow_map");
+  const FlowSpan span = flow_span(settings_, {vectors_->start(), vectors_->end()});
+  SurfaceFlowMap map = surface_flow_map(*vectors_, span, settings_.ftle_time, &interrupt_);
+  vectors_->set_color("none");
+  vectors_->show_scalar(settings_.color, std::move(map.ftle));
+}
+
 /// What the knobs want of them. Those of a steady flow are kept.
 std::shared_ptr<const FlowLines> FlowWorker::lines_at(double time) {
-  if (!settings_.topology && !settings_.streamlines) return nullptr;
+  if (!has_lines(settings_)) return nullptr;
   const bool steady = vectors_->series().times.size() == 1;
   if (lines_ && steady) return lines_;
   StageTimers::Scope scope(pipeline_->timers(), "topology");
   auto found = std::make_shared<FlowLines>();
+  found->time = time;
+  if (settings_.tracks && !steady) {
+    const FlowSpan span = flow_span(settings_, {vectors_->start(), vectors_->end()});
+    if (!tracks_)
+      tracks_ = std::make_shared<const FlowTracks>(
+          flow_tracks(*vectors_, {span.first, span.end}, settings_.persistence, &interrupt_));
+    found->tracks = tracks_;
+  }
   if (settings_.topology) found->skeleton = flow_skeleton(*vectors_, time, settings_.persistence);
   if (settings_.streamlines)
     found->streamlines = flow_streamlines(*vectors_, time, settings_.line_spacing, &interrupt_);
@@ -146,11 +168,17 @@ std::shared_ptr<const FlowLines> FlowWorker::lines_at(double time) {
 
 void FlowWorker::find_lines() {
   lines_.reset();
+  tracks_.reset();
   tell(FlowLinesFound{lines_at(shown_time_)});
 }
 
+void FlowWorker::find_probes() {
+  StageTimers::Scope scope(pipeline_->timers(), "probes");
+  tell(FlowProbed{flow_probes(*vectors_, settings_.probe, &interrupt_)});
+}
+
 FlowMoment FlowWorker::moment_at(double time) {
-  return {time, scalar(*vectors_, time), vectors_at(*vectors_, time), moved_surface(time), lines_at(time)};
+  return {time, scalar(*vectors_, time), vectors_at(*vectors_, time), moved_surface(time), lines_at(time), dye_mixes()};
 }
 
 void FlowWorker::place_arrows() {
@@ -216,19 +244,53 @@ void FlowWorker::start() {
   pipeline_->parameters = parameters();
   pipeline_->parameters.steps = steps_in_all_;
   const double first = wrapped(span_.start + span_.frame_time);  // of the first frame
-  tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first), nullptr, nullptr});
+  tell(FlowMoment{first, scalar(*vectors_, first), vectors_at(*vectors_, first), nullptr, nullptr, nullptr});
   if (motion_->start(vectors)) {
     ++embeddings_;
     tell_embedded();
   }
   has_values_ = true;
   steps_made_ = 0;
+  shown_time_ = wrapped(span_.start);
+  dyes_.reset();
   {
     std::scoped_lock lock(mutex_);
+    if (!wanted_.dye.empty()) due_.add(FlowStage::dyes);
     started_ = !due_.has(FlowStage::embed) && !due_.has(FlowStage::start) && !due_.has(FlowStage::surface) &&
                !due_.has(FlowStage::vectors);
   }
   tell(FlowStarted{span_, std::max(0, settings_.flow.steps - span_.steps)});
+}
+
+/// Dyes by the knobs from now on; those that are on the surface stay.
+void FlowWorker::change_dyes() {
+  StageTimers::Scope scope(pipeline_->timers(), "dye");
+  if (settings_.dye.empty()) {
+    dyes_.reset();
+  } else if (dyes_) {
+    dyes_->set(settings_);
+  } else {
+    const double step = steady_dye_step(*vectors_, settings_, pipeline_->flow().embedding().cell_size);
+    dyes_ = std::make_unique<DyeRun>(*vectors_, settings_, shown_time_, step, &interrupt_);
+  }
+  tell(FlowDyed{dye_mixes()});
+}
+
+std::shared_ptr<const std::vector<DyeMix>> FlowWorker::dye_mixes() const {
+  return dyes_ ? std::make_shared<const std::vector<DyeMix>>(dyes_->mixes()) : nullptr;
+}
+
+/// To the time that is shown. What does not work ends the dyes and nothing else.
+void FlowWorker::carry_dyes() {
+  if (!dyes_) return;
+  StageTimers::Scope scope(pipeline_->timers(), "dye");
+  if (shown_time_ < dyes_->time()) dyes_->come_round(std::max(span_.first, shown_time_ - span_.frame_time));
+  try {
+    dyes_->go_to(shown_time_);
+  } catch (const Error& error) {
+    dyes_.reset();
+    tell(FlowFailed{with_knobs(error.what())});
+  }
 }
 
 void FlowWorker::make_step() {
@@ -250,6 +312,7 @@ void FlowWorker::make_step() {
   told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   told.number = steps_made_;
   shown_time_ = wrapped(pipeline_->flow().time());
+  carry_dyes();
   told.moment = moment_at(shown_time_);
   take_timers(*pipeline_);
   check_device();

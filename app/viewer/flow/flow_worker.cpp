@@ -7,6 +7,7 @@
 
 #include "app/parameter_names.hpp"
 #include "compute/device/error.hpp"
+#include "engine/run/flow_maps.hpp"
 #include "engine/system/faults.hpp"
 #include "engine/system/priority.hpp"
 
@@ -39,7 +40,9 @@ FlowWorker::FlowWorker(const Session& session, std::unique_ptr<Device> device, b
       due_{FlowStage::surface, FlowStage::embed, FlowStage::start},
       wanted_(session.settings) {
   if (wanted_.view.arrows) due_.add(FlowStage::arrows);
-  if (wanted_.topology || wanted_.streamlines) due_.add(FlowStage::lines);
+  if (has_lines(wanted_)) due_.add(FlowStage::lines);
+  if (!wanted_.probe.empty()) due_.add(FlowStage::probes);
+  if (is_ftle(wanted_.color)) due_.add(FlowStage::colours);
   pipeline_->watch(&interrupt_);
   thread_ = std::thread([this] { run(); });
 }
@@ -146,8 +149,10 @@ std::string FlowWorker::stage() const {
     case FlowStage::colours: return "colours";
     case FlowStage::arrows: return "arrows";
     case FlowStage::lines: return "topology";
+    case FlowStage::probes: return "probes";
     case FlowStage::embed: return "embedding";
     case FlowStage::start: return "starting the texture";
+    case FlowStage::dyes: return "dye";
     case FlowStage::step: break;
   }
   return "";
@@ -210,7 +215,7 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
   due_.remove(stage);
   if (stage == FlowStage::surface && !vectors_) {  // which chooses vectors and colours, too
     due_.remove(FlowStage::vectors);
-    due_.remove(FlowStage::colours);
+    if (!is_ftle(wanted_.color)) due_.remove(FlowStage::colours);
   }
   if (stage == FlowStage::step) {
     memory_ = *std::exchange(step_, {});
@@ -240,7 +245,7 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
 /// Afterwards the thread knows what is still to be done. An empty `failure`: it was interrupted.
 void FlowWorker::undo(FlowStage stage, const std::string& failure) {
   if (!failure.empty()) events_.emplace_back(FlowFailed{failure});
-  const bool choice = stage >= FlowStage::vectors && stage <= FlowStage::lines;
+  const bool choice = (stage >= FlowStage::vectors && stage <= FlowStage::probes) || stage == FlowStage::dyes;
   if (choice && !failure.empty()) return;  // all goes on with what was chosen before
   if (stage == FlowStage::step) {
     drop_step();
@@ -263,8 +268,10 @@ void FlowWorker::make(FlowStage stage) {
     case FlowStage::colours: return choose();
     case FlowStage::arrows: return place_arrows();
     case FlowStage::lines: return find_lines();
+    case FlowStage::probes: return find_probes();
     case FlowStage::embed: return embed();
     case FlowStage::start: return start();
+    case FlowStage::dyes: return change_dyes();
     case FlowStage::step: return make_step();
   }
 }

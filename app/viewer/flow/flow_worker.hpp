@@ -19,6 +19,8 @@
 #include "compute/raycast/triangle_tree.hpp"
 #include "engine/render/geometry.hpp"
 #include "engine/render/sparse_texture.hpp"
+#include "engine/run/dye_run.hpp"
+#include "engine/run/flow_probes.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/settings/ranges.hpp"
@@ -79,16 +81,28 @@ struct FlowMoment {
   std::shared_ptr<const std::vector<Vec3f>> vectors;  ///< one per point
   std::shared_ptr<const MovedSurface> shape;          ///< null: it does not move
   std::shared_ptr<const FlowLines> lines;             ///< null: none are wanted
+  std::shared_ptr<const std::vector<DyeMix>> dyes;    ///< one per point; null: there are none
 
   std::size_t bytes() const {
-    return scalar.size() * sizeof(float) + (vectors ? vectors->size() * sizeof(Vec3f) : 0) +
-           (shape ? shape->bytes() : 0) + (lines ? lines->bytes() : 0);
+    return (dyes ? dyes->size() * sizeof(DyeMix) : 0) + scalar.size() * sizeof(float) +
+           (vectors ? vectors->size() * sizeof(Vec3f) : 0) + (shape ? shape->bytes() : 0) +
+           (lines ? lines->bytes() : 0);
   }
 };
 
 /// Lines and marks of the time that is shown; null: they are off.
 struct FlowLinesFound {
   std::shared_ptr<const FlowLines> lines;
+};
+
+/// Dyes at the newest step; null: there are none any more.
+struct FlowDyed {
+  std::shared_ptr<const std::vector<DyeMix>> mixes;
+};
+
+/// What is at the points of the knob `probe` through the times of the data.
+struct FlowProbed {
+  std::vector<FlowProbe> probes;
 };
 
 /// The first values can be asked for.
@@ -145,8 +159,8 @@ struct FlowFailed {
 };
 
 using FlowEvent = std::variant<FlowOffer, SurfaceRead, FlowData, FlowArrows, FlowLinesFound, FlowEmbedded, FlowBoxed,
-                               FlowMoment, FlowStarted, FlowStepped, FlowFocused, FlowFocusFilled, FlowSampled,
-                               FlowWritten, FlowInterrupted, FlowFailed>;
+                               FlowMoment, FlowStarted, FlowDyed, FlowProbed, FlowStepped, FlowFocused, FlowFocusFilled,
+                               FlowSampled, FlowWritten, FlowInterrupted, FlowFailed>;
 
 /// The lookup of a grid as the renderer takes it.
 inline SparseLookup sparse_lookup(const FlowLookup& l) {
@@ -242,12 +256,17 @@ class FlowWorker : public Worker<FlowEvent> {
   void place_arrows();
   std::shared_ptr<const FlowLines> lines_at(double time);
   void find_lines();
+  void find_probes();
   FlowMoment moment_at(double time);
   void embed();
   void tell_embedded();
   std::shared_ptr<const MovedSurface> moved_surface(double time);
   FlowParameters parameters() const;
   void start();
+  void change_dyes();
+  void carry_dyes();
+  std::shared_ptr<const std::vector<DyeMix>> dye_mixes() const;
+  void choose_colours();
   void make_step();
   double flow_end() const;
   void make_focus(const FocusRequest& wanted, FlowFocused& answer);
@@ -273,7 +292,9 @@ class FlowWorker : public Worker<FlowEvent> {
   FlowSpan span_;
   int steps_made_ = 0, steps_in_all_ = 0;
   double shown_time_ = 0;
-  std::shared_ptr<const FlowLines> lines_;  ///< found last; null: they have to be found again
+  std::shared_ptr<const FlowLines> lines_;    ///< found last; null: they have to be found again
+  std::shared_ptr<const FlowTracks> tracks_;  ///< the same of tracks
+  std::unique_ptr<DyeRun> dyes_;              ///< null: there are none
   bool has_values_ = false;
   float* memory_ = nullptr;                ///< of the step that it makes
   std::pair<float*, int> focus_memory_{};  ///< the same of the focus, and its number

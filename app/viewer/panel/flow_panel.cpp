@@ -10,6 +10,7 @@
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "engine/render/camera_motion.hpp"
+#include "engine/run/flow_maps.hpp"
 #include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
@@ -44,7 +45,7 @@ std::vector<std::string> flow_choices(const FlowOffer& offer, const std::string&
     for (const std::string& field : analytic_vector_names()) all.push_back(field);
   } else if (knob == "color") {
     all = offer.arrays;
-    all.insert(all.begin(), {"speed", "none"});
+    all.insert(all.begin(), {"speed", "none", "FTLE"});
   }
   return all;
 }
@@ -75,8 +76,12 @@ void FlowPanel::data_tab(Session& session) {
 
 void FlowPanel::look_tab(Session& session) {
   for (const char* name : {"fps", "contrast", "edges", "boxes", "isolines", "arrows", "arrow_count", "arrow_length",
-                           "topology", "persistence", "streamlines", "line_spacing"})
+                           "topology", "persistence", "tracks", "streamlines", "line_spacing"})
     knob_widget(session.settings, name);
+  if (!ImGui::CollapsingHeader("dye", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  for (const char* name : {"dye", "dye_release", "dye_diffusion"}) knob_widget(session.settings, name);
+  ImGui::TextDisabled("r: release dye at the point under the cursor");
+  if (!session.settings.dye.empty() && ImGui::Button("remove all dye")) session.settings.dye.clear();
 }
 
 void FlowPanel::result_tab(Session& session) {
@@ -87,6 +92,7 @@ void FlowPanel::result_tab(Session& session) {
   ImGui::PopItemWidth();
   ImGui::PopID();
   show_vectors();
+  show_probes(session);
   if (results_.lines && session.settings.topology) critical_points(session);
   if (results_.embedding) show_embedding();
 }
@@ -105,6 +111,7 @@ void FlowPanel::show_time(Session& session) {
 void FlowPanel::colours(Session& session) {
   Settings& settings = session.settings;
   for (const char* name : {"color", "colormap"}) knob_widget(settings, name, flow_choices(results_.offer, name));
+  if (is_ftle(settings.color)) knob_widget(settings, "ftle_time");
   if (results_.data.color == "none") return;
   ImGui::PushID("colours");
   ImGui::PushItemWidth(0.5f * ImGui::GetContentRegionAvail().x);
@@ -132,6 +139,45 @@ void FlowPanel::show_vectors() const {
   text(fmt::format("{} ({})", results_.data.array, results_.data.reason));
   text(fmt::format("speed: most {:.4g}, 98% below {:.4g}", s.max_speed, s.percentile_98));
   text(fmt::format("normal to the surface {:.1f}%   zero {:.1f}%", 100 * s.normal_share, 100 * s.zero_share));
+}
+
+/// What is at each point through time, with a line where the shown time is.
+void FlowPanel::show_probes(Session& session) const {
+  if (session.settings.probe.empty()) return;
+  if (!ImGui::CollapsingHeader("points through time", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  for (std::size_t k = 0; k < results_.probes.size(); ++k) {
+    const FlowProbe& probe = results_.probes[k];
+    const Vec3d& p = probe.position;
+    ImGui::PushID(int(k));
+    text(fmt::format("{:.4g} {:.4g} {:.4g}", p.x, p.y, p.z));
+    plot(probe.times, probe.speeds, "speed");
+    const bool more = !probe.scalars.empty() && results_.data.color != "speed";
+    if (more) plot(probe.times, probe.scalars, results_.data.color);
+    ImGui::PopID();
+  }
+  if (ImGui::Button("remove the points")) session.settings.probe.clear();
+}
+
+void FlowPanel::plot(const std::vector<double>& times, const std::vector<float>& values,
+                     const std::string& name) const {
+  if (times.size() < 2) return text(fmt::format("{} {:.4g}, at all times", name, values.front()));
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x, height = 4 * ImGui::GetFontSize();
+  text(fmt::format("{}: {:.4g} to {:.4g}", name, *low, *high));
+  const ImVec2 top(corner.x, corner.y + ImGui::GetTextLineHeightWithSpacing());
+  const double span = times.back() - times.front(), range = std::max(double(*high) - double(*low), 1e-30);
+  const auto x_of = [&](double t) { return top.x + float((t - times.front()) / span) * width; };
+  std::vector<ImVec2> line;  // at the data's own times, which need not be evenly spaced
+  for (std::size_t i = 0; i < times.size(); ++i)
+    line.push_back({x_of(times[i]), top.y + height * float(0.95 - 0.9 * (double(values[i]) - double(*low)) / range)});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec2 bottom(top.x + width, top.y + height);
+  list.AddRectFilled(top, bottom, ImGui::GetColorU32(ImGuiCol_FrameBg));
+  list.AddPolyline(line.data(), int(line.size()), ImGui::GetColorU32(ImGuiCol_PlotLines), 0, 1.5f);
+  const float now = std::clamp(x_of(results_.time), top.x, bottom.x);
+  list.AddLine({now, top.y}, {now, bottom.y}, ImGui::GetColorU32(ImGuiCol_PlotHistogram), 1);
+  ImGui::Dummy({width, height});
 }
 
 /// The points of the time that is shown, the most persistent first; one that is clicked is looked at.

@@ -34,6 +34,8 @@ class FlowPanel : public ScenePanel {
   void colours(Session& session);
   void show_vectors() const;
   void show_embedding() const;
+  void show_probes(Session& session) const;
+  void plot(const std::vector<double>& times, const std::vector<float>& values, const std::string& name) const;
   void critical_points(Session& session) const;
 
   const FlowResults& results_;

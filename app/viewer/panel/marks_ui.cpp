@@ -3,11 +3,24 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 #include "app/viewer/panel/ui.hpp"
 #include "app/viewer/scene/marks.hpp"
+#include "engine/picture/dye_colours.hpp"
 #include "engine/render/camera_motion.hpp"
 
 namespace nacre {
+namespace {
+
+double diagonal_of(const std::vector<Vec3d>& points) {
+  if (points.empty()) return 0;
+  Vec3d low = points.front(), high = low;
+  for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
+  return length(high - low);
+}
+
+}  // namespace
 
 /// The point of the scene that the mouse is over; none: it is over a panel, or over nothing.
 std::optional<Vec3d> Ui::under_cursor(const Session& session, Scene& scene, const UiFacts& facts) {
@@ -35,6 +48,31 @@ void Ui::measure(Session& session, Scene& scene, const UiFacts& facts) {
   std::string words;
   for (const std::string& line : ruler_lines(points, scene.unit())) words += (words.empty() ? "" : ", ") + line;
   show_note(words.empty() ? "ruler: d at the second point" : "ruler: " + words);
+}
+
+/// One more source of the last dye, or of another one.
+void Ui::release_dye(Session& session, Scene& scene, const UiFacts& facts, bool another) {
+  if (!scene.is_flow()) return show_note("dye: for flows only");
+  const std::optional<Vec3d> point = under_cursor(session, scene, facts);
+  if (!point) return;
+  std::string& dye = session.settings.dye;
+  if (another && std::size_t(std::count(dye.begin(), dye.end(), '|')) + 1 >= most_dyes)
+    return show_note(fmt::format("dye: there are {} colours", most_dyes));
+  constexpr double share = 0.015;  // of the diagonal
+  const double radius = share * diagonal_of(scene.corners());
+  if (!dye.empty()) dye += another ? '|' : ';';
+  dye += fmt::format("{:.6g},{:.6g},{:.6g},{:.3g}", point->x, point->y, point->z, radius);
+}
+
+/// One more point of which the panel shows what is there through time.
+void Ui::plot_point(Session& session, Scene& scene, const UiFacts& facts) {
+  if (!scene.is_flow()) return show_note("graph: for flows only");
+  const std::optional<Vec3d> point = under_cursor(session, scene, facts);
+  if (!point) return;
+  std::string& probe = session.settings.probe;
+  if (!probe.empty()) probe += ';';
+  probe += fmt::format("{:.6g},{:.6g},{:.6g}", point->x, point->y, point->z);
+  show_note("graph: in the tab \"result\"");
 }
 
 void Ui::ask_note(Session& session, Scene& scene, const UiFacts& facts) {
@@ -67,7 +105,8 @@ void Ui::note_window(Session& session) {
 void Ui::marks_menu(Session& session) {
   ViewSettings& look = session.settings.view;
   if (!ImGui::BeginMenu("Marks")) return;
-  ImGui::TextDisabled("d: ruler, n: note, at the point under the cursor");
+  ImGui::TextDisabled("d: ruler, n: note, r: dye, g: graph, at the point under the cursor");
+  if (ImGui::MenuItem("Remove all dye", nullptr, false, !session.settings.dye.empty())) session.settings.dye.clear();
   if (ImGui::MenuItem("Remove the ruler", nullptr, false, !look.ruler.empty())) look.ruler.clear();
   if (ImGui::BeginMenu("Remove a note", !look.notes.empty())) {
     std::vector<PlacedNote> notes = parse_notes(look.notes);

@@ -45,6 +45,8 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"space", "pause and play"},
                                    {", .", "pause; one step back, one step forward"},
                                    {"d", "ruler: distance between points under the cursor; the third gives an angle"},
+                                   {"g", "graph of the point under the cursor through time"},
+                                   {"r, R", "release dye at the point under the cursor; R: another dye"},
                                    {"n", "note at the point under the cursor"},
                                    {"1 to 9", "camera that was kept"},
                                    {"e", "edges of triangles"},
@@ -265,6 +267,9 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 't': look.theme = other(look.theme); break;
       case 'd': measure(session, scene, facts); break;
       case 'n': ask_note(session, scene, facts); break;
+      case 'g': plot_point(session, scene, facts); break;
+      case 'r':
+      case 'R': release_dye(session, scene, facts, key == 'R'); break;
       case '?': help_ = !help_; break;
       case ' ':
         transport_.toggle_play(session, scene.transport());

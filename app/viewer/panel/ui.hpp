@@ -95,6 +95,8 @@ class Ui {
   // Marks; in marks_ui.cpp.
   std::optional<Vec3d> under_cursor(const Session& session, Scene& scene, const UiFacts& facts);
   void measure(Session& session, Scene& scene, const UiFacts& facts);
+  void plot_point(Session& session, Scene& scene, const UiFacts& facts);
+  void release_dye(Session& session, Scene& scene, const UiFacts& facts, bool another);
   void ask_note(Session& session, Scene& scene, const UiFacts& facts);
   void note_window(Session& session);
   void marks_menu(Session& session);

@@ -94,6 +94,7 @@ class Scene {
   virtual bool has_legend() const = 0;  ///< a colour legend lies over the picture, or soon will
   virtual bool complete() const = 0;    ///< shows what it is for: the texture; particles or triangles
   virtual bool settled() const = 0;     ///< nothing more will come unless something is changed (a mesh that is done)
+  virtual bool is_flow() const { return false; }   ///< knobs of what flows mean something
   virtual std::string unit() const { return {}; }  ///< of lengths; empty: the data do not say
   virtual std::string title() const = 0;
   virtual std::string state() const = 0;  ///< a line: "time 0.2, step 12"; "12,345 particles, energy 0.71"

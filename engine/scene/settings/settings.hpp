@@ -112,11 +112,14 @@ struct Settings {
   int fps = 25;
   bool legend = true, time_stamp = true;
   bool topology = false;      ///< critical points and separatrices are drawn
+  bool tracks = false;        ///< the ways of critical points in time are drawn
+  std::string probe;          ///< points of which the times are told (engine/run/flow_probes.hpp); empty: none
   bool streamlines = false;   ///< evenly spaced streamlines are drawn
   double persistence = 0.02;  ///< share of the reference speed; zeros that cancel below it are left out
   std::string dye;            ///< sources (engine/run/dye_sources.hpp); empty: none
   DyeRelease dye_release = DyeRelease::once;
   double dye_diffusion = 0;    ///< area per time of the data
+  std::string dye_regions;     ///< array of whole numbers, for the report; empty: none
   double ftle_time = 0;        ///< of flow maps, time of the data; below 0: backward; 0: chosen
   double line_spacing = 0.02;  ///< of evenly spaced streamlines; share of the longest side of the bounding box
 };

@@ -124,6 +124,15 @@ std::vector<float> SurfacePart::take(std::span<const float> whole) const {
   return part;
 }
 
+std::vector<std::array<float, 4>> SurfacePart::take(std::span<const std::array<float, 4>> whole) const {
+  std::vector<std::array<float, 4>> part(origin.size());
+  for (std::size_t i = 0; i < origin.size(); ++i) {
+    const auto& [p, w] = origin[i];
+    for (std::size_t k = 0; k < 4; ++k) part[i][k] = whole[p.a][k] * w.x + whole[p.b][k] * w.y + whole[p.c][k] * w.z;
+  }
+  return part;
+}
+
 SurfacePart cut_surface(const PreparedSurface& whole, std::span<const HalfSpace> inside) {
   return Cutter(whole, inside).run();
 }

@@ -29,6 +29,7 @@ struct SurfacePart {
   /// Interpolates what belongs to the whole's points, into one for each of the part's.
   void take(std::span<const Vec3f> whole, std::span<Vec3f> part) const;
   std::vector<float> take(std::span<const float> whole) const;
+  std::vector<std::array<float, 4>> take(std::span<const std::array<float, 4>> whole) const;
 };
 
 /// The part of `whole` inside of all half spaces. Triangles that cross a border are cut there (Sutherland and Hodgman

@@ -32,6 +32,7 @@ void VectorsInTime::enter_group(std::size_t group) {
 
 void VectorsInTime::rebase(double t) {
   if (!moves()) return;
+  base_ = t;
   surface_ = shape(t);
   point_normals_ = point_normals(surface_);
 }
@@ -48,6 +49,7 @@ std::vector<Vec3d> VectorsInTime::points(double t) {
 }
 
 PreparedSurface VectorsInTime::shape(double t) {
+  if (!moves()) return surface_;
   PreparedSurface shape{points(t), surface_.triangles, {}, surface_.second_sheet};
   update_normals(shape, same_, motion_.crease_degrees);
   return shape;

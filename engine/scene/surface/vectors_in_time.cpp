@@ -38,10 +38,17 @@ std::vector<Vec3f> point_normals(const PreparedSurface& surface) {
   return normals;
 }
 
+bool is_ftle(const std::string& color) {
+  return color.size() == 4 && std::equal(color.begin(), color.end(), "ftle", [](char a, char b) {
+           return std::tolower(static_cast<unsigned char>(a)) == b;
+         });
+}
+
 VectorsInTime::VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color,
                              const std::atomic<bool>* stop, MotionChoice motion)
     : series_(std::move(series)),
       start_(series_.times.front()),
+      base_(start_),
       steps_(std::size_t(series_.motion ? 4 : 2)),
       motion_(std::move(motion)),
       stop_(stop) {
@@ -81,6 +88,7 @@ void VectorsInTime::choose(const std::string& vectors, const std::string& color)
   end_ = motion_.period > 0 ? start_ + motion_.period : series_.times.back();
   if (analytic_ && motion_.period == 0 && series_.steps() == 1) end_ = vectors_ == "@swirl" ? start_ + 1 : start_;
   for (Step& step : steps_) step = {};
+  if (is_ftle(color_) && !series_.load(0).find(color_)) color_ = "none";
   derived_ = is_haemodynamic(color_) && !series_.load(0).find(color_);
 }
 

@@ -24,6 +24,10 @@ struct MotionChoice {
   bool operator==(const MotionChoice&) const = default;
 };
 
+/// Whether a colour is this: "FTLE", in any case. These colours are computed from the vectors afterwards
+/// (engine/run/flow_maps.hpp), and there are none until then, unless an array has that name.
+bool is_ftle(const std::string& color);
+
 /// Interpolates linearly between the two steps around a time, which it keeps; also a scalar array to colour by.
 ///
 /// Where the series moves, `surface()` is one shape of the steps that have the same triangles as the present one (a
@@ -56,6 +60,7 @@ class VectorsInTime {
   bool enter(double t);
   /// Makes the shape at `t` that which is embedded.
   void rebase(double t);
+  double base() const { return base_; }  ///< the time of that shape
   /// The points of `surface()` at a time.
   std::vector<Vec3d> points(double t);
   /// `surface()` with points and normals of a time.
@@ -124,7 +129,7 @@ class VectorsInTime {
   bool analytic_;
   bool derived_ = false;               ///< the colours were computed from the vectors, for all times
   std::vector<float> derived_scalar_;  ///< those numbers
-  double start_, end_;
+  double start_, end_, base_;
   ColourSpread speeds_, scalars_;  ///< of the vectors; of the array that colours
   VectorStatistics statistics_;
   double surface_speed_ = 0;

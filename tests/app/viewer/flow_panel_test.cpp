@@ -79,6 +79,17 @@ TEST_F(FlowPanelTest, AClickOnACriticalPointGoesToWhereItIsSeen) {
   for (const Camera& camera : found) EXPECT_LT(camera.height, 3);
 }
 
+TEST_F(FlowPanelTest, ProbesArePlottedAndRemoved) {
+  session_.settings.topology = false;
+  session_.settings.probe = "0,1,0";
+  FlowProbe probe;
+  probe.times = {0, 1, 2};
+  probe.speeds = {1, 3, 2};
+  results_.probes = {probe};
+  for (float y = 598; y > 0 && !session_.settings.probe.empty(); y -= 4) click(60, y);
+  EXPECT_EQ(session_.settings.probe, "") << "there is a button below the plot";
+}
+
 TEST_F(FlowPanelTest, NoListWhereTopologyIsOff) {
   session_.settings.topology = false;
   EXPECT_TRUE(cameras().empty());

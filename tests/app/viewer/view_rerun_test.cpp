@@ -63,10 +63,13 @@ const std::map<std::string, FlowRerun>& expected() {
       {"topology", {lines}},
       {"persistence", {}},  // of lines that are off
       {"streamlines", {lines}},
-      {"ftle_time", {}},
-      {"dye", {}},
-      {"dye_release", {}},
+      {"ftle_time", {}},  // of exponents that are not shown
+      {"dye", {dyes}},
+      {"dye_release", {}},  // of dyes that there are not
       {"dye_diffusion", {}},
+      {"dye_regions", {}},
+      {"tracks", {lines}},
+      {"probe", {probes}},
       {"line_spacing", {}},
   };
   return table;
@@ -123,6 +126,23 @@ TEST(FlowRerun, LinesFollowTheFieldWhileTheyAreShown) {
   after = shown;
   after.flow.ttl = 2;
   EXPECT_TRUE(flow_rerun(shown, after) == FlowRerun({start}));
+}
+
+TEST(FlowRerun, DyesAndExponentsFollowTheirKnobsWhileTheyAreShown) {
+  Settings dyed;
+  dyed.dye = "0,0,0,1";
+  Settings after = dyed;
+  after.dye_release = DyeRelease::always;
+  EXPECT_TRUE(flow_rerun(dyed, after) == FlowRerun({dyes}));
+  EXPECT_TRUE(flow_rerun(dyed, Settings()) == FlowRerun({dyes}));
+  Settings stretched;
+  stretched.color = "ftle";
+  after = stretched;
+  after.ftle_time = 2;
+  EXPECT_TRUE(flow_rerun(stretched, after) == FlowRerun({colours}));
+  after = stretched;
+  after.vectors = "other";
+  EXPECT_TRUE(flow_rerun(stretched, after) == FlowRerun({vectors, colours, start}));
 }
 
 TEST(FlowRerun, ChangesAddUp) {

@@ -29,6 +29,7 @@ struct WorkerRun {
   FlowStepped last;
   std::size_t positions = 0;
   std::shared_ptr<const FlowLines> lines;
+  std::shared_ptr<const std::vector<DyeMix>> dyes;
 
   explicit WorkerRun(
       bool loop = false, const std::function<void(Settings&)>& preset = [](Settings&) {}) {
@@ -53,6 +54,7 @@ struct WorkerRun {
     if (auto* read = std::get_if<FlowData>(&event)) ++data, told = *read;
     if (auto* placed = std::get_if<FlowArrows>(&event)) ++arrows, positions = placed->positions.size();
     if (auto* found = std::get_if<FlowLinesFound>(&event)) lines = found->lines;
+    if (auto* dyed = std::get_if<FlowDyed>(&event)) dyes = dyed->mixes;
     if (auto* stepped = std::get_if<FlowStepped>(&event)) ++steps, last = *stepped;
     if (const auto* embedded = std::get_if<FlowEmbedded>(&event)) {
       ++embeddings;
@@ -211,6 +213,72 @@ TEST(FlowWorker, LinesAreFoundWhereTheyAreOnAndComeWithEachStep) {
   EXPECT_EQ(run.lines, nullptr);
   run.step();
   EXPECT_EQ(run.last.moment.lines, nullptr);
+}
+
+double whole(const std::shared_ptr<const std::vector<DyeMix>>& mixes, std::size_t dye) {
+  double sum = 0;
+  if (mixes)
+    for (const DyeMix& mix : *mixes) sum += double(mix[dye]);
+  return sum;
+}
+
+TEST(FlowWorker, DyesStayWhileOthersAreReleasedAndGoWhenTheyAreRemoved) {
+  WorkerRun run;
+  run.step();
+  EXPECT_EQ(run.last.moment.dyes, nullptr);
+  run.change([](Settings& s) { s.dye = "1,0,0,0.4"; });
+  EXPECT_EQ(run.failure, "");
+  ASSERT_NE(run.dyes, nullptr) << "it is seen at once";
+  const double first = whole(run.dyes, 0);
+  EXPECT_GT(first, 1);
+  EXPECT_EQ(run.starts, 1) << "the texture goes on";
+  run.step();
+  const auto carried = run.last.moment.dyes;
+  ASSERT_NE(carried, nullptr);
+  EXPECT_NE(*carried, *run.dyes) << "a step carries it";
+  run.change([](Settings& s) { s.dye += ";-1,0,0,0.4|0,0,1,0.4"; });
+  EXPECT_GT(whole(run.dyes, 0), whole(carried, 0) + 0.5 * first);
+  EXPECT_GT(whole(run.dyes, 1), 1);
+  for (std::size_t p = 0; p < carried->size(); ++p)
+    ASSERT_GE((*run.dyes)[p][0], (*carried)[p][0]) << "what is there stays";
+  run.change([](Settings& s) { s.dye = "9,9,9,0.1"; });
+  EXPECT_NE(run.failure.find("dye: no point of the surface"), std::string::npos) << run.failure;
+  run.change([](Settings& s) { s.dye.clear(); });
+  EXPECT_EQ(run.dyes, nullptr);
+  run.step();
+  EXPECT_EQ(run.last.moment.dyes, nullptr);
+}
+
+TEST(FlowWorker, DyesBeginAgainWithTheFlowAndGoOnWhereItComesRound) {
+  WorkerRun run(true, [](Settings& s) { s.dye = "1,0,0,0.4"; });
+  const auto begun = run.dyes;
+  ASSERT_NE(begun, nullptr);
+  const double mass = whole(begun, 0);
+  for (int k = 0; k < 6; ++k) run.step();  // of four in a round
+  EXPECT_EQ(run.failure, "");
+  EXPECT_GT(whole(run.last.moment.dyes, 0), 0.2 * mass);
+  run.change([](Settings& s) { s.flow.ttl = 3; });
+  EXPECT_EQ(run.starts, 2);
+  EXPECT_EQ(*run.dyes, *begun);
+}
+
+TEST(FlowWorker, ExponentsAreColoursAndFollowTheirTime) {
+  WorkerRun run(false, [](Settings& s) { s.color = "FTLE"; });
+  EXPECT_EQ(run.failure, "");
+  EXPECT_EQ(run.told.color, "FTLE");
+  const std::vector<float> all = run.told.scalar;
+  ASSERT_FALSE(all.empty());
+  EXPECT_GT(*std::max_element(all.begin(), all.end()), *std::min_element(all.begin(), all.end()));
+  run.change([&](Settings& s) { s.ftle_time = 1e9; });
+  EXPECT_NE(run.failure.find("ftle_time"), std::string::npos);
+  run.step();
+  EXPECT_EQ(run.last.moment.scalar, all) << "what does not work leaves the colours as they were";
+  run.change([&](Settings& s) { s.ftle_time = -0.5 * (run.told.time.high - run.told.time.low); });
+  EXPECT_EQ(run.failure, "");
+  EXPECT_NE(run.told.scalar, all);
+  EXPECT_EQ(run.starts, 1);
+  run.step();
+  EXPECT_EQ(run.last.moment.scalar, run.told.scalar);
 }
 
 TEST(FlowWorker, AChangeInterruptsWhatIsUnderWay) {
