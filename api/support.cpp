@@ -23,7 +23,7 @@ bool is_offered(const Knob& knob, Job job) {
   if (job == Job::mesh)
     return knob.group != "picture" && knob.name != "names" && knob.name != "layer" && knob.name != "size_image";
   return knob.name != "vectors" && knob.name != "patch" && knob.name != "fps" && knob.name != "focus" &&
-         knob.name != "ftle_time" && !knob.name.starts_with("dye");
+         knob.name != "ftle_time" && knob.name != "tracks" && knob.name != "probe" && !knob.name.starts_with("dye");
 }
 
 KnobValue value_of(const Knob& knob) {

@@ -185,6 +185,11 @@ void FlowPanel::critical_points(Session& session) const {
   const std::vector<CriticalPoint>& points = results_.lines->skeleton.topology.points;
   const std::string title = fmt::format("{} critical points###critical points", points.size());
   if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
+  const FlowTopology& all = results_.lines->skeleton.topology;
+  std::string sum = fmt::format("indices {}", all.point_index);
+  if (!all.zero_regions.empty()) sum += fmt::format(", still regions {}", all.region_index);
+  if (all.rims > 0) sum += fmt::format(", rims {}", all.rim_index);
+  text(fmt::format("{}; Euler characteristic {}", sum, all.euler_characteristic));
   std::vector<const CriticalPoint*> order;
   for (const CriticalPoint& point : points) order.push_back(&point);
   std::stable_sort(order.begin(), order.end(),

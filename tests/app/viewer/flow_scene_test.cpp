@@ -92,7 +92,8 @@ TEST_F(FlowInView, OffersTheArraysOfTheData) {
       << "before anything is read";
   advance();
   EXPECT_EQ(flow_choices(scene_->results().offer, "vectors"), (Names{"", "velocity", "shear", "@swirl", "@rotation"}));
-  EXPECT_EQ(flow_choices(scene_->results().offer, "color"), (Names{"speed", "none", "velocity", "pressure", "shear"}));
+  EXPECT_EQ(flow_choices(scene_->results().offer, "color"),
+            (Names{"speed", "none", "FTLE", "velocity", "pressure", "shear"}));
   EXPECT_TRUE(flow_choices(scene_->results().offer, "time").empty());
 }
 

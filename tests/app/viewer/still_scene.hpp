@@ -35,6 +35,8 @@ class StillScene : public Scene {
   bool advance_and_wait(const std::atomic<bool>&, double) override { return true; }
   void set_settings(const Settings&, const ChangedKnobs&) override {}
   int cancels = 0, resumes = 0;
+  bool flow = false;
+  bool is_flow() const override { return flow; }
   void cancel() override { ++cancels; }
   void resume() override { ++resumes; }
   bool halted() const override { return false; }

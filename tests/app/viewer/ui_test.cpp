@@ -4,6 +4,7 @@
 
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "app/viewer/panel/frame_clock.hpp"
@@ -123,6 +124,30 @@ TEST_F(UiTest, TheRulerTakesPointsUnderTheMouse) {
   EXPECT_EQ(session_.settings.view.ruler, "0 0 0;2 0 0;2 2 0");
   type("d");  // starts over
   EXPECT_EQ(session_.settings.view.ruler, "2 2 0");
+}
+
+TEST_F(UiTest, DyeAndGraphsComeToThePointUnderTheMouse) {
+  session_.camera = Camera();
+  scene_.set({0, 0, 0}, {10, 0, 0});
+  scene_.under_the_mouse = Vec3d(1, 2, 3);
+  move(600, 300);
+  frame();
+  frame();
+  type("r");
+  type("g");
+  EXPECT_EQ(session_.settings.dye + session_.settings.probe, "") << "not in a mesh";
+  scene_.flow = true;
+  type("r");
+  EXPECT_EQ(session_.settings.dye, "1,2,3,0.15");
+  type("r");
+  type("R");
+  EXPECT_EQ(session_.settings.dye, "1,2,3,0.15;1,2,3,0.15|1,2,3,0.15");
+  for (int k = 0; k < 3; ++k) type("R");
+  EXPECT_EQ(std::count(session_.settings.dye.begin(), session_.settings.dye.end(), '|'), 3) << "there are four colours";
+  type("g");
+  scene_.under_the_mouse = Vec3d(4, 5, 6);
+  type("g");
+  EXPECT_EQ(session_.settings.probe, "1,2,3;4,5,6");
 }
 
 TEST_F(UiTest, ANoteIsTypedAtThePointUnderTheMouse) {
