@@ -46,7 +46,9 @@ double dye_step(VectorsInTime& input, Settings settings, double cell) {
 
 void transport_row(Bench& bench, BenchTable& table, const std::string& sample) {
   Settings settings;
-  VectorsInTime input = make_flow_input(make_sample(sample, bench.pick(0, 100, 24)), settings, {}, &interrupt_flag());
+  const FlowLog silent{[](const std::string&) {}, [](const VectorChoice&) {}};
+  const int detail = bench.pick(0, 100, 24);
+  VectorsInTime input = make_flow_input(make_sample(sample, detail), settings, silent, &interrupt_flag());
   const std::size_t triangles = input.surface().triangles.size();
   bench.row(table, sample, fmt::format("sample {}, {} triangles, {}", sample, triangles, input.array()),
             [&](BenchRow& row) {
