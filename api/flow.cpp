@@ -19,6 +19,7 @@
 #include "engine/run/report.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
+#include "engine/scene/surface/flow_motion.hpp"
 
 namespace nacre {
 namespace {
@@ -36,12 +37,18 @@ void check_surface(const SurfaceFlow& surface) {
   }
 }
 
-/// The points as they are used, so that a copy of a step is made only of what differs between steps.
+/// With `geometry`, points, triangles and all arrays; else only what differs between the steps of a surface that stands
+/// still.
 Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const std::string& color) {
   Surface surface;
   if (geometry) {
+    std::vector<std::array<double, 3>> moved;
+    if (flow.positions) {
+      moved = flow.points;
+      flow.positions(step, {moved.front().data(), 3 * moved.size()});
+    }
     surface.points.reserve(flow.points.size());
-    for (const auto& p : flow.points) surface.points.push_back(vec(p));
+    for (const auto& p : flow.positions ? moved : flow.points) surface.points.push_back(vec(p));
     surface.triangles.reserve(flow.triangles.size());
     for (const auto& t : flow.triangles) surface.triangles.push_back({t[0], t[1], t[2]});
   }
@@ -71,6 +78,7 @@ struct Flow::State {
   std::unique_ptr<Device> device;
   std::unique_ptr<FlowPipeline> pipeline;
   std::unique_ptr<VectorsInTime> input;
+  std::unique_ptr<FlowMotion> motion;
   FlowSpan span;
   FlowVectors vectors;
   std::vector<double> seconds;
@@ -89,19 +97,22 @@ struct Flow::State {
     SurfaceSeries series;
     series.name = surface.name;
     series.times = surface.times;
+    series.moves = bool(surface.positions);
     const auto shared = std::make_shared<SurfaceFlow>(std::move(surface));
     const auto first = std::make_shared<bool>(true);
     series.load = [this, shared, first](std::size_t step) {
-      const Surface loaded = step_of(*shared, step, *first, color);
+      const Surface loaded = step_of(*shared, step, *first || shared->positions, color);
       *first = false;
       return loaded;
     };
     FlowLog log;
     log.warn = [this](const std::string& sentence) { tell(options, sentence); };
+    log.note = [](const std::string&) {};  // the report has what was decided
     log.chosen = [](const VectorChoice&) {};
     color = settings().color;
     input = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings(), log, options.stop));
     span = flow_span(settings(), {input->start(), input->end()});
+    motion = std::make_unique<FlowMotion>(*pipeline, *input, log.warn);
   }
 
   void announce(const char* name, double fraction) {
@@ -126,7 +137,7 @@ struct Flow::State {
                           settings().width, settings().height};
       resolution = picture_resolution(view, surface, settings().flow, device->available_bytes());
       pipeline->parameters.resolution = resolution;
-      pipeline->embed(flow_mesh(surface));
+      motion->embed(time_of(done));
       embedded = true;
     }
     if (!started) {
@@ -134,7 +145,7 @@ struct Flow::State {
       begun = done;
       vectors = flow_vectors(*input, time_of(begun), span.end);
       pipeline->parameters.steps = span.steps - begun;
-      pipeline->flow().start(vectors);
+      motion->start(vectors);
       started = true;
     }
   }
@@ -143,8 +154,10 @@ struct Flow::State {
     if (done >= span.steps) return false;
     prepare();
     const auto before = std::chrono::steady_clock::now();
+    motion->follow();
     pipeline->flow().step();
     seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
+    motion->show();
     ++done;
     announce("step", double(done) / span.steps);
     return true;
@@ -294,6 +307,8 @@ std::string Flow::report() const {
     s.prepare();
     nlohmann::json report = report_frame("flow", *s.device, s.pipeline->timers(), s.pipeline->peak_bytes());
     add_flow_report(report, *s.input, s.vectors, s.settings(), s.pipeline->flow().embedding(), s.seconds);
+    if (s.input->moves())
+      report["motion"] = {{"groups", s.input->series().motion->groups}, {"rebuilds", s.motion->rebuilds()}};
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   });
 }

@@ -24,6 +24,9 @@ struct SurfaceFlow {
   std::vector<std::array<double, 3>> points;            ///< world coordinates
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< corners; bad ones are dropped with a warning
   std::vector<double> times{0};                         ///< ascending; one: steady flow
+  /// Of a surface that moves: writes its points at `times[step]`, 3 numbers each, called as `vectors` is; `points` are
+  /// not used then. Velocities are shown relative to the surface as the knob `relative` says. Null: it stands still.
+  std::function<void(std::size_t step, std::span<double> points)> positions;
   /// Writes the vectors at `times[step]`, 3 numbers per point, in world units per unit of time. It may be called more
   /// than once for a step and by any thread, but by one at a time. What it throws ends the run.
   std::function<void(std::size_t step, std::span<float> vectors)> vectors;

@@ -61,6 +61,7 @@ class Flow:
         points: NDArray[np.float64],
         triangles: NDArray[np.int64],
         times: list[float],
+        positions: Callable[[int], NDArray[np.float64]] | None,
         vectors: Callable[[int], NDArray[np.float32]] | None,
         scalars: Callable[[str, int], NDArray[np.float32]],
         scalar_names: list[str],

@@ -182,21 +182,49 @@ def _per_point(values: Any, n: int, width: int, what: str) -> NDArray[np.float32
     return np.ascontiguousarray(array, dtype=np.float32)
 
 
-def _times(times: Any, steps: int | None) -> list[float]:
+def _times(
+    times: Any,
+    steps: int | None,
+    missing: str = "a velocity that is a function of time needs times",
+    what: str = "velocity",
+) -> list[float]:
     if times is None:
         if steps is None:
-            raise Error("a velocity that is a function of time needs times", "", "give times=numpy.linspace(0, 1, 21)")
+            raise Error(missing, "", "give times=numpy.linspace(0, 1, 21)")
         return [float(k) for k in range(steps)]
     array = real_array(times, "times").reshape(-1)
     if steps is not None and len(array) != steps:
-        raise Error(f"there are {len(array)} times and {steps} steps of velocity")
+        raise Error(f"there are {len(array)} times and {steps} steps of {what}")
     return [float(t) for t in array]
 
 
 Steps = Callable[[int], NDArray[np.float32]]
 
 
-def _velocity(velocity: Any, times: Any, n: int) -> tuple[Steps | None, list[float], str | None]:
+def _points(points: Any, times: Any) -> tuple[NDArray[np.float64], Any, Callable[[int], NDArray[np.float64]] | None]:
+    """The points of the first time, the times, and the function that gives the points of each."""
+    if callable(points):
+        moments = _times(times, None, "points that are a function of time need times")
+        first = rows(points(moments[0]), 3, "points", np.float64)
+        return first, moments, lambda k: _points_at(points(moments[k]), len(first))
+    array = np.asarray(points)
+    if array.ndim != 3:
+        return rows(points, 3, "points", np.float64), times, None
+    if array.shape[0] == 0:
+        raise Error(f"points have shape {array.shape}", "", "they must be (n, 3), or (steps, n, 3)")
+    moments = _times(times, array.shape[0], what="points")
+    first = rows(array[0], 3, "points", np.float64)
+    return first, moments, lambda k: _points_at(array[k], len(first))
+
+
+def _points_at(points: Any, n: int) -> NDArray[np.float64]:
+    array = rows(points, 3, "points", np.float64)
+    if len(array) != n:
+        raise Error(f"there are {len(array)} points at one time and {n} at another", "", "they must be the same points")
+    return np.ascontiguousarray(array)
+
+
+def _velocity(velocity: Any, times: Any, n: int, moves: bool) -> tuple[Steps | None, list[float], str | None]:
     """The function that gives a step, the times, and the name of an analytic field."""
     if isinstance(velocity, str):
         return None, _times(times, 1 if times is None else None), velocity
@@ -205,7 +233,8 @@ def _velocity(velocity: Any, times: Any, n: int) -> tuple[Steps | None, list[flo
         return (lambda k: _per_point(velocity(moments[k]), n, 3, "the velocity")), moments, None
     array = real_array(velocity, "velocity")
     if array.ndim == 2:
-        array = array[None]
+        steps = np.size(times) if moves else 1  # where points move, one velocity may be that of all times
+        array = np.broadcast_to(array, (steps, *array.shape))
     if array.ndim != 3 or array.shape[1:] != (n, 3) or array.shape[0] == 0:
         advice = f"it must be ({n}, 3), or (steps, {n}, 3): one row per point"
         raise Error(f"velocity has shape {np.shape(velocity)}", "", advice)
@@ -245,7 +274,8 @@ def _array_of(surface: Any, name: str) -> Any:
 class FlowInput:
     """What a flow run begins from, checked."""
 
-    points: NDArray[np.float64]
+    points: NDArray[np.float64]  #: at the first time
+    positions: Callable[[int], NDArray[np.float64]] | None  #: by number of time; None: the surface stands still
     triangles: NDArray[np.int64]
     times: list[float]
     vectors: Steps | None  #: by number of time; None: the analytic field `title`
@@ -275,10 +305,10 @@ def flow_input(
             scalars = {str(color): _array_of(surface, str(color))}
     if triangles is None or velocity is None:
         raise Error("the surface needs triangles and a velocity", "", "nacre.flow(points, triangles, velocity)")
-    positions = rows(points, 3, "points", np.float64)
+    first, times, positions = _points(points, times)
     corners = rows(triangles, 3, "triangles", np.int64)
-    n = len(positions)
-    vectors, moments, analytic = _velocity(velocity, times, n)
+    n = len(first)
+    vectors, moments, analytic = _velocity(velocity, times, n, positions is not None)
     numbers = {str(key): real_array(value, f"scalars {key!r}") for key, value in (scalars or {}).items()}
     for key, array in numbers.items():
         if array.shape not in ((n,), (len(moments), n)):
@@ -291,7 +321,7 @@ def flow_input(
     title = analytic or title or "velocity"
     if analytic is None and title.startswith("@"):
         raise Error(f"no vectors may be called {title!r}", "names with @ are those of analytic fields")
-    return FlowInput(positions, corners, moments, vectors, scalar, list(numbers), title)
+    return FlowInput(first, positions, corners, moments, vectors, scalar, list(numbers), title)
 
 
 def flow(
@@ -312,8 +342,10 @@ def flow(
 
     Parameters
     ----------
-    points : (n, 3) array, or pyvista.PolyData or vtkPolyData
-        The surface; of a PolyData, `triangles` are its own, and `velocity` may be the name of a point array.
+    points : (n, 3) array, (steps, n, 3) array, callable, or pyvista.PolyData or vtkPolyData
+        The surface; of a PolyData, `triangles` are its own, and `velocity` may be the name of a point array. With steps,
+        or as a function of time that returns (n, 3), it moves: the texture stays with the material, and velocities are
+        shown relative to the surface (knob `relative`).
     triangles : (k, 3) array
         Corners of triangles, numbers of points from 0.
     velocity : (n, 3) array, (steps, n, 3) array, callable or str
@@ -347,6 +379,7 @@ def flow(
         given.points,
         given.triangles,
         given.times,
+        given.positions,
         given.vectors,
         given.scalar,
         given.scalar_names,

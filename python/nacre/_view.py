@@ -95,7 +95,8 @@ def _write_flow(folder: Path, points: Any, triangles: Any, velocity: Any, times:
         if given.vectors is not None:
             arrays[given.title] = given.vectors(k)
         name = f"surface_{k}.vtp"
-        _write_surface(folder / name, given.points, given.triangles, arrays)
+        points_then = given.points if given.positions is None else given.positions(k)
+        _write_surface(folder / name, points_then, given.triangles, arrays)
         steps.append(f'<DataSet timestep="{time!r}" file="{name}"/>')
     file.write_text(f'<VTKFile type="Collection" version="1.0"><Collection>{"".join(steps)}</Collection></VTKFile>')
     return file, given.title

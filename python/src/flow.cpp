@@ -12,10 +12,11 @@ namespace nacre::python {
 namespace {
 
 /// Copies what `array` has, which python/nacre has checked, into `to`.
-void fill(const nb::object& array, std::span<float> to) {
-  const auto from = nb::cast<nb::ndarray<const float, nb::c_contig, nb::device::cpu>>(array);
+template <class Number>
+void fill(const nb::object& array, std::span<Number> to) {
+  const auto from = nb::cast<nb::ndarray<const Number, nb::c_contig, nb::device::cpu>>(array);
   if (from.size() != to.size()) throw Error("an array has another length than there are points");
-  std::memcpy(to.data(), from.data(), to.size() * sizeof(float));
+  std::memcpy(to.data(), from.data(), to.size_bytes());
 }
 
 CameraView camera_of(const nb::dict& from) {
@@ -65,7 +66,7 @@ void bind_flow(nb::module_& module) {
       .def(
           "__init__",
           [](Run* self, const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
-             const std::vector<double>& times, nb::object vectors, nb::object scalars,
+             const std::vector<double>& times, nb::object positions, nb::object vectors, nb::object scalars,
              const std::vector<std::string>& scalar_names, const std::string& name, const std::string& vector_name,
              const nb::dict& knobs, const std::string& device, int threads, nb::object progress) {
             SurfaceFlow surface;
@@ -79,6 +80,10 @@ void bind_flow(nb::module_& module) {
             new (self) Run(std::move(progress));
             Worker& worker = self->worker();
             // The run lives no longer than the object, which keeps the callables.
+            if (!positions.is_none())
+              surface.positions = [&worker, call = positions.ptr()](std::size_t step, std::span<double> to) {
+                worker.with_python([&] { fill(nb::handle(call)(step), to); });
+              };
             if (!vectors.is_none())
               surface.vectors = [&worker, call = vectors.ptr()](std::size_t step, std::span<float> to) {
                 worker.with_python([&] { fill(nb::handle(call)(step), to); });
@@ -95,9 +100,10 @@ void bind_flow(nb::module_& module) {
               throw;
             }
           },
-          nb::arg("points"), nb::arg("triangles"), nb::arg("times"), nb::arg("vectors").none(), nb::arg("scalars"),
+          nb::arg("points"), nb::arg("triangles"), nb::arg("times"), nb::arg("positions").none(), nb::arg("vectors").none(), nb::arg("scalars"),
           nb::arg("scalar_names"), nb::arg("name"), nb::arg("vector_name"), nb::arg("knobs"), nb::arg("device"),
-          nb::arg("threads"), nb::arg("progress").none(), nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>())
+          nb::arg("threads"), nb::arg("progress").none(), nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>(),
+          nb::keep_alive<1, 7>())
       .def("frames", [](Run& run) { return run.run().frames(); })
       .def("frame", [](Run& run) { return run.run().frame(); })
       .def("time", [](Run& run) { return run.run().time(); })

@@ -47,6 +47,36 @@ def test_an_analytic_field_equals_that_of_the_program(program, tmp_path):
     assert result_bytes(tmp_path / "ours.png") == result_bytes(tmp_path / "theirs.png")
 
 
+def test_a_surface_that_moves_equals_that_of_the_program(program, tmp_path):
+    points, triangles, velocity = torus()
+    times = [0.0, 1.0, 2.0]
+
+    def turned(time):
+        c, s = np.cos(0.4 * time), np.sin(0.4 * time)
+        return points @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) * (1 + 0.1 * time)
+
+    for k, time in enumerate(times):
+        write_vtp(tmp_path / f"m_{k}.vtp", turned(time), triangles, velocity)
+    program("flow", *(tmp_path / f"m_{k}.vtp" for k in range(3)), "--resolution", "128", "--size", "320x240", "--steps",
+            "4", "--image", tmp_path / "theirs.png", "--out", tmp_path / "theirs.vtp")
+    stacked = np.stack([turned(t) for t in times])
+    for moving, when in ((stacked, None), (turned, times)):
+        flow = nacre.flow(moving, triangles, velocity, times=when, steps=4, name="m_0.vtp", **SMALL)
+        for frame in flow:
+            pass
+        frame.save(tmp_path / "ours.png")
+        frame.save(tmp_path / "ours.vtp")
+        assert result_bytes(tmp_path / "ours.png") == result_bytes(tmp_path / "theirs.png")
+        assert result_bytes(tmp_path / "ours.vtp") == result_bytes(tmp_path / "theirs.vtp")
+        assert flow.report["motion"]["groups"] == 1
+    with pytest.raises(nacre.Error, match="need times"):
+        nacre.flow(turned, triangles, velocity)
+    with pytest.raises(nacre.Error, match="same points"):
+        nacre.flow(lambda t: points[: len(points) - int(t)], triangles, velocity, times=times, steps=2, **SMALL)
+    with pytest.raises(nacre.Error, match="3 steps"):
+        nacre.flow(stacked, triangles, velocity, times=[0, 1])
+
+
 def test_a_function_of_time_is_the_same_as_its_arrays():
     points, triangles, velocity = torus()
     times = [0.0, 0.5, 2.0]
