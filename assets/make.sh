@@ -28,6 +28,9 @@ torus=(view --offscreen --sample torus --detail 48 --resolution 128 --panel)
 "$nacre" "${torus[@]}" --frames-count 2 --set tab=knobs --size 800x420 --image "$pictures/knobs.png"
 "$nacre" "${torus[@]}" --frames-count 3 --set panel_side=right --set tab=knobs --set isolines=12 --size 900x650 \
   --set "ruler=1.2 0 0.3;0 1.2 0.3;-1 0 0.3" --set "notes=0.8 -0.8 0.3 stagnation" --image "$pictures/marks.png"
+"$nacre" view --offscreen --sample torus --detail 96 --resolution 320 --panel --frames-count 14 --set tab=result \
+  --size 1000x600 --set tracks=true --set topology=true --set probe=1.2,0.6,0.3 \
+  --set "dye=1.2,0.6,0.3,0.35|0.8,-0.8,0.3,0.3" --image "$pictures/dye.png"
 "$nacre" view --offscreen --sample three-sectors --detail 28 --set iterations=20 --panel --set tab=result \
   --set opacity=1:0.4 --set "material_colors=2:#c0392b" --size 1024x600 --image "$pictures/materials.png"
 cat >"$frames/paused.json" <<'JSON'
