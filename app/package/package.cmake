@@ -11,6 +11,7 @@ if(NACRE_LEVELS)
   nacre_build_levels(nacre)
   add_executable(nacre_launcher ${here}/launcher.cpp)  # for any x86-64: without nacre_options
   target_compile_features(nacre_launcher PRIVATE cxx_std_20)
+  target_link_options(nacre_launcher PRIVATE -s)
   # Not with OUTPUT_NAME: ninja would take "nacre" for the launcher.
   install(PROGRAMS $<TARGET_FILE:nacre_launcher> DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME nacre COMPONENT program)
   install(TARGETS nacre RUNTIME DESTINATION libexec/nacre/${NACRE_MARCH} COMPONENT program)
