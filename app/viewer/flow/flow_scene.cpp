@@ -30,16 +30,17 @@ TextureLayout FlowScene::texture_layout(const FlowLookup& l) {
 }
 
 FlowScene::Texture::Texture(const FlowEmbedded& told, Device& device)
-    : lookup(surface_texture(told.lookup, told.rimmed)),
-      layout(texture_layout(told.lookup)),
-      info(told.info),
+    : info(told.info),
       boxes(told.boxes),
       number(told.number),
-      values(device, (told.lookup.values + told.lookup.means) * sizeof(float), GL_R32F) {}
+      values(device, (told.lookup.values + told.lookup.means) * sizeof(float), GL_R32F) {
+  pass.set_texture(surface_texture(told.lookup, told.rimmed), texture_layout(told.lookup));
+}
 
 FlowScene::FlowScene(const Session& session, std::unique_ptr<Device> device, bool loop, bool low_priority)
     : worker_(session, std::move(device), loop, low_priority),
       settings_(session.settings),
+      frames_of_(session.settings),
       loops_(loop),
       begun_at_(session.settings.begin_at) {
   colours_.set_map(colormap(settings_.colormap).table);
@@ -52,6 +53,8 @@ FlowScene::~FlowScene() {
   next_focus_.reset();
   former_focus_.reset();
   leaving_focuses_.clear();
+  kept_flows_.clear();
+  lent_.reset();
   shown_.reset();
   next_.reset();
 }
@@ -77,7 +80,7 @@ void FlowScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   }
   const FlowRerun rerun = pass_on(settings, changed.has("begin_at"));
   if (!(rerun == FlowRerun())) failure_.clear();
-  stale_ = stale_ || rerun.has(FlowStage::step);
+  stale_ = !looks_back_ && (stale_ || rerun.has(FlowStage::step));
   if (rerun.has(FlowStage::start) || changed.has("focus")) drop_focus();
   colour_focus();
   ++look_version_;
@@ -194,6 +197,7 @@ bool FlowScene::begin_step(bool wait) {
     if (focus_memory) focus_->values.cancel_write(), focus_->in_step = false;
     return false;
   }
+  lent_ = next_ ? next_ : shown_;
   worker_.step(static_cast<float*>(memory), focus_memory, focus);
   stale_ = false;
   return true;
@@ -226,6 +230,7 @@ void FlowScene::take(FlowData& told) {
   show_colours(results_.data.scalar);
   vectors_ = results_.data.vectors;
   move_arrows();
+  if (const KeptFrame* kept = looked_back_at()) show_moment(kept->moment);  // which is of another time
   failure_.clear();
   ++look_version_;
 }
@@ -278,7 +283,7 @@ void FlowScene::take(FlowEmbedded& told) {
   no_texture_.clear();
   next_.reset();
   try {
-    next_ = std::make_unique<Texture>(told, worker_.device());
+    next_ = std::make_shared<Texture>(told, worker_.device());
   } catch (const std::exception& error) {
     no_texture_ = with_knobs(error.what());
   }
@@ -311,13 +316,14 @@ void FlowScene::show_dyes(std::shared_ptr<const std::vector<DyeMix>> mixes) {
 }
 
 void FlowScene::take(FlowStepped& told) {
-  written()->values.end_write();
+  lent_->values.end_write();
+  lent_.reset();
   return_focus(told.focus);
   if (next_) {
     if (shown_) copied_ += shown_->copied_bytes();
+    const bool alike = shown_ && shown_->values.bytes() == next_->values.bytes();
+    if (!looks_back_ || !alike) forget_frames();  // else they are of the same knobs, and so of the same cells
     shown_ = std::move(next_);
-    forget_frames();
-    surface_pass_.set_texture(std::move(shown_->lookup), shown_->layout);
     results_.embedding = shown_->info;
   }
   results_.steps = told.number;
@@ -349,8 +355,8 @@ void FlowScene::show_moment(const FlowMoment& moment) {
 }
 
 void FlowScene::take(FlowInterrupted&) {
-  if (shown_) shown_->values.cancel_write();
-  if (next_) next_->values.cancel_write();
+  if (lent_) lent_->values.cancel_write();
+  lent_.reset();
   return_focus(false);
   stale_ = true;
 }
@@ -361,11 +367,8 @@ void FlowScene::draw(const View& view) {
   if (lockstep_) await_focus(view);
   const KeptFrame* const kept = looked_back_at();
   colours_.set_isolines(settings_.view.isolines);
-  surface_pass_.draw(view, surface_, colours_,
-                     kept     ? &kept->texture
-                     : shown_ ? &shown_->values.texture()
-                              : nullptr,
-                     settings_.back_faces);
+  const BufferTexture* const values = kept ? &kept->texture : shown_ ? &shown_->values.texture() : nullptr;
+  (shown_ ? shown_->pass : plain_pass_).draw(view, surface_, colours_, values, settings_.back_faces);
   if (!kept) draw_focus(view);
   if (settings_.view.edges) edge_pass_.draw(view, surface_, Placement(1.0), {0, 0, 0, 0.5f});
   if (settings_.view.arrows) draw_arrows(view);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,8 +77,7 @@ class FlowScene : public Scene {
   /// A texture on the surface: how values are found, and the values; and the boxes that it lies in, where they are
   /// shown.
   struct Texture {
-    SurfaceTexture lookup;
-    TextureLayout layout;
+    SurfacePass pass;
     EmbeddingInfo info;
     FlowBoxes boxes;
     int number;  ///< of the embedding
@@ -103,6 +103,14 @@ class FlowScene : public Scene {
 
     FocusTexture(FlowFocused& told, Device& device);
     double opacity(double now) const;
+  };
+
+  /// Frames that were made with other knobs.
+  struct KeptFlow {
+    Settings settings;
+    std::shared_ptr<Texture> texture;  ///< whose look-up they need
+    KeptFrames frames;
+    int position;  ///< that was seen
   };
 
   static SurfaceTexture surface_texture(const FlowLookup& lookup, const std::vector<std::uint32_t>& rimmed);
@@ -148,6 +156,7 @@ class FlowScene : public Scene {
 
   // Time, in flow_transport.cpp. Positions are those of Transport.
   FlowRerun pass_on(const Settings& settings, bool jumps);
+  bool exchange_frames(const Settings& settings, const FlowRerun& rerun);
   void seek(int position);
   void restart_at(int position);
   void show_kept(int position);
@@ -177,12 +186,13 @@ class FlowScene : public Scene {
   FlowWorker worker_;  // before what it writes to, whose device it owns
   SurfaceBuffers surface_;
   SurfaceColours colours_;
-  SurfacePass surface_pass_;
+  SurfacePass plain_pass_;  ///< until there is a texture
   EdgePass edge_pass_;
   ArrowPass arrow_pass_;
   FlowLinesPass lines_pass_;
   BoxPass box_pass_;
-  std::unique_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
+  std::shared_ptr<Texture> shown_, next_;  ///< what is seen; what will be, after its first step
+  std::shared_ptr<Texture> lent_;          ///< to the worker, for a step
   /// Drawn; waits for its first values; drawn below the first until that is faded in; still written to.
   std::unique_ptr<FocusTexture> focus_, next_focus_, former_focus_;
   std::vector<std::unique_ptr<FocusTexture>> leaving_focuses_;
@@ -214,6 +224,8 @@ class FlowScene : public Scene {
   double last_step_ = -1e9, area_ = 0;
   bool stale_ = true;  ///< knobs have changed what the next step shows
   KeptFrames kept_{std::size_t(512) << 20};
+  Settings frames_of_;                ///< the knobs that those have
+  std::deque<KeptFlow> kept_flows_;  ///< the last comes last
   const bool loops_;         ///< the worker does, on and on
   double begun_at_;          ///< the worker's `begin_at`
   int skipped_ = 0;          ///< steps before the worker's first

@@ -14,8 +14,7 @@ FlowRerun FlowScene::pass_on(const Settings& settings, bool jumps) {
   FlowRerun rerun = worker_.set_settings(wanted);
   const bool back = looks_back_;
   const int position = position_;
-  FlowRerun arrows{FlowStage::arrows};
-  if (!(rerun == FlowRerun()) && !(rerun == arrows)) forget_frames();
+  const bool kept = exchange_frames(settings, rerun);
   if (rerun.has(FlowStage::start) || position_ < 0) {  // again, from where the knob says
     if (begun_at_ == settings.begin_at) return rerun;
     begun_at_ = settings.begin_at;
@@ -23,7 +22,7 @@ FlowRerun FlowScene::pass_on(const Settings& settings, bool jumps) {
   } else if (jumps) {
     const int steps = steps_in_all(), skipped = std::clamp(int(std::lround(settings.begin_at * steps)), 0, steps);
     seek(position_after(skipped + 1 - skipped_));
-  } else if (back && (rerun.has(FlowStage::colours) || rerun.has(FlowStage::lines))) {  // what was shown is gone
+  } else if (back && !kept && (rerun.has(FlowStage::colours) || rerun.has(FlowStage::lines))) {  // what was shown is gone
     restart_at(position);
   }
   return rerun;

@@ -61,6 +61,34 @@ class FlowInTime : public InTime<FlowScene> {
   }
 };
 
+TEST_F(FlowInTime, UndoneKnobsBringTheirFramesBackAtOnce) {
+  for (const bool embeds : {false, true}) {
+    session_ = Session();
+    open();
+    std::map<int, std::vector<std::uint8_t>> pictures;
+    for (int k = 1; k <= 3; ++k) advance(), pictures[k] = picture();
+    const Settings before = session_.settings;
+    pause();
+    change([&](Settings& s) { embeds ? s.flow.resolution = 32 : s.flow.ttl = 2; });
+    change([](Settings& s) { s.view.play = true; });
+    for (int k = 0; k < 2; ++k) advance();
+    EXPECT_TRUE(picture() != pictures[1] && picture() != pictures[2] && picture() != pictures[3]);
+    pause();
+    change([&](Settings& s) { s.flow = before.flow; });  // undo
+    EXPECT_EQ(shown(), 3);
+    EXPECT_EQ(picture(), pictures[3]) << "nothing has been computed yet";
+    EXPECT_TRUE(comes_about([&] { return scene_->settled(); }));
+    EXPECT_EQ(picture(), pictures[3]) << "what is computed behind it does not change it";
+    seek(2);
+    EXPECT_EQ(picture(), pictures[2]) << "earlier frames are there, too";
+    seek(3);
+    change([](Settings& s) { s.view.play = true; });
+    advance();
+    EXPECT_EQ(shown(), 4) << "and it goes on";
+    scene_.reset();
+  }
+}
+
 TEST_F(FlowInTime, AShownTimeComesBackAsItWasAndWithoutComputing) {
   open();
   std::map<int, std::vector<std::uint8_t>> pictures;
