@@ -19,6 +19,7 @@
 #include "app/parameter_names.hpp"
 #include "app/ranks.hpp"
 #include "compute/device/error.hpp"
+#include "engine/io/mesh_format_writers.hpp"
 #include "engine/io/vtk_child.hpp"
 #include "engine/scene/settings/knobs.hpp"
 #include "engine/system/output_file.hpp"
@@ -58,6 +59,7 @@ class HelpFormatter : public CLI::Formatter {
 /// `arguments`: what follows the program's name.
 Status run(std::vector<std::string> arguments) {
   CLI::App program("Nacre: unsteady flow on surfaces, and multi-material meshes from labelled volumes.", "nacre");
+  nacre::use_hdf5();
   program.formatter(std::make_shared<HelpFormatter>());
   program.set_version_flag("--version", std::string("nacre ") + nacre::version);
   bool knobs = false;

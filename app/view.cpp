@@ -55,13 +55,13 @@ bool has_no_input(const ViewOptions& options) {
 Session view_session(const ViewOptions& options, const KnobOptions& knobs) {
   CommonOptions common = options.common;
   if (!options.script.empty()) common.session = options.script;
-  InputOptions words = options.input;
-  if (words.files.empty() && words.sample.empty() && common.session.empty()) {
-    words.sample = welcome_sample;
-    if (words.detail == 0) words.detail = welcome_detail;
+  InputOptions input = options.input;
+  if (input.files.empty() && input.sample.empty() && common.session.empty()) {
+    input.sample = welcome_sample;
+    if (input.detail == 0) input.detail = welcome_detail;
   }
   const bool own_resolution = !common.session.empty() || knobs.given("resolution", common.set);
-  Session session = requested_session(common, words, knobs, "view", [&](Settings& settings) {
+  Session session = requested_session(common, input, knobs, "view", [&](Settings& settings) {
     if (!own_resolution) settings.flow.resolution = view_defaults().flow.resolution;
     if (options.preset == "source") apply_thesis_preset(settings);
   });
@@ -125,9 +125,9 @@ void check_all_names(Session session) {
 }
 
 /// Offscreen, the panel is drawn only for those who ask for it; a script says for itself whether it shows it.
-bool begins_with_panel(const ViewOptions& options, const KnobOptions& knobs, const ViewSettings& look) {
-  if (knobs.given("panel", options.common.set)) return look.panel;
-  return !options.script.empty() ? look.panel : !options.offscreen;
+bool begins_with_panel(const ViewOptions& options, const KnobOptions& knobs, const ViewSettings& view) {
+  if (knobs.given("panel", options.common.set)) return view.panel;
+  return !options.script.empty() ? view.panel : !options.offscreen;
 }
 
 /// --record: a file by its extension, else a folder of pictures.

@@ -7,13 +7,13 @@ in vec3 seen;
 out vec4 pixel;
 
 uniform usamplerBuffer materials;      // per triangle: the two numbers, 16 bits each
-uniform samplerBuffer material_look;   // per material: encoded colour, opacity
+uniform samplerBuffer material_colour;   // per material: encoded colour, opacity
 uniform bool ghosts;                   // draw those, or the solid ones
 
 void main() {
   if (is_cut(seen)) discard;
   uint pair = texelFetch(materials, gl_PrimitiveID).r;
-  vec4 low = texelFetch(material_look, int(pair & 0xffffu)), high = texelFetch(material_look, int(pair >> 16));
+  vec4 low = texelFetch(material_colour, int(pair & 0xffffu)), high = texelFetch(material_colour, int(pair >> 16));
   bool outside = (pair & 0xffffu) == 0u;
   float opacity = outside ? high.a : max(low.a, high.a);
   if (opacity <= 0.0 || (opacity < 1.0) != ghosts) discard;

@@ -20,8 +20,8 @@ enum class BenchScale { whole, small, tiny };
 /// One run of the command: what it works with, and its results so far.
 class Bench {
  public:
-  Bench(Device& on, const CommonOptions& words, BenchScale size)
-      : device(on), scale(size), small(size != BenchScale::whole), meshes(on), flows(on), common_(words) {
+  Bench(Device& on, const CommonOptions& options, BenchScale size)
+      : device(on), scale(size), small(size != BenchScale::whole), meshes(on), flows(on), common_(options) {
     meshes.repeats = flows.repeats = 3;
   }
 

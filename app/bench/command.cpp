@@ -82,10 +82,10 @@ json make_report(const BenchOptions& options, const Device& device, const Change
 }
 
 void print_head(const BenchOptions& options, const Device& device, const ChangedKnobs& turned) {
-  std::string words = options.tiny ? ", --tiny" : options.small ? ", --small" : "";
-  for (const auto& [name, value] : turned) words += fmt::format(", {} {}", name, value);
+  std::string text = options.tiny ? ", --tiny" : options.small ? ", --small" : "";
+  for (const auto& [name, value] : turned) text += fmt::format(", {} {}", name, value);
   fmt::print("nacre {} on {} ({}), {} thread{}, {}{}\n\n", version, device.name(), device.backend(), device.threads(),
-             device.threads() == 1 ? "" : "s", today(), words);
+             device.threads() == 1 ? "" : "s", today(), text);
 }
 
 void write_figures(Bench& bench, const json& report) {

@@ -103,7 +103,7 @@ class OctetSearch {
       bound = min(bound, squared(displacements_to_corners(at_ - clusters_.bound[at(k)].centre, 0.5f)));
     bound = sqrt(bound) + slack_;
     nearest_ = min(nearest_, bound * bound);
-    look();
+    find_reach();
     std::uint32_t left[room];
     for (std::uint64_t k = 0; k < count;) {
       int n = 0;
@@ -174,7 +174,7 @@ class OctetSearch {
 
   /// How far from each cell a triangle may be to be of interest. One that touches a cell is, unless the closest point
   /// is known to lie inside of the cell.
-  NACRE_HD_INLINE void look() {
+  NACRE_HD_INLINE void find_reach() {
     const Eight reach = min(sqrt(nearest_), eight(radius_)) + (error_ + 1e-6f);
     reach_ = where_positive(reach - 0.5f, max(reach, eight(cell_diagonal + error_ + 1e-6f)), reach);
   }
@@ -186,7 +186,7 @@ class OctetSearch {
       nearest_ = min(nearest_, squared_[i]);
       error_ = error > error_ ? error : error_;
     }
-    look();
+    find_reach();
     const float error = 2 * error_ + 1e-6f;
     const Eight limit = min(sqrt(nearest_), eight(radius_)) + error;
     const Eight limit2 = limit * limit;

@@ -112,8 +112,8 @@ struct MeasureRidge {
     if (!samples.normal(v, side, n)) return unknown;
     const float size = length(n * samples.spacing);  // of a voxel, across the sheet
     if (std::fabs(u) >= band * size) return unknown;
-    FacingSheet sheet = look(v, u, n, n, size, side);
-    if (sheet.found) sheet = look(v, u, n, sheet.direction, size, side);  // straight at it
+    FacingSheet sheet = find_sheet(v, u, n, n, size, side);
+    if (sheet.found) sheet = find_sheet(v, u, n, sheet.direction, size, side);  // straight at it
     if (!sheet.found) return unknown;
     const float near = min(max((wide - sheet.width / size) / (wide - wide_from), 0.0f), 1.0f);
     const float flat = min(max((sheet.opposed - opposed_from) / (opposed - opposed_from), 0.0f), 1.0f);
@@ -122,8 +122,8 @@ struct MeasureRidge {
 
   /// Goes from `v` along `direction` and takes what voxels beyond a ridge say about the sheet that is nearest to them,
   /// those the most from which the line to `v` runs across it. `n`: own normal, `u`: own distance.
-  NACRE_HD FacingSheet look(const Int3& v, float u, const Vec3f& n, const Vec3f& direction, float size,
-                            const LevelSide& side) const {
+  NACRE_HD FacingSheet find_sheet(const Int3& v, float u, const Vec3f& n, const Vec3f& direction, float size,
+                                  const LevelSide& side) const {
     const Vec3f spacing = samples.spacing;
     constexpr int steps = 10;  // half a voxel each: to the far side of what is `wide`
     float weights = 0, width = 0, opposed = 0;

@@ -282,7 +282,7 @@ class FlowMethodOn : public FlowMethod {
     scene.mesh = shape_.moved() ? shape_.mesh(corners_.data()) : seen_;
     scene.neutral_backs = options.back_faces == BackFaces::neutral;
     scene.hidden_backs = options.back_faces == BackFaces::hidden;
-    look(pixel, options, dims);
+    place_camera(pixel, options, dims);
     if (shape_.moved()) {  // perhaps out of the domain
       const Vec3d target = domain_.to_grid(options.camera.target);
       for (const Vec3d& p : shape_.points()) pixel.reach = std::max(pixel.reach, 1 + length(p - target));
@@ -399,7 +399,7 @@ class FlowMethodOn : public FlowMethod {
 
  private:
   template <class Pixel>
-  void look(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) const {
+  void place_camera(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) const {
     const Camera& camera = options.camera;
     GridCamera& view = pixel.camera;
     const Vec3d right = camera.right(), up = cross(right, camera.forward());

@@ -13,50 +13,51 @@ namespace nacre {
 namespace {
 
 template <class Choice>
-using Word = std::pair<std::string_view, Choice>;
+using Named = std::pair<std::string_view, Choice>;
 
-constexpr std::array<Word<Solver>, 3> solvers{
+constexpr std::array<Named<Solver>, 3> solvers{
     {{"tree", Solver::tree}, {"redblack", Solver::redblack}, {"serial", Solver::serial}}};
-constexpr std::array<Word<CubicKernel>, 2> kernels{
+constexpr std::array<Named<CubicKernel>, 2> kernels{
     {{"catmull-rom", CubicKernel::catmull_rom}, {"b-spline", CubicKernel::b_spline}}};
-constexpr std::array<Word<TriangleSource>, 3> triangle_sources{
+constexpr std::array<Named<TriangleSource>, 3> triangle_sources{
     {{"auto", TriangleSource::automatic}, {"delaunay", TriangleSource::delaunay}, {"stars", TriangleSource::stars}}};
-constexpr std::array<Word<MeshQuality>, 3> qualities{
+constexpr std::array<Named<MeshQuality>, 3> qualities{
     {{"draft", MeshQuality::draft}, {"standard", MeshQuality::standard}, {"best", MeshQuality::best}}};
 enum class Seeds { automatic, embedding, marching_cubes };
-constexpr std::array<Word<Seeds>, 3> seed_words{
+constexpr std::array<Named<Seeds>, 3> seed_names{
     {{"auto", Seeds::automatic}, {"embedding", Seeds::embedding}, {"marching-cubes", Seeds::marching_cubes}}};
 
 template <class Choice>
-Choice choice_of(std::span<const Word<Choice>> words, const std::string& parameter, std::string_view word) {
+Choice choice_of(std::span<const Named<Choice>> named, const std::string& parameter, std::string_view text) {
   std::string all;
-  for (const auto& [name, choice] : words) {
-    if (name == word) return choice;
+  for (const auto& [name, choice] : named) {
+    if (name == text) return choice;
     all += (all.empty() ? "" : ", ") + std::string(name);
   }
-  throw Error("`" + parameter + "` cannot be '" + std::string(word) + "'", "", "choose one of " + all);
+  throw Error("`" + parameter + "` cannot be '" + std::string(text) + "'", "", "choose one of " + all);
 }
 
 template <class Choice>
-std::string word_of(std::span<const Word<Choice>> words, Choice choice) {
-  return std::string(
-      std::find_if(words.begin(), words.end(), [&](const Word<Choice>& word) { return word.second == choice; })->first);
+std::string name_of(std::span<const Named<Choice>> named, Choice choice) {
+  return std::string(std::find_if(named.begin(), named.end(), [&](const Named<Choice>& each) {
+                       return each.second == choice;
+                     })->first);
 }
 
 }  // namespace
 
-std::string to_string(Solver solver) { return word_of<Solver>(solvers, solver); }
-std::string to_string(CubicKernel kernel) { return word_of<CubicKernel>(kernels, kernel); }
+std::string to_string(Solver solver) { return name_of<Solver>(solvers, solver); }
+std::string to_string(CubicKernel kernel) { return name_of<CubicKernel>(kernels, kernel); }
 
-Solver solver_from_string(std::string_view word) { return choice_of<Solver>(solvers, "solver", word); }
-CubicKernel kernel_from_string(std::string_view word) { return choice_of<CubicKernel>(kernels, "kernel", word); }
-TriangleSource triangles_from_string(std::string_view word) {
-  return choice_of<TriangleSource>(triangle_sources, "triangulation", word);
+Solver solver_from_string(std::string_view text) { return choice_of<Solver>(solvers, "solver", text); }
+CubicKernel kernel_from_string(std::string_view text) { return choice_of<CubicKernel>(kernels, "kernel", text); }
+TriangleSource triangles_from_string(std::string_view text) {
+  return choice_of<TriangleSource>(triangle_sources, "triangulation", text);
 }
-MeshQuality quality_from_string(std::string_view word) { return choice_of<MeshQuality>(qualities, "quality", word); }
+MeshQuality quality_from_string(std::string_view text) { return choice_of<MeshQuality>(qualities, "quality", text); }
 
-SeedOrigin seeds_from_string(std::string_view word, Solver solver) {
-  switch (choice_of<Seeds>(seed_words, "seeds", word)) {
+SeedOrigin seeds_from_string(std::string_view text, Solver solver) {
+  switch (choice_of<Seeds>(seed_names, "seeds", text)) {
     case Seeds::embedding: return SeedOrigin::embedding;
     case Seeds::marching_cubes: return SeedOrigin::marching_cubes;
     default: return solver == Solver::tree ? SeedOrigin::embedding : SeedOrigin::marching_cubes;

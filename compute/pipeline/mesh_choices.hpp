@@ -38,12 +38,12 @@ std::string to_string(Solver solver);
 std::string to_string(CubicKernel kernel);
 
 /// Each throws Error, listing the valid values, for any other value.
-Solver solver_from_string(std::string_view word);
-CubicKernel kernel_from_string(std::string_view word);
-TriangleSource triangles_from_string(std::string_view word);
-MeshQuality quality_from_string(std::string_view word);
+Solver solver_from_string(std::string_view text);
+CubicKernel kernel_from_string(std::string_view text);
+TriangleSource triangles_from_string(std::string_view text);
+MeshQuality quality_from_string(std::string_view text);
 /// "auto" is the embedding for the tree solver and marching cubes for the others, as in ch. 4 and ch. 3.
-SeedOrigin seeds_from_string(std::string_view word, Solver solver);
+SeedOrigin seeds_from_string(std::string_view text, Solver solver);
 
 /// The parameters that a run with these works with. A draft has one closest-point cell per voxel and axis, 8
 /// iterations, one round of smoothing and six of mending, or fewer where `parameters` say so, triangles of stars unless

@@ -31,12 +31,12 @@ std::string with_includes(std::string_view name) {
 
 /// The messages of the compiler or linker.
 template <class Length, class Text>
-std::string words_of(GLuint id, const Length& length_of, const Text& text_of) {
+std::string log_of(GLuint id, const Length& length_of, const Text& text_of) {
   GLint length = 0;
   length_of(id, GL_INFO_LOG_LENGTH, &length);
-  std::string words(std::size_t(length > 0 ? length : 0), '\0');
-  if (length > 0) text_of(id, length, nullptr, words.data());
-  return words;
+  std::string log(std::size_t(length > 0 ? length : 0), '\0');
+  if (length > 0) text_of(id, length, nullptr, log.data());
+  return log;
 }
 
 GLuint compile(GLenum stage, std::string_view name, std::string_view prelude) {
@@ -48,9 +48,9 @@ GLuint compile(GLenum stage, std::string_view name, std::string_view prelude) {
   GLint good = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
   if (good) return shader;
-  const std::string words = words_of(shader, glGetShaderiv, glGetShaderInfoLog);
+  const std::string log = log_of(shader, glGetShaderiv, glGetShaderInfoLog);
   glDeleteShader(shader);
-  throw Error("shader " + std::string(name) + " does not compile", words, "report this with the name of your driver");
+  throw Error("shader " + std::string(name) + " does not compile", log, "report this with the name of your driver");
 }
 
 }  // namespace
@@ -73,9 +73,9 @@ Program::Program(std::string_view vertex, std::string_view fragment, std::string
   GLint good = GL_FALSE;
   glGetProgramiv(id_, GL_LINK_STATUS, &good);
   if (good) return;
-  const std::string words = words_of(id_, glGetProgramiv, glGetProgramInfoLog);
+  const std::string log = log_of(id_, glGetProgramiv, glGetProgramInfoLog);
   glDeleteProgram(id_);
-  throw Error("shaders " + std::string(vertex) + " and " + std::string(fragment) + " do not link", words,
+  throw Error("shaders " + std::string(vertex) + " and " + std::string(fragment) + " do not link", log,
               "report this with the name of your driver");
 }
 

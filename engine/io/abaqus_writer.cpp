@@ -59,11 +59,11 @@ void write_abaqus_elements(Chunks& out, const MeshParts::Group& group, const std
 }
 
 void write_abaqus_triangles(Chunks& out, const MeshParts& mesh) {
-  Identifiers words;
+  Identifiers identifiers;
   std::vector<std::string> sets;
   std::uint64_t number = 0;
   for (const auto& [pair, group] : mesh.interfaces) {
-    sets.push_back(words.of(group.name));
+    sets.push_back(identifiers.of(group.name));
     write_abaqus_elements(
         out, group, sets.back(), "S3", mesh.triangles.size(), number, [&, pair = pair](std::size_t i) {
           const Triangle& t = mesh.triangles[i];
@@ -72,7 +72,7 @@ void write_abaqus_triangles(Chunks& out, const MeshParts& mesh) {
   }
   for (const std::string& set : sets)
     for (const char* side : {"SPOS", "SNEG"})
-      out.print("*SURFACE, NAME={}, TYPE=ELEMENT\n{}, {}\n", words.of(set + "_" + side), set, side);
+      out.print("*SURFACE, NAME={}, TYPE=ELEMENT\n{}, {}\n", identifiers.of(set + "_" + side), set, side);
 }
 
 /// The faces of the cells of `pair[side]` at the interface of the pair.
@@ -89,12 +89,12 @@ void write_abaqus_surface(Chunks& out, const MeshParts& mesh, const std::vector<
 
 void write_abaqus_tetrahedra(Chunks& out, const MeshParts& mesh) {
   Identifiers sets, surfaces;
-  std::map<std::uint16_t, std::string> words{{std::uint16_t(0), "outside"}};
+  std::map<std::uint16_t, std::string> name_of{{std::uint16_t(0), "outside"}};
   std::vector<std::uint64_t> numbers(mesh.cells.size());
   std::uint64_t number = 0;
   for (const auto& [m, group] : mesh.volumes) {
-    words[m] = sets.of(group.name);
-    write_abaqus_elements(out, group, words[m], "C3D4", mesh.cells.size(), number, [&, m = m](std::size_t i) {
+    name_of[m] = sets.of(group.name);
+    write_abaqus_elements(out, group, name_of[m], "C3D4", mesh.cells.size(), number, [&, m = m](std::size_t i) {
       if (mesh.material[i] != m) return std::span<const std::uint32_t>();
       numbers[i] = number + 1;
       return std::span<const std::uint32_t>(mesh.cells[i]);
@@ -109,7 +109,7 @@ void write_abaqus_tetrahedra(Chunks& out, const MeshParts& mesh) {
     for (int side = 0; side < 2; ++side) {
       const std::uint16_t here = pair[std::size_t(side)], there = pair[std::size_t(1 - side)];
       if (here == 0) continue;  // no elements there
-      out.print("*SURFACE, NAME={}, TYPE=ELEMENT\n", surfaces.of(words[here] + "_" + words[there]));
+      out.print("*SURFACE, NAME={}, TYPE=ELEMENT\n", surfaces.of(name_of[here] + "_" + name_of[there]));
       write_abaqus_surface(out, mesh, faces, pair, side, numbers);
     }
   }

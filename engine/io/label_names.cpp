@@ -19,19 +19,19 @@ namespace {
 constexpr std::size_t most_names = 65536, longest_name = 120;
 
 /// The name as one line that a table can show.
-std::string in_one_line(std::string_view words) {
-  std::string line = in_utf8(words, longest_name);
+std::string in_one_line(std::string_view text) {
+  std::string line = in_utf8(text, longest_name);
   while (!line.empty() && line.back() == ' ') line.pop_back();
   line.erase(0, std::min(line.find_first_not_of(' '), line.size()));
   return line;
 }
 
 /// Stores a name; of two names for one label, the first is kept. False where `number` is no label.
-bool keep(LabelNames& names, std::string_view number, std::string_view words) {
+bool keep(LabelNames& names, std::string_view number, std::string_view text) {
   std::int64_t label = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), label);
   if (error != std::errc() || end != number.data() + number.size()) return false;
-  std::string name = in_one_line(words);
+  std::string name = in_one_line(text);
   if (!name.empty() && names.size() < most_names) names.try_emplace(label, std::move(name));
   return true;
 }

@@ -34,8 +34,12 @@ void write_openfoam(const std::filesystem::path& file, const MeshParts& mesh);
 
 /// .xdmf (version 3, with an .h5 of the same name): tetrahedra with the array `material`; and the triangles, with the
 /// array `interface`, in NAME_interfaces.xdmf, or in the file itself if the mesh is a surface. Numbers are the tags of
-/// groups, and <Information> has their names as meshio reads them. Throws Error in a build without HDF5.
+/// groups, and <Information> has their names as meshio reads them. Throws Error where no `xdmf_writer` is set: only the
+/// program links HDF5, the library does not.
 void write_xdmf(const std::filesystem::path& file, const MeshParts& mesh);
+inline void (*xdmf_writer)(const std::filesystem::path& file, const MeshParts& mesh) = nullptr;
+/// Sets it, in a build with HDF5.
+void use_hdf5();
 
 /// .glb (glTF 2.0): a mesh with a colour and smooth normals per interface, below one node that turns z upwards (glTF
 /// has y up) and moves it into position, so that 32-bit coordinates lose little.

@@ -54,7 +54,7 @@ MeshParts volume_parts(const TetrahedralMesh& mesh, const SurfaceMesh& surface, 
                        std::span<const std::string> names);
 
 /// Gives each name as a word that every solver accepts: at most 60 ASCII letters, digits and underscores, a letter
-/// first, and different from all words before it even without regard to case.
+/// first, and different from all before it even without regard to case.
 class Identifiers {
  public:
   std::string of(const std::string& name);

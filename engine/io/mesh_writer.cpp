@@ -175,6 +175,17 @@ SurfaceMesh surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
 
 using Writer = void (*)(const fs::path& file, const MeshParts& mesh);
 
+}  // namespace
+
+void write_xdmf(const fs::path& file, const MeshParts& mesh) {
+  if (!xdmf_writer)
+    throw Error(file.string() + " needs HDF5, which is not built in", "",
+                "write .vtu or .msh, and convert it with meshio");
+  xdmf_writer(file, mesh);
+}
+
+namespace {
+
 /// Formats that are written from parts; nothing where a format has no surfaces, or no tetrahedra.
 struct PartsFormat {
   const char* extension;

@@ -75,7 +75,7 @@ struct PolyMesh {
   std::vector<Patch> patches;
 };
 
-PolyMesh poly_mesh(const MeshParts& mesh, Identifiers& words) {
+PolyMesh poly_mesh(const MeshParts& mesh, Identifiers& identifiers) {
   PolyMesh result;
   result.faces = cell_faces(mesh.cells);
   const auto outer = std::find_if(result.faces.begin(), result.faces.end(),
@@ -89,7 +89,7 @@ PolyMesh poly_mesh(const MeshParts& mesh, Identifiers& words) {
     const auto group = mesh.interfaces.find({0, m});
     const std::string name =
         group != mesh.interfaces.end() ? group->second.name : "outside - " + mesh.volumes.at(m).name;
-    result.patches.push_back({words.of(name), 0, i});
+    result.patches.push_back({identifiers.of(name), 0, i});
     for (; i < result.faces.size() && mesh.material[result.faces[i].owner] == m; ++i) ++result.patches.back().faces;
   }
   return result;
@@ -109,19 +109,19 @@ void write_zone(Chunks& out, const std::string& name, const char* kind, const st
 }
 
 void write_cell_zones(Chunks& out, const MeshParts& mesh) {
-  Identifiers words;
+  Identifiers identifiers;
   out.print("{}\n(\n", mesh.volumes.size());
   for (const auto& [m, group] : mesh.volumes) {
     std::vector<std::size_t> cells;
     for (std::size_t i = 0; i < mesh.cells.size(); ++i)
       if (mesh.material[i] == m) cells.push_back(i);
-    write_zone(out, words.of(group.name), "cell", cells, nullptr);
+    write_zone(out, identifiers.of(group.name), "cell", cells, nullptr);
   }
   out.print(")\n");
 }
 
 /// A face is flipped if its normal, which points out of its owner, points into the higher material.
-void write_face_zones(Chunks& out, const MeshParts& mesh, const PolyMesh& poly, Identifiers& words) {
+void write_face_zones(Chunks& out, const MeshParts& mesh, const PolyMesh& poly, Identifiers& identifiers) {
   std::map<MaterialPair, std::pair<std::vector<std::size_t>, std::vector<bool>>> zones;
   for (std::size_t i = 0; i < poly.inner; ++i) {
     const std::uint16_t a = mesh.material[poly.faces[i].owner], b = mesh.material[poly.faces[i].neighbour];
@@ -136,7 +136,7 @@ void write_face_zones(Chunks& out, const MeshParts& mesh, const PolyMesh& poly, 
     const std::string name = group != mesh.interfaces.end()
                                  ? group->second.name
                                  : mesh.volumes.at(pair[0]).name + " - " + mesh.volumes.at(pair[1]).name;
-    write_zone(out, words.of(name), "face", zone.first, &zone.second);
+    write_zone(out, identifiers.of(name), "face", zone.first, &zone.second);
   }
   out.print(")\n");
 }
@@ -158,8 +158,8 @@ void write_cells_of_faces(CaseFiles& files, const std::string& folder, const Mes
 
 void write_poly_mesh(CaseFiles& files, const MeshParts& mesh) {
   const std::string folder = "constant/polyMesh";
-  Identifiers words;
-  const PolyMesh poly = poly_mesh(mesh, words);
+  Identifiers identifiers;
+  const PolyMesh poly = poly_mesh(mesh, identifiers);
   files.write(folder, "points", "vectorField", "", [&](Chunks& out) {
     out.print("{}\n(\n", mesh.points.size());
     for (const Vec3d& p : mesh.points) out.print("({} {} {})\n", p.x, p.y, p.z);
@@ -180,7 +180,8 @@ void write_poly_mesh(CaseFiles& files, const MeshParts& mesh) {
     out.print(")\n");
   });
   files.write(folder, "cellZones", "regIOobject", "", [&](Chunks& out) { write_cell_zones(out, mesh); });
-  files.write(folder, "faceZones", "regIOobject", "", [&](Chunks& out) { write_face_zones(out, mesh, poly, words); });
+  files.write(folder, "faceZones", "regIOobject", "",
+              [&](Chunks& out) { write_face_zones(out, mesh, poly, identifiers); });
 }
 
 }  // namespace

@@ -17,12 +17,12 @@ namespace {
 template <std::size_t N>
 bool read_numbers(pugi::xml_node node, const char* name, std::array<double, N>& values,
                   const std::filesystem::path& path) {
-  const std::string_view words = node.attribute(name).value();
-  TextCursor text(words);
+  const std::string_view content = node.attribute(name).value();
+  TextCursor text(content);
   if (text.at_end()) return false;
   for (double& value : values)
     if (!text.number(value) || !std::isfinite(value))
-      fail_reading(path, fmt::format("its {} is '{}', not {} numbers", name, words.substr(0, 60), N));
+      fail_reading(path, fmt::format("its {} is '{}', not {} numbers", name, content.substr(0, 60), N));
   return true;
 }
 

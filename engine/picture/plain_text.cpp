@@ -50,8 +50,8 @@ std::string to_ascii(std::string_view text) {
     const char32_t point = take_code_point(text);
     if (is_raised(point) && !was_raised) ascii += '^';
     was_raised = is_raised(point);
-    if (const char* words = spelled(point))
-      ascii += words;
+    if (const char* spelling = spelled(point))
+      ascii += spelling;
     else if (point >= 0x2070 && point <= 0x2079)
       ascii += char('0' + (point - 0x2070));
     else

@@ -54,16 +54,16 @@ class Svg {
     add(R"(<rect width="{}" height="{}" fill="#ffffff"/>)", width, page_height);
     add(R"(<text x="{}" y="28" font-size="16" fill="#222222">{}</text>)", left, escaped(title));
   }
-  void text(double x, double y, const char* anchor, const std::string& words) {
-    add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}" fill="#222222">{}</text>)", x, y, anchor, escaped(words));
+  void text(double x, double y, const char* anchor, const std::string& label) {
+    add(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}" fill="#222222">{}</text>)", x, y, anchor, escaped(label));
   }
   void line(double x0, double y0, double x1, double y1, const char* colour) {
     add(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"/>)", x0, y0, x1, y1, colour);
   }
-  void y_label(const std::string& words) {
+  void y_label(const std::string& label) {
     const double y = 0.5 * (top + bottom);
     add(R"~(<text transform="translate(20 {:.1f}) rotate(-90)" text-anchor="middle" fill="#222222">{}</text>)~", y,
-        escaped(words));
+        escaped(label));
   }
   std::string end() {
     add("</svg>");

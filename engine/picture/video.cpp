@@ -26,7 +26,7 @@ namespace nacre {
 namespace fs = std::filesystem;
 namespace {
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 std::string frame_name(long number) { return fmt::format("frame_{:04}.png", number); }
 
@@ -92,7 +92,7 @@ class FrameFolder : public FrameSink {
 /// ffmpeg's options for one kind of file: the container, the encoder, the filter that gives the encoder's pixels.
 struct Format {
   std::string container, filter;
-  Words encoder;
+  Arguments encoder;
 };
 
 /// The texture is noise to an encoder. Its usual quality would smear it, so a higher one is requested.
@@ -100,9 +100,10 @@ Format format_of(const fs::path& file) {
   const std::string extension = lower_extension(file);
   // The matrix of HDTV, stated in the stream: without it, players guess differently.
   const std::string yuv = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
-  const Words tags = {"-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-color_range", "tv"};
-  Words h264 = {"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
-  Words vp9 = {"-c:v", "libvpx-vp9", "-crf", "22", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4"};
+  const Arguments tags = {"-colorspace", "bt709", "-color_primaries", "bt709",
+                          "-color_trc",  "bt709", "-color_range",     "tv"};
+  Arguments h264 = {"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
+  Arguments vp9 = {"-c:v", "libvpx-vp9", "-crf", "22", "-b:v", "0", "-row-mt", "1", "-cpu-used", "4"};
   h264.insert(h264.end(), tags.begin(), tags.end());
   vp9.insert(vp9.end(), tags.begin(), tags.end());
   if (extension == ".mkv") return {"matroska", yuv, h264};
@@ -151,17 +152,17 @@ class Video : public FrameSink {
     width_ = width;
     height_ = height;
     const std::string size = fmt::format("{}x{}", even(width), even(height));
-    Words words = {"-nostdin", "-hide_banner", "-loglevel",          "error", "-y",
-                   "-f",       "rawvideo",     "-pixel_format",      "rgb24", "-video_size",
-                   size,       "-framerate",   std::to_string(fps_), "-i",    "pipe:0",
-                   "-vf",      format_.filter};
-    words.insert(words.end(), format_.encoder.begin(), format_.encoder.end());
+    Arguments arguments = {"-nostdin", "-hide_banner", "-loglevel",          "error", "-y",
+                           "-f",       "rawvideo",     "-pixel_format",      "rgb24", "-video_size",
+                           size,       "-framerate",   std::to_string(fps_), "-i",    "pipe:0",
+                           "-vf",      format_.filter};
+    arguments.insert(arguments.end(), format_.encoder.begin(), format_.encoder.end());
     // Without random numbers and the version of ffmpeg, so that the same frames give the same file.
-    words.insert(words.end(), {"-fflags", "+bitexact", "-flags:v", "+bitexact"});
-    if (!origin_.empty()) words.insert(words.end(), {"-metadata", "comment=" + origin_});
+    arguments.insert(arguments.end(), {"-fflags", "+bitexact", "-flags:v", "+bitexact"});
+    if (!origin_.empty()) arguments.insert(arguments.end(), {"-metadata", "comment=" + origin_});
     // "file:" prevents a colon in the name from being read as a protocol.
-    words.insert(words.end(), {"-f", format_.container, "file:" + fs::absolute(output_.temporary()).string()});
-    child_.emplace(program_, words, stop_);
+    arguments.insert(arguments.end(), {"-f", format_.container, "file:" + fs::absolute(output_.temporary()).string()});
+    child_.emplace(program_, arguments, stop_);
     packed_.resize(std::size_t(even(width)) * std::size_t(even(height)) * 3);
   }
 

@@ -27,7 +27,7 @@ void MaterialPass::draw(const View& view, const SurfaceBuffers& surface, const P
   materials_texture_.bind(0);
   program_.set("materials", 0);
   styles_texture_.bind(1);
-  program_.set("material_look", 1);
+  program_.set("material_colour", 1);
   program_.set("ghosts", 0);
   glEnable(GL_DEPTH_TEST);
   program_.use();

@@ -14,7 +14,7 @@
 namespace nacre {
 namespace {
 
-/// Calls take(label, words) for each "label:words" of a list.
+/// Calls take(label, text) for each "label:value" of a list.
 template <class Take>
 void for_labels(const std::string& list, const Take& take) {
   std::istringstream stream(list);
@@ -28,34 +28,33 @@ void for_labels(const std::string& list, const Take& take) {
 }
 
 template <class Value, class Word>
-std::string words_of(const std::map<std::int64_t, Value>& values, const Word& word) {
-  std::string words;
-  for (const auto& [label, value] : values)
-    words += fmt::format("{}{}:{}", words.empty() ? "" : ",", label, word(value));
-  return words;
+std::string list_of(const std::map<std::int64_t, Value>& values, const Word& word) {
+  std::string text;
+  for (const auto& [label, value] : values) text += fmt::format("{}{}:{}", text.empty() ? "" : ",", label, word(value));
+  return text;
 }
 
 int byte_of(float share) { return int(std::lround(255 * std::clamp(share, 0.0f, 1.0f))); }
 
 }  // namespace
 
-std::map<std::int64_t, Color> parse_label_colours(const std::string& words) {
+std::map<std::int64_t, Color> parse_label_colours(const std::string& text) {
   std::map<std::int64_t, Color> colours;
-  for_labels(words, [&](std::int64_t label, const std::string& word) {
+  for_labels(text, [&](std::int64_t label, const std::string& word) {
     if (const auto colour = hex_colour(word)) colours[label] = *colour;
   });
   return colours;
 }
 
-std::string label_colour_words(const std::map<std::int64_t, Color>& colours) {
-  return words_of(colours, [](const Color& c) {
+std::string label_colour_text(const std::map<std::int64_t, Color>& colours) {
+  return list_of(colours, [](const Color& c) {
     return fmt::format("#{:02x}{:02x}{:02x}", byte_of(c[0]), byte_of(c[1]), byte_of(c[2]));
   });
 }
 
-std::map<std::int64_t, double> parse_label_opacities(const std::string& words) {
+std::map<std::int64_t, double> parse_label_opacities(const std::string& text) {
   std::map<std::int64_t, double> opacities;
-  for_labels(words, [&](std::int64_t label, const std::string& word) {
+  for_labels(text, [&](std::int64_t label, const std::string& word) {
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error == std::errc() && end == word.data() + word.size() && std::isfinite(value))
@@ -64,8 +63,8 @@ std::map<std::int64_t, double> parse_label_opacities(const std::string& words) {
   return opacities;
 }
 
-std::string label_opacity_words(const std::map<std::int64_t, double>& opacities) {
-  return words_of(opacities, [](double opacity) { return fmt::format("{:.2g}", opacity); });
+std::string label_opacity_text(const std::map<std::int64_t, double>& opacities) {
+  return list_of(opacities, [](double opacity) { return fmt::format("{:.2g}", opacity); });
 }
 
 std::vector<Color> material_palette(const MeshInput& input, const std::string& own) {

@@ -11,12 +11,12 @@
 namespace nacre {
 
 /// "L:#rrggbb[,L:#rrggbb...]", colours by label; what says no label and no colour is left out.
-std::map<std::int64_t, Color> parse_label_colours(const std::string& words);
-std::string label_colour_words(const std::map<std::int64_t, Color>& colours);
+std::map<std::int64_t, Color> parse_label_colours(const std::string& text);
+std::string label_colour_text(const std::map<std::int64_t, Color>& colours);
 
 /// "L:0.25[,L:1...]", opacities by label, clamped to 0..1; what says no label and no number is left out.
-std::map<std::int64_t, double> parse_label_opacities(const std::string& words);
-std::string label_opacity_words(const std::map<std::int64_t, double>& opacities);
+std::map<std::int64_t, double> parse_label_opacities(const std::string& text);
+std::string label_opacity_text(const std::map<std::int64_t, double>& opacities);
 
 /// Per material, encoded sRGB; that of the outside says nothing. `own`: as the knob `material_colors`.
 std::vector<Color> material_palette(const MeshInput& input, const std::string& own);

@@ -16,8 +16,8 @@ struct Fault {
 
 std::map<std::string, Fault, std::less<>> wanted_faults() {
   std::map<std::string, Fault, std::less<>> faults;
-  const char* words = std::getenv("NACRE_FAULTS");
-  std::string_view rest = words ? words : "";
+  const char* setting = std::getenv("NACRE_FAULTS");
+  std::string_view rest = setting ? setting : "";
   while (!rest.empty()) {
     const std::string_view word = rest.substr(0, rest.find(','));
     rest.remove_prefix(std::min(rest.size(), word.size() + 1));

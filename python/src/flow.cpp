@@ -100,10 +100,10 @@ void bind_flow(nb::module_& module) {
               throw;
             }
           },
-          nb::arg("points"), nb::arg("triangles"), nb::arg("times"), nb::arg("positions").none(), nb::arg("vectors").none(), nb::arg("scalars"),
-          nb::arg("scalar_names"), nb::arg("name"), nb::arg("vector_name"), nb::arg("knobs"), nb::arg("device"),
-          nb::arg("threads"), nb::arg("progress").none(), nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>(),
-          nb::keep_alive<1, 7>())
+          nb::arg("points"), nb::arg("triangles"), nb::arg("times"), nb::arg("positions").none(),
+          nb::arg("vectors").none(), nb::arg("scalars"), nb::arg("scalar_names"), nb::arg("name"),
+          nb::arg("vector_name"), nb::arg("knobs"), nb::arg("device"), nb::arg("threads"), nb::arg("progress").none(),
+          nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>(), nb::keep_alive<1, 7>())
       .def("frames", [](Run& run) { return run.run().frames(); })
       .def("frame", [](Run& run) { return run.run().frame(); })
       .def("time", [](Run& run) { return run.run().time(); })

@@ -12,21 +12,21 @@ namespace {
 
 struct Approved {
   std::string name;
-  Words words;
+  Arguments arguments;
   bool crowd = false;  ///< of particles, whose positions follow from the last bit of a sum
 };
 
-const Words flow_words = {"--sample", "torus", "--detail", "48", "--resolution", "160", "--steps", "6"};
-const Words mesh_words = {"--sample", "three-sectors", "--detail", "24", "--set", "iterations=40"};
+const Arguments flow_words = {"--sample", "torus", "--detail", "48", "--resolution", "160", "--steps", "6"};
+const Arguments mesh_words = {"--sample", "three-sectors", "--detail", "24", "--set", "iterations=40"};
 
 void PrintTo(const Approved& approved, std::ostream* out) { *out << approved.name; }
 
-Approved of_flow(const std::string& name, const Words& more) { return {name, flow_words + more}; }
-Approved of_mesh(const std::string& name, const Words& more) { return {name, mesh_words + more}; }
-Approved of_particles(const std::string& name, const Words& more) {
-  return {name, mesh_words + Words{"--frames-count", "56"} + more, true};
+Approved of_flow(const std::string& name, const Arguments& more) { return {name, flow_words + more}; }
+Approved of_mesh(const std::string& name, const Arguments& more) { return {name, mesh_words + more}; }
+Approved of_particles(const std::string& name, const Arguments& more) {
+  return {name, mesh_words + Arguments{"--frames-count", "56"} + more, true};
 }
-Words tab(const std::string& name) { return {"--panel", "--set", "tab=" + name}; }
+Arguments tab(const std::string& name) { return {"--panel", "--set", "tab=" + name}; }
 
 /// Every tab of the panel for both jobs, and what the look can do.
 const std::vector<Approved> all = {
@@ -39,7 +39,7 @@ const std::vector<Approved> all = {
     of_flow("flow_clip", {"--set", "clip=x", "--set", "edges=true", "--set", "light_azimuth=60"}),
     of_flow("flow_data", tab("data")),
     of_flow("flow_knobs", tab("knobs")),
-    of_flow("flow_look", tab("look") + Words{"--set", "theme=light"}),
+    of_flow("flow_look", tab("look") + Arguments{"--set", "theme=light"}),
     of_flow("flow_result", tab("result")),
     of_mesh("mesh", {"--set", "edges=true"}),
     of_particles("mesh_particles", {}),
@@ -61,12 +61,13 @@ void paint_over_status(Image& image) {
 }
 
 TEST_P(ApprovedPicture, IsDrawn) {
-  const bool panel = std::find(GetParam().words.begin(), GetParam().words.end(), "--panel") != GetParam().words.end();
-  const Words size = {"--size", panel ? "640x480" : "240x180"};
+  const bool panel =
+      std::find(GetParam().arguments.begin(), GetParam().arguments.end(), "--panel") != GetParam().arguments.end();
+  const Arguments size = {"--size", panel ? "640x480" : "240x180"};
   const fs::path drawn = folder / "drawn.png";
   const fs::path approved = source_file("tests/app/approved/" + GetParam().name + ".png");
   const Outcome outcome =
-      nacre(Words{"view", "--offscreen", "--quiet", "--image", drawn.string()} + GetParam().words + size);
+      nacre(Arguments{"view", "--offscreen", "--quiet", "--image", drawn.string()} + GetParam().arguments + size);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   if (std::getenv("NACRE_APPROVE")) fs::copy_file(drawn, approved, fs::copy_options::overwrite_existing);
   ASSERT_TRUE(fs::exists(approved)) << "run with NACRE_APPROVE=1 and look at it";

@@ -37,21 +37,21 @@ class BadInput : public AppTest {
   }
 
   /// A small run into `a.png` and `a.vtp`.
-  Outcome flow(const std::string& file, const Words& more = {}) const {
-    return nacre(Words{"flow", file, "--resolution", "48", "--steps", "1", "--size", "64x48", "--image", path("a.png"),
-                       "--out", path("v.vtp")} +
+  Outcome flow(const std::string& file, const Arguments& more = {}) const {
+    return nacre(Arguments{"flow", file, "--resolution", "48", "--steps", "1", "--size", "64x48", "--image",
+                           path("a.png"), "--out", path("v.vtp")} +
                  more);
   }
 
   /// Both outputs are there, and one warning holds each of `parts`.
-  void expect_warning(const Outcome& run, const Words& parts) const {
+  void expect_warning(const Outcome& run, const Arguments& parts) const {
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(exists("a.png") && exists("v.vtp"));
     EXPECT_GE(lines_with(run.err, "warning: "), 1) << run.err;
     for (const std::string& part : parts) EXPECT_TRUE(contains(run.err, part)) << part << "\n" << run.err;
   }
 
-  void expect_clear_failure(const Outcome& run, int status, const Words& parts) const {
+  void expect_clear_failure(const Outcome& run, int status, const Arguments& parts) const {
     expect_failure(run, status, parts);
     for (const std::string& name : names())
       EXPECT_TRUE(name != "a.png" && name != "v.vtp" && name[0] != '.') << name << " is left behind";

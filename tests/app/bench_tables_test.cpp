@@ -8,13 +8,13 @@ namespace {
 
 using nlohmann::json;
 
-const Words tiny_bench = {"bench", "--tiny", "--quiet", "--threads", "2", "--set", "iterations=2"};
+const Arguments tiny_bench = {"bench", "--tiny", "--quiet", "--threads", "2", "--set", "iterations=2"};
 
 /// What a run of some tables wrote.
 class BenchTables : public AppTest {
  protected:
-  void run(const Words& more) {
-    const Outcome run = nacre(tiny_bench + Words{"--json", path("bench.json")} + more);
+  void run(const Arguments& more) {
+    const Outcome run = nacre(tiny_bench + Arguments{"--json", path("bench.json")} + more);
     status_ = run.status;
     printed_ = run.out;
     errors_ = run.err;
@@ -44,7 +44,7 @@ class BenchTables : public AppTest {
     return values.contains(quantity) ? values[quantity].value("ours", -1.0) : -1.0;
   }
 
-  void expect_plot(const std::string& name, const Words& texts) const {
+  void expect_plot(const std::string& name, const Arguments& texts) const {
     const std::string plot = exists("plots/" + name) ? content("plots/" + name) : "";
     for (const std::string& text : texts) EXPECT_TRUE(contains(plot, ">" + text + "<")) << name << ": " << text;
   }

@@ -1,4 +1,4 @@
-// Nacre: `nacre bench`: its words, a small table as text, JSON and plot, and the guard against losses.
+// Nacre: `nacre bench`: its arguments, a small table as text, JSON and plot, and the guard against losses.
 #include <cmath>
 
 #include "tests/app/program.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 using nlohmann::json;
 
-const Words small_bench = {"bench", "--small", "--quiet", "--device", "cpu", "--threads", "1"};
+const Arguments small_bench = {"bench", "--small", "--quiet", "--device", "cpu", "--threads", "1"};
 
 const json* find(const json& list, const std::string& name) {
   for (const json& one : list)
@@ -30,17 +30,17 @@ class BenchTest : public AppTest {
  protected:
   /// Compares a fresh run of the arena's side result with `last`.
   Outcome compare(const json& last) const {
-    return nacre(small_bench + Words{"arena", "--against", write("last.json", last.dump())});
+    return nacre(small_bench + Arguments{"arena", "--against", write("last.json", last.dump())});
   }
   json arena_report() const {
-    const Outcome run = nacre(small_bench + Words{"arena", "--json", path("arena.json")});
+    const Outcome run = nacre(small_bench + Arguments{"arena", "--json", path("arena.json")});
     EXPECT_EQ(run.status, 0) << run.err;
     return read_json("arena.json");
   }
 };
 
 TEST_F(BenchTest, ATableStandsBesideTheSourcesFigures) {
-  const Outcome run = nacre(small_bench + Words{"3.4", "--json", path("bench.json"), "--plots", path("plots")});
+  const Outcome run = nacre(small_bench + Arguments{"3.4", "--json", path("bench.json"), "--plots", path("plots")});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_EQ(lines_with(run.out, "Table 3.4"), 1) << run.out;
@@ -75,8 +75,9 @@ TEST_F(BenchTest, RowsAreThereWhenTheyAreMeasuredAndOutliveCtrlC) {
   const std::string script =
       R"(cd "$0"; "$@" >out & for k in {1..2000}; do grep -q 'on the fly / arena' out && break;
                                 sleep 0.05; done; kill -INT $!; wait $!)";
-  const Outcome run = test::run("/bin/bash", Words{"-c", script, folder_.path().string(), program_path} + small_bench +
-                                                 Words{"arena", "grid-octree", "--json", path("bench.json")});
+  const Outcome run =
+      test::run("/bin/bash", Arguments{"-c", script, folder_.path().string(), program_path} + small_bench +
+                                 Arguments{"arena", "grid-octree", "--json", path("bench.json")});
   EXPECT_EQ(run.status, 130) << run.err;
   const std::string out = content("out");
   EXPECT_EQ(lines_with(out, "arrays of a turn  "), 1) << out;
@@ -88,19 +89,19 @@ TEST_F(BenchTest, RowsAreThereWhenTheyAreMeasuredAndOutliveCtrlC) {
   EXPECT_EQ(table["rows"].size(), 1u + lines_with(out, "embedding  "));
   EXPECT_GT(table["rows"][0]["values"]["arena, ms"]["ours"].get<double>(), 0);
   EXPECT_GT(table["seconds"].get<double>(), 0);
-  EXPECT_EQ(names(), (Words{"bench.json", "out"}));
+  EXPECT_EQ(names(), (Arguments{"bench.json", "out"}));
 }
 
 TEST_F(BenchTest, NothingMeasuredReplacesNothing) {
   write("bench.json", "an older one");
-  const Outcome run = test::run("/usr/bin/timeout", Words{"--preserve-status", "-s", "INT", "0.5", program_path} +
-                                                        small_bench + Words{"3.2", "--json", path("bench.json")});
+  const Outcome run = test::run("/usr/bin/timeout", Arguments{"--preserve-status", "-s", "INT", "0.5", program_path} +
+                                                        small_bench + Arguments{"3.2", "--json", path("bench.json")});
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_EQ(content("bench.json"), "an older one");
 }
 
 TEST_F(BenchTest, ColumnsAreAsWideInEveryTable) {
-  const Outcome run = nacre(small_bench + Words{"arena", "methods"});
+  const Outcome run = nacre(small_bench + Arguments{"arena", "methods"});
   ASSERT_EQ(run.status, 0) << run.err;
   const auto gap = [](int n) { return std::string(std::size_t(n), ' '); };
   EXPECT_EQ(lines_with(run.out, "row" + gap(17) + "quantity" + gap(38) + "source" + gap(8) + "ours  what differs"), 2)
@@ -110,8 +111,8 @@ TEST_F(BenchTest, ColumnsAreAsWideInEveryTable) {
 }
 
 TEST_F(BenchTest, KnobsTurnWhatTheTableDoesNotSet) {
-  const auto particles = [&](const Words& more) {
-    const Outcome run = nacre(small_bench + Words{"3.4", "--set", "iterations=1", "--json", path("a.json")} + more);
+  const auto particles = [&](const Arguments& more) {
+    const Outcome run = nacre(small_bench + Arguments{"3.4", "--set", "iterations=1", "--json", path("a.json")} + more);
     EXPECT_EQ(run.status, 0) << run.err;
     const json row = read_json("a.json")["tables"][0]["rows"][0];
     return row["values"]["tree: particles"]["ours"].get<int>();
@@ -122,7 +123,7 @@ TEST_F(BenchTest, KnobsTurnWhatTheTableDoesNotSet) {
   EXPECT_EQ(report["set"], (json{{"iterations", "1"}, {"max_size", "3"}, {"seed", "7"}}));
   write("session.json", R"({"nacre": "session 1", "knobs": {"max_size": 3}})");
   EXPECT_LT(particles({"--session", path("session.json")}), 0.7 * usual);
-  const Outcome compared = nacre(small_bench + Words{"3.4", "--against", path("a.json")});
+  const Outcome compared = nacre(small_bench + Arguments{"3.4", "--against", path("a.json")});
   expect_failure(compared, 1, {"iterations 1", "max_size 3"});
 }
 
@@ -167,12 +168,13 @@ TEST_F(BenchTest, OnlyRunsOfOneKindAreCompared) {
 
 TEST_F(BenchTest, BadWordsAndFilesAreFoundBeforeTheWork) {
   expect_failure(nacre({"bench", "7.1"}), 2, {"7.1", "6.2"});
-  expect_failure(nacre(small_bench + Words{"--json", path("none/bench.json")}), 1, {"bench.json", "create the folder"});
-  expect_failure(nacre(small_bench + Words{"--against", path("none.json")}), 1, {"none.json"});
+  expect_failure(nacre(small_bench + Arguments{"--json", path("none/bench.json")}), 1,
+                 {"bench.json", "create the folder"});
+  expect_failure(nacre(small_bench + Arguments{"--against", path("none.json")}), 1, {"none.json"});
   for (const char* text : {"", "{", "[]", "{}", R"({"small":true,"device":{"backend":"cpu","threads":1},"tables":[1]})",
                            R"({"small":true,"device":{"backend":"cpu","threads":1},"tables":[{"name":"3.1","rows":[
                               {"name":"heart","values":{"x":{"ours":"no","better":"higher"}}}]}]})"})
-    expect_failure(nacre(small_bench + Words{"--against", write("bad.json", text)}), 1, {"bad.json"});
+    expect_failure(nacre(small_bench + Arguments{"--against", write("bad.json", text)}), 1, {"bad.json"});
 }
 
 }  // namespace

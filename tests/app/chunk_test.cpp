@@ -5,13 +5,13 @@
 namespace nacre::test {
 namespace {
 
-const Words unsteady = {"flow", "--sample", "torus", "--detail", "24",    "--resolution",
-                        "64",   "--steps",  "7",     "--size",   "64x48", "--quiet"};
+const Arguments unsteady = {"flow", "--sample", "torus", "--detail", "24",    "--resolution",
+                            "64",   "--steps",  "7",     "--size",   "64x48", "--quiet"};
 
 class Chunk : public AppTest {
  protected:
   Outcome part(const std::string& which, const std::string& folder) const {
-    return nacre(unsteady + Words{"--chunk", which, "--frames", path(folder), "--report", path("report.json")});
+    return nacre(unsteady + Arguments{"--chunk", which, "--frames", path(folder), "--report", path("report.json")});
   }
   std::string frame(const std::string& folder, int number) const {
     return content(folder + "/frame_000" + std::to_string(number) + ".png");
@@ -19,7 +19,7 @@ class Chunk : public AppTest {
 };
 
 TEST_F(Chunk, PartsInOneFolderAreTheWholeRun) {
-  ASSERT_EQ(nacre(unsteady + Words{"--frames", path("whole")}).status, 0);
+  ASSERT_EQ(nacre(unsteady + Arguments{"--frames", path("whole")}).status, 0);
   ASSERT_EQ(part("2/3", "parts").status, 0);
   EXPECT_EQ(read_json("report.json")["flow"]["first_step"], 2);
   EXPECT_EQ(read_json("report.json")["flow"]["steps"], 2);
@@ -40,15 +40,15 @@ TEST_F(Chunk, APartReplacesItsOwnFramesOnly) {
 }
 
 TEST_F(Chunk, WrongPartsAreRefused) {
-  for (const std::string words : {"0/3", "4/3", "1.5/3", "3", "a/b", "1/0", "-1/3", "2/8"})
-    expect_failure(part(words, "parts"), 2, {"--chunk"});
+  for (const std::string arguments : {"0/3", "4/3", "1.5/3", "3", "a/b", "1/0", "-1/3", "2/8"})
+    expect_failure(part(arguments, "parts"), 2, {"--chunk"});
   EXPECT_FALSE(exists("parts"));
 }
 
 TEST_F(Chunk, JoinMakesAVideoOfCompleteFramesOnly) {
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "there is no ffmpeg here";
   ASSERT_EQ(part("1/2", "parts").status, 0);
-  const Words join = {"join", path("parts"), "--video", path("film.mp4"), "--fps", "10"};
+  const Arguments join = {"join", path("parts"), "--video", path("film.mp4"), "--fps", "10"};
   EXPECT_EQ(nacre(join).status, 0);
   EXPECT_TRUE(exists("film.mp4"));
   fs::remove(path("parts/frame_0001.png"));

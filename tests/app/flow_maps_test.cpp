@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-const Words small_flow_maps = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
+const Arguments small_flow_maps = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
 
 class FlowMaps : public AppTest {
  protected:
@@ -38,8 +38,8 @@ class FlowMaps : public AppTest {
 
 TEST_F(FlowMaps, AreWrittenAndReported) {
   for (const std::string duration : {"1", "-1"}) {
-    const Outcome done = nacre(Words{"flow", poles(), "--quiet", "--ftle-time=" + duration} + small_flow_maps +
-                               Words{"--ftle-out", path("f.vtp"), "--report", path("r.json")});
+    const Outcome done = nacre(Arguments{"flow", poles(), "--quiet", "--ftle-time=" + duration} + small_flow_maps +
+                               Arguments{"--ftle-out", path("f.vtp"), "--report", path("r.json")});
     ASSERT_EQ(done.status, 0) << done.err;
     const json report = json::parse(content("r.json"));
     EXPECT_EQ(report["outputs"], json({path("f.vtp")}));
@@ -65,8 +65,9 @@ TEST_F(FlowMaps, AreWrittenAndReported) {
 }
 
 TEST_F(FlowMaps, ColourPictures) {
-  const Words words = Words{"flow", poles(), "--quiet", "--camera", "+x", "--ftle-time", "1"} + small_flow_maps;
-  ASSERT_EQ(nacre(words + Words{"--colormap", "gray", "--color", "FTLE", "--image", path("f.png")}).status, 0);
+  const Arguments arguments =
+      Arguments{"flow", poles(), "--quiet", "--camera", "+x", "--ftle-time", "1"} + small_flow_maps;
+  ASSERT_EQ(nacre(arguments + Arguments{"--colormap", "gray", "--color", "FTLE", "--image", path("f.png")}).status, 0);
   const Image image = read_png(path("f.png"));
   const auto brightness = [&](int middle) {  // of a patch above or below
     double sum = 0;
@@ -79,9 +80,9 @@ TEST_F(FlowMaps, ColourPictures) {
 
 TEST_F(FlowMaps, OfASurfaceThatGrowsAreItsStretch) {
   const auto nothing = [](const Vec3d&) { return Vec3d(); };
-  const Outcome done = nacre(Words{"flow", sphere("g_0.vtp", nothing), sphere("g_1.vtp", nothing, 2),
-                                   sphere("g_2.vtp", nothing, 3), "--relative", "off", "--quiet"} +
-                             small_flow_maps + Words{"--ftle-out", path("f.vtp"), "--report", path("r.json")});
+  const Outcome done = nacre(Arguments{"flow", sphere("g_0.vtp", nothing), sphere("g_1.vtp", nothing, 2),
+                                       sphere("g_2.vtp", nothing, 3), "--relative", "off", "--quiet"} +
+                             small_flow_maps + Arguments{"--ftle-out", path("f.vtp"), "--report", path("r.json")});
   ASSERT_EQ(done.status, 0) << done.err;
   const json report = json::parse(content("r.json"));
   EXPECT_NEAR(report["flow_map"]["ftle"]["min"].get<double>(), std::log(3.0) / 2, 1e-4);
@@ -89,23 +90,25 @@ TEST_F(FlowMaps, OfASurfaceThatGrowsAreItsStretch) {
 }
 
 TEST_F(FlowMaps, BadInputIsNamed) {
-  const Words to_file = Words{"--quiet", "--ftle-out", path("f.vtp")} + small_flow_maps;
-  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--ftle-out", path("t.png")} + small_flow_maps),
-                 2, {"--ftle-out", ".vtp"});
-  expect_failure(nacre(Words{"flow", sphere("zero.vtp", [](const Vec3d&) { return Vec3d(); })} + to_file), 1,
+  const Arguments to_file = Arguments{"--quiet", "--ftle-out", path("f.vtp")} + small_flow_maps;
+  expect_failure(
+      nacre(Arguments{"flow", "--quiet", "--sample", "sphere", "--ftle-out", path("t.png")} + small_flow_maps), 2,
+      {"--ftle-out", ".vtp"});
+  expect_failure(nacre(Arguments{"flow", sphere("zero.vtp", [](const Vec3d&) { return Vec3d(); })} + to_file), 1,
                  {"velocity", "zero everywhere"});
-  expect_failure(nacre(Words{"flow", poles(), "--ftle-time", "1e9"} + to_file), 1, {"--ftle-time", "too long"});
-  const Words two = {"flow", sphere("s_0.vtp", [](const Vec3d& p) { return Vec3d(-p.y, p.x, 0); }),
-                     sphere("s_1.vtp", [](const Vec3d& p) { return Vec3d(-p.y, p.x, 0); })};
-  expect_failure(nacre(two + Words{"--ftle-time", "3"} + to_file), 1, {"--ftle-time 3", "beyond the data", "--period"});
-  EXPECT_EQ(nacre(two + Words{"--ftle-time", "3", "--period", "2"} + to_file).status, 0);
+  expect_failure(nacre(Arguments{"flow", poles(), "--ftle-time", "1e9"} + to_file), 1, {"--ftle-time", "too long"});
+  const Arguments two = {"flow", sphere("s_0.vtp", [](const Vec3d& p) { return Vec3d(-p.y, p.x, 0); }),
+                         sphere("s_1.vtp", [](const Vec3d& p) { return Vec3d(-p.y, p.x, 0); })};
+  expect_failure(nacre(two + Arguments{"--ftle-time", "3"} + to_file), 1,
+                 {"--ftle-time 3", "beyond the data", "--period"});
+  EXPECT_EQ(nacre(two + Arguments{"--ftle-time", "3", "--period", "2"} + to_file).status, 0);
   Surface other = make_sample("sphere", 24).load(0);
   other.arrays = {{"velocity", 3, std::vector<float>(3 * other.points.size(), 1)}};
   write_surface(path("o_1.vtp"), other);
-  expect_failure(nacre(Words{"flow", poles(), path("o_1.vtp")} + to_file), 1, {"flow map", "same triangles"});
+  expect_failure(nacre(Arguments{"flow", poles(), path("o_1.vtp")} + to_file), 1, {"flow map", "same triangles"});
 }
 
-const Words few_dyed = {"--resolution", "64", "--size", "192x192", "--no-legend"};
+const Arguments few_dyed = {"--resolution", "64", "--size", "192x192", "--no-legend"};
 
 class DyeOfFlow : public AppTest {
  protected:
@@ -129,10 +132,10 @@ class DyeOfFlow : public AppTest {
 
 TEST_F(DyeOfFlow, IsReportedInMass) {
   const std::string sphere = turning("s.vtp");
-  const Words run = Words{"flow", sphere, "--quiet", "--steps", "5", "--report", path("r.json")} + few_dyed;
+  const Arguments run = Arguments{"flow", sphere, "--quiet", "--steps", "5", "--report", path("r.json")} + few_dyed;
   for (const std::string source :
        {"1,0,0,0.77", "1,0,0/1,0,0/1,0,0,0.77", "0.7,-2,-2:2,2,2", "part", "part=3", "1,0,0,0.4;part"}) {
-    ASSERT_EQ(nacre(run + Words{"--dye", source}).status, 0) << source;
+    ASSERT_EQ(nacre(run + Arguments{"--dye", source}).status, 0) << source;
     const json dye = dye_report();
     ASSERT_EQ(dye["steps"].size(), 6u);
     const double begun = dye["steps"][0]["mass"].get<double>();
@@ -140,21 +143,21 @@ TEST_F(DyeOfFlow, IsReportedInMass) {
     EXPECT_NEAR(dye["steps"][5]["mass"].get<double>(), begun, 1e-9);
     EXPECT_EQ(dye["steps"][5]["left"], 0);
   }
-  ASSERT_EQ(nacre(run + Words{"--dye", "1,0,0/0,1,0,0.3"}).status, 0);
+  ASSERT_EQ(nacre(run + Arguments{"--dye", "1,0,0/0,1,0,0.3"}).status, 0);
   const double along_a_curve = dye_report()["steps"][0]["mass"].get<double>();
-  ASSERT_EQ(nacre(run + Words{"--dye", "1,0,0,0.3"}).status, 0);
+  ASSERT_EQ(nacre(run + Arguments{"--dye", "1,0,0,0.3"}).status, 0);
   EXPECT_GT(along_a_curve, 1.5 * dye_report()["steps"][0]["mass"].get<double>());
-  ASSERT_EQ(nacre(run + Words{"--dye", "part", "--dye-release", "always"}).status, 0);
+  ASSERT_EQ(nacre(run + Arguments{"--dye", "part", "--dye-release", "always"}).status, 0);
   const json dye = dye_report();
   EXPECT_GT(dye["steps"][5]["mass"].get<double>(), 1.01 * dye["steps"][0]["mass"].get<double>());
   EXPECT_NEAR(dye["steps"][5]["mass"].get<double>(), dye["steps"][5]["released"].get<double>(), 1e-9);
 }
 
 TEST_F(DyeOfFlow, IsOneOfSeveralWithRegionsAndATimeOfResidence) {
-  const Words pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4"};
-  const Words run = pair + few_dyed + Words{"--dye", "part | -1,0,0,0.5 ; 0,0,1,0.3", "--dye-regions", "part"};
-  const Words seen = {"--camera", "+x", "--color", "none", "--report", path("r.json"), "--out", path("v.vtp")};
-  ASSERT_EQ(nacre(run + seen + Words{"--image", path("both.png")}).status, 0);
+  const Arguments pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4"};
+  const Arguments run = pair + few_dyed + Arguments{"--dye", "part | -1,0,0,0.5 ; 0,0,1,0.3", "--dye-regions", "part"};
+  const Arguments seen = {"--camera", "+x", "--color", "none", "--report", path("r.json"), "--out", path("v.vtp")};
+  ASSERT_EQ(nacre(run + seen + Arguments{"--image", path("both.png")}).status, 0);
   ASSERT_EQ(dyes().size(), 2u);
   EXPECT_EQ(dyes()[1]["sources"], "-1,0,0,0.5;0,0,1,0.3");
   EXPECT_NE(dyes()[0]["color"], dyes()[1]["color"]);
@@ -169,7 +172,7 @@ TEST_F(DyeOfFlow, IsOneOfSeveralWithRegionsAndATimeOfResidence) {
   std::vector<std::string> names;
   for (const RawArray& array : values.point_arrays) names.push_back(array.name);
   EXPECT_EQ(std::count(names.begin(), names.end(), "dye") + std::count(names.begin(), names.end(), "dye_2"), 2);
-  ASSERT_EQ(nacre(pair + few_dyed + seen + Words{"--dye", "part", "--image", path("one.png")}).status, 0);
+  ASSERT_EQ(nacre(pair + few_dyed + seen + Arguments{"--dye", "part", "--image", path("one.png")}).status, 0);
   const auto green = [&](const std::string& name) {
     const Image image = read_png(path(name));
     int count = 0;
@@ -184,8 +187,8 @@ TEST_F(DyeOfFlow, IsOneOfSeveralWithRegionsAndATimeOfResidence) {
 }
 
 TEST_F(DyeOfFlow, IsCarriedInTheTimeOfTheData) {
-  const Words pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4", "--dye", "part"};
-  ASSERT_EQ(nacre(pair + few_dyed + Words{"--out", path("v.vtp"), "--report", path("r.json")}).status, 0);
+  const Arguments pair = {"flow", turning("t_0.vtp"), turning("t_1.vtp"), "--quiet", "--steps", "4", "--dye", "part"};
+  ASSERT_EQ(nacre(pair + few_dyed + Arguments{"--out", path("v.vtp"), "--report", path("r.json")}).status, 0);
   EXPECT_EQ(dye_report()["steps"][4]["time"], 1);
   const RawMesh values = read_raw(path("v.vtp")).mesh;
   const auto dye = std::find_if(values.point_arrays.begin(), values.point_arrays.end(),
@@ -204,10 +207,10 @@ TEST_F(DyeOfFlow, IsCarriedInTheTimeOfTheData) {
 }
 
 TEST_F(DyeOfFlow, IsBlendedOverPictures) {
-  const Words seen =
-      Words{"flow", turning("s.vtp"), "--quiet", "--steps", "1", "--camera", "+x", "--color", "none"} + few_dyed;
-  ASSERT_EQ(nacre(seen + Words{"--dye", "1,0,0,0.5", "--image", path("with.png")}).status, 0);
-  ASSERT_EQ(nacre(seen + Words{"--dye", "-1,0,0,0.5", "--image", path("behind.png")}).status, 0);
+  const Arguments seen =
+      Arguments{"flow", turning("s.vtp"), "--quiet", "--steps", "1", "--camera", "+x", "--color", "none"} + few_dyed;
+  ASSERT_EQ(nacre(seen + Arguments{"--dye", "1,0,0,0.5", "--image", path("with.png")}).status, 0);
+  ASSERT_EQ(nacre(seen + Arguments{"--dye", "-1,0,0,0.5", "--image", path("behind.png")}).status, 0);
   const auto red = [&](const std::string& name) {
     const Image image = read_png(path(name));
     int inside = 0, outside = 0;
@@ -224,8 +227,8 @@ TEST_F(DyeOfFlow, IsBlendedOverPictures) {
 }
 
 TEST_F(DyeOfFlow, StaysWithASurfaceThatGrows) {
-  const Words growing = {"flow", turning("g_0.vtp"), turning("g_1.vtp", 1.5), "--quiet", "--steps", "3"};
-  ASSERT_EQ(nacre(growing + few_dyed + Words{"--dye", "part=3", "--report", path("r.json")}).status, 0);
+  const Arguments growing = {"flow", turning("g_0.vtp"), turning("g_1.vtp", 1.5), "--quiet", "--steps", "3"};
+  ASSERT_EQ(nacre(growing + few_dyed + Arguments{"--dye", "part=3", "--report", path("r.json")}).status, 0);
   const json steps = dye_report()["steps"];
   EXPECT_NEAR(steps[3]["mass"].get<double>(), steps[0]["mass"].get<double>(), 1e-9);
 }
@@ -233,7 +236,7 @@ TEST_F(DyeOfFlow, StaysWithASurfaceThatGrows) {
 TEST_F(DyeOfFlow, BadInputIsNamed) {
   const std::string sphere = turning("s.vtp");
   const auto with = [&](const std::string& source) {
-    return nacre(Words{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", source} +
+    return nacre(Arguments{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", source} +
                  few_dyed);
   };
   for (const std::string text : {"1,2,3", "0,0,0,-1", "0,0:1,1", "=2", "part=x", "0,0/1,0,0,1"})
@@ -242,19 +245,19 @@ TEST_F(DyeOfFlow, BadInputIsNamed) {
   expect_failure(with("9,0,0,1"), 1, {"--dye", "no point of the surface", "7 away"});
   expect_failure(with("part=4"), 1, {"--dye", "no point has such a value"});
   expect_failure(with("labels"), 1, {"--dye", "no array \"labels\""});
-  expect_failure(nacre(Words{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", "part",
-                             "--dye-diffusion", "1e9"} +
+  expect_failure(nacre(Arguments{"flow", sphere, "--quiet", "--steps", "1", "--image", path("a.png"), "--dye", "part",
+                                 "--dye-diffusion", "1e9"} +
                        few_dyed),
                  1, {"sub-steps", "--dye-diffusion"});
-  expect_failure(nacre(Words{"flow", sphere, "--quiet", "--steps", "4", "--image", path("a.png"), "--dye", "part",
-                             "--chunk", "1/2"} +
+  expect_failure(nacre(Arguments{"flow", sphere, "--quiet", "--steps", "4", "--image", path("a.png"), "--dye", "part",
+                                 "--chunk", "1/2"} +
                        few_dyed),
                  1, {"--chunk", "--dye"});
   Surface other = make_sample("sphere", 24).load(0);
   other.arrays = {{"velocity", 3, std::vector<float>(3 * other.points.size(), 1)}};
   write_surface(path("o_1.vtp"), other);
-  expect_failure(nacre(Words{"flow", sphere, path("o_1.vtp"), "--quiet", "--steps", "1", "--image", path("a.png"),
-                             "--dye", "1,0,0,0.5"} +
+  expect_failure(nacre(Arguments{"flow", sphere, path("o_1.vtp"), "--quiet", "--steps", "1", "--image", path("a.png"),
+                                 "--dye", "1,0,0,0.5"} +
                        few_dyed),
                  1, {"--dye", "same triangles"});
 }

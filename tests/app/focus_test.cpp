@@ -18,12 +18,12 @@ class FocusTest : public AppTest {
                              "}");
   }
 
-  Outcome draw(const Words& words) {
+  Outcome draw(const Arguments& arguments) {
     return nacre(
-        Words{"flow",    "--sample",    "sphere",   "--detail",          "64",       "--resolution",     "96",
-              "--steps", "4",           "--camera", path("camera.json"), "--size",   "320x240",          "--color",
-              "none",    "--no-legend", "--image",  path("a.png"),       "--report", path("report.json")} +
-        words);
+        Arguments{"flow",    "--sample",    "sphere",   "--detail",          "64",       "--resolution",     "96",
+                  "--steps", "4",           "--camera", path("camera.json"), "--size",   "320x240",          "--color",
+                  "none",    "--no-legend", "--image",  path("a.png"),       "--report", path("report.json")} +
+        arguments);
   }
 
   nlohmann::json report() { return nlohmann::json::parse(content("report.json")); }

@@ -78,9 +78,9 @@ TEST_F(MeshInputTest, MaterialsAreChosenAndMerged) {
   const std::string file = write("a.nrrd", nrrd<int>({16, 16, 16}, "uchar", unit_spacing, [](int i, int j, int k) {
                                    return !ball(i, j, k) ? 0 : i < 6 ? 3 : i < 10 ? 4 : 9;
                                  }));
-  const auto labels = [&](const Words& words) {
+  const auto labels = [&](const Arguments& arguments) {
     std::vector<int> found;
-    const json r = mesh(file, words);
+    const json r = mesh(file, arguments);
     expect_sound(r);
     for (const json& material : r["mesh"]["materials"]) found.push_back(material["label"]);
     return found;
@@ -171,8 +171,8 @@ TEST_F(MeshInputTest, SizesComeFromAnImageOnAnotherGrid) {
   const std::string frame =
       "space dimension: 3\nspace directions: (3,0,0) (0,3,0) (0,0,3)\nspace origin: (-0.75,-0.75,-0.75)\n";
   const std::string sizes = write("s.nrrd", nrrd<double>({4, 4, 4}, "float", frame, wish));
-  const auto triangles = [&](const Words& more) {
-    return mesh(file, Words{"--max-size", "2", "--epsilon", "2"} + more)["mesh"]["triangles"].get<int>();
+  const auto triangles = [&](const Arguments& more) {
+    return mesh(file, Arguments{"--max-size", "2", "--epsilon", "2"} + more)["mesh"]["triangles"].get<int>();
   };
   const int coarse = triangles({}), half = triangles({"--size-image", sizes});
   EXPECT_GT(half, 2 * coarse);

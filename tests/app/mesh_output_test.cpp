@@ -19,10 +19,10 @@ class MeshOutput : public MeshTest {
 };
 
 TEST_F(MeshOutput, EverySurfaceFormatHoldsTheSameMesh) {
-  Words outputs;
+  Arguments outputs;
   json triangles;
   for (const char* name : {"a.vtp", "a.ply", "a.obj", "a.off", "a.stl"}) {
-    ASSERT_EQ(nacre(small_mesh + Words{"--out", path(name), "--report", path("r.json")}).status, 0) << name;
+    ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path(name), "--report", path("r.json")}).status, 0) << name;
     triangles = read_json("r.json")["mesh"]["triangles"];
     EXPECT_EQ(info(name)["triangles"], triangles) << name;
   }
@@ -36,18 +36,19 @@ TEST_F(MeshOutput, EverySurfaceFormatHoldsTheSameMesh) {
 }
 
 TEST_F(MeshOutput, OneFilePerMaterial) {
-  const Outcome run = nacre(small_mesh + Words{"--out", path("a.stl"), "--per-material", "--report", path("r.json")});
+  const Outcome run =
+      nacre(small_mesh + Arguments{"--out", path("a.stl"), "--per-material", "--report", path("r.json")});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, path("a_1.stl") + "\n" + path("a_2.stl") + "\n");
   const json materials = read_json("r.json")["mesh"]["materials"];
   EXPECT_EQ(info("a_1.stl")["triangles"], materials[0]["triangles"]);
   EXPECT_EQ(info("a_2.stl")["triangles"], materials[1]["triangles"]);
-  EXPECT_EQ(names(), (Words{"a_1.stl", "a_2.stl", "r.json"}));
+  EXPECT_EQ(names(), (Arguments{"a_1.stl", "a_2.stl", "r.json"}));
 }
 
 TEST_F(MeshOutput, TetrahedraFillEveryMaterial) {
   for (const char* name : {"a.vtu", "a.msh"}) {
-    ASSERT_EQ(nacre(small_mesh + Words{"--out", path(name), "--report", path("r.json")}).status, 0) << name;
+    ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path(name), "--report", path("r.json")}).status, 0) << name;
     const json r = read_json("r.json");
     expect_sound(r);
     const json& cells = r["tetrahedra"];
@@ -62,7 +63,8 @@ TEST_F(MeshOutput, TetrahedraFillEveryMaterial) {
     EXPECT_GT(fs::file_size(path(name)), 10000u);
   }
   const json coarse = read_json("r.json")["tetrahedra"]["cells"];
-  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("b.vtu"), "--max-cell", "1", "--report", path("r.json")}).status, 0);
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path("b.vtu"), "--max-cell", "1", "--report", path("r.json")}).status,
+            0);
   EXPECT_GT(read_json("r.json")["tetrahedra"]["cells"], coarse);
 }
 
@@ -75,9 +77,10 @@ std::vector<std::size_t> counts_after(const std::string& file, const std::string
 }
 
 TEST_F(MeshOutput, GmshFilesHoldTheTrianglesWithOrWithoutTetrahedra) {
-  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("a.msh"), "--report", path("r.json")}).status, 0);
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path("a.msh"), "--report", path("r.json")}).status, 0);
   const json filled = read_json("r.json");
-  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("b.msh"), "--surface-only", "--report", path("r.json")}).status, 0);
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path("b.msh"), "--surface-only", "--report", path("r.json")}).status,
+            0);
   const json hollow = read_json("r.json");
   EXPECT_FALSE(hollow.contains("tetrahedra"));
   EXPECT_EQ(hollow["mesh"]["triangles"], filled["mesh"]["triangles"]);
@@ -96,12 +99,12 @@ TEST_F(MeshOutput, GmshFilesHoldTheTrianglesWithOrWithoutTetrahedra) {
 }
 
 TEST_F(MeshOutput, ParticlesComeWithTheirArrays) {
-  ASSERT_EQ(nacre(small_mesh + Words{"--particles-out", path("p.vtp"), "--report", path("r.json")}).status, 0);
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--particles-out", path("p.vtp"), "--report", path("r.json")}).status, 0);
   const json particles = info("p.vtp");
   EXPECT_EQ(particles["points"], read_json("r.json")["particles"]["final"]);
-  Words found;
+  Arguments found;
   for (const json& array : particles["arrays"]) found.push_back(array["name"]);
-  EXPECT_EQ(found, (Words{"size", "energy", "order", "normal"}));
+  EXPECT_EQ(found, (Arguments{"size", "energy", "order", "normal"}));
   EXPECT_EQ(particles["arrays"][2]["min"], 1) << "the junction circle";
   EXPECT_EQ(particles["arrays"][2]["max"], 2);
 }
@@ -116,8 +119,8 @@ TEST_F(MeshOutput, AsManySeedsAsAskedForStandOnSurfaces) {
 }
 
 TEST_F(MeshOutput, APictureShowsTheMesh) {
-  ASSERT_EQ(nacre(small_mesh +
-                  Words{"--image", path("a.png"), "--size", "96x72", "--camera", "+x", "--background", "transparent"})
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--image", path("a.png"), "--size", "96x72", "--camera", "+x", "--background",
+                                         "transparent"})
                 .status,
             0);
   const Image image = read_png(path("a.png"));
@@ -126,24 +129,25 @@ TEST_F(MeshOutput, APictureShowsTheMesh) {
   EXPECT_EQ(image.at(48, 36)[3], 255);
   EXPECT_EQ(image.at(0, 0)[3], 0);
   ASSERT_EQ(
-      nacre(small_mesh + Words{"--image", path("b.png"), "--size", "96x72", "--camera", "+x", "--cut-away"}).status, 0);
+      nacre(small_mesh + Arguments{"--image", path("b.png"), "--size", "96x72", "--camera", "+x", "--cut-away"}).status,
+      0);
   EXPECT_NE(bare("a.png"), bare("b.png"));
 }
 
 TEST_F(MeshOutput, AFileSizeLimitLeavesNothingBehind) {
   for (const char* name : {"a.vtp", "a.vtu", "a.stl"})
-    expect_failure(nacre_limited("-f 8", small_mesh + Words{"--out", path(name)}), 1, {name, "File too large"});
-  EXPECT_EQ(names(), Words{});
+    expect_failure(nacre_limited("-f 8", small_mesh + Arguments{"--out", path(name)}), 1, {name, "File too large"});
+  EXPECT_EQ(names(), Arguments{});
 }
 
 using Clock = std::chrono::steady_clock;
 
 /// What the program does when Ctrl-C comes after `seconds`, and how long it takes from there.
-std::pair<Outcome, double> interrupt_after(const Words& words, double seconds) {
+std::pair<Outcome, double> interrupt_after(const Arguments& arguments, double seconds) {
   const auto before = Clock::now();
-  const Outcome result = run("/usr/bin/timeout", Words{"--foreground", "--preserve-status", "-s", "INT", "-k", "60",
-                                                       std::to_string(seconds), program_path} +
-                                                     words);
+  const Outcome result = run("/usr/bin/timeout", Arguments{"--foreground", "--preserve-status", "-s", "INT", "-k", "60",
+                                                           std::to_string(seconds), program_path} +
+                                                     arguments);
   return {result, std::chrono::duration<double>(Clock::now() - before).count() - seconds};
 }
 
@@ -156,7 +160,7 @@ TEST_P(MeshCtrlC, StopsWithinTwoSecondsAndLeavesNothing) {
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_LT(seconds, 2);
   EXPECT_EQ(run.out, "");
-  EXPECT_EQ(names(), Words{});
+  EXPECT_EQ(names(), Arguments{});
 }
 
 INSTANTIATE_TEST_SUITE_P(After, MeshCtrlC, ::testing::Values(0.3, 3.0, 10.0));
@@ -169,7 +173,7 @@ TEST_F(MeshCtrlC, KeepsWhatThereIsWhenAskedTo) {
                       5.0);
   EXPECT_EQ(run.status, 130) << run.err;
   EXPECT_EQ(run.out, path("a.vtp") + "\n");
-  EXPECT_EQ(names(), (Words{"a.vtp", "r.json"}));
+  EXPECT_EQ(names(), (Arguments{"a.vtp", "r.json"}));
   EXPECT_LT(seconds, 20);
   const json r = read_json("r.json");
   EXPECT_EQ(r["particles"]["interrupted"], true);
@@ -179,11 +183,11 @@ TEST_F(MeshCtrlC, KeepsWhatThereIsWhenAskedTo) {
 TEST_F(MeshCtrlC, KeepsWhatThereIsWhileCurvesMove) {
   // The curve of two balls would move for minutes before the first particle of a surface does.
   const auto [run, seconds] =
-      interrupt_after(small_mesh + Words{"--iterations", "1000000", "--stagnation", "0", "--keep-on-interrupt", "--out",
-                                         path("a.vtp"), "--report", path("r.json")},
+      interrupt_after(small_mesh + Arguments{"--iterations", "1000000", "--stagnation", "0", "--keep-on-interrupt",
+                                             "--out", path("a.vtp"), "--report", path("r.json")},
                       5.0);
   EXPECT_EQ(run.status, 130) << run.err;
-  EXPECT_EQ(names(), (Words{"a.vtp", "r.json"}));
+  EXPECT_EQ(names(), (Arguments{"a.vtp", "r.json"}));
   EXPECT_LT(seconds, 10);
   const json r = read_json("r.json");
   EXPECT_EQ(r["particles"]["interrupted"], true);

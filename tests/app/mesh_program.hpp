@@ -10,7 +10,7 @@
 namespace nacre::test {
 
 /// A run of a second at most: two balls that share a disk, 24 voxels along each side.
-inline const Words small_mesh = {"mesh", "--sample", "two-spheres", "--detail", "24", "--quiet"};
+inline const Arguments small_mesh = {"mesh", "--sample", "two-spheres", "--detail", "24", "--quiet"};
 
 /// The text of an NRRD volume: values in ASCII. `fields` are header lines beside type, dimension, sizes and encoding.
 template <class T>
@@ -39,16 +39,16 @@ inline std::string ball_nrrd(const std::string& fields = unit_spacing, const std
 class MeshTest : public AppTest {
  protected:
   /// A run on a file that must succeed; returns its report.
-  nlohmann::json mesh(const std::string& file, const Words& more = {}) const {
-    const Outcome run = nacre(Words{"mesh", file, "--quiet", "--report", path("report.json")} + more);
+  nlohmann::json mesh(const std::string& file, const Arguments& more = {}) const {
+    const Outcome run = nacre(Arguments{"mesh", file, "--quiet", "--report", path("report.json")} + more);
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.err, "");
     return run.status == 0 ? read_json("report.json") : nlohmann::json();
   }
 
   /// A run on a file that must fail with this status, one line that holds `parts`, and no file left.
-  void expect_refused(const std::string& file, int status, const Words& parts, const Words& more = {}) const {
-    expect_failure(nacre(Words{"mesh", file, "--quiet", "--out", path("never.vtp")} + more), status, parts);
+  void expect_refused(const std::string& file, int status, const Arguments& parts, const Arguments& more = {}) const {
+    expect_failure(nacre(Arguments{"mesh", file, "--quiet", "--out", path("never.vtp")} + more), status, parts);
     EXPECT_FALSE(exists("never.vtp"));
   }
 };

@@ -11,8 +11,9 @@ using nlohmann::json;
 class MeshReport : public MeshTest {};
 
 TEST_F(MeshReport, HasEveryKeyOfTheContract) {
-  const Outcome run = nacre(small_mesh + Words{"--report", path("r.json"), "--out", path("a.vtp"), "--particles-out",
-                                               path("p.vtp"), "--image", path("a.png"), "--size", "64x48"});
+  const Outcome run =
+      nacre(small_mesh + Arguments{"--report", path("r.json"), "--out", path("a.vtp"), "--particles-out", path("p.vtp"),
+                                   "--image", path("a.png"), "--size", "64x48"});
   ASSERT_EQ(run.status, 0) << run.err;
   const json r = read_json("r.json");
   EXPECT_EQ(r["command"], "mesh");
@@ -65,17 +66,17 @@ TEST_F(MeshReport, EachMaterialIsComparedWithItsVoxelsInTheUnitsOfTheData) {
     EXPECT_LE(v[from]["mean"], v[from]["max"]);
     EXPECT_LE(v[from]["max"], v["hausdorff_distance"]);
   }
-  Words stages;
+  Arguments stages;
   for (const json& stage : r["stages"]) stages.push_back(stage["name"]);
   EXPECT_EQ(std::count(stages.begin(), stages.end(), "fidelity"), 1);
 }
 
 TEST_F(MeshReport, StageNamesAreTheFixedOnes) {
-  ASSERT_EQ(nacre(small_mesh + Words{"--report", path("r.json"), "--out", path("a.vtu"), "--image", path("a.png"),
-                                     "--size", "64x48"})
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--report", path("r.json"), "--out", path("a.vtu"), "--image", path("a.png"),
+                                         "--size", "64x48"})
                 .status,
             0);
-  Words names;
+  Arguments names;
   const json r = read_json("r.json");
   for (const json& stage : r["stages"]) names.push_back(stage["name"]);
   for (const char* name : {"read", "materials", "tighten", "distance", "sizing", "embed", "seed", "relax",
@@ -84,8 +85,8 @@ TEST_F(MeshReport, StageNamesAreTheFixedOnes) {
 }
 
 TEST_F(MeshReport, ParametersAreTheKnobsAsSet) {
-  ASSERT_EQ(nacre(small_mesh + Words{"--report", path("r.json"), "--seed", "7", "--set", "delta=0.7", "--epsilon",
-                                     "0.6", "--curvature", "--labels"})
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--report", path("r.json"), "--seed", "7", "--set", "delta=0.7", "--epsilon",
+                                         "0.6", "--curvature", "--labels"})
                 .status,
             0);
   const json p = read_json("r.json")["parameters"];
@@ -134,20 +135,20 @@ class MeshSession : public MeshTest {};
 
 TEST_F(MeshSession, RoundTripGivesTheSameBytes) {
   const std::string file = write("a.nrrd", ball_nrrd());
-  const Words first = {"mesh",        file,          "--quiet", "--max-size",     "1.5",
-                       "--seed",      "11",          "--out",   path("a.vtp"),    "--set",
-                       "tighten=0.8", "--materials", "1",       "--save-session", path("s.json")};
+  const Arguments first = {"mesh",        file,          "--quiet", "--max-size",     "1.5",
+                           "--seed",      "11",          "--out",   path("a.vtp"),    "--set",
+                           "tighten=0.8", "--materials", "1",       "--save-session", path("s.json")};
   ASSERT_EQ(nacre(first).status, 0);
   const Outcome again = nacre({"mesh", "--session", path("s.json"), "--quiet", "--out", path("b.vtp")});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(content("a.vtp"), content("b.vtp"));
   ASSERT_EQ(nacre({"mesh", "--session", path("s.json"), "--quiet", "--max-size", "2", "--out", path("c.vtp")}).status,
             0);
-  EXPECT_NE(bare("a.vtp"), bare("c.vtp")) << "words on the command line go over the session's";
+  EXPECT_NE(bare("a.vtp"), bare("c.vtp")) << "arguments on the command line go over the session's";
 }
 
 TEST_F(MeshSession, KeepsTheSampleWithItsDetail) {
-  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("a.vtp"), "--save-session", path("s.json")}).status, 0);
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path("a.vtp"), "--save-session", path("s.json")}).status, 0);
   ASSERT_EQ(nacre({"mesh", "--session", path("s.json"), "--quiet", "--out", path("b.vtp")}).status, 0);
   EXPECT_EQ(content("a.vtp"), content("b.vtp"));
 }
@@ -157,11 +158,11 @@ class MeshRepeats : public MeshTest,
 
 TEST_P(MeshRepeats, TheSameFileOnOneAndTwoThreads) {
   const auto [sample, solver, extension] = GetParam();
-  const Words words = {"mesh",     "--sample", sample,         "--detail", "24",     "--quiet",
-                       "--solver", solver,     "--iterations", "12",       "--seed", "5"};
+  const Arguments arguments = {"mesh",     "--sample", sample,         "--detail", "24",     "--quiet",
+                               "--solver", solver,     "--iterations", "12",       "--seed", "5"};
   const std::string one = "one" + std::string(extension), two = "two" + std::string(extension);
-  ASSERT_EQ(nacre(words + Words{"--threads", "1", "--out", path(one)}).status, 0);
-  ASSERT_EQ(nacre(words + Words{"--threads", "2", "--out", path(two)}).status, 0);
+  ASSERT_EQ(nacre(arguments + Arguments{"--threads", "1", "--out", path(one)}).status, 0);
+  ASSERT_EQ(nacre(arguments + Arguments{"--threads", "2", "--out", path(two)}).status, 0);
   EXPECT_EQ(content(one), content(two));
 }
 

@@ -13,12 +13,12 @@ namespace {
 
 using nlohmann::json;
 
-const Words small_moving = {"--resolution", "64", "--steps", "4", "--size", "96x72"};
+const Arguments small_moving = {"--resolution", "64", "--steps", "4", "--size", "96x72"};
 
 class Moving : public AppTest {
  protected:
-  json flow(const Words& words) {
-    last_ = nacre(Words{"flow"} + words + Words{"--report", path("r.json")});
+  json flow(const Arguments& arguments) {
+    last_ = nacre(Arguments{"flow"} + arguments + Arguments{"--report", path("r.json")});
     EXPECT_EQ(last_.status, 0) << last_.err;
     return last_.status == 0 ? json::parse(content("r.json")) : json();
   }
@@ -28,8 +28,8 @@ class Moving : public AppTest {
 
 TEST_F(Moving, TheSampleIsFollowedByPicturesAndValues) {
   for (const char* method : {"grid", "octree"}) {
-    const json report = flow(small_moving + Words{"--sample", "pulse", "--detail", "24", "--method", method, "--frames",
-                                                  path("f"), "--out", path("v.vtp")});
+    const json report = flow(small_moving + Arguments{"--sample", "pulse", "--detail", "24", "--method", method,
+                                                      "--frames", path("f"), "--out", path("v.vtp")});
     EXPECT_TRUE(contains(said(), "the surface moves: 20 shapes of the same triangles")) << said();
     EXPECT_TRUE(contains(said(), "velocity is shown relative to the surface")) << said();
     EXPECT_EQ(report["motion"]["groups"], 1);
@@ -42,30 +42,30 @@ TEST_F(Moving, TheSampleIsFollowedByPicturesAndValues) {
 }
 
 TEST_F(Moving, WhatIsRelativeIsDecidedAloud) {
-  const Words pulse = small_moving + Words{"--sample", "pulse", "--detail", "24"};
-  const json automatic = flow(pulse), off = flow(pulse + Words{"--relative", "off"});
+  const Arguments pulse = small_moving + Arguments{"--sample", "pulse", "--detail", "24"};
+  const json automatic = flow(pulse), off = flow(pulse + Arguments{"--relative", "off"});
   EXPECT_TRUE(contains(said(), "is shown as it is, not relative")) << said();
   EXPECT_LT(automatic["input"]["reference_speed"].get<double>(), off["input"]["reference_speed"].get<double>());
-  flow(pulse + Words{"--surface-velocity", "velocity"});
+  flow(pulse + Arguments{"--surface-velocity", "velocity"});
   EXPECT_TRUE(contains(said(), "moves with the surface: relative to it, it is slower")) << said();
-  expect_failure(nacre(Words{"flow", "--quiet", "--surface-velocity", "nothing"} + pulse), 1,
+  expect_failure(nacre(Arguments{"flow", "--quiet", "--surface-velocity", "nothing"} + pulse), 1,
                  {"--surface-velocity", "nothing"});
   expect_failure(
-      nacre(Words{"flow", "--quiet", "--sample", "torus", "--detail", "24", "--relative", "on"} + small_moving), 1,
+      nacre(Arguments{"flow", "--quiet", "--sample", "torus", "--detail", "24", "--relative", "on"} + small_moving), 1,
       {"--relative", "not known"});
 }
 
 TEST_F(Moving, ACycleComesRound) {
-  const Words pulse = small_moving + Words{"--sample", "pulse", "--detail", "24"};
-  EXPECT_EQ(flow(pulse + Words{"--period", "1"})["input"]["time"], json({0.0, 1.0}));
-  EXPECT_EQ(flow(pulse + Words{"--period", "1", "--time", "0.5:0.9"})["input"]["time"], json({0.5, 0.9}));
-  expect_failure(nacre(Words{"flow", "--quiet", "--period", "0.4"} + pulse), 1, {"--period", "shorter"});
+  const Arguments pulse = small_moving + Arguments{"--sample", "pulse", "--detail", "24"};
+  EXPECT_EQ(flow(pulse + Arguments{"--period", "1"})["input"]["time"], json({0.0, 1.0}));
+  EXPECT_EQ(flow(pulse + Arguments{"--period", "1", "--time", "0.5:0.9"})["input"]["time"], json({0.5, 0.9}));
+  expect_failure(nacre(Arguments{"flow", "--quiet", "--period", "0.4"} + pulse), 1, {"--period", "shorter"});
 }
 
 TEST_F(Moving, MeansOverTimeAreWrittenAndShown) {
   const json report =
-      flow(small_moving + Words{"--sample", "pulse", "--detail", "24", "--period", "1", "--haemodynamics",
-                                path("h.vtp"), "--color", "OSI", "--image", path("osi.png")});
+      flow(small_moving + Arguments{"--sample", "pulse", "--detail", "24", "--period", "1", "--haemodynamics",
+                                    path("h.vtp"), "--color", "OSI", "--image", path("osi.png")});
   EXPECT_EQ(report["outputs"], json({path("h.vtp"), path("osi.png")}));
   const Surface means = open_surface({path("h.vtp")}).load(0);
   for (const char* name : {"TAWSS", "OSI", "RRT"}) ASSERT_NE(means.find(name), nullptr) << name;
@@ -79,7 +79,7 @@ TEST_F(Moving, MeansOverTimeAreWrittenAndShown) {
 
 TEST_F(Moving, StepsThatCannotBeTrueAreLeftOut) {
   const SurfaceSeries pulse = make_sample("pulse", 16);
-  Words files;
+  Arguments files;
   for (std::size_t k = 0; k < 5; ++k) {
     Surface s = pulse.load(k);
     if (k == 2)
@@ -87,24 +87,24 @@ TEST_F(Moving, StepsThatCannotBeTrueAreLeftOut) {
     files.push_back(path("step_" + std::to_string(k) + ".vtp"));
     write_surface(files.back(), s, 0.1 * double(k));
   }
-  flow(small_moving + files + Words{"--image", path("a.png")});
+  flow(small_moving + files + Arguments{"--image", path("a.png")});
   EXPECT_TRUE(contains(said(), "step 2 (time 0.2) is left out: the surface is 1.02e+03 times as large")) << said();
 }
 
 TEST_F(Moving, RealDataAreFollowed) {
   NACRE_NEEDS_SHARED_DATA("flow/can-moving");
   const fs::path data = shared_data("flow");
-  Words can, atrium;
+  Arguments can, atrium;
   for (const int k : {0, 5, 10, 15, 20, 25, 30, 35, 40})
     can.push_back(data / "can-moving" / ("can_" + std::to_string(k) + ".vtp"));
   for (int k = 0; k < 20; ++k)
     atrium.push_back(data / "atrium-moving" /
                      ("model_moved_" + std::string(k < 10 ? "0" : "") + std::to_string(k) + ".vtp"));
-  const json crushed = flow(small_moving + can + Words{"--image", path("can.png")});
+  const json crushed = flow(small_moving + can + Arguments{"--image", path("can.png")});
   EXPECT_TRUE(contains(said(), "9 shapes of the same triangles")) << said();
   EXPECT_TRUE(contains(said(), "DISPL is shown as it is")) << said();
   EXPECT_EQ(crushed["motion"]["groups"], 1);
-  const json beating = flow(small_moving + atrium + Words{"--vectors", "@swirl", "--method", "octree"});
+  const json beating = flow(small_moving + atrium + Arguments{"--vectors", "@swirl", "--method", "octree"});
   EXPECT_TRUE(contains(said(), "flows on the material")) << said();
   EXPECT_EQ(beating["motion"]["groups"], 1);
 }

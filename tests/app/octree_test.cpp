@@ -9,14 +9,14 @@ using nlohmann::json;
 
 class Octree : public AppTest, public ::testing::WithParamInterface<const char*> {
  protected:
-  Words words(const Words& more = {}) const {
-    return small_flow + Words{"--method", "octree", "--octree", GetParam()} + more;
+  Arguments arguments(const Arguments& more = {}) const {
+    return small_flow + Arguments{"--method", "octree", "--octree", GetParam()} + more;
   }
 };
 
 TEST_P(Octree, EveryOutputOfAFlowRun) {
-  const Outcome run = nacre(words({"--image", path("a.png"), "--size", "64x48", "--out", path("a.vtp"), "--frames",
-                                   path("frames"), "--report", path("r.json")}));
+  const Outcome run = nacre(arguments({"--image", path("a.png"), "--size", "64x48", "--out", path("a.vtp"), "--frames",
+                                       path("frames"), "--report", path("r.json")}));
   ASSERT_EQ(run.status, 0) << run.err;
   const json report = read_json("r.json");
   const json& e = report["embedding"];
@@ -35,8 +35,8 @@ TEST_P(Octree, EveryOutputOfAFlowRun) {
 }
 
 TEST_P(Octree, OneResultOnAnyNumberOfThreads) {
-  ASSERT_EQ(nacre(words({"--threads", "1", "--out", path("one.vtp")})).status, 0);
-  ASSERT_EQ(nacre(words({"--threads", "2", "--out", path("two.vtp")})).status, 0);
+  ASSERT_EQ(nacre(arguments({"--threads", "1", "--out", path("one.vtp")})).status, 0);
+  ASSERT_EQ(nacre(arguments({"--threads", "2", "--out", path("two.vtp")})).status, 0);
   EXPECT_EQ(content("one.vtp"), content("two.vtp"));
 }
 
@@ -54,25 +54,25 @@ TEST_P(Octree, TrianglesOfAnySizeAndCoincidentSheets) {
 INSTANTIATE_TEST_SUITE_P(Of, Octree, ::testing::Values("brick", "source"),
                          [](const auto& test) { return std::string(test.param); });
 
-using OctreeWords = AppTest;
+using OctreeCommandLine = AppTest;
 
-TEST_F(OctreeWords, ThatAreOff) {
-  const Words octree = {"flow",    "--sample", "sphere", "--detail", "24",
-                        "--quiet", "--method", "octree", "--image",  path("a.png")};
-  expect_failure(nacre(octree + Words{"--octree", "banyan"}), 2, {"banyan", "brick"});
-  expect_failure(nacre(octree + Words{"--radius", "0.5"}), 1, {"--radius"});
-  expect_failure(nacre(octree + Words{"--resolution", "2000000"}), 2, {"1048576"});
-  expect_failure(nacre(octree + Words{"--resolution", "16", "--radius", "9"}), 1, {"too coarse", "--resolution"});
+TEST_F(OctreeCommandLine, ThatAreOff) {
+  const Arguments octree = {"flow",    "--sample", "sphere", "--detail", "24",
+                            "--quiet", "--method", "octree", "--image",  path("a.png")};
+  expect_failure(nacre(octree + Arguments{"--octree", "banyan"}), 2, {"banyan", "brick"});
+  expect_failure(nacre(octree + Arguments{"--radius", "0.5"}), 1, {"--radius"});
+  expect_failure(nacre(octree + Arguments{"--resolution", "2000000"}), 2, {"1048576"});
+  expect_failure(nacre(octree + Arguments{"--resolution", "16", "--radius", "9"}), 1, {"too coarse", "--resolution"});
 }
 
-TEST_F(OctreeWords, TheNeighbourIndexChangesNothingButTheTime) {
-  const Words source = small_flow + Words{"--method", "octree", "--octree", "source"};
-  ASSERT_EQ(nacre(source + Words{"--out", path("walk.vtp")}).status, 0);
-  ASSERT_EQ(nacre(source + Words{"--set", "neighbour_index=1", "--out", path("index.vtp")}).status, 0);
+TEST_F(OctreeCommandLine, TheNeighbourIndexChangesNothingButTheTime) {
+  const Arguments source = small_flow + Arguments{"--method", "octree", "--octree", "source"};
+  ASSERT_EQ(nacre(source + Arguments{"--out", path("walk.vtp")}).status, 0);
+  ASSERT_EQ(nacre(source + Arguments{"--set", "neighbour_index=1", "--out", path("index.vtp")}).status, 0);
   EXPECT_EQ(bare("walk.vtp"), bare("index.vtp"));
 }
 
-TEST_F(OctreeWords, MemoryPerCellIsWhatWasPromised) {
+TEST_F(OctreeCommandLine, MemoryPerCellIsWhatWasPromised) {
   for (const int ttl : {1, 8}) {  // the same: particles are handed over from step to step
     const Outcome run =
         nacre({"flow", "--sample", "delta-wing", "--method", "octree", "--resolution", "512", "--steps", "1", "--quiet",
@@ -87,7 +87,7 @@ TEST_F(OctreeWords, MemoryPerCellIsWhatWasPromised) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__)
-TEST_F(OctreeWords, ABandThatDoesNotFitIsRefusedBeforeTheWork) {
+TEST_F(OctreeCommandLine, ABandThatDoesNotFitIsRefusedBeforeTheWork) {
   const Outcome run = nacre_limited("-v 2000000", {"flow", "--sample", "sphere", "--detail", "24", "--method", "octree",
                                                    "--resolution", "100000", "--quiet", "--image", path("a.png")});
   expect_failure(run, 1, {"--resolution 100000", "GiB", "use --resolution"});

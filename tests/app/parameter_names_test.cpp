@@ -41,10 +41,10 @@ TEST(ParameterNames, TheNumericsNameKnobsWithoutDashes) {
     for (std::string line; std::getline(file, line);) {
       if (line.find("//") != line.npos) line.erase(line.find("//"));
       for (std::sregex_iterator text(line.begin(), line.end(), literal), end; text != end; ++text) {
-        const std::string words = text->str();
-        EXPECT_FALSE(std::regex_search(words, dashes)) << entry.path() << ": " << words;
-        for (std::sregex_iterator each(words.begin(), words.end(), name); each != end; ++each, ++named)
-          EXPECT_TRUE(known.contains((*each)[1])) << entry.path() << ": " << words;
+        const std::string arguments = text->str();
+        EXPECT_FALSE(std::regex_search(arguments, dashes)) << entry.path() << ": " << arguments;
+        for (std::sregex_iterator each(arguments.begin(), arguments.end(), name); each != end; ++each, ++named)
+          EXPECT_TRUE(known.contains((*each)[1])) << entry.path() << ": " << arguments;
       }
     }
   }

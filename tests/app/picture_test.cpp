@@ -40,15 +40,16 @@ int differing_pixels(const Image& a, const Image& b) {
 
 class Picture : public AppTest {
  protected:
-  /// The picture of a small run with these words more.
-  Image picture(const Words& words, const std::string& name = "a.png", const Words& size = {"--size", "240x180"}) {
-    const Outcome run = nacre(small_flow + size + Words{"--image", path(name)} + words);
+  /// The picture of a small run with these arguments more.
+  Image picture(const Arguments& arguments, const std::string& name = "a.png",
+                const Arguments& size = {"--size", "240x180"}) {
+    const Outcome run = nacre(small_flow + size + Arguments{"--image", path(name)} + arguments);
     EXPECT_EQ(run.status, 0) << run.err;
     return read_png(path(name));
   }
 };
 
-const Words plain = {"--no-legend", "--no-time"};
+const Arguments plain = {"--no-legend", "--no-time"};
 
 TEST_F(Picture, HasTheSizeTheTextureAndTheBackground) {
   const Image image = picture(plain);
@@ -58,7 +59,7 @@ TEST_F(Picture, HasTheSizeTheTextureAndTheBackground) {
   for (const auto& [x, y] : {std::pair{0, 0}, {239, 0}, {0, 179}, {239, 179}, {5, 90}, {234, 90}})
     EXPECT_EQ(pixel(image, x, y), (Rgb{255, 255, 255})) << x << " " << y;
   EXPECT_EQ(content("a.png").substr(1, 3), "PNG");
-  EXPECT_EQ(names(), Words{"a.png"});
+  EXPECT_EQ(names(), Arguments{"a.png"});
 }
 
 TEST_F(Picture, LegendAndTimeStampCanBeTurnedOff) {
@@ -72,10 +73,10 @@ TEST_F(Picture, LegendAndTimeStampCanBeTurnedOff) {
 }
 
 TEST_F(Picture, TransparentOrColouredBackground) {
-  const Image clear = picture(plain + Words{"--background", "transparent"});
+  const Image clear = picture(plain + Arguments{"--background", "transparent"});
   EXPECT_EQ(clear.at(0, 0)[3], 0);
   EXPECT_EQ(clear.at(120, 90)[3], 255);
-  const Image blue = picture(plain + Words{"--background", "#102080"});
+  const Image blue = picture(plain + Arguments{"--background", "#102080"});
   EXPECT_EQ(pixel(blue, 0, 0), (Rgb{0x10, 0x20, 0x80}));
 }
 
@@ -103,7 +104,7 @@ TEST_F(Picture, CamerasLookFromWhereTheySay) {
 
 TEST_F(Picture, BadCamerasAreNamed) {
   const auto with = [&](const std::string& file) {
-    return nacre(small_flow + Words{"--camera", file, "--image", path("a.png")});
+    return nacre(small_flow + Arguments{"--camera", file, "--image", path("a.png")});
   };
   expect_failure(with(path("none.json")), 1, {"none.json"});
   expect_failure(with(write("text.json", "no json")), 1, {"text.json", "eye"});
@@ -115,7 +116,7 @@ TEST_F(Picture, BadCamerasAreNamed) {
 }
 
 TEST_F(Picture, FramesAreCountedAndWhole) {
-  const Outcome run = nacre(small_flow + Words{"--size", "96x72", "--frames", path("frames")});
+  const Outcome run = nacre(small_flow + Arguments{"--size", "96x72", "--frames", path("frames")});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, path("frames") + "\n");
   std::size_t count = 0;
@@ -131,7 +132,7 @@ TEST_F(Picture, FramesAreCountedAndWhole) {
 
 TEST_F(Picture, TheLastFrameIsThePicture) {
   const Outcome run =
-      nacre(small_flow + Words{"--size", "96x72", "--frames", path("frames"), "--image", path("a.png")});
+      nacre(small_flow + Arguments{"--size", "96x72", "--frames", path("frames"), "--image", path("a.png")});
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(read_png(path("frames/frame_0001.png")).pixels, read_png(path("a.png")).pixels);
 }
@@ -139,7 +140,7 @@ TEST_F(Picture, TheLastFrameIsThePicture) {
 TEST_F(Picture, VideoHasEveryFrame) {
   const fs::path probe = find_program("ffprobe");
   if (probe.empty() || find_program("ffmpeg").empty()) GTEST_SKIP() << "ffmpeg and ffprobe are not installed";
-  const Outcome made = nacre(small_flow + Words{"--size", "96x72", "--fps", "10", "--video", path("a.mp4")});
+  const Outcome made = nacre(small_flow + Arguments{"--size", "96x72", "--fps", "10", "--video", path("a.mp4")});
   EXPECT_EQ(made.status, 0) << made.err;
   const Outcome told = run(probe, {"-v", "error", "-count_frames", "-select_streams", "v:0", "-show_entries",
                                    "stream=width,height,r_frame_rate,nb_read_frames", "-of", "json", path("a.mp4")});
@@ -148,7 +149,7 @@ TEST_F(Picture, VideoHasEveryFrame) {
   EXPECT_EQ(stream["height"], 72);
   EXPECT_EQ(stream["r_frame_rate"], "10/1");
   EXPECT_EQ(stream["nb_read_frames"], "2");
-  EXPECT_EQ(names(), Words{"a.mp4"});
+  EXPECT_EQ(names(), Arguments{"a.mp4"});
 }
 
 }  // namespace

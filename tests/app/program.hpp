@@ -18,35 +18,35 @@
 namespace nacre::test {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 struct Outcome {
   int status = -1;  ///< exit status; 128 + the signal where one ended it; -1 where it was killed for its time
   std::string out, err;
 };
 
-inline Outcome run(const fs::path& program, const Words& words) {
-  const ChildResult result = run_child(program, words, std::chrono::seconds(480));
+inline Outcome run(const fs::path& program, const Arguments& arguments) {
+  const ChildResult result = run_child(program, arguments, std::chrono::seconds(480));
   const int status = result.timed_out ? -1 : result.signal != 0 ? 128 + result.signal : result.exit_status;
   return {status, result.output, result.errors};
 }
 
-inline Outcome nacre(const Words& words) { return run(program_path, words); }
+inline Outcome nacre(const Arguments& arguments) { return run(program_path, arguments); }
 
 /// The program under a limit of the shell: `ulimit` takes e.g. "-f 16" (KiB blocks of 1024 in bash).
-inline Outcome nacre_limited(const std::string& ulimit, Words words) {
-  words.insert(words.begin(), {"-c", "ulimit " + ulimit + " && exec \"$0\" \"$@\"", program_path});
-  return run("/bin/bash", words);
+inline Outcome nacre_limited(const std::string& ulimit, Arguments arguments) {
+  arguments.insert(arguments.begin(), {"-c", "ulimit " + ulimit + " && exec \"$0\" \"$@\"", program_path});
+  return run("/bin/bash", arguments);
 }
 
-inline Words operator+(Words a, const Words& b) {
+inline Arguments operator+(Arguments a, const Arguments& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
 }
 
 /// A run of a second at most: a coarse sphere, few cells, two steps.
-inline const Words small_flow = {"flow",         "--sample", "sphere",  "--detail", "24",
-                                 "--resolution", "64",       "--steps", "2",        "--quiet"};
+inline const Arguments small_flow = {"flow",         "--sample", "sphere",  "--detail", "24",
+                                     "--resolution", "64",       "--steps", "2",        "--quiet"};
 
 /// A .vtp or .png without what it says of how it was made, to compare the results of two command lines.
 inline std::string without_origin(std::string bytes) {
@@ -73,7 +73,7 @@ inline int lines_with(const std::string& text, const std::string& start) {
 }
 
 /// One line "nacre: ..." that holds each of `parts`, this status, and no result.
-inline void expect_failure(const Outcome& run, int status, const Words& parts) {
+inline void expect_failure(const Outcome& run, int status, const Arguments& parts) {
   EXPECT_EQ(run.status, status) << run.err;
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(lines_with(run.err, "nacre: "), 1) << run.err;
@@ -94,8 +94,8 @@ class AppTest : public ::testing::Test {
   }
 
   /// Names in the folder, sorted: to see that nothing else is left behind.
-  Words names() const {
-    Words found;
+  Arguments names() const {
+    Arguments found;
     for (const auto& entry : fs::directory_iterator(folder_.path())) found.push_back(entry.path().filename().string());
     std::sort(found.begin(), found.end());
     return found;

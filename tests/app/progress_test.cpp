@@ -6,12 +6,12 @@ namespace nacre::test {
 namespace {
 
 /// What a run of the program draws on a terminal of so many columns, one string for each time that it is drawn.
-Words drawn(int columns, const std::string& words) {
-  const std::string command = "stty cols " + std::to_string(columns) + "; '" + program_path + "' " + words;
+Arguments drawn(int columns, const std::string& arguments) {
+  const std::string command = "stty cols " + std::to_string(columns) + "; '" + program_path + "' " + arguments;
   const Outcome run = test::run("/usr/bin/script", {"-qec", command, "/dev/null"});
   EXPECT_EQ(run.status, 0) << run.out << run.err;
   const std::string begin = "\r\033[K";
-  Words lines;
+  Arguments lines;
   for (std::size_t at = run.out.find(begin), next; at != run.out.npos; at = next) {
     next = run.out.find(begin, at + begin.size());
     lines.push_back(run.out.substr(at + begin.size(), next - at - begin.size()));
@@ -25,7 +25,7 @@ TEST(Progress, ABarTellsStageIterationEnergyAndTimeInOneLine) {
   if (terminal.status != 0) GTEST_SKIP() << "no pseudo-terminals here: " << terminal.out << terminal.err;
   for (const int columns : {40, 80, 160}) {
     int told = 0;
-    Words lines = drawn(columns, "mesh --sample torso --detail 40 --threads 1");
+    Arguments lines = drawn(columns, "mesh --sample torso --detail 40 --threads 1");
     ASSERT_GT(lines.size(), 3u);
     lines.pop_back();  // what the program says when the bar is gone
     for (const std::string& line : lines) {

@@ -19,8 +19,9 @@ std::vector<std::string> knob_names() {
 class Report : public AppTest {};
 
 TEST_F(Report, HasEveryKeyOfTheContract) {
-  const Outcome run = nacre(small_flow + Words{"--threads", "2", "--seed", "7", "--report", path("r.json"), "--image",
-                                               path("a.png"), "--size", "64x48", "--out", path("a.vtp")});
+  const Outcome run =
+      nacre(small_flow + Arguments{"--threads", "2", "--seed", "7", "--report", path("r.json"), "--image",
+                                   path("a.png"), "--size", "64x48", "--out", path("a.vtp")});
   ASSERT_EQ(run.status, 0) << run.err;
   const json r = json::parse(content("r.json"));
   EXPECT_TRUE(r["nacre"].is_string());
@@ -50,8 +51,8 @@ TEST_F(Report, HasEveryKeyOfTheContract) {
 }
 
 TEST_F(Report, StageNamesAreTheFixedOnes) {
-  ASSERT_EQ(nacre(small_flow + Words{"--report", path("r.json"), "--image", path("a.png"), "--size", "64x48"}).status,
-            0);
+  ASSERT_EQ(
+      nacre(small_flow + Arguments{"--report", path("r.json"), "--image", path("a.png"), "--size", "64x48"}).status, 0);
   const json stages = json::parse(content("r.json"))["stages"];
   std::vector<std::string> names;
   for (const json& stage : stages) {
@@ -65,8 +66,8 @@ TEST_F(Report, StageNamesAreTheFixedOnes) {
 }
 
 TEST_F(Report, ParametersAreTheKnobsAsSet) {
-  ASSERT_EQ(nacre(small_flow + Words{"--report", path("r.json"), "--seed", "7", "--set", "step_cells=3.5", "--ttl", "2",
-                                     "--no-legend", "--colormap", "gray"})
+  ASSERT_EQ(nacre(small_flow + Arguments{"--report", path("r.json"), "--seed", "7", "--set", "step_cells=3.5", "--ttl",
+                                         "2", "--no-legend", "--colormap", "gray"})
                 .status,
             0);
   const json parameters = json::parse(content("r.json"))["parameters"];
@@ -87,18 +88,18 @@ class SessionFile : public AppTest {};
 TEST_F(SessionFile, RoundTripGivesTheSameBytes) {
   ASSERT_EQ(nacre({"sample", "sphere", "--detail", "16", "--out", path("s.pvd")}).status, 0);
   const auto outputs = [&](const std::string& name) {
-    return Words{"--quiet", "--out", path(name + ".vtp"), "--image", path(name + ".png")};
+    return Arguments{"--quiet", "--out", path(name + ".vtp"), "--image", path(name + ".png")};
   };
-  const Words flow = {
+  const Arguments flow = {
       "flow",   path("s.pvd"), "--resolution", "48",    "--steps",  "2",  "--seed",         "11",
       "--size", "96x72",       "--set",        "ttl=2", "--camera", "+x", "--save-session", path("session.json")};
   ASSERT_EQ(nacre(flow + outputs("a")).status, 0);
-  const Outcome again = nacre(Words{"flow", "--session", path("session.json")} + outputs("b"));
+  const Outcome again = nacre(Arguments{"flow", "--session", path("session.json")} + outputs("b"));
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(content("a.vtp"), content("b.vtp"));
   EXPECT_EQ(content("a.png"), content("b.png"));
-  ASSERT_EQ(nacre(Words{"flow", "--session", path("session.json"), "--seed", "12"} + outputs("c")).status, 0);
-  EXPECT_NE(bare("a.vtp"), bare("c.vtp")) << "words on the command line go over the session's";
+  ASSERT_EQ(nacre(Arguments{"flow", "--session", path("session.json"), "--seed", "12"} + outputs("c")).status, 0);
+  EXPECT_NE(bare("a.vtp"), bare("c.vtp")) << "arguments on the command line go over the session's";
 }
 
 TEST_F(SessionFile, BadOnesAreNamed) {

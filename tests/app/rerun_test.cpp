@@ -9,12 +9,12 @@ namespace {
 class Rerun : public MeshTest {
  protected:
   /// `nacre rerun` says that the file is the same; and with --out, it makes the same bytes.
-  void expect_same(const std::string& name, const Words& more = {}) const {
-    const Outcome compared = nacre(Words{"rerun", path(name), "--quiet"} + more);
+  void expect_same(const std::string& name, const Arguments& more = {}) const {
+    const Outcome compared = nacre(Arguments{"rerun", path(name), "--quiet"} + more);
     EXPECT_EQ(compared.status, 0) << compared.err;
     EXPECT_EQ(compared.out, path(name) + ": the same\n");
     const std::string again = "again" + fs::path(name).extension().string();
-    const Outcome written = nacre(Words{"rerun", path(name), "--quiet", "--out", path(again)} + more);
+    const Outcome written = nacre(Arguments{"rerun", path(name), "--quiet", "--out", path(again)} + more);
     EXPECT_EQ(written.status, 0) << written.err;
     EXPECT_EQ(written.out, path(again) + "\n");
     if (fs::path(name).extension() != ".json") {
@@ -28,31 +28,33 @@ class Rerun : public MeshTest {
 };
 
 TEST_F(Rerun, PictureAndValuesOfAFlow) {
-  const Words flow = small_flow + Words{"--size", "96x72", "--seed", "5", "--camera", "+x", "--step-cells", "3.7"};
-  ASSERT_EQ(nacre(flow + Words{"--image", path("a.png")}).status, 0);
-  ASSERT_EQ(nacre(flow + Words{"--image", path("b.png"), "--out", path("b.vtp"), "--report", path("b.json")}).status,
-            0);
+  const Arguments flow =
+      small_flow + Arguments{"--size", "96x72", "--seed", "5", "--camera", "+x", "--step-cells", "3.7"};
+  ASSERT_EQ(nacre(flow + Arguments{"--image", path("a.png")}).status, 0);
+  ASSERT_EQ(
+      nacre(flow + Arguments{"--image", path("b.png"), "--out", path("b.vtp"), "--report", path("b.json")}).status, 0);
   for (const char* name : {"a.png", "b.png", "b.vtp", "b.json"}) expect_same(name);
   expect_same("a.png", {"--threads", "1"});
   const std::string said = of_origin("a.png");
   for (const char* part : {"\"command\":\"flow\"", "\"sample\":\"sphere\"", "\"seed\":\"5\"", "\"step_cells\":\"3.7\""})
     EXPECT_TRUE(contains(said, part)) << part << "\n" << said;
-  for (const std::string& word : Words{path(""), "threads", "a.png"})  // nothing of this machine, nothing of the name
+  for (const std::string& word :
+       Arguments{path(""), "threads", "a.png"})  // nothing of this machine, nothing of the name
     EXPECT_FALSE(contains(content("a.png"), word)) << word;
 }
 
 TEST_F(Rerun, PartOfARunAndMeansOverTime) {
-  const Words flow = small_flow + Words{"--size", "96x72"};
-  ASSERT_EQ(nacre(flow + Words{"--chunk", "2/2", "--lead-in", "3", "--image", path("part.png")}).status, 0);
+  const Arguments flow = small_flow + Arguments{"--size", "96x72"};
+  ASSERT_EQ(nacre(flow + Arguments{"--chunk", "2/2", "--lead-in", "3", "--image", path("part.png")}).status, 0);
   expect_same("part.png");
-  ASSERT_EQ(nacre(flow + Words{"--haemodynamics", path("means.vtp")}).status, 0);
+  ASSERT_EQ(nacre(flow + Arguments{"--haemodynamics", path("means.vtp")}).status, 0);
   expect_same("means.vtp");
 }
 
 TEST_F(Rerun, TopologyStreamlinesAndFlowMaps) {
-  ASSERT_EQ(nacre(small_flow + Words{"--topology-out", path("points.vtp"), "--streamlines-out", path("lines.vtp"),
-                                     "--persistence", "0.1", "--ftle-out", path("map.vtp"), "--ftle-time=-0.4",
-                                     "--tracks-out", path("tracks.vtp"), "--report", path("a.json")})
+  ASSERT_EQ(nacre(small_flow + Arguments{"--topology-out", path("points.vtp"), "--streamlines-out", path("lines.vtp"),
+                                         "--persistence", "0.1", "--ftle-out", path("map.vtp"), "--ftle-time=-0.4",
+                                         "--tracks-out", path("tracks.vtp"), "--report", path("a.json")})
                 .status,
             0);
   for (const char* name : {"points.vtp", "lines.vtp", "map.vtp", "tracks.vtp", "a.json"}) expect_same(name);
@@ -74,14 +76,15 @@ TEST_F(Rerun, CameraOfASession) {
   write("s.json", R"({"nacre": "session 1", "sample": "sphere", "detail": 24, "knobs": {"resolution": 64, "steps": 1},
     "camera": {"eye": [3, 2, 1], "target": [0, 0, 0], "up": [0, 0, 1], "height": 2.5, "orthographic": false}})");
   const Outcome run =
-      nacre(Words{"flow", "--session", path("s.json"), "--quiet", "--size", "96x72", "--image", path("a.png")});
+      nacre(Arguments{"flow", "--session", path("s.json"), "--quiet", "--size", "96x72", "--image", path("a.png")});
   ASSERT_EQ(run.status, 0) << run.err;
   fs::remove(folder_ / "s.json");
   expect_same("a.png");
 }
 
 TEST_F(Rerun, AFileFromElsewhereWritesNothingElse) {
-  ASSERT_EQ(nacre(small_mesh + Words{"--out", path("a.ply"), "--report", path("a.json"), "--per-material"}).status, 0);
+  ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path("a.ply"), "--report", path("a.json"), "--per-material"}).status,
+            0);
   for (const auto& [before, after] :
        std::map<std::string, std::string>{{R"("--per-material")", R"("--report=)" + path("stolen") + R"(")"},
                                           {R"("output": "report")", R"("output": "save-session")"},
@@ -99,7 +102,7 @@ TEST_F(Rerun, AFileFromElsewhereWritesNothingElse) {
 TEST_F(Rerun, EveryFormatOfMeshes) {
   for (const char* name :
        {"a.vtp", "a.ply", "a.obj", "a.off", "a.glb", "a.vtu", "a.msh", "a.msh4", "a.inp", "a.mesh", "a.feb"}) {
-    ASSERT_EQ(nacre(small_mesh + Words{"--out", path(name), "--iterations", "3"}).status, 0);
+    ASSERT_EQ(nacre(small_mesh + Arguments{"--out", path(name), "--iterations", "3"}).status, 0);
     const Outcome run = nacre({"rerun", path(name), "--quiet"});
     EXPECT_EQ(run.status, 0) << name << "\n" << run.err;
   }
@@ -108,9 +111,10 @@ TEST_F(Rerun, EveryFormatOfMeshes) {
 
 TEST_F(Rerun, MeshFromAFileWithPictureParticlesAndReport) {
   write("ball.nrrd", ball_nrrd());
-  const Words mesh = {"mesh", path("ball.nrrd"), "--quiet", "--preset", "source", "--max-size", "3", "--min-size", "2"};
-  ASSERT_EQ(nacre(mesh + Words{"--out", path("m.stl"), "--particles-out", path("p.vtp"), "--image", path("m.png"),
-                               "--cut-away", "--size", "96x72", "--report", path("m.json")})
+  const Arguments mesh = {"mesh", path("ball.nrrd"), "--quiet", "--preset", "source", "--max-size",
+                          "3",    "--min-size",      "2"};
+  ASSERT_EQ(nacre(mesh + Arguments{"--out", path("m.stl"), "--particles-out", path("p.vtp"), "--image", path("m.png"),
+                                   "--cut-away", "--size", "96x72", "--report", path("m.json")})
                 .status,
             0);
   for (const char* name : {"p.vtp", "m.png", "m.json"}) expect_same(name);
@@ -121,7 +125,7 @@ TEST_F(Rerun, MeshFromAFileWithPictureParticlesAndReport) {
   EXPECT_EQ(content("again.stl"), content("m.stl"));
   EXPECT_TRUE(contains(content("m.json"), "\"sha256\""));
 
-  ASSERT_EQ(nacre(mesh + Words{"--per-material", "--out", path("one.ply")}).status, 0);
+  ASSERT_EQ(nacre(mesh + Arguments{"--per-material", "--out", path("one.ply")}).status, 0);
   EXPECT_EQ(nacre({"rerun", path("one_1.ply"), "--quiet"}).out, path("one_1.ply") + ": the same\n");
 }
 
@@ -136,7 +140,7 @@ TEST_F(Rerun, InputsThatHaveChanged) {
 }
 
 TEST_F(Rerun, ResultsThatAreNotTheSame) {
-  ASSERT_EQ(nacre(small_flow + Words{"--size", "96x72", "--image", path("a.png")}).status, 0);
+  ASSERT_EQ(nacre(small_flow + Arguments{"--size", "96x72", "--image", path("a.png")}).status, 0);
   std::string bytes = content("a.png");
   bytes[bytes.size() - 20] ^= 1;
   write("b.png", bytes);
@@ -151,7 +155,7 @@ TEST_F(Rerun, ResultsThatAreNotTheSame) {
 TEST_F(Rerun, VideoHasItsOriginAsComment) {
   if (find_program("ffmpeg").empty()) GTEST_SKIP() << "no ffmpeg";
   for (const char* name : {"a.mp4", "a.mkv"}) {
-    ASSERT_EQ(nacre(small_flow + Words{"--size", "96x72", "--video", path(name)}).status, 0);
+    ASSERT_EQ(nacre(small_flow + Arguments{"--size", "96x72", "--video", path(name)}).status, 0);
     EXPECT_TRUE(contains(of_origin(name), "\"output\":\"video\"")) << name;
     const Outcome run = nacre({"rerun", path(name), "--quiet"});
     EXPECT_EQ(run.status, 0) << name << "\n" << run.err;

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-const Words small_topology = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
+const Arguments small_topology = {"--resolution", "64", "--steps", "2", "--size", "192x192", "--no-legend"};
 
 /// A sphere with the gradient of x^2 + 2 y^2 + 3 z^2: two sources, saddles and sinks, on the axes x, y and z.
 class Topology : public AppTest {
@@ -31,8 +31,8 @@ class Topology : public AppTest {
 };
 
 TEST_F(Topology, IsReportedAndWritten) {
-  const Outcome done = nacre(Words{"flow", six_points(), "--quiet"} + small_topology +
-                             Words{"--topology-out", path("t.vtp"), "--report", path("r.json")});
+  const Outcome done = nacre(Arguments{"flow", six_points(), "--quiet"} + small_topology +
+                             Arguments{"--topology-out", path("t.vtp"), "--report", path("r.json")});
   ASSERT_EQ(done.status, 0) << done.err;
   const json report = json::parse(content("r.json"));
   EXPECT_EQ(report["outputs"], json({path("t.vtp")}));
@@ -60,9 +60,10 @@ TEST_F(Topology, IsReportedAndWritten) {
 }
 
 TEST_F(Topology, IsDrawnWhereTheCameraSeesIt) {
-  const Words from_x = Words{"flow", six_points(), "--quiet", "--camera", "+x", "--color", "none"} + small_topology;
-  ASSERT_EQ(nacre(from_x + Words{"--image", path("with.png"), "--topology"}).status, 0);
-  ASSERT_EQ(nacre(from_x + Words{"--image", path("without.png")}).status, 0);
+  const Arguments from_x =
+      Arguments{"flow", six_points(), "--quiet", "--camera", "+x", "--color", "none"} + small_topology;
+  ASSERT_EQ(nacre(from_x + Arguments{"--image", path("with.png"), "--topology"}).status, 0);
+  ASSERT_EQ(nacre(from_x + Arguments{"--image", path("without.png")}).status, 0);
   const Image with = read_png(path("with.png")), without = read_png(path("without.png"));
   const auto coloured = [](const Image& image) {  // one source of +x, gray elsewhere
     int red = 0, blue = 0, far_red = 0;
@@ -83,8 +84,8 @@ TEST_F(Topology, IsDrawnWhereTheCameraSeesIt) {
 
 TEST_F(Topology, StreamlinesAreWritten) {
   const auto lines_at = [&](const std::string& spacing) {
-    const Outcome done = nacre(Words{"flow", six_points(), "--quiet", "--line-spacing", spacing} + small_topology +
-                               Words{"--streamlines-out", path("s.vtp"), "--report", path("r.json")});
+    const Outcome done = nacre(Arguments{"flow", six_points(), "--quiet", "--line-spacing", spacing} + small_topology +
+                               Arguments{"--streamlines-out", path("s.vtp"), "--report", path("r.json")});
     EXPECT_EQ(done.status, 0) << done.err;
     const json report = json::parse(content("r.json"));
     EXPECT_EQ(report["outputs"], json({path("s.vtp")}));
@@ -98,8 +99,8 @@ TEST_F(Topology, StreamlinesAreWritten) {
 }
 
 TEST_F(Topology, PointsAreFollowedThroughTheSteps) {
-  const Outcome done = nacre(Words{"flow", "--quiet", "--sample", "torus", "--detail", "32", "--tracks-out",
-                                   path("t.vtp"), "--report", path("r.json")} +
+  const Outcome done = nacre(Arguments{"flow", "--quiet", "--sample", "torus", "--detail", "32", "--tracks-out",
+                                       path("t.vtp"), "--report", path("r.json")} +
                              small_topology);
   ASSERT_EQ(done.status, 0) << done.err;
   const json report = json::parse(content("r.json"));
@@ -112,7 +113,7 @@ TEST_F(Topology, PointsAreFollowedThroughTheSteps) {
   for (const char* name : {"track", "time", "kind", "index", "persistence"})
     EXPECT_TRUE(contains(file, "Name=\"" + std::string(name) + "\"")) << name;
   EXPECT_EQ(report["outputs"], json({path("t.vtp")}));
-  expect_failure(nacre(Words{"flow", six_points(), "--quiet", "--tracks-out", path("t.vtp")} + small_topology), 1,
+  expect_failure(nacre(Arguments{"flow", six_points(), "--quiet", "--tracks-out", path("t.vtp")} + small_topology), 1,
                  {"followed in time", "one time only"});
 }
 
@@ -131,11 +132,12 @@ TEST_F(Topology, TracksAreDrawn) {
     write_surface(path(name), s);
     return path(name);
   };
-  Words run = {"flow"};
+  Arguments run = {"flow"};
   for (int k = 0; k <= 6; ++k) run.push_back(turned("g_" + std::to_string(k) + ".vtp", 0.25 * k));
-  const auto yellow = [&](const Words& more) {
-    const Outcome done = nacre(run + Words{"--quiet", "--camera", "+x", "--color", "none", "--image", path("t.png")} +
-                               small_topology + more);
+  const auto yellow = [&](const Arguments& more) {
+    const Outcome done =
+        nacre(run + Arguments{"--quiet", "--camera", "+x", "--color", "none", "--image", path("t.png")} +
+              small_topology + more);
     EXPECT_EQ(done.status, 0) << done.err;
     const Image image = read_png(path("t.png"));
     int count = 0;
@@ -147,13 +149,14 @@ TEST_F(Topology, TracksAreDrawn) {
   };
   EXPECT_EQ(yellow({}), 0);
   EXPECT_GT(yellow({"--tracks"}), 30);
-  expect_failure(nacre(Words{"flow", six_points(), "--quiet", "--tracks", "--image", path("t.png")} + small_topology),
-                 1, {"followed in time", "one time only"});
+  expect_failure(
+      nacre(Arguments{"flow", six_points(), "--quiet", "--tracks", "--image", path("t.png")} + small_topology), 1,
+      {"followed in time", "one time only"});
 }
 
 TEST_F(Topology, ProbesTellTheTimesOfPoints) {
-  const Words run = {"flow", "--quiet", "--sample", "pulse", "--detail", "24", "--report", path("r.json")};
-  ASSERT_EQ(nacre(run + small_topology + Words{"--probe", "1,0,0;0,1,0", "--color", "speed"}).status, 0);
+  const Arguments run = {"flow", "--quiet", "--sample", "pulse", "--detail", "24", "--report", path("r.json")};
+  ASSERT_EQ(nacre(run + small_topology + Arguments{"--probe", "1,0,0;0,1,0", "--color", "speed"}).status, 0);
   const json probes = json::parse(content("r.json"))["probes"];
   ASSERT_EQ(probes.size(), 2u);
   for (const json& probe : probes) {
@@ -170,15 +173,15 @@ TEST_F(Topology, ProbesTellTheTimesOfPoints) {
     }
     EXPECT_GT(most, 0);
   }
-  expect_failure(nacre(run + small_topology + Words{"--probe", "1,2"}), 2, {"--probe", "1,2", "three numbers"});
-  expect_failure(nacre(run + small_topology + Words{"--probe", "99,0,0"}), 1, {"--probe", "not on the surface"});
+  expect_failure(nacre(run + small_topology + Arguments{"--probe", "1,2"}), 2, {"--probe", "1,2", "three numbers"});
+  expect_failure(nacre(run + small_topology + Arguments{"--probe", "99,0,0"}), 1, {"--probe", "not on the surface"});
 }
 
 TEST_F(Topology, BadInputIsNamed) {
   expect_failure(
-      nacre(Words{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small_topology), 2,
+      nacre(Arguments{"flow", "--quiet", "--sample", "sphere", "--topology-out", path("t.png")} + small_topology), 2,
       {"--topology-out", ".vtp"});
-  expect_failure(nacre(Words{"flow", "--quiet", "--sample", "sphere", "--persistence", "2"} + small_topology), 2,
+  expect_failure(nacre(Arguments{"flow", "--quiet", "--sample", "sphere", "--persistence", "2"} + small_topology), 2,
                  {"--persistence"});
 }
 

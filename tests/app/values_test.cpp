@@ -24,8 +24,8 @@ Vec3d vector(const RawArray& a, std::size_t i) { return {a.values[3 * i], a.valu
 
 class Values : public AppTest {
  protected:
-  void flow(const Words& words) {
-    const Outcome run = nacre(words + Words{"--out", path("a.vtp"), "--report", path("r.json"), "--quiet"});
+  void flow(const Arguments& arguments) {
+    const Outcome run = nacre(arguments + Arguments{"--out", path("a.vtp"), "--report", path("r.json"), "--quiet"});
     ASSERT_EQ(run.status, 0) << run.err;
     mesh_ = read_raw(folder_ / "a.vtp").mesh;
     cell_ = read_json("r.json")["embedding"]["cell_size"];
@@ -90,9 +90,11 @@ TEST_F(Values, ArraysMeanWhatTheyAreCalled) {
 }
 
 TEST_F(Values, TheSameSeedGivesTheSameBytesOnAnyNumberOfThreads) {
-  const auto bytes = [&](const std::string& name, const Words& words) {
+  const auto bytes = [&](const std::string& name, const Arguments& arguments) {
     EXPECT_EQ(
-        nacre(small_flow + words + Words{"--size", "64x48", "--out", path(name), "--image", path("a.png")}).status, 0);
+        nacre(small_flow + arguments + Arguments{"--size", "64x48", "--out", path(name), "--image", path("a.png")})
+            .status,
+        0);
     return content(name) + content("a.png");
   };
   const std::string one = bytes("1.vtp", {"--threads", "1", "--seed", "5"});

@@ -7,12 +7,12 @@ namespace {
 using View = ViewTest;
 
 /// In a window, the fault being due when times are taken for the `when`-th time.
-void expect_window_goes_on(const TemporaryFolder& folder, const Words& input, const std::string& when) {
+void expect_window_goes_on(const TemporaryFolder& folder, const Arguments& input, const std::string& when) {
   const std::string report = (folder / "r.json").string(), picture = (folder / "p.png").string();
   const Outcome window =
-      run("/bin/bash", Words{source_file("tests/app/on_display.sh"), "/usr/bin/env", "NACRE_FAULTS=lost-device@" + when,
-                             program_path, "view", "--size", "320x240", "--frames-count", "12", "--report", report,
-                             "--image", picture} +
+      run("/bin/bash", Arguments{source_file("tests/app/on_display.sh"), "/usr/bin/env",
+                                 "NACRE_FAULTS=lost-device@" + when, program_path, "view", "--size", "320x240",
+                                 "--frames-count", "12", "--report", report, "--image", picture} +
                            input);
   if (window.status == 77) GTEST_SKIP() << window.err;
   ASSERT_EQ(window.status, 0) << window.err;
@@ -25,21 +25,22 @@ void expect_window_goes_on(const TemporaryFolder& folder, const Words& input, co
 }
 
 TEST_F(View, AFlowGoesOnWithoutItsLostDevice) {
-  const Words input = {"--sample", "sphere", "--detail", "24", "--resolution", "48", "--steps", "4"};
+  const Arguments input = {"--sample", "sphere", "--detail", "24", "--resolution", "48", "--steps", "4"};
   for (const char* when : {"1", "2", "5"}) expect_window_goes_on(folder, input, when);
 }
 
 TEST_F(View, AMeshGoesOnWithoutItsLostDevice) {
-  const Words input = {"--sample", "two-spheres", "--detail", "16", "--iterations", "10"};
+  const Arguments input = {"--sample", "two-spheres", "--detail", "16", "--iterations", "10"};
   for (const char* when : {"1", "9"}) expect_window_goes_on(folder, input, when);
 }
 
 TEST_F(View, WithoutAWindowALostDeviceIsAnError) {
-  for (const Words& input : {Words{"--sample", "sphere", "--detail", "24", "--resolution", "48", "--steps", "4"},
-                             Words{"--sample", "two-spheres", "--detail", "16", "--iterations", "10"}}) {
+  for (const Arguments& input :
+       {Arguments{"--sample", "sphere", "--detail", "24", "--resolution", "48", "--steps", "4"},
+        Arguments{"--sample", "two-spheres", "--detail", "16", "--iterations", "10"}}) {
     const Outcome outcome =
-        run("/usr/bin/env", Words{"NACRE_FAULTS=lost-device@4", program_path, "view", "--offscreen", "--quiet",
-                                  "--image", (folder / "p.png").string(), "--frames-count", "3"} +
+        run("/usr/bin/env", Arguments{"NACRE_FAULTS=lost-device@4", program_path, "view", "--offscreen", "--quiet",
+                                      "--image", (folder / "p.png").string(), "--frames-count", "3"} +
                                 input);
     expect_failure(outcome, 1, {"illegal memory access"});
   }

@@ -9,8 +9,8 @@ namespace nacre::test {
 namespace {
 
 /// A mesh that is soon done: 20 iterations for its curve, 20 for its surfaces.
-const Words quick = {"--sample", "two-spheres", "--detail", "20",      "--set",  "iterations=20",
-                     "--set",    "mend=0",      "--size",   "200x150", "--quiet"};
+const Arguments quick = {"--sample", "two-spheres", "--detail", "20",      "--set",  "iterations=20",
+                         "--set",    "mend=0",      "--size",   "200x150", "--quiet"};
 
 class ViewMesh : public MeshTest {
  protected:
@@ -22,10 +22,11 @@ class ViewMesh : public MeshTest {
   }
 
   /// A picture of frame `frames`, and what the run says in "view" of its report.
-  Image picture(int frames, const Words& more = {}) {
+  Image picture(int frames, const Arguments& more = {}) {
     const Outcome run = nacre(
-        Words{"view", "--offscreen"} + quick +
-        Words{"--frames-count", std::to_string(frames), "--image", path("v.png"), "--report", path("v.json")} + more);
+        Arguments{"view", "--offscreen"} + quick +
+        Arguments{"--frames-count", std::to_string(frames), "--image", path("v.png"), "--report", path("v.json")} +
+        more);
     EXPECT_EQ(run.status, 0) << run.err;
     if (run.status != 0) return {};
     report = read_json("v.json");
@@ -65,25 +66,25 @@ TEST_F(ViewMesh, ParticlesGrowAndSettle) {
 TEST_F(ViewMesh, TrianglesAreThoseOfTheHeadlessCommand) {
   const std::string camera = write("camera.json", R"({"eye": [60, -50, 40], "target": [12, 12, 12], "up": [0, 0, 1],
                                                       "height": 26})");
-  const Words alike = {"--set", "legend=false", "--camera", camera};
-  const Image view = picture(0, alike + Words{"--set", "edges=true", "--set", "curves=false"});
-  ASSERT_EQ(nacre(Words{"mesh", "--image", path("m.png")} + quick + alike).status, 0);
+  const Arguments alike = {"--set", "legend=false", "--camera", camera};
+  const Image view = picture(0, alike + Arguments{"--set", "edges=true", "--set", "curves=false"});
+  ASSERT_EQ(nacre(Arguments{"mesh", "--image", path("m.png")} + quick + alike).status, 0);
   EXPECT_LT(difference(view, read_png(path("m.png"))), 2);
   EXPECT_GT(covered(view), 0.1);
 }
 
 TEST_F(ViewMesh, TwoReplaysAreTheSame) {
-  const Words slice = {"--set", "slice=z", "--set", "slice_field=distance"};
-  const Image first = picture(30, slice), second = picture(30, slice + Words{"--threads", "1"});
+  const Arguments slice = {"--set", "slice=z", "--set", "slice_field=distance"};
+  const Image first = picture(30, slice), second = picture(30, slice + Arguments{"--threads", "1"});
   EXPECT_EQ(difference(first, second), 0);
 }
 
 TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
   for (const char* name : {"a.vtp", "a.stl"}) {
-    ASSERT_EQ(nacre(Words{"mesh", "--out", path(name)} + quick).status, 0);
+    ASSERT_EQ(nacre(Arguments{"mesh", "--out", path(name)} + quick).status, 0);
     const std::string mesh = bare(name);
     fs::remove(path(name));
-    const Outcome run = nacre(Words{"view", "--offscreen", "--frames-count", "3", "--out", path(name)} + quick);
+    const Outcome run = nacre(Arguments{"view", "--offscreen", "--frames-count", "3", "--out", path(name)} + quick);
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_TRUE(content(name) == mesh) << name;
   }
@@ -91,15 +92,17 @@ TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
 
 TEST_F(ViewMesh, TheSourcesPresetIsThatOfTheHeadlessCommand) {
   // Labels, a scalar that is cut at an iso-value, and a region of it.
-  const std::vector<std::pair<Words, std::string>> inputs{{{"two-spheres"}, "catmull-rom"},
-                                                          {{"ellipsoid"}, "b-spline"},
-                                                          {{"ellipsoid", "--threshold", "0.3:0.6"}, "catmull-rom"}};
+  const std::vector<std::pair<Arguments, std::string>> inputs{{{"two-spheres"}, "catmull-rom"},
+                                                              {{"ellipsoid"}, "b-spline"},
+                                                              {{"ellipsoid", "--threshold", "0.3:0.6"}, "catmull-rom"}};
   for (const auto& [input, kernel] : inputs) {
     SCOPED_TRACE(kernel + " for " + input.back());
-    const Words alike = Words{"--set", "resolution=100", "--sample"} + input +
-                        Words{"--detail", "20", "--preset", "source", "--theta", "0.8", "--quiet", "--save-session"};
-    ASSERT_EQ(nacre(Words{"mesh"} + alike + Words{path("m.json")}).status, 0);
-    const Outcome run = nacre(Words{"view", "--offscreen", "--frames-count", "1"} + alike + Words{path("v.json")});
+    const Arguments alike =
+        Arguments{"--set", "resolution=100", "--sample"} + input +
+        Arguments{"--detail", "20", "--preset", "source", "--theta", "0.8", "--quiet", "--save-session"};
+    ASSERT_EQ(nacre(Arguments{"mesh"} + alike + Arguments{path("m.json")}).status, 0);
+    const Outcome run =
+        nacre(Arguments{"view", "--offscreen", "--frames-count", "1"} + alike + Arguments{path("v.json")});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(read_json("v.json"), read_json("m.json"));
     EXPECT_EQ(read_json("m.json").at("knobs").at("kernel"), kernel);
@@ -111,11 +114,12 @@ TEST_F(ViewMesh, TheSourcesPresetIsThatOfTheHeadlessCommand) {
 
 TEST_F(ViewMesh, AVolumeWithoutAnIsovalueIsCutInALiveViewAndRefusedInAReplay) {
   ASSERT_EQ(nacre({"sample", "ellipsoid", "--detail", "24", "--out", path("e.nrrd")}).status, 0);
-  const Words words = {"view", "--offscreen", path("e.nrrd"), "--size", "200x150", "--image", path("x.png")};
-  const Outcome replay = nacre(words + Words{"--frames-count", "1"});
+  const Arguments arguments = {"view", "--offscreen", path("e.nrrd"), "--size", "200x150", "--image", path("x.png")};
+  const Outcome replay = nacre(arguments + Arguments{"--frames-count", "1"});
   EXPECT_EQ(replay.status, 1);
   EXPECT_TRUE(contains(replay.err, "needs an iso-value")) << replay.err;
-  const Outcome live = nacre(words + Words{"--live", "--frames-count", "3", "--save-recording", path("done.json")});
+  const Outcome live =
+      nacre(arguments + Arguments{"--live", "--frames-count", "3", "--save-recording", path("done.json")});
   ASSERT_EQ(live.status, 0) << live.err;
   EXPECT_TRUE(contains(live.err, "iso-value 0.")) << live.err;
   const nlohmann::json events = read_json("done.json")["events"];
@@ -149,7 +153,7 @@ TEST_F(ViewMesh, ALabelThatIsNotThereIsAWarning) {
 }
 
 TEST_F(ViewMesh, FailuresAreOneLine) {
-  const Outcome run = nacre(Words{"view", "--offscreen", "--set", "materials=7", "--image", path("x.png")} + quick);
+  const Outcome run = nacre(Arguments{"view", "--offscreen", "--set", "materials=7", "--image", path("x.png")} + quick);
   EXPECT_EQ(run.status, 1) << run.err;
   EXPECT_TRUE(contains(run.err, "7")) << run.err;
   EXPECT_FALSE(exists("x.png"));
@@ -162,7 +166,7 @@ TEST_F(ViewMesh, LiveFramesDoNotWaitForCompute) {
 
 TEST_F(ViewMesh, LiveOneEndsWhenItIsDone) {
   const Outcome run =
-      nacre(Words{"view", "--offscreen", "--live", "--out", path("v.vtp"), "--image", path("v.png")} + quick);
+      nacre(Arguments{"view", "--offscreen", "--live", "--out", path("v.vtp"), "--image", path("v.png")} + quick);
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_GT(covered(read_png(path("v.png"))), 0.1);
   EXPECT_TRUE(exists("v.vtp"));
@@ -170,7 +174,7 @@ TEST_F(ViewMesh, LiveOneEndsWhenItIsDone) {
 
 /// The memory of the particles' positions is there, that of their directions is not.
 TEST_F(ViewMesh, AWindowOutlivesMemoryThatItDoesNotGet) {
-  const Outcome run = in_window(quick + Words{"--frames-count", "20"}, "export NACRE_FAULTS=graphics-memory@2");
+  const Outcome run = in_window(quick + Arguments{"--frames-count", "20"}, "export NACRE_FAULTS=graphics-memory@2");
   if (run.status == 77) GTEST_SKIP() << run.err;
   EXPECT_EQ(run.status, 0) << run.err;
 }

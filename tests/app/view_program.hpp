@@ -17,10 +17,10 @@ inline std::string no_viewer() {
 
 /// `nacre view` in a window, on a display of its own, begun by a shell in which `first` has been done. Status 77: there
 /// is no Xvfb.
-inline Outcome in_window(const Words& words, const std::string& first = ":") {
-  return run("/bin/bash", Words{source_file("tests/app/on_display.sh"), "/bin/bash", "-c",
-                                first + "; exec \"$0\" view --quiet \"$@\"", program_path} +
-                              words);
+inline Outcome in_window(const Arguments& arguments, const std::string& first = ":") {
+  return run("/bin/bash", Arguments{source_file("tests/app/on_display.sh"), "/bin/bash", "-c",
+                                    first + "; exec \"$0\" view --quiet \"$@\"", program_path} +
+                              arguments);
 }
 
 inline nlohmann::json read_json(const fs::path& file) {

@@ -52,8 +52,8 @@ class Scripts : public ViewTest {
         1.2);
   }
 
-  Outcome play(const std::string& file, const Words& more) const {
-    return nacre(Words{"view", "--offscreen", "--quiet", "--script", file} + more);
+  Outcome play(const std::string& file, const Arguments& more) const {
+    return nacre(Arguments{"view", "--offscreen", "--quiet", "--script", file} + more);
   }
 
   /// All but that with the panel, in which are times.
@@ -66,8 +66,8 @@ class Scripts : public ViewTest {
   std::string path(const std::string& name) const { return (folder / name).string(); }
   std::string content(const std::string& name) const { return read_all(folder / name); }
 
-  Words names(const std::string& of) const {
-    Words found;
+  Arguments names(const std::string& of) const {
+    Arguments found;
     for (const auto& entry : fs::directory_iterator(folder / of)) found.push_back(entry.path().filename().string());
     std::sort(found.begin(), found.end());
     return found;
@@ -79,7 +79,7 @@ TEST_F(Scripts, OfADurationHaveFramesFromItsStartToItsEnd) {
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, path("large.png") + "\n" + path("panel.png") + "\n" + path("frames") + "\n");
   EXPECT_EQ(run.err, "");
-  const Words frames = names("frames");
+  const Arguments frames = names("frames");
   ASSERT_EQ(frames.size(), 13u);
   EXPECT_EQ(frames.front(), "frame_0000.png");
   EXPECT_EQ(frames.back(), "frame_0012.png");
@@ -167,9 +167,10 @@ TEST_F(Scripts, FramesOfAVideoHaveTheSizeOfTheFirst) {
 }
 
 TEST_F(Scripts, ASessionIsTheStateAtTheStart) {
-  const Words still = {"--frames-count", "1", "--record"};
-  ASSERT_EQ(play(demo(), still + Words{path("script")}).status, 0);
-  ASSERT_EQ(nacre(Words{"view", "--offscreen", "--quiet", "--session", demo()} + still + Words{path("session")}).status,
+  const Arguments still = {"--frames-count", "1", "--record"};
+  ASSERT_EQ(play(demo(), still + Arguments{path("script")}).status, 0);
+  ASSERT_EQ(nacre(Arguments{"view", "--offscreen", "--quiet", "--session", demo()} + still + Arguments{path("session")})
+                .status,
             0);
   EXPECT_EQ(content("script/frame_0000.png"), content("session/frame_0000.png"));
 }
@@ -178,9 +179,9 @@ TEST_F(Scripts, CameraOfASessionIsEveryCommands) {
   json text = start;
   text["camera"] = camera(0, -9, 0, 6);
   std::ofstream(folder / "s.json") << text;
-  const auto blank_above = [&](const Words& words) {  // rows above the sphere
-    EXPECT_EQ(nacre(words + Words{"--session", path("s.json"), "--quiet", "--set", "legend=false", "--set",
-                                  "time_stamp=false", "--image", path("x.png")})
+  const auto blank_above = [&](const Arguments& arguments) {  // rows above the sphere
+    EXPECT_EQ(nacre(arguments + Arguments{"--session", path("s.json"), "--quiet", "--set", "legend=false", "--set",
+                                          "time_stamp=false", "--image", path("x.png")})
                   .status,
               0);
     const Image image = read_png(folder / "x.png");
@@ -218,7 +219,7 @@ TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
                                                    program_path, "view", "--offscreen", "--quiet", "--script", file,
                                                    "--record", path("v.mp4"), "--save-recording", path("done.json")});
   EXPECT_EQ(stopped.status, 130) << stopped.err;
-  EXPECT_EQ(names(""), (Words{"done.json", "script.json"}));
+  EXPECT_EQ(names(""), (Arguments{"done.json", "script.json"}));
   EXPECT_EQ(read_json(folder / "done.json")["sample"], "sphere");
 }
 
@@ -228,18 +229,18 @@ TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
     changes.push_back({{"time", 10.0 * k}, {"knobs", {{"resolution", k % 2 ? 32 : 48}, {"edges", k % 3 == 0}}}});
   const std::string file = script(changes, 200);
   const auto peak = [&](int frames) {
-    const Words words = {"view",
-                         "--offscreen",
-                         "--quiet",
-                         "--script",
-                         file,
-                         "--size",
-                         "64x48",
-                         "--report",
-                         path("r.json"),
-                         "--frames-count",
-                         std::to_string(frames)};
-    EXPECT_EQ(run_child(program_path, words, std::chrono::seconds(400)).exit_status, 0);
+    const Arguments arguments = {"view",
+                                 "--offscreen",
+                                 "--quiet",
+                                 "--script",
+                                 file,
+                                 "--size",
+                                 "64x48",
+                                 "--report",
+                                 path("r.json"),
+                                 "--frames-count",
+                                 std::to_string(frames)};
+    EXPECT_EQ(run_child(program_path, arguments, std::chrono::seconds(400)).exit_status, 0);
     const json report = read_json(folder / "r.json");
     EXPECT_EQ(report["view"]["frames"], frames);
     return report["memory"]["peak_bytes"].get<double>();
@@ -249,8 +250,8 @@ TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
 }
 
 TEST_F(Scripts, ThatMeanNothingAreRefusedBeforeAnyFrame) {
-  const auto refused = [&](const std::string& file, int status, const Words& parts, const Words& more = {}) {
-    expect_failure(play(file, more + Words{"--record", path("never")}), status, parts);
+  const auto refused = [&](const std::string& file, int status, const Arguments& parts, const Arguments& more = {}) {
+    expect_failure(play(file, more + Arguments{"--record", path("never")}), status, parts);
     EXPECT_FALSE(exists(folder / "never")) << file;
   };
   refused(path("nosuch.json"), 1, {"cannot read session", "nosuch.json"});
@@ -287,12 +288,14 @@ TEST_F(Scripts, AWindowThatRecordsAVideoWaitsForComputeAndRecordsTheSame) {
   with_camera.push_back({{"time", 0.2}, {"camera", camera(9, -9, 0, 3)}, {"over", 0.4}});
   with_camera.push_back({{"time", 0.5}, {"knobs", {{"ttl", 2}}}});
   const std::string file = script(with_camera, 1);
-  const Words words = {"--script", file, "--frames-count", "11"};
-  const Outcome shown = in_window(words + Words{"--record", path("window"), "--save-recording", path("window.json")});
+  const Arguments arguments = {"--script", file, "--frames-count", "11"};
+  const Outcome shown =
+      in_window(arguments + Arguments{"--record", path("window"), "--save-recording", path("window.json")});
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   ASSERT_EQ(shown.status, 0) << shown.err;
-  ASSERT_EQ(nacre(Words{"view", "--offscreen", "--quiet", "--save-recording", path("offscreen.json")} + words).status,
-            0);
+  ASSERT_EQ(
+      nacre(Arguments{"view", "--offscreen", "--quiet", "--save-recording", path("offscreen.json")} + arguments).status,
+      0);
   EXPECT_EQ(names("window").size(), 11u);
   EXPECT_EQ(content("window.json"), content("offscreen.json"));
 }
@@ -327,14 +330,14 @@ TEST_F(Scripts, AWindowOutlivesADiskThatIsFull) {
 }
 
 TEST_F(Scripts, ASessionGivesTheSameValuesHeadlessOffscreenAndInAWindow) {
-  const Words session = {"--quiet", "--session", script(nullptr)};
-  ASSERT_EQ(nacre(Words{"flow", "--out", path("flow.vtp")} + session).status, 0);
-  const Outcome offscreen = nacre(Words{"view", "--offscreen", "--out", path("view.vtp")} + session);
+  const Arguments session = {"--quiet", "--session", script(nullptr)};
+  ASSERT_EQ(nacre(Arguments{"flow", "--out", path("flow.vtp")} + session).status, 0);
+  const Outcome offscreen = nacre(Arguments{"view", "--offscreen", "--out", path("view.vtp")} + session);
   if (contains(offscreen.err, "no format")) GTEST_SKIP() << offscreen.err;
   ASSERT_EQ(offscreen.status, 0) << offscreen.err;
   EXPECT_EQ(without_origin(content("flow.vtp")), content("view.vtp"));
   const Outcome shown =
-      in_window(session + Words{"--record", path("frames"), "--frames-count", "4", "--out", path("window.vtp")});
+      in_window(session + Arguments{"--record", path("frames"), "--frames-count", "4", "--out", path("window.vtp")});
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   ASSERT_EQ(shown.status, 0) << shown.err;
   EXPECT_EQ(without_origin(content("flow.vtp")), content("window.vtp"));
@@ -343,12 +346,12 @@ TEST_F(Scripts, ASessionGivesTheSameValuesHeadlessOffscreenAndInAWindow) {
 TEST_F(Scripts, ASessionGivesTheSameMeshHeadlessAndOffscreen) {
   std::ofstream(folder / "s.json") << json{
       {"sample", "two-spheres"}, {"detail", 24}, {"knobs", {{"width", 96}, {"height", 72}, {"max_size", 3}}}};
-  const Words session = {"--quiet", "--session", path("s.json")};
+  const Arguments session = {"--quiet", "--session", path("s.json")};
   const Outcome offscreen =
-      nacre(Words{"view", "--offscreen", "--frames-count", "300", "--out", path("view.vtp")} + session);
+      nacre(Arguments{"view", "--offscreen", "--frames-count", "300", "--out", path("view.vtp")} + session);
   if (contains(offscreen.err, "cannot be viewed yet")) GTEST_SKIP() << offscreen.err;
   ASSERT_EQ(offscreen.status, 0) << offscreen.err;
-  ASSERT_EQ(nacre(Words{"mesh", "--out", path("mesh.vtp")} + session).status, 0);
+  ASSERT_EQ(nacre(Arguments{"mesh", "--out", path("mesh.vtp")} + session).status, 0);
   EXPECT_EQ(without_origin(content("mesh.vtp")), content("view.vtp"));
 }
 

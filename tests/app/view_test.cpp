@@ -9,14 +9,14 @@
 namespace nacre::test {
 namespace {
 
-const Words small_view = {"view", "--offscreen", "--sample", "sphere", "--detail", "24",     "--resolution",
-                          "64",   "--steps",     "4",        "--size", "200x150",  "--quiet"};
+const Arguments small_view = {"view", "--offscreen", "--sample", "sphere", "--detail", "24",     "--resolution",
+                              "64",   "--steps",     "4",        "--size", "200x150",  "--quiet"};
 
 using View = ViewTest;
 
 TEST_F(View, OffscreenWritesThePictureOfTheLastFrame) {
   const fs::path png = folder / "view.png", json = folder / "view.json";
-  const Outcome outcome = nacre(small_view + Words{"--image", png.string(), "--report", json.string()});
+  const Outcome outcome = nacre(small_view + Arguments{"--image", png.string(), "--report", json.string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.out, png.string() + "\n");
   EXPECT_EQ(outcome.err, "");
@@ -53,14 +53,15 @@ double mean_difference(const Image& a, const Image& b) { return mean_difference(
 
 TEST_F(View, PictureIsThatOfTheHeadlessCommand) {
   const fs::path view = folder / "view.png", flow = folder / "flow.png";
-  const Words common = {"--sample", "sphere", "--detail", "24",      "--resolution", "96",
-                        "--steps",  "3",      "--size",   "320x240", "--quiet"};
-  for (const Words& more :
-       {Words{}, Words{"--set", "legend=false", "--set", "time_stamp=false"}, Words{"--background", "#102030"},
-        Words{"--color-range", "-1:4", "--colormap", "gray"}, Words{"--color", "none", "--background", "transparent"},
-        Words{"--method", "octree"}, Words{"--topology", "--streamlines"}}) {
-    ASSERT_EQ(nacre(Words{"view", "--offscreen", "--image", view.string()} + common + more).status, 0);
-    ASSERT_EQ(nacre(Words{"flow", "--image", flow.string()} + common + more).status, 0);
+  const Arguments common = {"--sample", "sphere", "--detail", "24",      "--resolution", "96",
+                            "--steps",  "3",      "--size",   "320x240", "--quiet"};
+  for (const Arguments& more :
+       {Arguments{}, Arguments{"--set", "legend=false", "--set", "time_stamp=false"},
+        Arguments{"--background", "#102030"}, Arguments{"--color-range", "-1:4", "--colormap", "gray"},
+        Arguments{"--color", "none", "--background", "transparent"}, Arguments{"--method", "octree"},
+        Arguments{"--topology", "--streamlines"}}) {
+    ASSERT_EQ(nacre(Arguments{"view", "--offscreen", "--image", view.string()} + common + more).status, 0);
+    ASSERT_EQ(nacre(Arguments{"flow", "--image", flow.string()} + common + more).status, 0);
     const Image a = read_png(view), b = read_png(flow);
     ASSERT_EQ(a.pixels.size(), b.pixels.size());
     const bool lines = more.size() > 1 && more[0] == "--topology";  // thin, and drawn in another way
@@ -73,8 +74,8 @@ TEST_F(View, PictureIsThatOfTheHeadlessCommand) {
 
 TEST_F(View, LookKnobsAreSeen) {
   const fs::path png = folder / "a.png";
-  const auto picture = [&](const Words& more) {
-    const Outcome outcome = nacre(small_view + Words{"--image", png.string(), "--frames-count", "1"} + more);
+  const auto picture = [&](const Arguments& more) {
+    const Outcome outcome = nacre(small_view + Arguments{"--image", png.string(), "--frames-count", "1"} + more);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return read_png(png);
   };
@@ -82,35 +83,35 @@ TEST_F(View, LookKnobsAreSeen) {
   for (const char* knob : {"arrows=true", "clip=x", "light_azimuth=60", "light_height=-50", "ambient=0.9", "edges=true",
                            "color_range=0:9", "legend=false"})
     EXPECT_GT(mean_difference(plain, picture({"--set", knob})), 0.3) << knob;
-  const Outcome nonsense = nacre(small_view + Words{"--image", png.string(), "--color-range", "9:1"});
+  const Outcome nonsense = nacre(small_view + Arguments{"--image", png.string(), "--color-range", "9:1"});
   EXPECT_EQ(nonsense.status, 2) << nonsense.err;
 }
 
 TEST_F(View, TwoReplaysAreTheSame) {
   const fs::path first = folder / "1.png", second = folder / "2.png";
-  ASSERT_EQ(nacre(small_view + Words{"--image", first.string()}).status, 0);
-  ASSERT_EQ(nacre(small_view + Words{"--image", second.string(), "--threads", "1"}).status, 0);
+  ASSERT_EQ(nacre(small_view + Arguments{"--image", first.string()}).status, 0);
+  ASSERT_EQ(nacre(small_view + Arguments{"--image", second.string(), "--threads", "1"}).status, 0);
   EXPECT_EQ(read_png(first).pixels, read_png(second).pixels);
 }
 
 TEST_F(View, LiveFramesDoNotWaitForCompute) {
   const fs::path json = folder / "view.json";
-  ASSERT_EQ(nacre(small_view + Words{"--live", "--frames-count", "60", "--panel", "--report", json.string()}).status,
-            0);
+  ASSERT_EQ(
+      nacre(small_view + Arguments{"--live", "--frames-count", "60", "--panel", "--report", json.string()}).status, 0);
   const nlohmann::json view = read_json(json).at("view");
   EXPECT_GE(view.at("frames"), 60);
   EXPECT_LT(view.at("first_frame_seconds"), 2.0);
   EXPECT_TRUE(view.at("driver_messages").empty()) << view.dump(1);
 }
 
-Outcome with_faults(const std::string& faults, const Words& words) {
+Outcome with_faults(const std::string& faults, const Arguments& arguments) {
   return run("/bin/bash",
-             Words{"-c", "NACRE_FAULTS=" + faults + " exec \"$0\" \"$@\"", program_path} + small_view + words);
+             Arguments{"-c", "NACRE_FAULTS=" + faults + " exec \"$0\" \"$@\"", program_path} + small_view + arguments);
 }
 
 TEST_F(View, AResetGraphicsDeviceIsBornAndTheSessionGoesOn) {
   const fs::path png = folder / "view.png", json = folder / "view.json", whole = folder / "whole.png";
-  ASSERT_EQ(nacre(small_view + Words{"--image", whole.string()}).status, 0);
+  ASSERT_EQ(nacre(small_view + Arguments{"--image", whole.string()}).status, 0);
   // In the second frame: the flow starts over, so that six frames show what four do without it.
   const Outcome outcome =
       with_faults("lost-context@2", {"--frames-count", "6", "--image", png.string(), "--report", json.string()});
@@ -121,7 +122,7 @@ TEST_F(View, AResetGraphicsDeviceIsBornAndTheSessionGoesOn) {
 
 TEST_F(View, AnotherDevicesPictureIsTheSameAndItsCopiesAreCounted) {
   const fs::path png = folder / "view.png", json = folder / "view.json", mapped = folder / "mapped.png";
-  ASSERT_EQ(nacre(small_view + Words{"--image", mapped.string()}).status, 0);
+  ASSERT_EQ(nacre(small_view + Arguments{"--image", mapped.string()}).status, 0);
   const Outcome outcome = with_faults("other-device", {"--image", png.string(), "--report", json.string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(read_png(png).pixels, read_png(mapped).pixels);
@@ -165,8 +166,8 @@ TEST_F(View, FailuresAreOneLine) {
 
 TEST_F(View, OldOpenGlIsNamed) {
   const Outcome outcome =
-      run("/bin/bash", Words{"-c", "MESA_GL_VERSION_OVERRIDE=3.3 exec \"$0\" \"$@\"", program_path} + small_view +
-                           Words{"--image", (folder / "x.png").string()});
+      run("/bin/bash", Arguments{"-c", "MESA_GL_VERSION_OVERRIDE=3.3 exec \"$0\" \"$@\"", program_path} + small_view +
+                           Arguments{"--image", (folder / "x.png").string()});
   if (outcome.status == 0) GTEST_SKIP() << "this driver is not Mesa's";
   EXPECT_EQ(outcome.status, 1);
   EXPECT_TRUE(contains(outcome.err, "no OpenGL 4.5")) << outcome.err;
@@ -236,10 +237,11 @@ TEST_F(View, AWindowAsksBeforeSomethingIsLostAndCtrlCWritesWhatQuittingWrites) {
 
 /// The panel as a window draws it with this fault, without the lines that tell steps and times; empty where there is no
 /// Xvfb.
-Image panel_in_window(const std::string& fault, const fs::path& png, const Words& more) {
-  const Words words = {"--sample", "sphere",   "--detail",       "24", "--resolution", "64",        "--size", "800x600",
-                       "--set",    "tab=look", "--frames-count", "30", "--image",      png.string()};
-  const Outcome outcome = in_window(words + more, "export NACRE_FAULTS=" + fault);
+Image panel_in_window(const std::string& fault, const fs::path& png, const Arguments& more) {
+  const Arguments arguments = {"--sample", "sphere",    "--detail", "24",       "--resolution",   "64",
+                               "--size",   "800x600",   "--set",    "tab=look", "--frames-count", "30",
+                               "--image",  png.string()};
+  const Outcome outcome = in_window(arguments + more, "export NACRE_FAULTS=" + fault);
   if (outcome.status == 77) return {};
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   const Image whole = read_png(png);

@@ -83,7 +83,7 @@ void FlowScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   stale_ = !looks_back_ && (stale_ || rerun.has(FlowStage::step));
   if (rerun.has(FlowStage::start) || changed.has("focus")) drop_focus();
   colour_focus();
-  ++look_version_;
+  ++overlay_version_;
 }
 
 SceneTotals FlowScene::totals() const {
@@ -135,10 +135,10 @@ Image FlowScene::overlay(int width, int height) {
   FlowCaption wanted = caption();
   if (!wanted.map && !wanted.time) return {};
   const std::optional<double> time = std::exchange(wanted.time, {});
-  if (legend_.width != width || legend_.height != height || legend_version_ != look_version_) {
+  if (legend_.width != width || legend_.height != height || legend_version_ != overlay_version_) {
     legend_ = clear_sheet(width, height, paper_of(settings_.background));
     draw_caption(legend_, wanted);
-    legend_version_ = look_version_;
+    legend_version_ = overlay_version_;
   }
   Image sheet = legend_;
   wanted.map = nullptr;
@@ -150,7 +150,7 @@ Image FlowScene::overlay(int width, int height) {
 void FlowScene::advance(double now) {
   while (std::optional<FlowEvent> event = worker_.poll()) take(*event);
   ask_boxes();
-  look(now);
+  watch_view(now);
   if (!wants_step() || now - last_step_ < 1 / (settings_.fps * settings_.view.play_speed)) return;
   if (play_kept() || begin_step(false)) last_step_ = now;
 }
@@ -232,7 +232,7 @@ void FlowScene::take(FlowData& told) {
   move_arrows();
   if (const KeptFrame* kept = looked_back_at()) show_moment(kept->moment);  // which is of another time
   failure_.clear();
-  ++look_version_;
+  ++overlay_version_;
 }
 
 /// By the knobs where these mean something, else the data's.
@@ -419,11 +419,11 @@ void FlowScene::move_arrows() {
 }
 
 void FlowScene::draw_arrows(const View& view) {
-  ArrowStyle look;
-  look.scale = float(settings_.view.arrow_length);
-  look.width = float(0.3 * arrow_spacing());
-  look.mapped = results_.data.color == "none";  // dark where they would vanish in the surface's colours
-  arrow_pass_.draw(view, surface_.placement(), look);
+  ArrowStyle style;
+  style.scale = float(settings_.view.arrow_length);
+  style.width = float(0.3 * arrow_spacing());
+  style.mapped = results_.data.color == "none";  // dark where they would vanish in the surface's colours
+  arrow_pass_.draw(view, surface_.placement(), style);
 }
 
 }  // namespace nacre

@@ -38,7 +38,7 @@ class FlowScene : public Scene {
   void draw(const View& view) override;
   Image overlay(int width, int height) override;
   std::uint64_t version() const override { return version_; }
-  std::uint64_t overlay_version() const override { return look_version_ + time_version_; }
+  std::uint64_t overlay_version() const override { return overlay_version_ + time_version_; }
   std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
   void write_result(const std::filesystem::path& file) override;
   void begin_write(const std::filesystem::path& file) override;
@@ -138,7 +138,7 @@ class FlowScene : public Scene {
   bool wants_step() const { return (settings_.view.play && !ended()) || stale_; }
 
   // Focus, in flow_scene_focus.cpp.
-  void look(double now);
+  void watch_view(double now);
   void await_focus(const View& view);
   bool sees(const View& view);
   double pixel() const;
@@ -224,17 +224,17 @@ class FlowScene : public Scene {
   double last_step_ = -1e9, area_ = 0;
   bool stale_ = true;  ///< knobs have changed what the next step shows
   KeptFrames kept_{std::size_t(512) << 20};
-  Settings frames_of_;                ///< the knobs that those have
+  Settings frames_of_;               ///< the knobs that those have
   std::deque<KeptFlow> kept_flows_;  ///< the last comes last
-  const bool loops_;         ///< the worker does, on and on
-  double begun_at_;          ///< the worker's `begin_at`
-  int skipped_ = 0;          ///< steps before the worker's first
-  int position_ = -1;        ///< that is seen; -1: none yet
-  int newest_ = -1;          ///< of the worker's last step; -1: none since it started
-  bool looks_back_ = false;  ///< a kept frame is seen, and the worker stands elsewhere
-  bool warming_ = false;     ///< a start goes on at another time than the texture's
+  const bool loops_;                 ///< the worker does, on and on
+  double begun_at_;                  ///< the worker's `begin_at`
+  int skipped_ = 0;                  ///< steps before the worker's first
+  int position_ = -1;                ///< that is seen; -1: none yet
+  int newest_ = -1;                  ///< of the worker's last step; -1: none since it started
+  bool looks_back_ = false;          ///< a kept frame is seen, and the worker stands elsewhere
+  bool warming_ = false;             ///< a start goes on at another time than the texture's
   std::uint64_t copied_ = 0, taken_ = 0;
-  std::uint64_t look_version_ = 1, time_version_ = 0, legend_version_ = 0;  ///< of the overlay
+  std::uint64_t overlay_version_ = 1, time_version_ = 0, legend_version_ = 0;  ///< of the overlay
   Image legend_;
 };
 

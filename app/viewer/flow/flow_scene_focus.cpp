@@ -36,7 +36,7 @@ bool FlowScene::focus_changes() const { return awaits_focus_ || next_focus_ || (
 
 /// In a window: asks for a focus once the camera rests. One that is there stays while the camera moves, for it belongs
 /// to the surface.
-void FlowScene::look(double now) {
+void FlowScene::watch_view(double now) {
   now_ = now;
   if (focus_ && (former_focus_ || !focused())) ++version_;
   if (focused()) release(former_focus_);

@@ -69,18 +69,18 @@ void FlowWorker::read() {
     } else {
       SurfaceSeries series = input_.sample.empty() ? open_surface(input_.inputs, settings_.patch)
                                                    : make_sample(input_.sample, input_.detail);
-      FlowLog news;
-      news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
-      news.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
-      news.read = [&](const Surface& first) { tell(offer_of(first)); };
+      FlowLog log;
+      log.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
+      log.chosen = [&](const VectorChoice& choice) { reason = choice.reason; };
+      log.read = [&](const Surface& first) { tell(offer_of(first)); };
       const Range all{series.times.front(), series.times.back()};
-      news.first_step = [&](VectorsInTime& first) {  // something to see, before all steps are read
+      log.first_step = [&](VectorsInTime& first) {  // something to see, before all steps are read
         tell(describe(first));
         told_surface = true;
         shown_time_ = first.start();
         tell_data(first, all, reason, {});
       };
-      vectors_ = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings_, news, &interrupt_));
+      vectors_ = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings_, log, &interrupt_));
       shown_time_ = vectors_->start();
     }
     if (!told_surface || vectors_->moves()) tell(describe(*vectors_));
@@ -98,13 +98,13 @@ void FlowWorker::choose() {
     if (doing_ == FlowStage::vectors) {
       const Surface first = vectors_->series().load(0);
       const VectorChoice choice = choose_vectors(first, settings_.vectors);
-      FlowLog news;
-      news.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
-      const MotionChoice motion = choose_motion(vectors_->series(), first, choice.name, settings_, news);
+      FlowLog log;
+      log.warn = [&](const std::string& sentence) { warnings.push_back(sentence); };
+      const MotionChoice motion = choose_motion(vectors_->series(), first, choice.name, settings_, log);
       vectors_->set_vectors(choice.name);
       if (!(motion == vectors_->motion())) vectors_->set_motion(motion);
       reason = choice.reason;
-      warn_of_vectors(*vectors_, news);
+      warn_of_vectors(*vectors_, log);
     } else {
       choose_colours();
     }

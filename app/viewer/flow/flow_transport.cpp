@@ -22,7 +22,8 @@ FlowRerun FlowScene::pass_on(const Settings& settings, bool jumps) {
   } else if (jumps) {
     const int steps = steps_in_all(), skipped = std::clamp(int(std::lround(settings.begin_at * steps)), 0, steps);
     seek(position_after(skipped + 1 - skipped_));
-  } else if (back && !kept && (rerun.has(FlowStage::colours) || rerun.has(FlowStage::lines))) {  // what was shown is gone
+  } else if (back && !kept &&
+             (rerun.has(FlowStage::colours) || rerun.has(FlowStage::lines))) {  // what was shown is gone
     restart_at(position);
   }
   return rerun;

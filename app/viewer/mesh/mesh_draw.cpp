@@ -40,7 +40,7 @@ const char* title_of(SliceField field) {
 
 }  // namespace
 
-/// Every material is solid unless the look says otherwise; the outside has no say.
+/// Every material is solid unless the view says otherwise; the outside has no say.
 void MeshScene::update_material_styles() {
   if (!results_.volume) return;
   const std::vector<std::int64_t>& labels = results_.volume->input.labels;
@@ -228,8 +228,8 @@ void MeshScene::draw_particles(const View& view) const {
   const Buffer& position = kept ? kept->position : particle_positions_->shown();
   const Buffer& direction = kept ? kept->direction : direction_->shown();
   const ShownCounts& counts = kept ? kept->counts : counts_;
-  const auto draw = [&](std::int64_t first, std::int64_t count, const ParticleStyle& look) {
-    particle_pass_.draw(view, voxels_, position, direction, std::size_t(first), std::size_t(count), look);
+  const auto draw = [&](std::int64_t first, std::int64_t count, const ParticleStyle& style) {
+    particle_pass_.draw(view, voxels_, position, direction, std::size_t(first), std::size_t(count), style);
   };
   const std::int64_t points = counts.points, curves = counts.curves;
   draw(points + curves, counts.surfaces, {0.44f, false, by_energy, range(ideal)});

@@ -28,27 +28,27 @@ bool has_cells(const std::filesystem::path& file) {
 void MeshWorker::read() {
   note_progress({"read", 0, 0, 0, 0});
   StageTimers::Scope scope(pipeline_->timers(), "read");
-  MaterialSettings words;
+  MaterialSettings materials;
   {
     std::scoped_lock lock(mutex_);
-    words = wanted_.materials;
+    materials = wanted_.materials;
   }
-  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(input_, words, &interrupt_));
+  volumes_ = std::make_shared<std::vector<Volume>>(read_mesh_volumes(input_, materials, &interrupt_));
 }
 
 void MeshWorker::choose_materials() {
   note_progress({"materials", 0, 0, 0, 0});
-  MaterialSettings words;
+  MaterialSettings materials;
   {
     std::scoped_lock lock(mutex_);
-    words = wanted_.materials;
+    materials = wanted_.materials;
   }
   auto viewed = std::make_shared<ViewedVolume>();
   MeshVolume volume;
   {
     StageTimers::Scope scope(pipeline_->timers(), "classify");
-    volume = materials_of(words, viewed->input);
-    volume.sizes = read_size_image(words);
+    volume = materials_of(materials, viewed->input);
+    volume.sizes = read_size_image(materials);
     if (volume.kind == MeshVolume::Kind::scalar) viewed->spread = spread_of(volumes_->front());
   }
   pipeline_->load(volume);
@@ -77,18 +77,18 @@ void MeshWorker::preview() {
 }
 
 /// A live view shows something first, and the user moves the iso-value then; a replay needs it given.
-MeshVolume MeshWorker::materials_of(MaterialSettings words, MeshInput& input) {
+MeshVolume MeshWorker::materials_of(MaterialSettings materials, MeshInput& input) {
   const bool sample = !input_.sample.empty();
   std::string proposal;
   try {
-    return make_materials(*volumes_, sample, words, input);
+    return make_materials(*volumes_, sample, materials, input);
   } catch (const MissingIsovalue& missing) {
     std::scoped_lock lock(mutex_);
     if (lockstep_) throw;
     proposal = fmt::format("{:.4g}", missing.proposal());
-    wanted_.materials.isovalue = words.isovalue = proposal;
+    wanted_.materials.isovalue = materials.isovalue = proposal;
   }
-  MeshVolume volume = make_materials(*volumes_, sample, words, input);
+  MeshVolume volume = make_materials(*volumes_, sample, materials, input);
   input.warnings.push_back(fmt::format(
       "{} is no label map: it was cut at the iso-value {}, which the tab 'data' changes", input.name, proposal));
   tell(IsovalueProposed{proposal});

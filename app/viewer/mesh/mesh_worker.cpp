@@ -16,7 +16,7 @@
 namespace nacre {
 namespace {
 
-auto words(const MaterialSettings& w) {
+auto of_materials(const MaterialSettings& w) {
   return std::tie(w.labels, w.isovalue, w.threshold, w.materials, w.merge, w.min_component, w.size_image);
 }
 
@@ -25,7 +25,7 @@ auto words(const MaterialSettings& w) {
 MeshStage mesh_restart(const Settings& before, const Settings& after) {
   const MaterialSettings &were = before.materials, &are = after.materials;
   if (were.names != are.names || were.layer != are.layer) return MeshStage::read;
-  if (words(before.materials) != words(after.materials)) return MeshStage::materials;
+  if (of_materials(before.materials) != of_materials(after.materials)) return MeshStage::materials;
   switch (mesh_rerun(before.mesh, after.mesh)) {
     case MeshRerun::fields: return MeshStage::fields;
     case MeshRerun::relax: return MeshStage::relax;

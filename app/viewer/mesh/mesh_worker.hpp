@@ -178,7 +178,7 @@ class MeshWorker : public Worker<MeshEvent> {
   void read();
   void choose_materials();
   void preview();
-  MeshVolume materials_of(MaterialSettings words, MeshInput& input);
+  MeshVolume materials_of(MaterialSettings materials, MeshInput& input);
   void build_fields();
   void relax();
   void triangulate();

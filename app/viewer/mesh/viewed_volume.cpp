@@ -142,7 +142,7 @@ SlicePlane slice_plane(const MeshInput& input, int axis, double at) {
   return plane;
 }
 
-int slice_axis(const ViewSettings& look) { return int(look.slice) - 1; }
+int slice_axis(const ViewSettings& view) { return int(view.slice) - 1; }
 
 Image volume_slice(const ViewedVolume& v, const SlicePlane& plane, std::span<const Color> palette, const Colormap& map,
                    double low, double high) {

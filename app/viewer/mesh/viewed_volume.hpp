@@ -66,8 +66,8 @@ struct SlicePlane {
 /// The plane across the volume's axis that runs most along the world's `axis` (0..2), at a share of the volume.
 SlicePlane slice_plane(const MeshInput& input, int axis, double at);
 
-/// What the look asks for: 0..2; -1: none.
-int slice_axis(const ViewSettings& look);
+/// What the view asks for: 0..2; -1: none.
+int slice_axis(const ViewSettings& view);
 
 /// A pixel per voxel: materials in the colours of `palette`, or the values of a scalar volume by the map, which runs
 /// from `low` to `high`. Row 0 is at the corner.

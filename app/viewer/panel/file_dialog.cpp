@@ -166,11 +166,11 @@ std::optional<std::vector<fs::path>> FileDialog::draw() {
   const bool exists = mode_ == Mode::save && files.size() == 1 && fs::exists(files[0], ignored);
   const bool asks = exists && overwrite_ == files[0];
   const std::string several = fmt::format("open {} files###open", files.size());
-  const char* words = asks                  ? "replace it"
+  const char* label = asks                  ? "replace it"
                       : mode_ == Mode::save ? "save"
                       : files.size() > 1    ? several.c_str()
                                             : "open###open";
-  if ((ImGui::Button(words) || entered_) && !files.empty()) {
+  if ((ImGui::Button(label) || entered_) && !files.empty()) {
     if (exists && !asks)
       overwrite_ = files[0];  // once more to be sure
     else

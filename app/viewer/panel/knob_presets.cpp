@@ -137,9 +137,9 @@ void KnobPresets::draw(Settings& settings, const std::string& job) {
       for (const KnobPreset& preset : of(job)) {
         if (ImGui::Selectable(preset.name.c_str())) trouble_.clear(), apply_preset(preset, settings);
         if (!ImGui::IsItemHovered()) continue;
-        std::string words = preset.help;
-        for (const auto& [knob, value] : preset.knobs) words += fmt::format("\n{} = {}", knob, value);
-        ImGui::SetTooltip("%s", words.c_str());
+        std::string tip = preset.help;
+        for (const auto& [knob, value] : preset.knobs) tip += fmt::format("\n{} = {}", knob, value);
+        ImGui::SetTooltip("%s", tip.c_str());
       }
       ImGui::Separator();
       ImGui::SetNextItemWidth(10 * ImGui::GetFontSize());

@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "app/viewer/panel/imgui_text.hpp"
-#include "app/viewer/panel/knob_words.hpp"
+#include "app/viewer/panel/knob_names.hpp"
 #include "app/viewer/scene/view_defaults.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/run/shown_colours.hpp"
@@ -81,7 +81,7 @@ void colour_widget(std::string& value) {
   if (!value.empty() && !hex_colour(value)) value.clear();  // what is no colour
 }
 
-void words_widget(std::string& value) {
+void text_widget(std::string& value) {
   let_go(value, [](std::string& shown) { ImGui::InputText("##value", &shown); });
 }
 
@@ -99,15 +99,15 @@ void value_widget(const Knob& knob, const std::vector<std::string>& choices) {
     const auto chosen = std::find(knob.choices.begin(), knob.choices.end(), name);
     choice->set(choice->member, int(chosen - knob.choices.begin()));
   }
-  if (auto* const* words = std::get_if<std::string*>(&knob.value)) {
+  if (auto* const* string = std::get_if<std::string*>(&knob.value)) {
     if (knob.name == "color_below" || knob.name == "color_above" || knob.name == "color_nan")
-      colour_widget(**words);
+      colour_widget(**string);
     else if (knob.name == "colormap")
-      choice_widget(**words, colormap_names());
+      choice_widget(**string, colormap_names());
     else if (!knob.choices.empty() || !choices.empty())
-      choice_widget(**words, knob.choices.empty() ? choices : knob.choices);
+      choice_widget(**string, knob.choices.empty() ? choices : knob.choices);
     else
-      words_widget(**words);
+      text_widget(**string);
   }
 }
 
@@ -127,7 +127,7 @@ void keep_sizes_in_order(Settings& settings, const std::string& turned) {
   if (turned == "max_size") largest = std::max(smallest, largest);
 }
 
-/// What it does, in which unit, what a change costs; `job` empty: it belongs to the look.
+/// What it does, in which unit, what a change costs; `job` empty: it belongs to the view.
 void explain(const Knob& knob, const std::string& job, bool changed, const std::string& usual) {
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(28 * ImGui::GetFontSize());
@@ -165,13 +165,13 @@ void knob_widget(Settings& settings, const std::string& name, const std::vector<
 }
 
 static bool matches(const Knob& knob, const std::string& filter) {
-  const auto lower = [](std::string words) {
-    std::transform(words.begin(), words.end(), words.begin(), [](unsigned char c) { return std::tolower(c); });
-    return words;
+  const auto lower = [](std::string name) {
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
   };
   const std::string wanted = lower(filter);
-  for (const std::string& words : {knob.name, knob.help, plain_name(knob.name)})
-    if (lower(words).find(wanted) != std::string::npos) return true;
+  for (const std::string& candidate : {knob.name, knob.help, plain_name(knob.name)})
+    if (lower(candidate).find(wanted) != std::string::npos) return true;
   return false;
 }
 

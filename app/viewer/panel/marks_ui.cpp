@@ -44,10 +44,10 @@ void Ui::measure(Session& session, Scene& scene, const UiFacts& facts) {
   std::vector<Vec3d> points = parse_ruler(ruler);
   if (points.size() >= 3) points.clear();
   points.push_back(*point);
-  ruler = ruler_words(points);
-  std::string words;
-  for (const std::string& line : ruler_lines(points, scene.unit())) words += (words.empty() ? "" : ", ") + line;
-  show_note(words.empty() ? "ruler: d at the second point" : "ruler: " + words);
+  ruler = ruler_text(points);
+  std::string text;
+  for (const std::string& line : ruler_lines(points, scene.unit())) text += (text.empty() ? "" : ", ") + line;
+  show_note(text.empty() ? "ruler: d at the second point" : "ruler: " + text);
 }
 
 /// One more source of the last dye, or of another one.
@@ -96,24 +96,24 @@ void Ui::note_window(Session& session) {
     std::string& notes = session.settings.view.notes;
     std::vector<PlacedNote> all = parse_notes(notes);
     if (note_.find_first_not_of(' ') != std::string::npos) all.push_back({*note_place_, note_});
-    notes = notes_words(all);
+    notes = notes_text(all);
     ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
 }
 
 void Ui::marks_menu(Session& session) {
-  ViewSettings& look = session.settings.view;
+  ViewSettings& view = session.settings.view;
   if (!ImGui::BeginMenu("Marks")) return;
   ImGui::TextDisabled("d: ruler, n: note, r: dye, g: graph, at the point under the cursor");
   if (ImGui::MenuItem("Remove all dye", nullptr, false, !session.settings.dye.empty())) session.settings.dye.clear();
-  if (ImGui::MenuItem("Remove the ruler", nullptr, false, !look.ruler.empty())) look.ruler.clear();
-  if (ImGui::BeginMenu("Remove a note", !look.notes.empty())) {
-    std::vector<PlacedNote> notes = parse_notes(look.notes);
+  if (ImGui::MenuItem("Remove the ruler", nullptr, false, !view.ruler.empty())) view.ruler.clear();
+  if (ImGui::BeginMenu("Remove a note", !view.notes.empty())) {
+    std::vector<PlacedNote> notes = parse_notes(view.notes);
     for (std::size_t k = 0; k < notes.size(); ++k)
       if (ImGui::MenuItem(fmt::format("{}##{}", notes[k].text, k).c_str())) {
         notes.erase(notes.begin() + std::ptrdiff_t(k));
-        look.notes = notes_words(notes);
+        view.notes = notes_text(notes);
         break;
       }
     ImGui::EndMenu();
@@ -123,8 +123,8 @@ void Ui::marks_menu(Session& session) {
 
 void Ui::cameras_menu(Session& session) {
   if (!ImGui::BeginMenu("Cameras", session.camera.has_value())) return;
-  std::string& words = session.settings.view.cameras;
-  std::vector<SavedCamera> kept = parse_cameras(words);
+  std::string& text = session.settings.view.cameras;
+  std::vector<SavedCamera> kept = parse_cameras(text);
   ImGui::SetNextItemWidth(10 * ImGui::GetFontSize());
   const std::string usual = fmt::format("view {}", kept.size() + 1);
   const bool typed =
@@ -133,7 +133,7 @@ void Ui::cameras_menu(Session& session) {
   if (ImGui::Button("keep this one") || typed) {
     kept.push_back({camera_name_.empty() ? usual : camera_name_, *session.camera});
     camera_name_.clear();
-    words = cameras_words(kept);
+    text = cameras_text(kept);
   }
   for (std::size_t k = 0; k < kept.size(); ++k) {
     const std::string key = k < 9 ? fmt::format("{}", k + 1) : "";
@@ -143,7 +143,7 @@ void Ui::cameras_menu(Session& session) {
     for (std::size_t k = 0; k < kept.size(); ++k)
       if (ImGui::MenuItem(fmt::format("{}##{}", kept[k].name, k).c_str())) {
         kept.erase(kept.begin() + std::ptrdiff_t(k));
-        words = cameras_words(kept);
+        text = cameras_text(kept);
         break;
       }
     ImGui::EndMenu();

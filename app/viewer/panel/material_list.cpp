@@ -21,8 +21,8 @@ constexpr std::size_t few = 12;  ///< materials that are seen at a glance
 
 using Labels = std::set<std::int64_t>;
 
-Labels set_of(const std::string& words) {
-  const std::vector<std::int64_t> labels = labels_of(words);
+Labels set_of(const std::string& line) {
+  const std::vector<std::int64_t> labels = labels_of(line);
   return {labels.begin(), labels.end()};
 }
 
@@ -40,11 +40,11 @@ struct Sight {
   std::map<std::int64_t, Color> colours;
   bool operator==(const Sight&) const = default;
 
-  explicit Sight(const ViewSettings& look)
-      : hidden(set_of(look.hidden)),
-        ghosts(set_of(look.ghosts)),
-        opacity(parse_label_opacities(look.opacity)),
-        colours(parse_label_colours(look.material_colors)) {}
+  explicit Sight(const ViewSettings& view)
+      : hidden(set_of(view.hidden)),
+        ghosts(set_of(view.ghosts)),
+        opacity(parse_label_opacities(view.opacity)),
+        colours(parse_label_colours(view.material_colors)) {}
 
   void set(std::int64_t label, Seen seen) {
     hidden.erase(label);
@@ -61,17 +61,17 @@ struct Sight {
     set(label, Seen::solid);
     if (value < 1) opacity[label] = value;
   }
-  void store(ViewSettings& look) const {
-    look.hidden = fmt::format("{}", fmt::join(hidden, ","));
-    look.ghosts = fmt::format("{}", fmt::join(ghosts, ","));
-    look.opacity = label_opacity_words(opacity);
-    look.material_colors = label_colour_words(colours);
+  void store(ViewSettings& view) const {
+    view.hidden = fmt::format("{}", fmt::join(hidden, ","));
+    view.ghosts = fmt::format("{}", fmt::join(ghosts, ","));
+    view.opacity = label_opacity_text(opacity);
+    view.material_colors = label_colour_text(colours);
   }
 };
 
-std::string lower_case(std::string words) {
-  for (char& c : words) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return words;
+std::string lower_case(std::string line) {
+  for (char& c : line) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return line;
 }
 
 /// What the column "volume" has: voxels until there is a mesh to be measured.
@@ -86,29 +86,29 @@ std::string volume_head(const MeshResults& results) {
   return (millilitres(results.volume->input.unit) > 0 ? "mL" : "volume, unit³") + std::string("###volume");
 }
 
-std::string size_words(double size) { return size >= 1e3 ? grouped(std::llround(size)) : fmt::format("{:.4g}", size); }
+std::string size_text(double size) { return size >= 1e3 ? grouped(std::llround(size)) : fmt::format("{:.4g}", size); }
 
-std::string volume_words(const MeshResults& results, std::size_t m) {
+std::string volume_text(const MeshResults& results, std::size_t m) {
   if (!results.measures || m >= results.measures->topology.materials.size())
     return grouped((long long)results.volume->input.voxels[m]);
   const MaterialTopology& t = results.measures->topology.materials[m];
   const double unit = millilitres(results.volume->input.unit);
-  return size_words(unit > 0 ? unit * t.volume : t.volume) + (t.facets == 0 ? " lost" : t.closed ? "" : " open");
+  return size_text(unit > 0 ? unit * t.volume : t.volume) + (t.facets == 0 ? " lost" : t.closed ? "" : " open");
 }
 
 /// What the column has no room for.
 std::string size_details(const MeshResults& results, std::size_t m) {
   const MeshInput& input = results.volume->input;
-  std::string words = grouped((long long)input.voxels[m]) + " voxels";
-  if (!results.measures || m >= results.measures->area.size()) return words;
+  std::string line = grouped((long long)input.voxels[m]) + " voxels";
+  if (!results.measures || m >= results.measures->area.size()) return line;
   const double ml = millilitres(input.unit), volume = results.measures->topology.materials[m].volume,
                area = results.measures->area[m];
   const std::string unit = input.unit.empty() ? "unit" : input.unit;
-  words += fmt::format("\nvolume {} {}³", size_words(volume), unit);
-  if (ml > 0) words += fmt::format(" = {} mL", size_words(ml * volume));
-  words += fmt::format("\narea {} {}²", size_words(area), unit);
-  if (ml > 0) words += fmt::format(" = {} cm²", size_words(std::pow(ml, 2.0 / 3) * area));
-  return words;
+  line += fmt::format("\nvolume {} {}³", size_text(volume), unit);
+  if (ml > 0) line += fmt::format(" = {} mL", size_text(ml * volume));
+  line += fmt::format("\narea {} {}²", size_text(area), unit);
+  if (ml > 0) line += fmt::format(" = {} cm²", size_text(std::pow(ml, 2.0 / 3) * area));
+  return line;
 }
 
 /// Of the column; it is known before the rows are drawn.
@@ -116,7 +116,7 @@ float volume_width(const std::vector<std::size_t>& rows, const MeshResults& resu
   float widest = ImGui::CalcTextSize(volume_head(results).c_str(), nullptr, true).x +
                  1.2f * ImGui::GetFontSize();  // and the arrow of the order
   for (std::size_t k = 0; k < std::min<std::size_t>(rows.size(), 500); ++k)
-    widest = std::max(widest, ImGui::CalcTextSize(volume_words(results, rows[k]).c_str()).x);
+    widest = std::max(widest, ImGui::CalcTextSize(volume_text(results, rows[k]).c_str()).x);
   return widest;
 }
 
@@ -191,7 +191,7 @@ void row(const MeshResults& results, const std::vector<Color>& palette, std::siz
   if (hidden) ImGui::PopStyleColor();
   if (cut && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", name.c_str());
   ImGui::TableNextColumn();
-  text(volume_words(results, m));
+  text(volume_text(results, m));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", size_details(results, m).c_str());
   ImGui::TableNextColumn();
   row_buttons(input, m, sight);
@@ -229,7 +229,7 @@ std::vector<std::size_t> MaterialList::found(const MeshInput& input) const {
   return all;
 }
 
-void MaterialList::draw(const MeshResults& results, ViewSettings& look) {
+void MaterialList::draw(const MeshResults& results, ViewSettings& view) {
   const MeshInput& input = results.volume->input;
   const std::string title = fmt::format("materials: {}###materials", grouped((long long)input.labels.size() - 1));
   if (!ImGui::CollapsingHeader(title.c_str(), ImGuiTreeNodeFlags_DefaultOpen)) return;
@@ -241,10 +241,10 @@ void MaterialList::draw(const MeshResults& results, ViewSettings& look) {
     wanted_.clear();
   }
   const std::vector<std::size_t> rows = found(input);
-  Sight sight(look);
+  Sight sight(view);
   const Sight before = sight;
-  const auto for_all = [&](const char* words, Seen seen) {
-    if (ImGui::Button(words))
+  const auto for_all = [&](const char* label, Seen seen) {
+    if (ImGui::Button(label))
       for (const std::size_t m : rows) sight.set(input.labels[m], seen);
     ImGui::SameLine();
   };
@@ -252,8 +252,8 @@ void MaterialList::draw(const MeshResults& results, ViewSettings& look) {
   for_all("hide", Seen::hidden);
   for_all("ghost", Seen::ghost);
   text(wanted_.empty() ? "all" : "these");
-  table(results, rows, material_palette(input, look.material_colors), sight);
-  if (sight != before) sight.store(look);
+  table(results, rows, material_palette(input, view.material_colors), sight);
+  if (sight != before) sight.store(view);
 }
 
 }  // namespace nacre

@@ -14,7 +14,7 @@ namespace nacre {
 class MaterialList {
  public:
   /// With Dear ImGui. Changes which are hidden and which are ghosts.
-  void draw(const MeshResults& results, ViewSettings& look);
+  void draw(const MeshResults& results, ViewSettings& view);
 
  private:
   std::vector<std::size_t> found(const MeshInput& input) const;

@@ -160,24 +160,24 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
 
 void Ui::view_menu(Session& session, UiRequests& requests) {
   if (!ImGui::BeginMenu("View")) return;
-  ViewSettings& look = session.settings.view;
+  ViewSettings& view = session.settings.view;
   if (ImGui::MenuItem("Fit", "f")) requests.fit = true;
   for (const NamedView& v : views)
     if (ImGui::MenuItem(v.name, std::string(1, v.key).c_str())) requests.look_from = v.view;
   if (session.camera) ImGui::MenuItem("Orthographic", "o", &session.camera->orthographic);
   cameras_menu(session);
-  bool ball = look.turning == Turning::trackball;
-  if (ImGui::MenuItem("Trackball", "b", &ball)) look.turning = ball ? Turning::trackball : Turning::turntable;
+  bool ball = view.turning == Turning::trackball;
+  if (ImGui::MenuItem("Trackball", "b", &ball)) view.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
-  ImGui::MenuItem("Edges", "e", &look.edges);
+  ImGui::MenuItem("Edges", "e", &view.edges);
   marks_menu(session);
   ImGui::MenuItem("Legend", nullptr, &session.settings.legend);
-  ImGui::MenuItem("Panels", "p", &look.panel);
-  bool light = look.theme == Theme::light;
-  if (ImGui::MenuItem("Light", "t", &light)) look.theme = light ? Theme::light : Theme::dark;
-  bool right = look.panel_side == PanelSide::right;
+  ImGui::MenuItem("Panels", "p", &view.panel);
+  bool light = view.theme == Theme::light;
+  if (ImGui::MenuItem("Light", "t", &light)) view.theme = light ? Theme::light : Theme::dark;
+  bool right = view.panel_side == PanelSide::right;
   if (ImGui::MenuItem("Panel on the right", nullptr, &right))
-    look.panel_side = right ? PanelSide::right : PanelSide::left;
+    view.panel_side = right ? PanelSide::right : PanelSide::left;
   ImGui::EndMenu();
 }
 
@@ -248,12 +248,12 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
   else if (ImGui::IsMousePosValid() && !io.WantCaptureMouse)
     typed_ = false;
   if (io.WantTextInput || dialog_.is_open() || typed_) return;
-  ViewSettings& look = session.settings.view;
+  ViewSettings& view = session.settings.view;
   for (const ImWchar key : io.InputQueueCharacters) {
     for (const NamedView& v : views)
       if (ImWchar(v.key) == key) requests.look_from = v.view;
     if (key >= '1' && key <= '9')
-      if (const auto kept = parse_cameras(look.cameras); std::size_t(key - '1') < kept.size())
+      if (const auto kept = parse_cameras(view.cameras); std::size_t(key - '1') < kept.size())
         session.camera = kept[std::size_t(key - '1')].camera;
     switch (key) {
       case 'q': requests.quit = true; break;
@@ -261,10 +261,10 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'o':
         if (session.camera) session.camera->orthographic = !session.camera->orthographic;
         break;
-      case 'b': look.turning = other(look.turning); break;
-      case 'e': look.edges = !look.edges; break;
-      case 'p': look.panel = !look.panel; break;
-      case 't': look.theme = other(look.theme); break;
+      case 'b': view.turning = other(view.turning); break;
+      case 'e': view.edges = !view.edges; break;
+      case 'p': view.panel = !view.panel; break;
+      case 't': view.theme = other(view.theme); break;
       case 'd': measure(session, scene, facts); break;
       case 'n': ask_note(session, scene, facts); break;
       case 'g': plot_point(session, scene, facts); break;
@@ -273,7 +273,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case '?': help_ = !help_; break;
       case ' ':
         transport_.toggle_play(session, scene.transport());
-        if (look.play && scene.halted()) requests.resume = true;
+        if (view.play && scene.halted()) requests.resume = true;
         break;
       case ',': transport_.step(session, scene.transport(), -1); break;
       case '.': transport_.step(session, scene.transport(), 1); break;

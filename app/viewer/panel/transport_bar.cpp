@@ -120,8 +120,8 @@ void TransportBar::step(Session& session, const Transport& t, int by) {
 }
 
 void TransportBar::buttons(Session& session, const Transport& t) {
-  ViewSettings& look = session.settings.view;
-  const bool mesh = t.kind == Transport::Kind::iterations, plays = look.play && !t.ended;
+  ViewSettings& view = session.settings.view;
+  const bool mesh = t.kind == Transport::Kind::iterations, plays = view.play && !t.ended;
   if (icon_button("begin", begin_icon, mesh ? "to the first iteration" : "to the first time")) {
     if (mesh)
       pause(session, t), go_to(session, t, t.first);
@@ -133,9 +133,9 @@ void TransportBar::buttons(Session& session, const Transport& t) {
     toggle_play(session, t);
   if (icon_button("forth", forth_icon, "one step forward ( . )")) step(session, t, 1);
   if (mesh) return;
-  if (icon_button("loop", loop_icon, look.loop ? "begins again after the last time" : "stops at the last time",
-                  look.loop))
-    look.loop = !look.loop;
+  if (icon_button("loop", loop_icon, view.loop ? "begins again after the last time" : "stops at the last time",
+                  view.loop))
+    view.loop = !view.loop;
 }
 
 /// Positions from left to right: those that can be shown at once, times of the data, and what is seen.
@@ -191,7 +191,7 @@ void TransportBar::track(Session& session, const Transport& t) {
   ImGui::SetTooltip("%s%s", position_text(t, under()).c_str(), what);
 }
 
-void TransportBar::words(const Session& session, const Transport& t, bool narrow) {
+void TransportBar::labels(const Session& session, const Transport& t, bool narrow) {
   ImGui::AlignTextToFramePadding();
   if (t.shown >= t.first && !narrow) {
     std::string line = position_text(t, t.shown);
@@ -244,7 +244,7 @@ void TransportBar::draw(Session& session, const Transport& t, const FreeArea& ar
     const bool narrow = float(area.width) < 36 * ImGui::GetFontSize();  // the track comes first
     if (t.kind == Transport::Kind::time && !narrow) speed(session);
     const ImVec2 here = ImGui::GetCursorPos();
-    words(session, t, narrow);
+    labels(session, t, narrow);
     const float end = ImGui::GetCursorPosX();
     const float wide = (t.kind == Transport::Kind::time ? 22 : 18) * ImGui::GetFontSize();  // the track stays in place
     ImGui::SetCursorPos(

@@ -35,7 +35,7 @@ class TransportBar {
   void rewind(Session& session, const Transport& transport);
   void buttons(Session& session, const Transport& transport);
   void track(Session& session, const Transport& transport);
-  static void words(const Session& session, const Transport& transport, bool narrow);
+  static void labels(const Session& session, const Transport& transport, bool narrow);
   static void speed(Session& session);
 
   bool scrubs_ = false, played_ = false;  ///< pulled now; it played when that began

@@ -24,17 +24,17 @@ struct Layout {
   float menu, status, panel;
 };
 
-Layout layout(const ViewSettings& look, int width) {
+Layout layout(const ViewSettings& view, int width) {
   const float row = ImGui::GetFontSize() + 2 * ImGui::GetStyle().FramePadding.y;
-  const float wanted = 27 * ImGui::GetFontSize() * float(look.panel_width);
+  const float wanted = 27 * ImGui::GetFontSize() * float(view.panel_width);
   return {row, 1.6f * row, std::floor(std::min(wanted, 0.6f * float(width)))};
 }
 
-bool on_the_right(const ViewSettings& look) { return look.panel_side == PanelSide::right; }
+bool on_the_right(const ViewSettings& view) { return view.panel_side == PanelSide::right; }
 
 /// The border between panel and picture, to be pulled.
-void panel_border(ViewSettings& look, int width, const Layout& l, float high) {
-  const float grip = 0.4f * ImGui::GetFontSize(), edge = on_the_right(look) ? float(width) - l.panel : l.panel;
+void panel_border(ViewSettings& view, int width, const Layout& l, float high) {
+  const float grip = 0.4f * ImGui::GetFontSize(), edge = on_the_right(view) ? float(width) - l.panel : l.panel;
   ImGui::SetNextWindowPos(ImVec2(edge - 0.5f * grip, l.menu));
   ImGui::SetNextWindowSize(ImVec2(grip, high));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
@@ -45,8 +45,8 @@ void panel_border(ViewSettings& look, int width, const Layout& l, float high) {
     ImGui::InvisibleButton("grip", ImVec2(grip, high));
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0) {
-      const float by = on_the_right(look) ? -ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.x;
-      look.panel_width = std::clamp(look.panel_width + double(by) / (27 * ImGui::GetFontSize()), 0.5, 3.0);
+      const float by = on_the_right(view) ? -ImGui::GetIO().MouseDelta.x : ImGui::GetIO().MouseDelta.x;
+      view.panel_width = std::clamp(view.panel_width + double(by) / (27 * ImGui::GetFontSize()), 0.5, 3.0);
     }
   }
   ImGui::End();
@@ -66,9 +66,9 @@ void stage_table(const StageTimers& timers) {
   for (const char* head : {"stage", "calls", "total s", "mean ms"}) ImGui::TableSetupColumn(head);
   ImGui::TableHeadersRow();
   for (const StageTimers::Stage& stage : timers.stages()) {
-    const auto column = [](const std::string& words) {
+    const auto column = [](const std::string& line) {
       ImGui::TableNextColumn();
-      text(words);
+      text(line);
     };
     column(stage.name);
     column(fmt::format("{}", stage.calls));
@@ -137,11 +137,11 @@ void look_tab(Session& session, ScenePanel& panel) {
 
 }  // namespace
 
-FreeArea Ui::free_area(const ViewSettings& look, int width, int height) const {
-  if (!look.panel) return {0, 0, width, height};
-  const Layout l = layout(look, width);
+FreeArea Ui::free_area(const ViewSettings& view, int width, int height) const {
+  if (!view.panel) return {0, 0, width, height};
+  const Layout l = layout(view, width);
   const int beside = int(l.panel), above = int(l.menu), below = int(l.status) + TransportBar::height();
-  return {on_the_right(look) ? 0 : beside, above, std::max(16, width - beside), std::max(16, height - above - below)};
+  return {on_the_right(view) ? 0 : beside, above, std::max(16, width - beside), std::max(16, height - above - below)};
 }
 
 void Ui::show_note(const std::string& line) {
@@ -187,16 +187,16 @@ void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
 }
 
 /// At the bottom of the panel, so that nothing above moves under the cursor. Returns its height; 0: nothing failed.
-float Ui::failure_window(const ViewSettings& look, const Scene& scene, const UiFacts& facts) {
+float Ui::failure_window(const ViewSettings& view, const Scene& scene, const UiFacts& facts) {
   if (scene.failure().empty()) return 0;
-  const Layout l = layout(look, facts.width);
+  const Layout l = layout(view, facts.width);
   const ImGuiStyle& style = ImGui::GetStyle();
   const std::string& line = scene.failure();
   const float wrap = l.panel - 2 * style.WindowPadding.x;
   const float high = std::min(ImGui::CalcTextSize(line.c_str(), nullptr, false, wrap).y + 2 * style.WindowPadding.y,
                               0.4f * float(facts.height));
   ImGui::SetNextWindowPos(
-      ImVec2(on_the_right(look) ? float(facts.width) - l.panel : 0, float(facts.height) - l.status - high));
+      ImVec2(on_the_right(view) ? float(facts.width) - l.panel : 0, float(facts.height) - l.status - high));
   ImGui::SetNextWindowSize(ImVec2(l.panel, high));
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -210,11 +210,11 @@ float Ui::failure_window(const ViewSettings& look, const Scene& scene, const UiF
 }
 
 void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
-  ViewSettings& look = session.settings.view;
-  const Layout l = layout(look, facts.width);
-  const float below = l.status + failure_window(look, scene, facts);
+  ViewSettings& view = session.settings.view;
+  const Layout l = layout(view, facts.width);
+  const float below = l.status + failure_window(view, scene, facts);
   const float high = std::max(50.0f, float(facts.height) - l.menu - below);
-  ImGui::SetNextWindowPos(ImVec2(on_the_right(look) ? float(facts.width) - l.panel : 0, l.menu));
+  ImGui::SetNextWindowPos(ImVec2(on_the_right(view) ? float(facts.width) - l.panel : 0, l.menu));
   ImGui::SetNextWindowSize(ImVec2(l.panel, high));
   const auto fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                      ImGuiWindowFlags_NoBringToFrontOnFocus;
@@ -226,12 +226,12 @@ void Ui::panel(Session& session, Scene& scene, const UiFacts& facts) {
     tabs(session, scene, facts);
   }
   ImGui::End();
-  panel_border(look, facts.width, l, high);
+  panel_border(view, facts.width, l, high);
 }
 
 /// The running stage, its progress, and a button to cancel it; what is under the cursor.
-void Ui::status(const ViewSettings& look, Scene& scene, const UiFacts& facts, UiRequests& requests) {
-  const float high = layout(look, facts.width).status;
+void Ui::status(const ViewSettings& view, Scene& scene, const UiFacts& facts, UiRequests& requests) {
+  const float high = layout(view, facts.width).status;
   ImGui::SetNextWindowPos(ImVec2(0, float(facts.height) - high));
   ImGui::SetNextWindowSize(ImVec2(float(facts.width), high));
   const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |

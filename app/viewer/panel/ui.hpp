@@ -53,7 +53,7 @@ class Ui {
   UiRequests draw(Session& session, Scene& scene, const UiFacts& facts);
 
   /// Where the picture is to be, in a window of this size. As wide as the panel allows; never empty.
-  FreeArea free_area(const ViewSettings& look, int width, int height) const;
+  FreeArea free_area(const ViewSettings& view, int width, int height) const;
 
   /// A line at the bottom for some seconds: something was saved.
   void show_note(const std::string& line);
@@ -82,10 +82,10 @@ class Ui {
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void view_menu(Session& session, UiRequests& requests);
   void panel(Session& session, Scene& scene, const UiFacts& facts);
-  float failure_window(const ViewSettings& look, const Scene& scene, const UiFacts& facts);
+  float failure_window(const ViewSettings& view, const Scene& scene, const UiFacts& facts);
   void tabs(Session& session, Scene& scene, const UiFacts& facts);
   void knob_tab(Session& session);
-  void status(const ViewSettings& look, Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void status(const ViewSettings& view, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void screenshot_window(const UiFacts& facts);
   void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
   void error_window(const FreeArea& area);

@@ -12,13 +12,13 @@
 namespace nacre {
 namespace {
 
-void line(const std::string& words) { ImGui::TextWrapped("%s", words.c_str()); }
+void line(const std::string& what) { ImGui::TextWrapped("%s", what.c_str()); }
 
 /// The iso-value as text, if it is one number.
-std::optional<double> single_isovalue(const std::string& words) {
+std::optional<double> single_isovalue(const std::string& isovalue) {
   char* end = nullptr;
-  const double value = std::strtod(words.c_str(), &end);
-  if (words.empty() || *end != '\0' || !std::isfinite(value)) return {};
+  const double value = std::strtod(isovalue.c_str(), &end);
+  if (isovalue.empty() || *end != '\0' || !std::isfinite(value)) return {};
   return value;
 }
 
@@ -31,7 +31,7 @@ void mark(double share) {
 }
 
 /// Takes effect when it is let go: each value begins a mesh.
-void isovalue_slider(const ValueSpread& spread, std::string& words, double now) {
+void isovalue_slider(const ValueSpread& spread, std::string& isovalue, double now) {
   static double held = 0;
   static bool active = false;
   if (!active) held = now;
@@ -43,7 +43,7 @@ void isovalue_slider(const ValueSpread& spread, std::string& words, double now) 
   ImGui::SliderScalar("##isovalue", ImGuiDataType_Double, &held, &spread.low, &spread.high, "iso-value %.4g",
                       ImGuiSliderFlags_AlwaysClamp);
   active = ImGui::IsItemActive();
-  if (ImGui::IsItemDeactivatedAfterEdit()) words = fmt::format("{:.4g}", held);
+  if (ImGui::IsItemDeactivatedAfterEdit()) isovalue = fmt::format("{:.4g}", held);
 }
 
 }  // namespace
@@ -63,8 +63,8 @@ void draw_volume_facts(const ViewedVolume& volume, Session& session) {
   const ValueSpread& spread = volume.spread;
   line(fmt::format("values {:.6g} to {:.6g}; nearly all from {:.4g} to {:.4g}", spread.min, spread.max, spread.low,
                    spread.high));
-  std::string& words = session.settings.materials.isovalue;
-  if (const std::optional<double> now = single_isovalue(words)) isovalue_slider(spread, words, *now);
+  std::string& isovalue = session.settings.materials.isovalue;
+  if (const std::optional<double> now = single_isovalue(isovalue)) isovalue_slider(spread, isovalue, *now);
 }
 
 }  // namespace nacre

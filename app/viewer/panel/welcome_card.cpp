@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t most_recent = 5;
 
-void heading(const char* words) {
+void heading(const char* title) {
   ImGui::Spacing();
-  ImGui::TextDisabled("%s", words);
+  ImGui::TextDisabled("%s", title);
 }
 
 template <class Sample>

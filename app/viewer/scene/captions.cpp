@@ -23,11 +23,11 @@ void Captions::draw(Scene& scene, const View& view, const Settings& settings) {
 }
 
 void Captions::draw_marks(const View& view, const Settings& settings, const std::string& unit) {
-  const ViewSettings& look = settings.view;
-  if (look.ruler.empty() && look.notes.empty()) return;
-  const Marked wanted{view.width, view.height, view.camera, look.ruler, look.notes, unit, settings.background};
+  const ViewSettings& knobs = settings.view;
+  if (knobs.ruler.empty() && knobs.notes.empty()) return;
+  const Marked wanted{view.width, view.height, view.camera, knobs.ruler, knobs.notes, unit, settings.background};
   if (marked_ != wanted)
-    marks_.set_image(marks_sheet(view, look.ruler, look.notes, unit, paper_of(settings.background)));
+    marks_.set_image(marks_sheet(view, knobs.ruler, knobs.notes, unit, paper_of(settings.background)));
   marked_ = wanted;
   marks_.draw(view);
 }
@@ -54,14 +54,14 @@ void Captions::draw_triad(const View& view, const std::string& background) {
 
 std::string window_title(const Scene& scene, bool filming) {
   const SceneProgress progress = scene.progress();
-  std::string words = filming ? "film - " : "";
+  std::string title = filming ? "film - " : "";
   if (!progress.stage.empty()) {
-    words += progress.stage;
-    if (progress.fraction >= 0) words += fmt::format(" {:.0f}%", 100 * progress.fraction);
-    words += " - ";
+    title += progress.stage;
+    if (progress.fraction >= 0) title += fmt::format(" {:.0f}%", 100 * progress.fraction);
+    title += " - ";
   }
-  if (!scene.title().empty()) words += scene.title() + " - ";
-  return words + "Nacre";
+  if (!scene.title().empty()) title += scene.title() + " - ";
+  return title + "Nacre";
 }
 
 }  // namespace nacre

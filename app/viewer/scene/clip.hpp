@@ -1,4 +1,4 @@
-// Nacre: the plane that cuts a scene, from the knobs of the look.
+// Nacre: the plane that cuts a scene, from the knobs of the view.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace nacre {
 
-/// Across the axis `look.clip`, at share `look.clip_at` of the box around `corners` (world); none where that says so.
-std::optional<ClipPlane> clip_plane(const ViewSettings& look, std::span<const Vec3d> corners);
+/// Across the axis `view.clip`, at share `view.clip_at` of the box around `corners` (world); none where that says so.
+std::optional<ClipPlane> clip_plane(const ViewSettings& view, std::span<const Vec3d> corners);
 
 }  // namespace nacre

@@ -29,13 +29,13 @@ void for_parts(const std::string& list, const Take& take) {
 
 bool read_point(std::istream& stream, Vec3d& p) { return bool(stream >> p.x >> p.y >> p.z); }
 
-std::string point_words(const Vec3d& p) { return fmt::format("{:.7g} {:.7g} {:.7g}", p.x, p.y, p.z); }
+std::string point_text(const Vec3d& p) { return fmt::format("{:.7g} {:.7g} {:.7g}", p.x, p.y, p.z); }
 
 /// Text that no list is parted by.
-std::string one_part(std::string words) {
+std::string one_part(std::string text) {
   std::replace_if(
-      words.begin(), words.end(), [](char c) { return c == ';' || c == '\n'; }, ',');
-  return words;
+      text.begin(), text.end(), [](char c) { return c == ';' || c == '\n'; }, ',');
+  return text;
 }
 
 void put_dot(Image& image, const std::array<double, 2>& at, float radius) {
@@ -43,30 +43,29 @@ void put_dot(Image& image, const std::array<double, 2>& at, float radius) {
 }
 
 /// Beside a position, within the picture.
-void put_words(Image& image, const std::array<double, 2>& at, const std::string& words, float pixels,
-               const Rgba& paper) {
-  const int width = text_width(words, pixels), height = text_cap_height(pixels);
+void put_text(Image& image, const std::array<double, 2>& at, const std::string& text, float pixels, const Rgba& paper) {
+  const int width = text_width(text, pixels), height = text_cap_height(pixels);
   const int x = std::clamp(int(at[0] + 0.5 * pixels), 0, std::max(0, image.width - width));
   const int y = std::clamp(int(at[1]) - height / 2, 0, std::max(0, image.height - height));
   const bool dark = paper.a > 0 && paper.r + paper.g + paper.b < 384;
   const Ink ink = dark ? Ink{{255, 255, 255, 255}, {0, 0, 0, 190}} : Ink{{20, 20, 24, 255}, {255, 255, 255, 210}};
-  draw_lettering(image, x, y, words, pixels, ink);
+  draw_lettering(image, x, y, text, pixels, ink);
 }
 
 }  // namespace
 
-std::vector<Vec3d> parse_ruler(const std::string& words) {
+std::vector<Vec3d> parse_ruler(const std::string& text) {
   std::vector<Vec3d> points;
-  for_parts(words, [&](std::istream& stream) {
+  for_parts(text, [&](std::istream& stream) {
     if (Vec3d p; read_point(stream, p)) points.push_back(p);
   });
   return points;
 }
 
-std::string ruler_words(std::span<const Vec3d> points) {
-  std::string words;
-  for (const Vec3d& p : points) words += (words.empty() ? "" : ";") + point_words(p);
-  return words;
+std::string ruler_text(std::span<const Vec3d> points) {
+  std::string text;
+  for (const Vec3d& p : points) text += (text.empty() ? "" : ";") + point_text(p);
+  return text;
 }
 
 std::vector<std::string> ruler_lines(std::span<const Vec3d> points, const std::string& unit) {
@@ -80,9 +79,9 @@ std::vector<std::string> ruler_lines(std::span<const Vec3d> points, const std::s
   return lines;
 }
 
-std::vector<PlacedNote> parse_notes(const std::string& words) {
+std::vector<PlacedNote> parse_notes(const std::string& text) {
   std::vector<PlacedNote> notes;
-  for_parts(words, [&](std::istream& stream) {
+  for_parts(text, [&](std::istream& stream) {
     PlacedNote note;
     if (read_point(stream, note.position) && std::getline(stream >> std::ws, note.text) && !note.text.empty())
       notes.push_back(std::move(note));
@@ -90,16 +89,16 @@ std::vector<PlacedNote> parse_notes(const std::string& words) {
   return notes;
 }
 
-std::string notes_words(std::span<const PlacedNote> notes) {
-  std::string words;
+std::string notes_text(std::span<const PlacedNote> notes) {
+  std::string text;
   for (const PlacedNote& note : notes)
-    words += fmt::format("{}{} {}", words.empty() ? "" : ";", point_words(note.position), one_part(note.text));
-  return words;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ";", point_text(note.position), one_part(note.text));
+  return text;
 }
 
-std::vector<SavedCamera> parse_cameras(const std::string& words) {
+std::vector<SavedCamera> parse_cameras(const std::string& text) {
   std::vector<SavedCamera> cameras;
-  for_parts(words, [&](std::istream& stream) {
+  for_parts(text, [&](std::istream& stream) {
     SavedCamera saved;
     Camera& c = saved.camera;
     if (!std::getline(stream, saved.name, ':') || saved.name.empty()) return;
@@ -112,16 +111,16 @@ std::vector<SavedCamera> parse_cameras(const std::string& words) {
   return cameras;
 }
 
-std::string cameras_words(std::span<const SavedCamera> cameras) {
-  std::string words;
+std::string cameras_text(std::span<const SavedCamera> cameras) {
+  std::string text;
   for (const SavedCamera& saved : cameras) {
     const Camera& c = saved.camera;
     std::string name = one_part(saved.name);
     std::replace(name.begin(), name.end(), ':', ' ');
-    words += fmt::format("{}{}:{} {} {} {:.7g}{}", words.empty() ? "" : ";", name, point_words(c.eye),
-                         point_words(c.target), point_words(c.up), c.height, c.orthographic ? " o" : "");
+    text += fmt::format("{}{}:{} {} {} {:.7g}{}", text.empty() ? "" : ";", name, point_text(c.eye),
+                        point_text(c.target), point_text(c.up), c.height, c.orthographic ? " o" : "");
   }
-  return words;
+  return text;
 }
 
 std::optional<std::array<double, 2>> pixel_of(const View& view, const Vec3d& point) {
@@ -147,11 +146,11 @@ Image marks_sheet(const View& view, const std::string& ruler, const std::string&
     if (!here || !before) continue;
     draw_stroke(image, float((*before)[0]), float((*before)[1]), thin, float((*here)[0]), float((*here)[1]), thin,
                 mark_colour);
-    put_words(image, {0.5 * ((*here)[0] + (*before)[0]), 0.5 * ((*here)[1] + (*before)[1])}, lines[k - 1], pixels,
-              paper);
+    put_text(image, {0.5 * ((*here)[0] + (*before)[0]), 0.5 * ((*here)[1] + (*before)[1])}, lines[k - 1], pixels,
+             paper);
   }
   if (points.size() == 3)
-    if (const auto corner = pixel_of(view, points[1])) put_words(image, *corner, lines.back(), pixels, paper);
+    if (const auto corner = pixel_of(view, points[1])) put_text(image, *corner, lines.back(), pixels, paper);
   for (const PlacedNote& note : parse_notes(notes)) {
     const auto here = pixel_of(view, note.position);
     if (!here) continue;
@@ -159,7 +158,7 @@ Image marks_sheet(const View& view, const std::string& ruler, const std::string&
     draw_stroke(image, float(beside[0]), float(beside[1]), thin, float((*here)[0]), float((*here)[1]), thin,
                 mark_colour);
     put_dot(image, *here, dot);
-    put_words(image, beside, note.text, pixels, paper);
+    put_text(image, beside, note.text, pixels, paper);
   }
   return image;
 }

@@ -15,15 +15,15 @@ double diameter_of(std::span<const Vec3d> points) {
 
 View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height) {
   const Settings& settings = session.settings;
-  const ViewSettings& look = settings.view;
+  const ViewSettings& knobs = settings.view;
   View view;
   view.camera = orbit(session.camera.value_or(Camera()), turned);
   view.width = width;
   view.height = height;
-  view.light = turned_light(flow_light(view.camera), view.camera, look.light_azimuth, look.light_height);
-  view.clip = clip_plane(look, corners);
+  view.light = turned_light(flow_light(view.camera), view.camera, knobs.light_azimuth, knobs.light_height);
+  view.clip = clip_plane(knobs, corners);
   view.back_faces = settings.back_faces;
-  view.ambient = float(look.ambient);
+  view.ambient = float(knobs.ambient);
   view.extent = diameter_of(corners) + length(view.camera.eye - view.camera.target);
   return view;
 }

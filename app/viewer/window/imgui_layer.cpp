@@ -30,13 +30,13 @@ ImGuiLayer::~ImGuiLayer() {
 }
 
 /// Colours and lettering; made again where they have changed.
-void ImGuiLayer::dress(const ViewSettings& look) {
-  const float scale = (window_ ? window_->scale() : 1) * float(look.text_size);
+void ImGuiLayer::dress(const ViewSettings& view) {
+  const float scale = (window_ ? window_->scale() : 1) * float(view.text_size);
   const float size = std::round(14 * scale);
-  if (look.theme == theme_ && size == size_) return;
+  if (view.theme == theme_ && size == size_) return;
   ImGuiStyle& style = ImGui::GetStyle();
   style = ImGuiStyle();
-  if (look.theme == Theme::light)
+  if (view.theme == Theme::light)
     ImGui::StyleColorsLight();
   else
     ImGui::StyleColorsDark();
@@ -59,7 +59,7 @@ void ImGuiLayer::dress(const ViewSettings& look) {
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
-  theme_ = look.theme;
+  theme_ = view.theme;
   size_ = size;
 }
 
@@ -83,9 +83,9 @@ void ImGuiLayer::take_input() {
   chords_ = input.chords;
 }
 
-void ImGuiLayer::begin(int width, int height, double seconds, const ViewSettings& look) {
+void ImGuiLayer::begin(int width, int height, double seconds, const ViewSettings& view) {
   ImGui_ImplOpenGL3_NewFrame();
-  dress(look);
+  dress(view);
   ImGuiIO& io = ImGui::GetIO();
   if (window_) {
     ImGui_ImplGlfw_NewFrame();

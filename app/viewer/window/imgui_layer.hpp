@@ -18,7 +18,7 @@ class ImGuiLayer {
   ImGuiLayer& operator=(const ImGuiLayer&) = delete;
 
   /// Between these two, panels are made and the mouse can be asked for. `seconds`: since the last frame.
-  void begin(int width, int height, double seconds, const ViewSettings& look);
+  void begin(int width, int height, double seconds, const ViewSettings& view);
   void end();
 
   /// Keys with ctrl, and Escape, that went down in this frame.
@@ -28,7 +28,7 @@ class ImGuiLayer {
   static bool busy();
 
  private:
-  void dress(const ViewSettings& look);
+  void dress(const ViewSettings& view);
   void take_input();
 
   Window* window_;

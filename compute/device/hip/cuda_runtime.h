@@ -1,4 +1,4 @@
-// Nacre: the words of CUDA C++ that HIP lacks.
+// Nacre: the names of CUDA C++ that HIP lacks.
 #pragma once
 
 #include <cuda_runtime_api.h>

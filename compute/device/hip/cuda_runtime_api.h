@@ -1,4 +1,4 @@
-// Nacre: the part of CUDA's runtime that Nacre uses, in the words of HIP, for AMD's GPUs. Found in place of CUDA's own
+// Nacre: the part of CUDA's runtime that Nacre uses, by the names of HIP, for AMD's GPUs. Found in place of CUDA's own
 // header in a build with NACRE_HIP.
 #pragma once
 

@@ -37,16 +37,16 @@ struct WantedRange {
   bool percentiles;
 };
 
-WantedRange parse_color_range(const std::string& words) {
-  std::string numbers = words;
+WantedRange parse_color_range(const std::string& text) {
+  std::string numbers = text;
   const auto colon = numbers.find(':');
   const bool percentiles =
       colon != std::string::npos && colon > 0 && numbers.ends_with('%') && numbers[colon - 1] == '%';
   if (percentiles) numbers = numbers.substr(0, colon - 1) + ":" + numbers.substr(colon + 1, numbers.size() - colon - 2);
   const auto [low, high] = parse_pair(numbers, ':', "--color-range");
-  if (!(low < high)) throw Error("--color-range " + words + " is empty", "", "write LOW:HIGH");
+  if (!(low < high)) throw Error("--color-range " + text + " is empty", "", "write LOW:HIGH");
   if (percentiles && (low < 0 || high > 100))
-    throw Error("--color-range " + words + " goes beyond all values", "", "write percentiles from 0% to 100%");
+    throw Error("--color-range " + text + " goes beyond all values", "", "write percentiles from 0% to 100%");
   return {low, high, percentiles};
 }
 

@@ -14,12 +14,12 @@ TEST(Marks, ARulerMeasuresLengthsAndTheAngleOfThreePoints) {
   EXPECT_EQ(ruler_lines(points, "mm"), (std::vector<std::string>{"3 mm", "4 mm", "90.0°"}));
   EXPECT_EQ(ruler_lines(std::span(points).first(2), ""), std::vector<std::string>{"3"});
   EXPECT_TRUE(ruler_lines(std::span(points).first(1), "mm").empty());
-  EXPECT_EQ(parse_ruler(ruler_words(points)), points);
+  EXPECT_EQ(parse_ruler(ruler_text(points)), points);
 }
 
 TEST(Marks, NotesAreWrittenAsTheyAreRead) {
   const std::vector<PlacedNote> notes{{{1, 2, 3}, "stagnation; here"}, {{-1, 0, 0}, "b"}};
-  const std::vector<PlacedNote> read = parse_notes(notes_words(notes));
+  const std::vector<PlacedNote> read = parse_notes(notes_text(notes));
   ASSERT_EQ(read.size(), 2u);
   EXPECT_EQ(read[0].position, notes[0].position);
   EXPECT_EQ(read[0].text, "stagnation, here");  // a semicolon would part it
@@ -32,7 +32,7 @@ TEST(Marks, CamerasAreWrittenAsTheyAreRead) {
   camera.eye = {1, 2, 3};
   camera.height = 7.5;
   camera.orthographic = true;
-  const std::vector<SavedCamera> kept = parse_cameras(cameras_words(std::vector<SavedCamera>{{"front: a", camera}}));
+  const std::vector<SavedCamera> kept = parse_cameras(cameras_text(std::vector<SavedCamera>{{"front: a", camera}}));
   ASSERT_EQ(kept.size(), 1u);
   EXPECT_EQ(kept[0].name, "front  a");
   EXPECT_EQ(kept[0].camera, camera);

@@ -21,8 +21,8 @@ TEST(MaterialPalette, TheUsersColourGoesBeforeTheFilesAndThatBeforeTheUsualOne) 
 
 TEST(MaterialPalette, ListsAreWrittenAsTheyAreRead) {
   const std::string colours = "-3:#102030,7:#ffffff", opacities = "-3:0.25,7:0";
-  EXPECT_EQ(label_colour_words(parse_label_colours(colours)), colours);
-  EXPECT_EQ(label_opacity_words(parse_label_opacities(opacities)), opacities);
+  EXPECT_EQ(label_colour_text(parse_label_colours(colours)), colours);
+  EXPECT_EQ(label_opacity_text(parse_label_opacities(opacities)), opacities);
   EXPECT_EQ(parse_label_opacities("1:7,2:-1,x:1,3:"), (std::map<std::int64_t, double>{{1, 1}, {2, 0}}));
   EXPECT_TRUE(parse_label_colours("nonsense").empty());
 }

@@ -194,7 +194,7 @@ TEST(MaterialColours, SixtyDiffer) {
   EXPECT_GT(nearest, 0.04);  // ten shades of a screen's 256, over its three colours
 }
 
-TEST(Words, LongNumbersAreGrouped) {
+TEST(Arguments, LongNumbersAreGrouped) {
   EXPECT_EQ(grouped(0), "0");
   EXPECT_EQ(grouped(999), "999");
   EXPECT_EQ(grouped(1000), "1,000");

@@ -21,7 +21,7 @@ namespace nacre {
 namespace fs = std::filesystem;
 namespace {
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -90,16 +90,16 @@ TEST(FrameFolder, WritesNumberedPicturesAndOverwritesOldOnes) {
 
 TEST(FrameFolder, FramesOfAnEarlierLongerRunGoWithTheFirstNewOne) {
   TemporaryFolder folder;
-  const Words others = {"frame_3.png", "frame_00003.png", "frame_-001.png", "my_frame_0003.png", "frame_0003.jpg"};
+  const Arguments others = {"frame_3.png", "frame_00003.png", "frame_-001.png", "my_frame_0003.png", "frame_0003.jpg"};
   for (const std::string& name : others) std::ofstream(folder / name) << "mine";
   fs::create_directory(folder / "frame_0009.png");
   for (int k = 0; k < 6; ++k) std::ofstream(folder / ("frame_000" + std::to_string(k) + ".png")) << "old";
   std::ofstream(folder / "frame_12345.png") << "old";
-  Words said;
+  Arguments said;
   const auto frames = make_frame_folder(folder.path(), [&](const std::string& line) { said.push_back(line); });
   EXPECT_EQ(folder.entries(), 13) << "a run that fails before its first frame takes none away";
   for (unsigned i = 0; i < 2; ++i) frames->add(noise_image(8, 6, i + 1));
-  EXPECT_EQ(said, Words{"removed 7 frames of an earlier run from " + folder.path().string()});
+  EXPECT_EQ(said, Arguments{"removed 7 frames of an earlier run from " + folder.path().string()});
   EXPECT_EQ(folder.entries(), 8);
   EXPECT_EQ(read_png(folder / "frame_0001.png").width, 8);
   for (const std::string& name : others) EXPECT_EQ(content(folder / name), "mine") << name;

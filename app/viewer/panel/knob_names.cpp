@@ -1,5 +1,5 @@
 // Nacre: texts of the knobs for people.
-#include "app/viewer/panel/knob_words.hpp"
+#include "app/viewer/panel/knob_names.hpp"
 
 #include <map>
 #include <utility>
@@ -26,8 +26,8 @@ Settings with_other(const std::string& name) {
     }
     if (const auto* choice = std::get_if<KnobChoice>(&knob.value))
       choice->set(choice->member, choice->get(choice->member) == 0 ? 1 : 0);
-    if (auto* const* words = std::get_if<std::string*>(&knob.value))
-      **words = knob.choices.empty() ? "1" : **words == knob.choices[0] ? knob.choices[1] : knob.choices[0];
+    if (auto* const* string = std::get_if<std::string*>(&knob.value))
+      **string = knob.choices.empty() ? "1" : **string == knob.choices[0] ? knob.choices[1] : knob.choices[0];
   }
   return settings;
 }

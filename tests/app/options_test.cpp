@@ -1,4 +1,4 @@
-// Nacre: tests of the words of a command line, exit statuses, and who may write where.
+// Nacre: tests of the arguments of a command line, exit statuses, and who may write where.
 #include <cctype>
 #include <sstream>
 #include <thread>
@@ -11,7 +11,7 @@ namespace {
 
 const std::vector<std::string> all_commands = {"flow", "mesh", "view", "sample", "bench", "info"};
 
-class WordsInFiles : public AppTest {};
+class OptionsInFiles : public AppTest {};
 
 /// Does the help begin a line with this option, alone or in a list such as "-h,--help"? `--color` is not in
 /// `--colormap`.
@@ -28,7 +28,7 @@ bool offers(const std::string& help, const std::string& option) {
   return false;
 }
 
-TEST(Words, HelpVersionAndKnobs) {
+TEST(Arguments, HelpVersionAndKnobs) {
   const Outcome help = nacre({"--help"});
   EXPECT_EQ(help.status, 0);
   for (const std::string& command : all_commands) EXPECT_EQ(lines_with(help.out, "  " + command + " "), 1) << command;
@@ -53,7 +53,7 @@ TEST(Words, HelpVersionAndKnobs) {
   }
 }
 
-TEST(Words, HelpOfFlowHasEveryOptionOfTheContract) {
+TEST(Arguments, HelpOfFlowHasEveryOptionOfTheContract) {
   const Outcome help = nacre({"flow", "--help"});
   EXPECT_EQ(help.status, 0);
   for (const char* option :
@@ -64,7 +64,7 @@ TEST(Words, HelpOfFlowHasEveryOptionOfTheContract) {
     EXPECT_TRUE(offers(help.out, option)) << option;
 }
 
-TEST(Words, CommonOptionsAreThoseOfEveryCommand) {
+TEST(Arguments, CommonOptionsAreThoseOfEveryCommand) {
   for (const std::string& command : all_commands) {
     const Outcome help = nacre({command, "--help"});
     EXPECT_EQ(help.status, 0);
@@ -77,17 +77,17 @@ TEST(Words, CommonOptionsAreThoseOfEveryCommand) {
   }
 }
 
-TEST(Words, NoMoreThreadsThanProcessors) {
+TEST(Arguments, NoMoreThreadsThanProcessors) {
   const TemporaryFolder folder;
   const std::string file = (folder / "r.json").string();
-  const Outcome run = nacre(small_flow + Words{"--device", "cpu", "--threads", "4096", "--report", file});
+  const Outcome run = nacre(small_flow + Arguments{"--device", "cpu", "--threads", "4096", "--report", file});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "") << "oneTBB complains where it is asked for more";
   EXPECT_LE(nlohmann::json::parse(read_all(file))["device"]["threads"],
             std::max(1u, std::thread::hardware_concurrency()));
 }
 
-TEST(Words, EveryKnobIsAnOptionOfTheViewer) {
+TEST(Arguments, EveryKnobIsAnOptionOfTheViewer) {
   const std::string help = nacre({"view", "--help"}).out;
   Settings settings;
   for (const Knob& knob : knobs(settings)) {
@@ -98,9 +98,9 @@ TEST(Words, EveryKnobIsAnOptionOfTheViewer) {
   EXPECT_TRUE(contains(help, "  --time-stamp,--no-time "));
 }
 
-TEST_F(WordsInFiles, FlagsTurnKnobsOnAndOff) {
-  const auto knobs_after = [&](const Words& words) {
-    const Outcome run = nacre(small_flow + words + Words{"--report", path("r.json"), "--steps", "1"});
+TEST_F(OptionsInFiles, FlagsTurnKnobsOnAndOff) {
+  const auto knobs_after = [&](const Arguments& arguments) {
+    const Outcome run = nacre(small_flow + arguments + Arguments{"--report", path("r.json"), "--steps", "1"});
     EXPECT_EQ(run.status, 0) << run.err;
     return read_json("r.json").at("parameters");
   };
@@ -112,14 +112,14 @@ TEST_F(WordsInFiles, FlagsTurnKnobsOnAndOff) {
   EXPECT_EQ(knobs_after({"--set", "crease=30"}).at("crease_angle"), 30);
 }
 
-TEST(Words, CommonOptionsOfSampleAndInfo) {
+TEST(Arguments, CommonOptionsOfSampleAndInfo) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.vtp").string(), session = (folder / "s.json").string();
   const auto report = [&](const char* name) { return (folder / name).string(); };
-  const Words common = {"--device", "cpu", "--threads", "1", "--seed", "3", "--quiet", "--set", "ttl=3"};
+  const Arguments common = {"--device", "cpu", "--threads", "1", "--seed", "3", "--quiet", "--set", "ttl=3"};
   std::ofstream(session) << R"({"nacre": "session 1", "sample": "sphere", "detail": 16})";
   const Outcome written =
-      nacre(Words{"sample", "--session", session, "--out", file, "--report", report("a.json")} + common);
+      nacre(Arguments{"sample", "--session", session, "--out", file, "--report", report("a.json")} + common);
   ASSERT_EQ(written.status, 0) << written.err;
   EXPECT_EQ(written.out, file + "\n");
   EXPECT_EQ(written.err, "");
@@ -130,7 +130,7 @@ TEST(Words, CommonOptionsOfSampleAndInfo) {
   EXPECT_EQ(sample["device"]["threads"], 1);
 
   std::ofstream(session) << R"({"nacre": "session 1", "inputs": ["a.vtp"]})";
-  const Outcome looked = nacre(Words{"info", "--session", session, "--report", report("b.json")} + common);
+  const Outcome looked = nacre(Arguments{"info", "--session", session, "--report", report("b.json")} + common);
   ASSERT_EQ(looked.status, 0) << looked.err;
   EXPECT_EQ(looked.out, nacre({"info", file}).out);
   const nlohmann::json info = nlohmann::json::parse(read_all(report("b.json")));
@@ -142,58 +142,59 @@ TEST(Words, CommonOptionsOfSampleAndInfo) {
   expect_failure(nacre({"sample", "--out", file}), 2, {"name a sample"});
 }
 
-TEST(Words, PicturesThatNoFileCanHoldAreRefusedBeforeTheWork) {
+TEST(Arguments, PicturesThatNoFileCanHoldAreRefusedBeforeTheWork) {
   const TemporaryFolder folder;
-  const Words large = {"--size", "16384x16384"};
+  const Arguments large = {"--size", "16384x16384"};
   const std::string picture = (folder / "a.png").string(), limit = "268435455 pixels";
   for (const char* option : {"--image", "--frames"})
-    expect_failure(nacre(small_flow + large + Words{option, picture}), 2, {limit});
-  expect_failure(nacre(small_flow + large + Words{"--video", (folder / "a.mp4").string()}), 2, {"268 million pixels"});
+    expect_failure(nacre(small_flow + large + Arguments{option, picture}), 2, {limit});
+  expect_failure(nacre(small_flow + large + Arguments{"--video", (folder / "a.mp4").string()}), 2,
+                 {"268 million pixels"});
   expect_failure(nacre({"mesh", "--sample", "two-spheres", "--size", "16384x16384", "--image", picture}), 2, {limit});
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-TEST(Words, WrongOnesEndWithTwo) {
+TEST(Arguments, WrongOnesEndWithTwo) {
   expect_failure(nacre({"--nonsense"}), 2, {"--nonsense"});
   expect_failure(nacre({"flow"}), 2, {"--sample", "FILE"});
   expect_failure(nacre({"flow", "a.obj", "--sample", "sphere"}), 2, {"not both"});
   expect_failure(nacre({"info"}), 2, {"FILE"});
-  expect_failure(nacre(small_flow + Words{"--rsolution", "3"}), 2, {"--rsolution"});
-  expect_failure(nacre(small_flow + Words{"--ttl", "99"}), 2, {"--ttl 99", "1..16"});
-  expect_failure(nacre(small_flow + Words{"--ttl", "two"}), 2, {"two"});
-  expect_failure(nacre(small_flow + Words{"--set", "rsolution=3"}), 2, {"did you mean resolution"});
-  expect_failure(nacre(small_flow + Words{"--set", "ttl"}), 2, {"KNOB=VALUE"});
-  expect_failure(nacre(small_flow + Words{"--size", "12"}), 2, {"--size"});
-  expect_failure(nacre(small_flow + Words{"--device", "abacus"}), 2, {"abacus"});
-  expect_failure(nacre(small_flow + Words{"--method", "sponge"}), 2, {"sponge", "grid"});
-  expect_failure(nacre(small_flow + Words{"--background", "greenish"}), 2, {"#rrggbb"});
-  expect_failure(nacre(small_flow + Words{"--time", "2:1"}), 2, {"--time"});
+  expect_failure(nacre(small_flow + Arguments{"--rsolution", "3"}), 2, {"--rsolution"});
+  expect_failure(nacre(small_flow + Arguments{"--ttl", "99"}), 2, {"--ttl 99", "1..16"});
+  expect_failure(nacre(small_flow + Arguments{"--ttl", "two"}), 2, {"two"});
+  expect_failure(nacre(small_flow + Arguments{"--set", "rsolution=3"}), 2, {"did you mean resolution"});
+  expect_failure(nacre(small_flow + Arguments{"--set", "ttl"}), 2, {"KNOB=VALUE"});
+  expect_failure(nacre(small_flow + Arguments{"--size", "12"}), 2, {"--size"});
+  expect_failure(nacre(small_flow + Arguments{"--device", "abacus"}), 2, {"abacus"});
+  expect_failure(nacre(small_flow + Arguments{"--method", "sponge"}), 2, {"sponge", "grid"});
+  expect_failure(nacre(small_flow + Arguments{"--background", "greenish"}), 2, {"#rrggbb"});
+  expect_failure(nacre(small_flow + Arguments{"--time", "2:1"}), 2, {"--time"});
   expect_failure(nacre({"sample", "sphere"}), 2, {"--out"});
   expect_failure(nacre({"sample", "sphere", "--detail", "-3", "--out", "a.vtp"}), 2, {"-3", "0 to 1048576"});
-  expect_failure(nacre(small_flow + Words{"--image", "a.jpg"}), 2, {"--image", ".png", "a.jpg"});
-  expect_failure(nacre(small_flow + Words{"--image", "/dev/null"}), 2, {"--image", ".png", "/dev/null"});
-  expect_failure(nacre(small_flow + Words{"--out", "a.ply"}), 2, {"--out", ".vtp", "a.ply"});
+  expect_failure(nacre(small_flow + Arguments{"--image", "a.jpg"}), 2, {"--image", ".png", "a.jpg"});
+  expect_failure(nacre(small_flow + Arguments{"--image", "/dev/null"}), 2, {"--image", ".png", "/dev/null"});
+  expect_failure(nacre(small_flow + Arguments{"--out", "a.ply"}), 2, {"--out", ".vtp", "a.ply"});
   EXPECT_EQ(nacre({}).status, 2);
 }
 
-TEST(Words, UnknownNamesGetAListOrAGuess) {
+TEST(Arguments, UnknownNamesGetAListOrAGuess) {
   expect_failure(nacre({"flow", "--sample", "sphre"}), 2, {"did you mean 'sphere'", "torus"});
   expect_failure(nacre({"sample", "trian", "--out", "a.vtp"}), 2, {"did you mean 'train'"});
-  expect_failure(nacre(small_flow + Words{"--colormap", "vridis"}), 2, {"vridis", "gray"});
-  expect_failure(nacre(small_flow + Words{"--camera", "top"}), 2, {"top", "iso", "+x"});
-  expect_failure(nacre(small_flow + Words{"--vectors", "@swrl"}), 2, {"@swirl", "@rotation"});
-  // What a file holds is not known from the words: these are failures of the work.
-  expect_failure(nacre(small_flow + Words{"--vectors", "vlocity"}), 1, {"vlocity", "velocity"});
-  expect_failure(nacre(small_flow + Words{"--color", "pressure"}), 1, {"pressure", "velocity"});
+  expect_failure(nacre(small_flow + Arguments{"--colormap", "vridis"}), 2, {"vridis", "gray"});
+  expect_failure(nacre(small_flow + Arguments{"--camera", "top"}), 2, {"top", "iso", "+x"});
+  expect_failure(nacre(small_flow + Arguments{"--vectors", "@swrl"}), 2, {"@swirl", "@rotation"});
+  // What a file holds is not known from the arguments: these are failures of the work.
+  expect_failure(nacre(small_flow + Arguments{"--vectors", "vlocity"}), 1, {"vlocity", "velocity"});
+  expect_failure(nacre(small_flow + Arguments{"--color", "pressure"}), 1, {"pressure", "velocity"});
 }
 
-TEST(Words, ASampleOfTheOtherKindSaysWhoTakesIt) {
+TEST(Arguments, ASampleOfTheOtherKindSaysWhoTakesIt) {
   expect_failure(nacre({"flow", "--sample", "torso", "--quiet"}), 2, {"'torso' is a volume", "nacre mesh"});
   expect_failure(nacre({"mesh", "--sample", "torus", "--quiet"}), 2, {"'torus' is a surface", "nacre flow"});
   expect_failure(nacre({"mesh", "--sample", "trso", "--quiet"}), 2, {"did you mean 'torso'"});
 }
 
-TEST(Words, AFileMayFollowAKnob) {
+TEST(Arguments, AFileMayFollowAKnob) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.vtp").string(), report = (folder / "r.json").string();
   ASSERT_EQ(nacre({"sample", "sphere", "--detail", "16", "--out", file}).status, 0);
@@ -205,53 +206,53 @@ TEST(Words, AFileMayFollowAKnob) {
   EXPECT_EQ(knobs["steps"], 1);
 }
 
-TEST(Words, TheLastOfSeveralCounts) {
+TEST(Arguments, TheLastOfSeveralCounts) {
   const TemporaryFolder folder;
   const std::string report = (folder / "r.json").string();
-  const Outcome run = nacre(small_flow + Words{"--steps", "1", "--ttl", "7", "--ttl", "3", "--report", report});
+  const Outcome run = nacre(small_flow + Arguments{"--steps", "1", "--ttl", "7", "--ttl", "3", "--report", report});
   ASSERT_EQ(run.status, 0) << run.err;
   const nlohmann::json knobs = nlohmann::json::parse(read_all(report))["parameters"];
   EXPECT_EQ(knobs["steps"], 1);
   EXPECT_EQ(knobs["ttl"], 3);
 }
 
-TEST(Words, WorkWhoseResultIsNotAskedForIsDoneAloud) {
-  Words words = small_flow;
-  std::erase(words, "--quiet");
-  EXPECT_TRUE(contains(nacre(words).err, "nothing will be written"));
+TEST(Arguments, WorkWhoseResultIsNotAskedForIsDoneAloud) {
+  Arguments arguments = small_flow;
+  std::erase(arguments, "--quiet");
+  EXPECT_TRUE(contains(nacre(arguments).err, "nothing will be written"));
   const TemporaryFolder folder;
-  const Outcome run = nacre(words + Words{"--image", (folder / "a.png").string(), "--size", "64x48"});
+  const Outcome run = nacre(arguments + Arguments{"--image", (folder / "a.png").string(), "--size", "64x48"});
   EXPECT_FALSE(contains(run.err, "nothing will be written")) << run.err;
 }
 
-TEST(Words, NothingIsDoneBeforeTheyAreUnderstood) {
+TEST(Arguments, NothingIsDoneBeforeTheyAreUnderstood) {
   const TemporaryFolder folder;
-  const Words outputs = {"--image", (folder / "a.png").string(), "--frames", (folder / "f").string(),
-                         "--video", (folder / "a.mp4").string()};
-  expect_failure(nacre(small_flow + outputs + Words{"--colormap", "none"}), 2, {});
-  expect_failure(nacre(small_flow + outputs + Words{"--camera", "none"}), 2, {});
-  expect_failure(nacre(small_flow + outputs + Words{"--time", "7:8"}), 1, {"0:0.95"});
+  const Arguments outputs = {"--image", (folder / "a.png").string(), "--frames", (folder / "f").string(),
+                             "--video", (folder / "a.mp4").string()};
+  expect_failure(nacre(small_flow + outputs + Arguments{"--colormap", "none"}), 2, {});
+  expect_failure(nacre(small_flow + outputs + Arguments{"--camera", "none"}), 2, {});
+  expect_failure(nacre(small_flow + outputs + Arguments{"--time", "7:8"}), 1, {"0:0.95"});
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-TEST(Words, ResultsGoToStdoutTheRestToStderr) {
+TEST(Arguments, ResultsGoToStdoutTheRestToStderr) {
   const TemporaryFolder folder;
   const std::string picture = (folder / "a.png").string(), values = (folder / "a.vtp").string();
-  Words words = small_flow + Words{"--image", picture, "--out", values, "--size", "64x48"};
-  const Outcome quiet = nacre(words);
+  Arguments arguments = small_flow + Arguments{"--image", picture, "--out", values, "--size", "64x48"};
+  const Outcome quiet = nacre(arguments);
   EXPECT_EQ(quiet.status, 0);
   EXPECT_EQ(quiet.out, picture + "\n" + values + "\n");
   EXPECT_EQ(quiet.err, "");
 
-  std::erase(words, "--quiet");
-  const Outcome loud = nacre(words);
+  std::erase(arguments, "--quiet");
+  const Outcome loud = nacre(arguments);
   EXPECT_EQ(loud.out, quiet.out);
   EXPECT_TRUE(contains(loud.err, "device: ")) << "auto says which device it took";
   EXPECT_TRUE(contains(loud.err, "vectors: velocity")) << "the choice of vectors is said aloud";
   EXPECT_FALSE(contains(loud.err, "\033")) << "no progress bar in a pipe";
 }
 
-TEST(Words, SampleListsAndWritesThem) {
+TEST(Arguments, SampleListsAndWritesThem) {
   const Outcome list = nacre({"sample"});
   EXPECT_EQ(list.status, 0);
   for (const char* name : {"sphere", "torus", "train", "aircraft", "cylinder", "delta-wing"})
@@ -274,12 +275,12 @@ TEST(Words, SampleListsAndWritesThem) {
   for (const nlohmann::json& each : outputs) EXPECT_TRUE(fs::exists(each.get<std::string>())) << each;
 }
 
-TEST(Words, WhatCannotBePrintedIsAFailure) {
+TEST(Arguments, WhatCannotBePrintedIsAFailure) {
   const Outcome full = run("/bin/bash", {"-c", "exec \"$0\" sample > /dev/full", program_path});
   expect_failure(full, 1, {"standard output", "No space left"});
 }
 
-TEST(Words, InfoAsJson) {
+TEST(Arguments, InfoAsJson) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.pvd").string();
   ASSERT_EQ(nacre({"sample", "torus", "--detail", "32", "--out", file}).status, 0);

@@ -1,5 +1,5 @@
-// Nacre: words of knobs for people. No OpenGL here.
-#include "app/viewer/panel/knob_words.hpp"
+// Nacre: arguments of knobs for people. No OpenGL here.
+#include "app/viewer/panel/knob_names.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace nacre {
 namespace {
 
-TEST(KnobWords, BasicKnobsAreKnobsOfTheirJobAndHavePlainNames) {
+TEST(KnobNames, BasicKnobsAreKnobsOfTheirJobAndHavePlainNames) {
   Settings settings;
   const std::vector<Knob> table = knobs(settings);
   for (const char* job : {"flow", "mesh"}) {
@@ -25,7 +25,7 @@ TEST(KnobWords, BasicKnobsAreKnobsOfTheirJobAndHavePlainNames) {
   EXPECT_EQ(plain_name("theta"), "");
 }
 
-TEST(KnobWords, CostsAreThoseOfWhatRunsAgain) {
+TEST(KnobNames, CostsAreThoseOfWhatRunsAgain) {
   EXPECT_NE(knob_cost("resolution", "flow").find("grid"), std::string::npos);
   EXPECT_NE(knob_cost("ttl", "flow").find("restarts the texture"), std::string::npos);
   EXPECT_NE(knob_cost("contrast", "flow").find("next step"), std::string::npos);

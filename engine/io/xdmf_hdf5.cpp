@@ -6,10 +6,7 @@
 
 namespace nacre {
 
-void write_xdmf(const std::filesystem::path& file, const MeshParts&) {
-  throw Error(file.string() + " needs HDF5, which this build of Nacre does not have", "",
-              "install libhdf5-dev and build again, or write .vtu or .msh");
-}
+void use_hdf5() {}
 
 }  // namespace nacre
 
@@ -114,9 +111,7 @@ void write_grid(OutputFile& output, const std::string& arrays, const MeshParts& 
   out.flush();
 }
 
-}  // namespace
-
-void write_xdmf(const fs::path& file, const MeshParts& mesh) {
+void write_with_hdf5(const fs::path& file, const MeshParts& mesh) {
   fs::path arrays = file, interfaces = file;
   arrays.replace_extension(".h5");
   const bool volumes = !mesh.cells.empty();
@@ -156,6 +151,10 @@ void write_xdmf(const fs::path& file, const MeshParts& mesh) {
   triangles.commit();
   tetrahedra.commit();
 }
+
+}  // namespace
+
+void use_hdf5() { xdmf_writer = write_with_hdf5; }
 
 }  // namespace nacre
 

@@ -1,10 +1,10 @@
-// Nacre: tests of the words of `nacre mesh`.
+// Nacre: tests of the arguments of `nacre mesh`.
 #include "tests/app/mesh_program.hpp"
 
 namespace nacre::test {
 namespace {
 
-TEST(MeshWords, HelpHasEveryOptionOfTheContract) {
+TEST(MeshCommandLine, HelpHasEveryOptionOfTheContract) {
   const Outcome help = nacre({"mesh", "--help"});
   EXPECT_EQ(help.status, 0);
   for (const char* option :
@@ -22,61 +22,61 @@ TEST(MeshWords, HelpHasEveryOptionOfTheContract) {
   EXPECT_TRUE(contains(flow.out, "--seed"));
 }
 
-TEST(MeshWords, WrongOnesEndWithTwo) {
+TEST(MeshCommandLine, WrongOnesEndWithTwo) {
   expect_failure(nacre({"mesh"}), 2, {"--sample", "FILE"});
   expect_failure(nacre({"mesh", "a.nrrd", "--sample", "two-spheres"}), 2, {"not both"});
   expect_failure(nacre({"mesh", "--sample", "two-sphres"}), 2, {"two-spheres", "torso"});
   expect_failure(nacre({"mesh", "--sample", "torso", "--detail", "5"}), 2, {"16 to 1024"});
-  for (const auto& [words, part] :
-       std::vector<std::pair<Words, std::string>>{{{"--solver", "magic"}, "tree|redblack|serial"},
-                                                  {{"--epsilon", "0"}, "--epsilon 0"},
-                                                  {{"--delta", "-1"}, "--delta -1"},
-                                                  {{"--epsilon", "nan"}, "nan"},
-                                                  {{"--kernel", "cubic"}, "b-spline"},
-                                                  {{"--min-size", "2", "--max-size", "1"}, "--min-size 2"},
-                                                  {{"--iterations", "1.5"}, "1.5"},
-                                                  {{"--particles", "-3"}, "--particles"},
-                                                  {{"--preset", "mine"}, "source"},
-                                                  {{"--isovalue", "a"}, "--isovalue takes V[,V...], not 'a'"},
-                                                  {{"--isovalue", "1,,2"}, "1,,2"},
-                                                  {{"--threshold", "1"}, "LO:HI"},
-                                                  {{"--threshold", "2:1"}, "ends before"},
-                                                  {{"--materials", "1;2"}, "L[,L...]"},
-                                                  {{"--materials", "1.5"}, "1.5"},
-                                                  {{"--merge", "4"}, "A:B"},
-                                                  {{"--merge", "99999999999999999999:1"}, "99999999999999999999"},
-                                                  {{"--labels", "--isovalue", "1"}, "exclude"},
-                                                  {{"--threshold", "0:1", "--isovalue", "1"}, "exclude"},
-                                                  {{"--isovalue", "1", "--materials", "1"}, "labels"},
-                                                  {{"--min-component", "-1"}, "--min-component"},
-                                                  {{"--out", "a.xyz"}, ".vtp"},
-                                                  {{"--out", "a"}, ".vtp"},
-                                                  {{"--out", "a.vtu", "--per-material"}, "--per-material"},
-                                                  {{"--per-material"}, "--out"},
-                                                  {{"--out", "a.vtu", "--surface-only"}, "--surface-only"},
-                                                  {{"--surface-only"}, "--out"},
-                                                  {{"--particles-out", "a.ply"}, ".vtp"},
-                                                  {{"--image", "a.jpg"}, ".png"},
-                                                  {{"--camera", "top"}, "iso"},
-                                                  {{"--background", "greenish"}, "#rrggbb"},
-                                                  {{"--set", "epsilom=1"}, "did you mean epsilon"},
-                                                  {{"--resolution", "100"}, "--resolution"}})
-    expect_failure(nacre(small_mesh + words), 2, {part});
+  for (const auto& [arguments, part] :
+       std::vector<std::pair<Arguments, std::string>>{{{"--solver", "magic"}, "tree|redblack|serial"},
+                                                      {{"--epsilon", "0"}, "--epsilon 0"},
+                                                      {{"--delta", "-1"}, "--delta -1"},
+                                                      {{"--epsilon", "nan"}, "nan"},
+                                                      {{"--kernel", "cubic"}, "b-spline"},
+                                                      {{"--min-size", "2", "--max-size", "1"}, "--min-size 2"},
+                                                      {{"--iterations", "1.5"}, "1.5"},
+                                                      {{"--particles", "-3"}, "--particles"},
+                                                      {{"--preset", "mine"}, "source"},
+                                                      {{"--isovalue", "a"}, "--isovalue takes V[,V...], not 'a'"},
+                                                      {{"--isovalue", "1,,2"}, "1,,2"},
+                                                      {{"--threshold", "1"}, "LO:HI"},
+                                                      {{"--threshold", "2:1"}, "ends before"},
+                                                      {{"--materials", "1;2"}, "L[,L...]"},
+                                                      {{"--materials", "1.5"}, "1.5"},
+                                                      {{"--merge", "4"}, "A:B"},
+                                                      {{"--merge", "99999999999999999999:1"}, "99999999999999999999"},
+                                                      {{"--labels", "--isovalue", "1"}, "exclude"},
+                                                      {{"--threshold", "0:1", "--isovalue", "1"}, "exclude"},
+                                                      {{"--isovalue", "1", "--materials", "1"}, "labels"},
+                                                      {{"--min-component", "-1"}, "--min-component"},
+                                                      {{"--out", "a.xyz"}, ".vtp"},
+                                                      {{"--out", "a"}, ".vtp"},
+                                                      {{"--out", "a.vtu", "--per-material"}, "--per-material"},
+                                                      {{"--per-material"}, "--out"},
+                                                      {{"--out", "a.vtu", "--surface-only"}, "--surface-only"},
+                                                      {{"--surface-only"}, "--out"},
+                                                      {{"--particles-out", "a.ply"}, ".vtp"},
+                                                      {{"--image", "a.jpg"}, ".png"},
+                                                      {{"--camera", "top"}, "iso"},
+                                                      {{"--background", "greenish"}, "#rrggbb"},
+                                                      {{"--set", "epsilom=1"}, "did you mean epsilon"},
+                                                      {{"--resolution", "100"}, "--resolution"}})
+    expect_failure(nacre(small_mesh + arguments), 2, {part});
 }
 
-TEST(MeshWords, MissingFilesAndFoldersAreNamedBeforeTheWork) {
+TEST(MeshCommandLine, MissingFilesAndFoldersAreNamedBeforeTheWork) {
   const TemporaryFolder folder;
   expect_failure(nacre({"mesh", (folder / "none.nrrd").string(), "--quiet"}), 1, {"none.nrrd"});
   expect_failure(nacre({"mesh", (folder / "none.xyz").string(), "--quiet"}), 1, {"none.xyz"});
   for (const auto& [option, name] : std::vector<std::pair<std::string, std::string>>{
            {"--out", "a.vtp"}, {"--particles-out", "a.vtp"}, {"--image", "a.png"}, {"--report", "a.json"}}) {
     const std::string file = (folder / "nowhere" / name).string();
-    expect_failure(nacre(small_mesh + Words{"--materials", "9", option, file}), 1, {"nowhere"});
+    expect_failure(nacre(small_mesh + Arguments{"--materials", "9", option, file}), 1, {"nowhere"});
   }
   EXPECT_EQ(folder.entries(), 0u);
 }
 
-TEST(MeshWords, NegativeNumbersAreValues) {
+TEST(MeshCommandLine, NegativeNumbersAreValues) {
   const TemporaryFolder folder;
   const std::string file = (folder / "a.nrrd").string();
   std::ofstream(file) << nrrd<double>({16, 16, 16}, "float", unit_spacing, [](int i, int j, int k) {
@@ -88,15 +88,15 @@ TEST(MeshWords, NegativeNumbersAreValues) {
   EXPECT_NEAR(nlohmann::json::parse(read_all(report))["mesh"]["materials"][0]["volume"], 523.6, 10);
 }
 
-TEST(MeshWords, TheSourcesPresetGivesWayToWhatIsSaid) {
+TEST(MeshCommandLine, TheSourcesPresetGivesWayToWhatIsSaid) {
   const TemporaryFolder folder;
   const std::string session = (folder / "s.json").string();
-  const auto knobs = [&](const Words& words) {
-    const Outcome run = nacre(words + Words{"--preset", "source", "--save-session", session, "--quiet"});
+  const auto knobs = [&](const Arguments& arguments) {
+    const Outcome run = nacre(arguments + Arguments{"--preset", "source", "--save-session", session, "--quiet"});
     EXPECT_EQ(run.status, 0) << run.err;
     return nlohmann::json::parse(read_all(session))["knobs"];
   };
-  const Words labels = {"mesh", "--sample", "two-spheres", "--detail", "24"};
+  const Arguments labels = {"mesh", "--sample", "two-spheres", "--detail", "24"};
   const nlohmann::json preset = knobs(labels);
   EXPECT_EQ(preset["theta"], 0.75);
   EXPECT_EQ(preset["iterations"], 50);
@@ -109,26 +109,26 @@ TEST(MeshWords, TheSourcesPresetGivesWayToWhatIsSaid) {
   EXPECT_EQ(preset["by_density"], false);
   EXPECT_EQ(preset["kernel"], "catmull-rom");
   EXPECT_EQ(preset["ideal_energy"], 0);
-  EXPECT_EQ(knobs(labels + Words{"--theta", "0.4"})["theta"], 0.4);
-  EXPECT_EQ(knobs(labels + Words{"--set", "iterations=7"})["iterations"], 7);
-  const Words scalar = {"mesh", "--sample", "ellipsoid", "--detail", "24"};
+  EXPECT_EQ(knobs(labels + Arguments{"--theta", "0.4"})["theta"], 0.4);
+  EXPECT_EQ(knobs(labels + Arguments{"--set", "iterations=7"})["iterations"], 7);
+  const Arguments scalar = {"mesh", "--sample", "ellipsoid", "--detail", "24"};
   EXPECT_EQ(knobs(scalar)["kernel"], "b-spline");
-  EXPECT_EQ(knobs(scalar + Words{"--kernel", "catmull-rom"})["kernel"], "catmull-rom");
+  EXPECT_EQ(knobs(scalar + Arguments{"--kernel", "catmull-rom"})["kernel"], "catmull-rom");
 }
 
-TEST(MeshWords, SizesFarAboveTheVolumeAreRefusedAtOnce) {
+TEST(MeshCommandLine, SizesFarAboveTheVolumeAreRefusedAtOnce) {
   const auto before = std::chrono::steady_clock::now();
-  expect_failure(nacre(small_mesh + Words{"--min-size", "1000", "--max-size", "1000"}), 1,
+  expect_failure(nacre(small_mesh + Arguments{"--min-size", "1000", "--max-size", "1000"}), 1,
                  {"fewer than four", "--max-size"});
   EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(60)) << "a second, where nobody else works";
 }
 
-TEST(MeshWords, ASummaryForPeopleResultsForPipes) {
+TEST(MeshCommandLine, ASummaryForPeopleResultsForPipes) {
   const TemporaryFolder folder;
   const std::string out = (folder / "a.vtp").string();
-  Words words = small_mesh + Words{"--out", out};
-  std::erase(words, "--quiet");
-  const Outcome run = nacre(words);
+  Arguments arguments = small_mesh + Arguments{"--out", out};
+  std::erase(arguments, "--quiet");
+  const Outcome run = nacre(arguments);
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out, out + "\n");
   for (const char* part : {"device: ", "particles", "triangles", "all closed", "radius ratio", " s"})
@@ -137,7 +137,7 @@ TEST(MeshWords, ASummaryForPeopleResultsForPipes) {
   EXPECT_EQ(nacre(small_mesh).err, "") << "--quiet";
 }
 
-TEST(MeshWords, VolumeSamplesAreListedAndWritten) {
+TEST(MeshCommandLine, VolumeSamplesAreListedAndWritten) {
   const Outcome list = nacre({"sample"});
   for (const char* name : {"torso", "head", "heart", "lungs", "ribcage", "two-spheres", "nested-shells", "ellipsoid"})
     EXPECT_EQ(lines_with(list.out, std::string(name) + " "), 1) << name;
