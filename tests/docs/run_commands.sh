@@ -7,7 +7,7 @@ set -euo pipefail
 
 program=$(readlink -f "${1:?usage: run_commands.sh PROGRAM [ROOT]}")
 root=$(cd "${2:-$(dirname "${BASH_SOURCE[0]}")/../..}" && pwd)
-limit=${NACRE_DOCS_SECONDS:-600}  # for one page
+limit=${NACRE_DOCS_SECONDS:-1800}  # for one page
 keep=${NACRE_DOCS_KEEP:-}         # a folder for what the commands write, such as the pictures of the guide
 [[ -x $program ]] || { echo "no program at $program"; exit 1; }
 [[ -z $keep ]] || keep=$(realpath -m "$keep")
