@@ -223,7 +223,7 @@ TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
   EXPECT_EQ(read_json(folder / "done.json")["sample"], "sphere");
 }
 
-TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
+TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAFew) {
   json changes;
   for (int k = 1; k < 20; ++k)
     changes.push_back({{"time", 10.0 * k}, {"knobs", {{"resolution", k % 2 ? 32 : 48}, {"edges", k % 3 == 0}}}});
@@ -245,8 +245,8 @@ TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAHundred) {
     EXPECT_EQ(report["view"]["frames"], frames);
     return report["memory"]["peak_bytes"].get<double>();
   };
-  const double hundred = peak(150);  // with one change of the resolution, to and fro as later on
-  EXPECT_LT(peak(1000), hundred + 6e6);
+  const double few = peak(300);  // with changes of the resolution to and fro, after which both textures are kept
+  EXPECT_LT(peak(1000), few + 8e6);
 }
 
 TEST_F(Scripts, ThatMeanNothingAreRefusedBeforeAnyFrame) {

@@ -40,7 +40,7 @@ bool FlowScene::exchange_frames(const Settings& settings, const FlowRerun& rerun
     kept_ = std::move(found->frames);
     results_.embedding = shown_->info;
     newest_ = -1;
-    show_kept(found->position);
+    show_kept(kept_.nearest(found->position));  // what was seen may have been on its way
     kept_flows_.erase(std::next(found).base());
   }
   const auto bytes = [&] {

@@ -2,6 +2,7 @@
 #include "app/viewer/flow/kept_frames.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace nacre {
@@ -19,6 +20,12 @@ void KeptFrames::keep(int position, const Buffer& shown, const FlowMoment& momen
   frame.age = ++age_;
   bytes_ += frame.bytes;
   frames_.emplace(position, std::move(frame));
+}
+
+int KeptFrames::nearest(int position) const {
+  return std::min_element(frames_.begin(), frames_.end(), [&](const auto& a, const auto& b) {
+           return std::abs(a.first - position) < std::abs(b.first - position);
+         })->first;
 }
 
 void KeptFrames::drop(int position) {

@@ -35,6 +35,8 @@ class KeptFrames {
     const auto found = frames_.find(position);
     return found == frames_.end() ? nullptr : &found->second;
   }
+  /// The position of a frame that there is, as near as possible; there must be one.
+  int nearest(int position) const;
   void clear() { frames_.clear(), bytes_ = 0; }
   std::size_t bytes() const { return bytes_; }
 
