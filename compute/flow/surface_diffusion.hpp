@@ -95,8 +95,7 @@ struct FlagInterpolated {
   }
 };
 
-/// Flags the cells that have a flagged one among themselves and their 26 neighbours; takes the flag from inner cells
-/// that lack a neighbour. `inner` keeps those whose operator can be computed.
+/// Flags the inner cells and their 26 neighbours, which the band holds.
 struct FlagNeighbours {
   ClosestPointGridView grid;
   const std::uint32_t* inner;
@@ -190,7 +189,7 @@ struct WeighDirections {
   }
 };
 
-/// Where the operator's rows are stored: 27 weights for each inner cell, in the order of GridSteps, of 32 cells at a time
+/// Where the rows of the operator are: 27 weights for each inner cell, in the order of GridSteps, of 32 cells at a time
 /// interleaved, so that neighbouring threads of a GPU read neighbouring numbers.
 struct OperatorRows {
   static constexpr int weights = GridSteps::neighbours + 1, together = 32;

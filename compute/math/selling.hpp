@@ -22,9 +22,9 @@ struct GridSteps {
 /// needs no step beyond the 26 neighbours. Found by trying 200,000 directions: at 2.5 a few need steps of two cells.
 inline constexpr double most_stretch = 2.4;
 
-/// Weights w of the 13 directions e, none negative, so that I + extra t t^T = sum of w e e^T (Selling 1874; as a stencil
-/// Fehrenbach & Mirebeau, J. Math. Imaging Vis. 49, 2014). Their sum is at most 3 + extra. `t` has unit length, or is
-/// zero; `extra` is at most most_stretch^2 - 1.
+/// Weights w of the 13 directions e, none negative, so that I + extra t t^T = sum of w e e^T (Selling 1874; as a
+/// stencil Fehrenbach & Mirebeau, J. Math. Imaging Vis. 49, 2014). Their sum is at most 3 + extra. `t` has unit length,
+/// or is zero; `extra` is at most most_stretch^2 - 1.
 NACRE_HD inline void selling_weights(const Vec3f& t, float extra, float* weight) {
   Vec3f base[4] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, -1, -1}};
   const auto product = [&](const Vec3f& a, const Vec3f& b) { return dot(a, b) + extra * dot(a, t) * dot(b, t); };
