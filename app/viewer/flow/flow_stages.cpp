@@ -101,7 +101,7 @@ void FlowWorker::choose() {
       vectors_->set_vectors(choice.name);
       if (!(motion == vectors_->motion())) vectors_->set_motion(motion);
       reason = choice.reason;
-      warn_of_vectors(*vectors_, news);
+      warn_of_vectors(*vectors_, settings_, news);
     } else {
       vectors_->set_color(settings_.color);
     }
