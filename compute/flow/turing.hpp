@@ -80,12 +80,15 @@ struct SamplePattern {
   }
 };
 
-/// How far each value is from the mean of all, in standard deviations.
+/// How far each value is from the mean of all, in standard deviations, and less than that: a pattern has two levels, one
+/// deviation from the mean each, and neither is to be black or white.
 struct Standardise {
+  static constexpr float share = 0.65f;
+
   const float* value;
   const TextureSpread* whole;
   float* detail;
-  NACRE_HD void operator()(std::int64_t i) const { detail[i] = (value[i] - whole->mean) / whole->deviation; }
+  NACRE_HD void operator()(std::int64_t i) const { detail[i] = (value[i] - whole->mean) * (share / whole->deviation); }
 };
 
 }  // namespace nacre
