@@ -80,8 +80,8 @@ struct SamplePattern {
   }
 };
 
-/// How far each value is from the mean of all, in standard deviations, and less than that: a pattern has two levels, one
-/// deviation from the mean each, and neither is to be black or white.
+/// How far each value is from the mean of all, in standard deviations, and less than that: a pattern has two levels,
+/// one deviation from the mean each, and neither is to be black or white.
 struct Standardise {
   static constexpr float share = 0.65f;
 

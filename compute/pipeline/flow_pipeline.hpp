@@ -35,7 +35,7 @@ struct FlowParameters {
   EmbeddingKind method = EmbeddingKind::grid;
   OctreeKind octree = OctreeKind::brick;
   FlowTexture texture = FlowTexture::streaks;
-  double pattern_spacing = 28;   ///< texture cells from spot to spot, or stripe to stripe, across the vectors
+  double pattern_spacing = 24;   ///< texture cells from spot to spot, or stripe to stripe, across the vectors
   double pattern_stretch = 2.2;  ///< how much longer a pattern is along the vectors than across, where they are fast
   bool neighbour_index = false;  ///< store every cell's neighbours, in the octree of cells (sec. 6.1.4)
   int resolution = 1024;         ///< texture cells along the longest side; of an octree: cells of its domain per axis
@@ -170,8 +170,8 @@ struct RenderOptions {
   BackFaces back_faces = BackFaces::shown;
 };
 
-/// An embedded surface and the texture that moves on it: all that can be asked of it. Its implementations are GridFlow
-/// and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
+/// An embedded surface and the texture that moves on it: all that can be asked of it. Its implementations are GridFlow,
+/// GridPattern and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
 /// Interrupted when the watched flag is set.
 class FlowMethod {
  public:
