@@ -67,8 +67,8 @@ Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const 
 
 /// Knobs for which the texture is made again, and those of them for which the embedding is, too.
 const std::set<std::string> embedding_knobs{"method", "octree",   "neighbour_index", "resolution",
-                                            "refine", "subcells", "radius"};
-const std::set<std::string> start_knobs{"ttl", "warmup", "seed"};
+                                            "refine", "subcells", "radius",          "texture"};
+const std::set<std::string> start_knobs{"ttl", "warmup", "seed", "pattern_spacing", "pattern_stretch"};
 
 }  // namespace
 

@@ -268,6 +268,9 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   InputWatch watch(session.inputs);
   Films films = open_films(options, steps, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
+  const bool pattern = settings.flow.texture != FlowTexture::streaks;
+  if (!options.chunk.empty() && pattern)
+    throw Error("--chunk needs --texture streaks", "spots and stripes remember all steps before a part");
   if (!options.chunk.empty() && input.moves())
     throw Error("--chunk needs a surface that does not move", "the shape before a part is not known to it");
   if (!options.chunk.empty() && !settings.dye.empty())

@@ -6,11 +6,14 @@
 #include <string>
 
 #include "compute/device/error.hpp"
+#include "compute/flow/surface_diffusion.hpp"
 
 namespace nacre {
 namespace {
 
-constexpr int max_bricks = 1024;  // per axis: 30 bits of Morton code
+constexpr double least_pattern_cells = 5;  // from spot to spot: fewer blur the waves that should grow
+constexpr double most_pattern_cells = 32;  // steps grow with the square, and 7 are enough
+constexpr int max_bricks = 1024;           // per axis: 30 bits of Morton code
 constexpr int max_octree_resolution = 1 << 20;
 
 struct Bounds {
@@ -31,11 +34,24 @@ Bounds bounds_of(const FlowMesh& mesh, Sheets which = Sheets::all) {
   return b;
 }
 
+/// At most two digits after the point.
+std::string number(double x) {
+  std::string text = std::to_string(std::round(100 * x) / 100);
+  text.resize(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
 double largest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
 
 /// Edge of a texture cell on the grid, where the longest side is so long.
 double texture_cell(const FlowMesh& mesh, const FlowParameters& parameters, double longest) {
   return mesh.cell_size > 0 ? mesh.cell_size : longest / parameters.resolution;
+}
+
+double grid_radius(const FlowParameters& parameters) {
+  if (parameters.radius > 0) return parameters.radius;
+  return parameters.texture == FlowTexture::streaks ? stencil_radius : diffusion_radius;
 }
 
 std::string gibibytes(double bytes) {
@@ -46,6 +62,30 @@ std::string gibibytes(double bytes) {
 
 }  // namespace
 
+void require_pattern(const FlowParameters& parameters) {
+  if (parameters.texture == FlowTexture::streaks) return;
+  const std::string name = parameters.texture == FlowTexture::spots ? "spots" : "stripes";
+  if (parameters.method != EmbeddingKind::grid)
+    throw Error("`texture` " + name + " needs the grid", "on an octree only streaks are drawn", "use `method` grid");
+  if (parameters.radius > 0 && parameters.radius < diffusion_radius)
+    throw Error("`radius` " + number(parameters.radius) + " is too small for " + name,
+                "their stencils reach " + number(diffusion_radius) + " cells from the surface", "use that, or 0");
+  const double cells = parameters.pattern_spacing / parameters.refine;
+  if (!(cells >= least_pattern_cells))
+    throw Error("`pattern_spacing` " + number(parameters.pattern_spacing) + " is too small",
+                "the closest-point grid has one cell in " + std::to_string(parameters.refine) +
+                    ", and a pattern needs " + number(least_pattern_cells) + " from spot to spot",
+                "use " + number(least_pattern_cells * parameters.refine) + " or more, or a smaller `refine`");
+  if (cells > most_pattern_cells)
+    throw Error("`pattern_spacing` " + number(parameters.pattern_spacing) + " is too large",
+                "at one grid cell in " + std::to_string(parameters.refine) + " its steps would be too short",
+                "use " + number(most_pattern_cells * parameters.refine) + " or less, or a larger `refine`");
+  if (!(parameters.pattern_stretch >= 1 && parameters.pattern_stretch <= most_stretch))
+    throw Error("`pattern_stretch` " + number(parameters.pattern_stretch) + " is out of range",
+                "diffusion beyond it would need more cells around than its stencil has, and be unstable",
+                "use 1 to " + number(most_stretch));
+}
+
 FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
   if (mesh.triangles.empty()) throw Error("no triangles", "", "give a surface");
   // Second sheets that stand aside (separate_sheets) make the domain larger, and not its cells.
@@ -54,7 +94,7 @@ FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters) {
   if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
   FlowDomain domain;
   domain.cell_size = texture_cell(mesh, parameters, longest) * parameters.refine;
-  domain.radius = parameters.radius > 0 ? parameters.radius : stencil_radius;
+  domain.radius = grid_radius(parameters);
   domain.margin = int(std::ceil(domain.radius)) + 2;
   // The surface's lower corner lies off the cell faces: an axis-aligned wall on a face would touch two layers of cells.
   const double shift = domain.margin + 0.37;
@@ -85,7 +125,7 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
     edges += length(ab) + length(ac);
   }
   const double triangles = double(mesh.triangles.size());
-  const double radius = parameters.radius > 0 ? parameters.radius : stencil_radius;
+  const double radius = grid_radius(parameters);
   const double sheet = area / (H * H);  // surface in closest-point cells
   const double layers = 2 * radius + 1.6 * parameters.subcells;
   double dense = 1;
@@ -95,9 +135,11 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
   const double texels = std::min(sheet * 2.4 * reach, dense) * std::pow(parameters.refine, 3);
   const double surface = std::min(1.6 * area / (h * h), texels);
   constexpr double slots = 2;
+  // A pattern has lists and rows for about 10 and 7 layers of cells, and 13 weights for each cell for a while.
+  const double pattern = parameters.texture == FlowTexture::streaks ? 0 : sheet * (10 * 4 + 7 * 108) + cells * 13 * 4;
   const double pairs = std::min(triangles, sheet * 2) * 60 / parameters.subcells + cells / 16 + edges / H;
   return dense / std::pow(parameters.subcells, 3) * 4 + cells * (16 + 4 + 4 + 4 + 32 + 16 * slots) + texels * (4 + 4) +
-         surface * (4 + 16 + 4 + 24 + 16 + 8 * 3 + 4 * 5) + pairs * 24 + triangles * 220 + 64e6;
+         surface * (4 + 16 + 4 + 24 + 16 + 8 * 3 + 4 * 5) + pairs * 24 + triangles * 220 + pattern + 64e6;
 }
 
 int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain) {

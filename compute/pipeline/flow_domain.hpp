@@ -24,6 +24,10 @@ struct FlowDomain {
 /// trial point lies up to one cell off the surface: 2 sqrt 3 + 1.
 inline constexpr double stencil_radius = 4.47;
 
+/// Nothing for streaks. Throws Error where a pattern cannot be made with these parameters: on an octree, with cells too
+/// large for its spacing, in a band too narrow, or stretched more than its stencils allow.
+void require_pattern(const FlowParameters& parameters);
+
 /// Throws Error where the resolution is out of the key range.
 FlowDomain make_domain(const FlowMesh& mesh, const FlowParameters& parameters);
 

@@ -131,8 +131,10 @@ class FlowMethodOn : public FlowMethod {
     embedded_ = true;
   }
 
+  static constexpr int no_sight = -1;
+
   /// Gives the last run's arrays back. `texel` is the edge of a texture cell in cells of the domain; `sight` the number
-  /// of steps that a path sees ahead, 0: a lifetime.
+  /// of steps that a path sees ahead, 0: a lifetime; `no_sight`: nothing is kept of any step.
   void begin_flow(const FlowVectors& vectors, double texel, int sight) {
     require_embedded();
     started_ = false;
@@ -140,7 +142,7 @@ class FlowMethodOn : public FlowMethod {
     seed_ = parameters_.seed;
     texel_ = texel;
     ttl_ = std::clamp(parameters_.ttl, 1, max_ttl);
-    sight_ = sight > 0 ? sight : ttl_;
+    sight_ = sight != 0 ? sight : ttl_;
     steady_ = !(vectors.end > vectors.start);
     exec_.arena().rewind(embedding_mark_);
     point_vectors_ = exec_.arena().template permanent<Vec3f>(points_.size());
@@ -153,7 +155,7 @@ class FlowMethodOn : public FlowMethod {
   }
 
   /// Number of slots that hold displacements: those that a path can see.
-  int slots() const { return steady_ ? 1 : sight_ + 1; }
+  int slots() const { return sight_ == no_sight ? 0 : steady_ ? 1 : sight_ + 1; }
   int slot(int k) const { return steady_ ? 0 : (k - first_) % (sight_ + 1); }
 
   /// How displacements are rounded to whole cells in step `k`: -1/2..1/2 on each axis, spread evenly over few steps (an
@@ -215,7 +217,7 @@ class FlowMethodOn : public FlowMethod {
   /// Embeds what comes into sight at step `k`.
   void look_ahead(int k) {
     if (steady_) return;
-    if (k > first_) fill(k + sight_);
+    if (k > first_ && sight_ != no_sight) fill(k + sight_);
     load_present(k);
   }
 
@@ -305,7 +307,9 @@ class FlowMethodOn : public FlowMethod {
           mesh_{flow.points_.data(), corners_.data(), normals_.data()},
           moved_{flow.shape_.points().data(), corners_.data(), flow.shape_.normals().data()},
           vectors_(flow.shape_.vectors()) {
-      if (vectors_.empty()) vectors_ = flow.vectors_at(flow.time());
+      if (!vectors_.empty()) return;
+      vectors_.resize(flow.points_.size());
+      flow.fill_vectors(flow.time(), vectors_);
     }
 
     /// Entry `s`: a cell's centre and the point of triangle `t` closest to it, both in cells of the domain.
@@ -353,13 +357,6 @@ class FlowMethodOn : public FlowMethod {
     return positions;
   }
 
-  /// One vector for each embedded point.
-  std::vector<Vec3f> vectors_at(double time) const {
-    std::vector<Vec3f> vectors(points_.size());
-    fill_vectors(time, vectors);
-    return vectors;
-  }
-
   std::vector<float> download_frame(const float* frame, std::size_t n) const {
     std::vector<float> host(n);
     exec_.device().copy_to_host(host.data(), frame, n * sizeof(float));
@@ -396,6 +393,7 @@ class FlowMethodOn : public FlowMethod {
   MeshView seen_{};  ///< what pictures show: as `mesh_`, but all triangles where they are
   TriangleBoxes boxes_;
   float* output_means_ = nullptr;  ///< where the means of blocks of shown values go; null: nowhere
+  Array<Vec3f> present_vectors_;   ///< of the frame, one for each embedded point
 
  private:
   template <class Pixel>
@@ -443,7 +441,7 @@ class FlowMethodOn : public FlowMethod {
 
   Array<Triangle> seen_corners_;
   Array<std::uint8_t> device_second_sheet_;
-  Array<Vec3f> point_vectors_, present_vectors_;
+  Array<Vec3f> point_vectors_;
   std::vector<Vec3f> host_vectors_;
 };
 

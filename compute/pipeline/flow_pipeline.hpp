@@ -26,10 +26,17 @@ enum class EmbeddingKind { grid, octree };
 /// An octree of bricks of 8^3 cells that are found by bit masks, or one whose leaves are cells, as in sec. 6.1.
 enum class OctreeKind { brick, thesis };
 
+/// What is drawn on the surface: streaks of particles (chapter 5), or a pattern of reaction and diffusion along the
+/// vectors (docs/method/reaction-diffusion.md).
+enum class FlowTexture { streaks, spots, stripes };
+
 /// Settings of a flow run. Ranges and help texts are in the knob table (engine/scene/settings/knobs.hpp).
 struct FlowParameters {
   EmbeddingKind method = EmbeddingKind::grid;
   OctreeKind octree = OctreeKind::brick;
+  FlowTexture texture = FlowTexture::streaks;
+  double pattern_spacing = 24;   ///< texture cells from spot to spot, or stripe to stripe, across the vectors
+  double pattern_stretch = 2.2;  ///< how much longer a pattern is along the vectors than across, where they are fast
   bool neighbour_index = false;  ///< store every cell's neighbours, in the octree of cells (sec. 6.1.4)
   int resolution = 1024;         ///< texture cells along the longest side; of an octree: cells of its domain per axis
   int refine = 4;                ///< texture cells per closest-point cell and axis (R)
@@ -163,7 +170,7 @@ struct RenderOptions {
   BackFaces back_faces = BackFaces::shown;
 };
 
-/// An embedded surface and the texture that moves on it: all that can be asked of it. Its implementations are GridFlow
+/// An embedded surface and the texture on it: all that can be asked of it. Its implementations are GridFlow, GridPattern
 /// and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
 /// Interrupted when the watched flag is set.
 class FlowMethod {

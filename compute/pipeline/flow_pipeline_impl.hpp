@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compute/pipeline/grid_flow.hpp"
+#include "compute/pipeline/grid_pattern.hpp"
 #include "compute/pipeline/octree_flow.hpp"
 
 namespace nacre {
@@ -64,6 +65,8 @@ class FlowPipelineOf final : public FlowPipeline {
       throw Error("several processes share only an octree of bricks", "", "use `method` octree and `octree` brick");
     if (ranks && device_.backend() != "cpu")
       throw Error("several processes work only on CPUs", "this one has " + device_.name(), "choose the CPU");
+    require_pattern(parameters);
+    if (parameters.texture != FlowTexture::streaks) return std::make_unique<GridPattern<Backend>>(exec, parameters);
     if (parameters.method == EmbeddingKind::grid) return std::make_unique<GridFlow<Backend>>(exec, parameters);
     if (parameters.octree == OctreeKind::brick)
       return std::make_unique<OctreeFlow<Backend, BrickBand>>(exec, parameters, ranks);

@@ -172,8 +172,9 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
   Focus focus;
   focus.pixel = project.pixel(depths->nearest);
   if (coarse <= coarsest_cell * focus.pixel) return {};
-  // What flows into the picture begins outside of it, and streaks read what lies beside it.
-  const double cells_beside = parameters.streaks + 2 * parameters.step_cells;
+  // What flows into the picture begins outside of it, and streaks read what lies beside it; a pattern ends at the rim.
+  const bool streaks = parameters.texture == FlowTexture::streaks;
+  const double cells_beside = streaks ? parameters.streaks + 2 * parameters.step_cells : 2 * parameters.pattern_spacing;
   double cell = focus.pixel;
   for (int attempt = 0; attempt < 2; ++attempt) {  // a coarser cell needs a wider margin
     std::vector<HalfSpace> inside = project.sides(cells_beside * cell);

@@ -62,6 +62,9 @@ class FlowKnobs(TypedDict, total=False):
     relative: Literal["auto", "on", "off"]  #: show vectors less the velocity of a surface that moves; auto: velocities only
     surface_velocity: str  #: array with the velocity of the surface; empty: from its positions
     period: float  #: time after which the data come round: the last step is followed by the first; 0: they do not
+    texture: Literal["streaks", "spots", "stripes"]  #: what shows the vectors: streaks of particles, or spots or stripes along them that react and diffuse (method grid)
+    pattern_spacing: float  #: distance of spots or stripes across the vectors, in texture cells [cells]
+    pattern_stretch: float  #: length of spots along fast vectors, against their width; 1: round
     ttl: int  #: lifetime of a particle, in the mean [steps]
     steps: int  #: number of steps from the first time to the last
     step_cells: float  #: distance in texture cells that the 98th percentile speed moves in a step [cells]

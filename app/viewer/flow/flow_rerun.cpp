@@ -9,13 +9,14 @@ namespace nacre {
 namespace {
 
 auto of_embedding(const FlowParameters& p) {
-  return std::tie(p.method, p.octree, p.neighbour_index, p.resolution, p.refine, p.subcells, p.radius);
+  return std::tie(p.method, p.octree, p.texture, p.neighbour_index, p.resolution, p.refine, p.subcells, p.radius);
 }
 
 // With the speed: the vectors in the slots are scaled already; a start fills them again.
 auto of_start(const Settings& s) {
   const FlowParameters& p = s.flow;
-  return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power);
+  return std::tie(s.time, s.begin_at, p.ttl, p.steps, p.warmup, p.seed, p.step_cells, p.speed_power, p.pattern_spacing,
+                  p.pattern_stretch);
 }
 
 auto of_motion(const Settings& s) { return std::tie(s.relative, s.surface_velocity, s.period); }

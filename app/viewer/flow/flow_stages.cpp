@@ -104,7 +104,7 @@ void FlowWorker::choose() {
       vectors_->set_vectors(choice.name);
       if (!(motion == vectors_->motion())) vectors_->set_motion(motion);
       reason = choice.reason;
-      warn_of_vectors(*vectors_, log);
+      warn_of_vectors(*vectors_, settings_, log);
     } else {
       choose_colours();
     }

@@ -56,6 +56,9 @@ std::string mesh_cost(MeshStage stage) {
 std::string plain_name(const std::string& knob) {
   static const std::map<std::string, std::string> names{
       {"resolution", "Texture detail"},
+      {"texture", "Texture"},
+      {"pattern_spacing", "Pattern spacing"},
+      {"pattern_stretch", "Pattern stretch"},
       {"ttl", "Streak length"},
       {"streaks", "Smoothing"},
       {"contrast", "Contrast"},

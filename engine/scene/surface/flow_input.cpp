@@ -32,7 +32,7 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
   }
   MotionChoice motion = choose_motion(series, first, choice.name, settings, log);
   VectorsInTime vectors(std::move(series), std::move(surface), choice.name, settings.color, stop, std::move(motion));
-  warn_of_vectors(vectors, log);
+  warn_of_vectors(vectors, settings, log);
   return vectors;
 }
 
@@ -84,7 +84,7 @@ MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, co
   return choice;
 }
 
-void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log) {
+void warn_of_vectors(const VectorsInTime& vectors, const Settings& settings, const FlowLog& log) {
   const VectorStatistics& s = vectors.statistics();
   if (vectors.surface_speed() > 0 &&
       s.percentile_98 <= vectors.surface_speed() * vectors.least_relative_speed * (1 + 1e-9))
@@ -92,7 +92,9 @@ void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log) {
         fmt::format("{} moves with the surface: relative to it, it is slower than a hundredth of the surface itself",
                     vectors.array()));
   if (s.percentile_98 <= 0)
-    log.warn("the vectors are zero everywhere: the texture will remain noise");
+    log.warn(settings.flow.texture == FlowTexture::streaks
+                 ? "the vectors are zero everywhere: the texture will remain noise"
+                 : "the vectors are zero everywhere: spots will be round, and stripes have no direction");
   else if (s.normal_share > 0.5)
     log.warn(fmt::format("{} is {:.0f}% normal to the surface: only its tangential part is shown", vectors.array(),
                          100 * s.normal_share));

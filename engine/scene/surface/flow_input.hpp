@@ -36,7 +36,7 @@ MotionChoice choose_motion(const SurfaceSeries& series, const Surface& first, co
                            const Settings& settings, const FlowLog& log);
 
 /// Warns where the vectors show little: all zero, mostly normal to the surface, zero over much of it.
-void warn_of_vectors(const VectorsInTime& vectors, const FlowLog& log);
+void warn_of_vectors(const VectorsInTime& vectors, const Settings& settings, const FlowLog& log);
 
 /// A prepared surface as the flow pipeline takes it; the surface must outlive it.
 inline FlowMesh flow_mesh(const PreparedSurface& surface) {
