@@ -56,8 +56,16 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       patch_delaunay_(rule.threads) {}
 
 ImprovedMesh MeshImprovement::run() {
-  std::optional<Triangulated> best;
-  HostParticles best_particles;
+  std::optional<Kept> best;
+  settle(best);
+  if (rule_.deviation > 0) refine(*best);
+  particles_.upload(best->particles);
+  return {std::move(best->made.mesh), count_by_order(best->particles.interface, table_), star_use_, deviation_};
+}
+
+/// Triangulates and improves until nothing helps. `best` is replaced by what is better, where it is the first or no
+/// deviation is asked for.
+void MeshImprovement::settle(std::optional<Kept>& best) {
   for (bool again = true; again;) {
     tell_("triangulate", fraction(), 0, 0);
     Triangulated made = triangulate();
@@ -65,14 +73,10 @@ ImprovedMesh MeshImprovement::run() {
       if (continue_attempt(made)) continue;
       if (take_back_attempt()) made = triangulate();
     }
-    if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->fitness)) {
-      best = made;
-      best_particles = particles_.download();
-    }
+    if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->made.fitness))
+      best = Kept{made, particles_.download(), {}, {}};
     again = improve(made);
   }
-  particles_.upload(best_particles);
-  return {std::move(best->mesh), count_by_order(best_particles.interface, table_), star_use_};
 }
 
 double MeshImprovement::fraction() const {

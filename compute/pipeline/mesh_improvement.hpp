@@ -23,6 +23,7 @@
 #include "compute/meshing/star_counts.hpp"
 #include "compute/meshing/star_finder.hpp"
 #include "compute/meshing/surface_mesh.hpp"
+#include "compute/pipeline/mesh_deviation.hpp"
 #include "compute/pipeline/movable_particles.hpp"
 #include "compute/pipeline/stage_progress.hpp"
 
@@ -35,6 +36,8 @@ struct ImprovementRule {
   bool stars = false;                       ///< triangles from the particles' stars, where these are sound
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
   const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
+  double deviation = 0;                     ///< largest of triangles from their interface, voxels; 0: any
+  double detail = 0.25;                     ///< no particle is added nearer to others than 0.7 of this, voxels
 };
 
 /// A mesh and how many of its particles are at points, on curves, on surfaces.
@@ -42,10 +45,12 @@ struct ImprovedMesh {
   SurfaceMesh mesh;
   std::array<std::int64_t, 3> particles{};
   StarUse stars;
+  DeviationInfo deviation;
 };
 
 /// Triangulates particles and changes them until the triangles get no better. First the clear defects are mended, then
-/// all particles are smoothed, at last there are attempts at what is still bad. The best mesh after smoothing is kept.
+/// all particles are smoothed, then there are attempts at what is still bad. The best mesh after smoothing is kept.
+/// Where the deviation is bounded, particles are added in the triangles above the bound, in turn with further attempts.
 class MeshImprovement {
  public:
   /// All arguments must outlive the object.
@@ -67,6 +72,20 @@ class MeshImprovement {
 
     Attempt::View view() const { return {mesh, point_of, order, touching}; }
   };
+
+  /// The mesh that is the best so far, and its particles.
+  struct Kept {
+    Triangulated made;
+    HostParticles particles;
+    DeviationRefinement further;  ///< what would bring it nearer to its interfaces
+    MeshDeviation deviation;
+  };
+
+  void settle(std::optional<Kept>& best);
+  void refine(Kept& best);
+  bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
+  static bool better(const Kept& a, const Kept& b);
+  void measure(Kept& kept);
 
   Triangulated triangulate();
   bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, Triangulated& made);
@@ -94,6 +113,7 @@ class MeshImprovement {
   std::optional<Attempt> attempt_;            ///< the one in progress,
   HostParticles before_;                      ///< what was there before it,
   int further_ = 0;                           ///< and its rounds after the first
+  DeviationInfo deviation_;
 };
 
 }  // namespace nacre
