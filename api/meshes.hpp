@@ -3,15 +3,16 @@
 
 #include <span>
 
-#include "compute/meshing/surface_mesh.hpp"
+#include "compute/meshing/second_order.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
 #include "engine/scene/session/mesh_materials.hpp"
 #include "include/nacre/mesh.hpp"
 
 namespace nacre {
 
-Mesh public_mesh(const SurfaceMesh& mesh, const MeshInput& input);
-Tetrahedra public_tetrahedra(const TetrahedralMesh& mesh);
+/// `second` may be null.
+Mesh public_mesh(const SurfaceMesh& mesh, const SecondOrder* second, const MeshInput& input);
+Tetrahedra public_tetrahedra(const TetrahedralMesh& mesh, const SecondOrder* second);
 Particles public_particles(const MeshParticles& particles);
 
 }  // namespace nacre

@@ -90,6 +90,7 @@ struct Meshing::State {
   MeshResult result;
   MeshParameters used;  ///< those that the stages up to `stage` were computed with
   double used_max_cell = 0;
+  int used_order = 1, mesh_order = 1;  ///< `element_order` of `tetrahedra` and of `mesh`
   Stage stage = Stage::materials;
   bool remarked = false, measured = false, filled = false;
   double seconds = 0;
@@ -138,6 +139,15 @@ struct Meshing::State {
     measured = filled = false;
   }
 
+  /// The mesh as the library gives it, of the order that the knob asks for.
+  void publish() {
+    const int order = settings().element_order;
+    std::optional<SecondOrder> second;
+    if (order == 2) second = mesh_nodes(result.mesh, nullptr, *pipeline, options.stop);
+    mesh = public_mesh(result.mesh, second ? &*second : nullptr, input);
+    mesh_order = order;
+  }
+
   bool advance() {
     if (stage == Stage::triangles) return false;
     check_stop(options.stop);
@@ -152,7 +162,7 @@ struct Meshing::State {
     }
     stage = Stage(int(stage) + 1);
     seconds += seconds_now() - started;
-    if (stage == Stage::triangles) mesh = public_mesh(result.mesh, input);
+    if (stage == Stage::triangles) publish();
     return true;
   }
 
@@ -185,14 +195,28 @@ struct Meshing::State {
 
   void fill() {
     measure();
-    if (filled && used_max_cell == settings().max_cell) return;
+    const int order = settings().element_order;
+    if (filled && used_max_cell == settings().max_cell && used_order == order) return;
     const double started = seconds_now();
-    announce("tetrahedra", 0.97);
-    fill_result(result, settings().max_cell, input, pipeline->timers(), options.stop);
-    tetrahedra = public_tetrahedra(*result.cells);
+    if (!filled || used_max_cell != settings().max_cell) {
+      announce("tetrahedra", 0.97);
+      result.second.reset();
+      fill_result(result, settings().max_cell, input, pipeline->timers(), options.stop);
+    }
+    bend();
+    tetrahedra = public_tetrahedra(*result.cells, result.second ? &*result.second : nullptr);
     used_max_cell = settings().max_cell;
+    used_order = order;
     filled = true;
     seconds += seconds_now() - started;
+  }
+
+  /// The nodes of the result, or none, as the knob asks for.
+  void bend() {
+    if (settings().element_order == 1) return result.second.reset();
+    if (result.second) return;
+    announce("nodes", 0.98);
+    add_second_order(result, *pipeline, input, options.stop);
   }
 };
 
@@ -274,6 +298,7 @@ const Mesh& Meshing::mesh() {
   return *library_call([&] {
     const Caller caller(state_->mutex, state_->options.threads);
     state_->finish();
+    if (state_->mesh_order != state_->settings().element_order) state_->publish();
     return &state_->mesh;
   });
 }
@@ -299,6 +324,7 @@ std::string Meshing::report() const {
     State& s = *state_;
     const Caller caller(s.mutex, s.options.threads);
     s.measure();
+    s.bend();
     if (s.result.voxels.empty()) compare_with_voxels(s.result, s.volume, s.pipeline->timers(), s.options.stop);
     nlohmann::json report = report_frame("mesh", *s.device, s.pipeline->timers(), s.pipeline->peak_bytes());
     add_mesh_report(report, s.input, s.settings(), s.pipeline->info(), s.result);

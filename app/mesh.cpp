@@ -5,6 +5,7 @@
 #include "app/mesh_run.hpp"
 #include "app/picture_options.hpp"
 #include "compute/device/error.hpp"
+#include "engine/io/mesh_writer.hpp"
 #include "engine/io/named_files.hpp"
 #include "engine/run/presets.hpp"
 #include "engine/run/report.hpp"
@@ -36,6 +37,8 @@ void check_options(const MeshOptions& options, const Session& session) {
   check_picture_options(settings);
   check_picture_size(settings.width, settings.height, !options.image.empty(), false);
   check_mesh_outputs(options);
+  if (settings.element_order == 2 && !options.out.empty())
+    with_usage_errors([&] { check_second_order(options.out, wants_cells(options)); });
   if (wants_cells(options) && settings.mesh.triangles == "stars")
     throw UsageError("tetrahedra need `triangulation` to be auto or delaunay; leave it so, or write a surface");
 }
@@ -100,6 +103,10 @@ MeshResult compute(const MeshOptions& options, const Settings& settings, const M
   if (wants_cells(options)) {
     bar.update("tetrahedra", 0.97);
     fill_result(result, settings.max_cell, input, pipeline.timers(), kept ? nullptr : &interrupt_flag());
+  }
+  if (settings.element_order == 2) {
+    bar.update("nodes", 0.98);
+    add_second_order(result, pipeline, input, kept ? nullptr : &interrupt_flag());
   }
   return result;
 }

@@ -107,15 +107,16 @@ std::vector<std::string> write_mesh_outputs(const MeshOptions& options, const Se
     image = draw_mesh(result.mesh, input, session, options.cut_away);
   }
   StageTimers::Scope scope(timers, "write");
+  const SecondOrder* second = result.second ? &*result.second : nullptr;
   if (result.cells) {
-    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels, input.names, out_origin);
+    write_tetrahedral_mesh(options.out, *result.cells, result.mesh, input.labels, input.names, out_origin, second);
     files.push_back(options.out);
   } else if (options.per_material) {
     for (const fs::path& file :
-         write_material_surfaces(options.out, result.mesh, input.labels, input.names, out_origin))
+         write_material_surfaces(options.out, result.mesh, input.labels, input.names, out_origin, second))
       files.push_back(file.string());
   } else if (!options.out.empty()) {
-    write_surface_mesh(options.out, result.mesh, input.labels, input.names, out_origin);
+    write_surface_mesh(options.out, result.mesh, input.labels, input.names, out_origin, second);
     files.push_back(options.out);
   }
   if (!options.particles_out.empty()) {

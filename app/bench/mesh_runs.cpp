@@ -110,7 +110,7 @@ MeshRun MeshRuns::run_once(const MeshSolve& solve) {
   const StageTimers& timers = pipeline_->timers();
   const auto placing = [&] { return timers.seconds("seed") + timers.seconds("relax") + timers.seconds("population"); };
   const auto extracting = [&] {
-    return timers.seconds("triangulate") + timers.seconds("smooth") + timers.seconds("mend");
+    return timers.seconds("triangulate") + timers.seconds("smooth") + timers.seconds("remesh");
   };
   const double placed = placing(), relaxed = timers.seconds("relax"), extracted = extracting();
   place_particles(solve);

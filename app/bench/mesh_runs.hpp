@@ -28,7 +28,7 @@ struct MeshJob {
 
 /// How particles move.
 struct MeshSolve {
-  std::string solver;    ///< tree, redblack, serial; "own": the tree with Nacre's own settings, mending included
+  std::string solver;    ///< tree, redblack, serial; "own": the tree with Nacre's own settings, remeshing included
   int particles = 0;     ///< seed this many on surfaces and add none; 0: as the sizing field says
   bool quality = false;  ///< triangulate, and measure the triangles
 
@@ -50,7 +50,7 @@ struct MeshRun {
   double seconds = 0;  ///< for seed, relax and population
   double relax = 0;    ///< of these, relax
   double moves = 0;    ///< particles moved, summed over iterations (of the surfaces)
-  double extract = 0;  ///< triangulate, and mend where it was asked for
+  double extract = 0;  ///< triangulate, and remesh where it was asked for
   double mean_ratio = 0, smallest_ratio = 0;
 };
 

@@ -15,6 +15,12 @@ namespace nacre {
 struct SizingRule {
   float epsilon = 0.5f, delta = 0.4f, min_size = 0.5f, max_size = 1;
   bool curvature = false;
+  float deviation = 0;   ///< largest distance of triangles from the interface; 0: any
+  float detail = 0.25f;  ///< no h is smaller than this for its sake
+
+  /// A triangle of spacing h is k h^2 / 6 from a surface of curvature k at its middle, k h^2 / 8 at those of its edges;
+  /// that of a triangle of the usual unevenness is asked to keep the bound.
+  static constexpr float flatness = 4.5f;
 
   /// Whatever the smallest size says: where the medial ball is small, h stays below this share of its radius, or thin
   /// things and small islands would have no particles to stand on; but not below `smallest` voxels.
@@ -24,7 +30,8 @@ struct SizingRule {
   NACRE_HD float size(float feature, float bend, float most) const {
     const float bound = curvature ? min(feature, bend) : feature;
     const float wanted = min(max(epsilon * bound, min_size), most);
-    return min(wanted, max(resolve * feature, smallest));
+    const float usual = min(wanted, max(resolve * feature, smallest));
+    return deviation > 0 ? min(usual, max(std::sqrt(flatness * deviation * bend), detail)) : usual;
   }
   /// Radius from which on a medial ball makes no difference.
   float reach() const { return max_size / (min_size < max_size ? min(epsilon, resolve) : resolve); }

@@ -20,10 +20,10 @@ struct alignas(8) Pair {
 /// sqrt(2^2 + 2^2 + 3^2) = 4.12, Ruuth & Merriman 2008.)
 inline constexpr double diffusion_radius = 5.2;
 
-/// Weights of cubic interpolation at `x` in [0, 1] between the second and the third of four samples.
-struct CubicWeights {
+/// Weights of cubic interpolation (Lagrange) at `x` in [0, 1] between the second and the third of four samples.
+struct LagrangeWeights {
   float of[4];
-  NACRE_HD_INLINE explicit CubicWeights(float x) {
+  NACRE_HD_INLINE explicit LagrangeWeights(float x) {
     const float a = x + 1, b = x - 1, c = x - 2;
     of[0] = -x * b * c * (1.0f / 6);
     of[1] = a * b * c * 0.5f;
@@ -45,7 +45,7 @@ struct CubicCells {
   }
 
   NACRE_HD_INLINE Pair interpolate(const ClosestPointGridView& grid, const Pair* values) const {
-    const CubicWeights wx(f.x), wy(f.y), wz(f.z);
+    const LagrangeWeights wx(f.x), wy(f.y), wz(f.z);
     std::uint32_t column[4];
     for (int a = 0; a < 4; ++a)
       column[a] = std::uint32_t(stencil.local[0] + a - (a >= stencil.split[0] ? grid.sub : 0));

@@ -30,7 +30,8 @@ struct MeshDefects {
   struct NewPoint {
     Vec3d position;
     std::array<std::uint16_t, 2> materials;
-    std::uint32_t at;  ///< a point of the mesh that it is next to
+    std::uint32_t at;              ///< a point of the mesh that it is next to
+    std::uint16_t third = 0xffff;  ///< a material that it is to meet, too: it is for the curve of the three
   };
   std::int64_t bad_triangles = 0;
   std::vector<std::uint32_t> remove;  ///< points of the mesh, ascending; no two of them share a triangle

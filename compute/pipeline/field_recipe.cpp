@@ -9,6 +9,8 @@
 
 namespace nacre {
 
+double deviation_detail(const MeshParameters& parameters) { return std::min(parameters.min_size, 0.25); }
+
 int FieldRecipe::alike(const FieldRecipe& other) const {
   if (width != other.width || stairs != other.stairs) return tighten_stage;
   if (kernel != other.kernel || !(lattice == other.lattice) || reach != other.reach) return distance_stage;
@@ -22,12 +24,18 @@ FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind
   if (kind == MeshVolume::Kind::labels) recipe.width = parameters.tighten;
   if (recipe.width > 0) recipe.stairs = parameters.stairs;
   recipe.kernel = kernel_from_string(parameters.kernel);
-  recipe.rule = {float(parameters.epsilon), float(parameters.delta), float(parameters.min_size),
-                 float(std::max(parameters.min_size, parameters.max_size)), parameters.curvature};
+  recipe.rule = {float(parameters.epsilon),
+                 float(parameters.delta),
+                 float(parameters.min_size),
+                 float(std::max(parameters.min_size, parameters.max_size)),
+                 parameters.curvature,
+                 float(parameters.max_deviation),
+                 float(deviation_detail(parameters))};
   recipe.bounds = std::move(bounds);
   float least = recipe.rule.min_size;
   for (const SizeBound& bound : recipe.bounds) least = std::min(least, bound.size);
   if (wishes) least = std::min(least, wishes->least);
+  if (recipe.rule.deviation > 0) least = std::min(least, 1.0f);  // curvature is looked for everywhere
   recipe.spacing = 0.5f * least;
   recipe.lattice = lattice_over(bricks, recipe.spacing);
   recipe.reach = std::min(widest_rule(recipe.rule, recipe.bounds, wishes).reach() + 2, 64.0f);

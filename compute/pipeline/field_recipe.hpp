@@ -28,6 +28,10 @@ struct FieldRecipe {
   int alike(const FieldRecipe& other) const;
 };
 
+/// The smallest distance of particles that a bound on the deviation may ask for, voxels: interfaces have no detail
+/// below a quarter of a voxel.
+double deviation_detail(const MeshParameters& parameters);
+
 /// The recipe that `parameters` ask for on a volume of this kind, laid out as `bricks`; `bounds` are what its `sizes`
 /// say, `wishes` (may be null) those of the volume. The cells of the embedding are limited by `small`,
 /// SizingField::small of the present sizing field: where that is built again, so is the embedding.

@@ -1,6 +1,8 @@
 // Nacre: the particles on the host, where the improvement of the mesh takes some out and puts others in.
 #include "compute/pipeline/host_particles.hpp"
 
+#include <algorithm>
+
 namespace nacre {
 
 std::size_t replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
@@ -12,7 +14,9 @@ std::size_t replace_particles(HostParticles& particles, std::span<const std::uin
     if (!gone[i]) position[kept] = position[i], direction[kept] = direction[i], interface[kept++] = interface[i];
   position.resize(kept), direction.resize(kept), interface.resize(kept);
   for (const MeshDefects::NewPoint& p : born) {
-    const auto number = table.find(Junction(p.materials[0], p.materials[1]));
+    std::array<std::uint16_t, 3> met{p.materials[0], p.materials[1], p.third};
+    std::sort(met.begin(), met.end());
+    const auto number = table.find(Junction(met[0], met[1], met[2]));
     if (!number || position.size() == capacity) continue;
     const Vec3d at = frame.to_voxels(p.position);
     position.push_back({float(at.x), float(at.y), float(at.z), 0});

@@ -71,13 +71,13 @@ MeshParameters at_quality(const MeshParameters& parameters) {
       p.subcells = std::min(p.subcells, 1);
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);
-      p.mend = std::min(p.mend, 6);
+      p.remesh = std::min(p.remesh, 6);
       if (triangles_from_string(p.triangles) == TriangleSource::automatic) p.triangles = "stars";
       break;
     case MeshQuality::best:
       p.iterations = std::max(p.iterations, 120);
       p.smooth = std::max(p.smooth, 4);
-      p.mend = std::max(p.mend, 40);
+      p.remesh = std::max(p.remesh, 40);
       break;
     case MeshQuality::standard: break;
   }

@@ -19,9 +19,9 @@ constexpr int most_further = 4;  ///< rounds of an attempt after its first
 struct AttemptKind {
   int turns;    ///< of smoothing; 0: none
   bool shakes;  ///< smoothing begins from random positions
-  bool mends;
+  bool remeshes;
 };
-/// Tried in turn: smoothing and mending together; fewer steps, for particles that flip to and fro; mending alone, which
+/// Tried in turn: smoothing and remeshing together; fewer steps, for particles that flip to and fro; remeshing alone, which
 /// leaves the other particles where they are; and both again from a random start.
 constexpr std::array<AttemptKind, 4> attempt_kinds{
     {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
@@ -56,8 +56,16 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       patch_delaunay_(rule.threads) {}
 
 ImprovedMesh MeshImprovement::run() {
-  std::optional<Triangulated> best;
-  HostParticles best_particles;
+  std::optional<Kept> best;
+  settle(best);
+  if (rule_.deviation > 0) refine(*best);
+  particles_.upload(best->particles);
+  return {std::move(best->made.mesh), count_by_order(best->particles.interface, table_), star_use_, deviation_};
+}
+
+/// Triangulates and improves until nothing helps. `best` is replaced by what is better, where it is the first or no
+/// deviation is asked for.
+void MeshImprovement::settle(std::optional<Kept>& best) {
   for (bool again = true; again;) {
     tell_("triangulate", fraction(), 0, 0);
     Triangulated made = triangulate();
@@ -65,18 +73,14 @@ ImprovedMesh MeshImprovement::run() {
       if (continue_attempt(made)) continue;
       if (take_back_attempt()) made = triangulate();
     }
-    if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->fitness)) {
-      best = made;
-      best_particles = particles_.download();
-    }
+    if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->made.fitness))
+      best = Kept{made, particles_.download(), {}, {}};
     again = improve(made);
   }
-  particles_.upload(best_particles);
-  return {std::move(best->mesh), count_by_order(best_particles.interface, table_), star_use_};
 }
 
 double MeshImprovement::fraction() const {
-  return 0.85 + 0.09 * (smoothed_ + mended_) / std::max(1, rule_.smooth + rule_.mend);
+  return 0.85 + 0.09 * (smoothed_ + remeshed_) / std::max(1, rule_.smooth + rule_.remesh);
 }
 
 MeshImprovement::Triangulated MeshImprovement::triangulate() {
@@ -148,21 +152,21 @@ void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triang
 
 /// Changes the particles before they are triangulated again; false where there is nothing to change.
 bool MeshImprovement::improve(Triangulated& made) {
-  if (smoothed_ + mended_ == 0 && rule_.mend > 0) {
-    ++mended_;
-    if (mend(made, DefectRule())) return true;
+  if (smoothed_ + remeshed_ == 0 && rule_.remesh > 0) {
+    ++remeshed_;
+    if (remesh(made, DefectRule())) return true;
   }
   if (smoothed_ < rule_.smooth) {
     ++smoothed_;
     smooth(made, std::vector<std::uint8_t>(made.mesh.points.size(), 1));
-    if (smoothed_ == rule_.smooth && rule_.mend > 0) mend(made, worst_defects);
+    if (smoothed_ == rule_.smooth && rule_.remesh > 0) remesh(made, worst_defects);
     return true;
   }
   const std::vector<std::uint8_t> bad = bad_points(made.mesh, made.touching);
   const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
   const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * bad_);
-  if (mended_ >= rule_.mend || !worth) return false;
-  ++mended_;
+  if (remeshed_ >= rule_.remesh || !worth) return false;
+  ++remeshed_;
   bad_ = count;
   return begin_attempt(made, bad);
 }
@@ -177,8 +181,8 @@ bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uin
     const AttemptKind& kind = attempt_kinds[number % attempt_kinds.size()];
     const bool moves = kind.turns > 0 && rule_.smooth > 0;
     const bool moved = moves && smooth(made, bad, {kind.turns, kind.shakes ? number : 0}) > 0;
-    const bool mended = kind.mends && mend(made, worst_defects);
-    if (moved || mended) return true;
+    const bool remeshed = kind.remeshes && remesh(made, worst_defects);
+    if (moved || remeshed) return true;
   }
   attempt_.reset();
   return false;
@@ -189,12 +193,12 @@ bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uin
 bool MeshImprovement::continue_attempt(Triangulated& made) {
   attempt_->judge(made.view());
   const std::vector<std::uint8_t> open = attempt_->open(made.view());
-  if (open.empty() || further_ == most_further || mended_ >= rule_.mend) return false;
-  ++further_, ++mended_;
+  if (open.empty() || further_ == most_further || remeshed_ >= rule_.remesh) return false;
+  ++further_, ++remeshed_;
   std::vector<std::uint8_t> moving = bad_points(made.mesh, made.touching);
   for (std::size_t v = 0; v < moving.size(); ++v) moving[v] &= open[v];
   const bool moved = rule_.smooth > 0 && smooth(made, moving) > 0;
-  return mend(made, worst_defects, open) || moved;
+  return remesh(made, worst_defects, open) || moved;
 }
 
 /// Ends an attempt: particles go back to where they were before, in those patches whose triangles are no better since.
@@ -229,9 +233,9 @@ std::int64_t MeshImprovement::smooth(Triangulated& made, std::span<const std::ui
 
 /// Takes away the particles that spoil triangles, and adds some where a surface touches itself or a rim has a gap; only
 /// at the mesh's points `there`, where these are marked. False where nothing is to be changed.
-bool MeshImprovement::mend(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there) {
+bool MeshImprovement::remesh(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there) {
   bool changed = false;
-  particles_.in_stage("mend", [&] {
+  particles_.in_stage("remesh", [&] {
     MeshDefects defects = find_defects(made.mesh, made.order, made.size, made.touching, rule);
     if (!there.empty()) {
       std::erase_if(defects.remove, [&](std::uint32_t v) { return !there[v]; });

@@ -2,8 +2,8 @@
 //
 // Each operation has one name:
 // - to smooth: particles move within the rings of triangles around them;
-// - to mend: particles that spoil triangles are removed, and missing ones are added;
-// - an attempt: smoothing or mending at bad triangles only, undone where the triangles are no better afterwards;
+// - to remesh: particles that spoil triangles are removed, and missing ones are added;
+// - an attempt: smoothing or remeshing at bad triangles only, undone where the triangles are no better afterwards;
 // - to project: particles are brought onto their interfaces, on the fields themselves;
 // - to repair: labels of Delaunay cells are changed (repair.hpp); particles are not;
 // - to improve: all of this together. (improve_cells.hpp improves tetrahedra, which have nothing to do with it.)
@@ -23,6 +23,7 @@
 #include "compute/meshing/star_counts.hpp"
 #include "compute/meshing/star_finder.hpp"
 #include "compute/meshing/surface_mesh.hpp"
+#include "compute/pipeline/mesh_deviation.hpp"
 #include "compute/pipeline/movable_particles.hpp"
 #include "compute/pipeline/stage_progress.hpp"
 
@@ -31,10 +32,12 @@ namespace nacre {
 /// How many rounds of improvement there may be, and on how many threads.
 struct ImprovementRule {
   int smooth = 2;                           ///< rounds of smoothing all particles
-  int mend = 12;                            ///< rounds of mending, at most; each attempt counts as one
+  int remesh = 12;                          ///< rounds of remeshing, at most; each attempt counts as one
   bool stars = false;                       ///< triangles from the particles' stars, where these are sound
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
   const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
+  double deviation = 0;                     ///< largest of triangles from their interface, voxels; 0: any
+  double detail = 0.25;                     ///< no particle is added nearer to others than 0.7 of this, voxels
 };
 
 /// A mesh and how many of its particles are at points, on curves, on surfaces.
@@ -42,10 +45,12 @@ struct ImprovedMesh {
   SurfaceMesh mesh;
   std::array<std::int64_t, 3> particles{};
   StarUse stars;
+  DeviationInfo deviation;
 };
 
-/// Triangulates particles and changes them until the triangles get no better. First the clear defects are mended, then
-/// all particles are smoothed, at last there are attempts at what is still bad. The best mesh after smoothing is kept.
+/// Triangulates particles and changes them until the triangles get no better. First the clear defects are remeshed, then
+/// all particles are smoothed, then there are attempts at what is still bad. The best mesh after smoothing is kept.
+/// Where the deviation is bounded, particles are added in the triangles above the bound, in turn with further attempts.
 class MeshImprovement {
  public:
   /// All arguments must outlive the object.
@@ -68,6 +73,20 @@ class MeshImprovement {
     Attempt::View view() const { return {mesh, point_of, order, touching}; }
   };
 
+  /// The mesh that is the best so far, and its particles.
+  struct Kept {
+    Triangulated made;
+    HostParticles particles;
+    DeviationRefinement further;  ///< what would bring it nearer to its interfaces
+    MeshDeviation deviation;
+  };
+
+  void settle(std::optional<Kept>& best);
+  void refine(Kept& best);
+  bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
+  static bool better(const Kept& a, const Kept& b);
+  void measure(Kept& kept);
+
   Triangulated triangulate();
   bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, Triangulated& made);
   void triangulate_by_cells(std::span<const Vec3d> points, Triangulated& made);
@@ -76,7 +95,7 @@ class MeshImprovement {
   bool continue_attempt(Triangulated& made);
   bool take_back_attempt();
   std::int64_t smooth(Triangulated& made, std::span<const std::uint8_t> moving, const SmoothingRule& rule = {});
-  bool mend(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there = {});
+  bool remesh(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there = {});
   double fraction() const;
 
   MovableParticles& particles_;
@@ -88,12 +107,13 @@ class MeshImprovement {
   StarFinder star_finder_;
   Delaunay patch_delaunay_;  ///< and of those where stars do not settle
   StarUse star_use_;
-  int smoothed_ = 0, mended_ = 0;             ///< rounds so far
+  int smoothed_ = 0, remeshed_ = 0;           ///< rounds so far
   std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began
   std::uint32_t tried_ = 0;                   ///< kinds of attempts so far
   std::optional<Attempt> attempt_;            ///< the one in progress,
   HostParticles before_;                      ///< what was there before it,
   int further_ = 0;                           ///< and its rounds after the first
+  DeviationInfo deviation_;
 };
 
 }  // namespace nacre

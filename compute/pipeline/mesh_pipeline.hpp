@@ -13,6 +13,7 @@
 
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
+#include "compute/field/interface.hpp"
 #include "compute/math/lanes.hpp"
 #include "compute/math/vec.hpp"
 #include "compute/meshing/star_counts.hpp"
@@ -32,6 +33,7 @@ struct MeshParameters {
   double max_size = 1.0;               ///< sizing: largest distance of particles
   std::string sizes;                   ///< sizing: largest distances in materials and regions: size_bounds.hpp
   bool curvature = false;              ///< sizing: bound by epsilon / largest curvature, too
+  double max_deviation = 0;            ///< of triangles from their interface, sizes shrink to keep it; 0: no bound
   int subcells = 2;                    ///< closest-point cells per voxel and axis
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
@@ -45,7 +47,7 @@ struct MeshParameters {
   bool by_density = true;              ///< serial, redblack: control by the estimated density; false: the thesis's rule
   int control_every = 10;              ///< iterations between two controls of the population
   int smooth = 2;                      ///< rounds of moving particles within the triangles around them
-  int mend = 12;                       ///< rounds of mending bad triangles after the first triangulation, at most
+  int remesh = 12;                     ///< rounds of remeshing bad triangles after the first triangulation, at most
   std::string triangles = "auto";      ///< stars, or delaunay: facets of cells; auto: stars for a draft
   std::string quality = "standard";    ///< draft, standard, best: see at_quality
   std::string seeds = "auto";          ///< embedding, marching-cubes; auto: the former for tree, the latter for others
@@ -85,6 +87,20 @@ struct MeshVolume {
   std::size_t voxels() const { return std::size_t(dims.x) * dims.y * dims.z; }
 };
 
+/// What became of the bound `max_deviation`: distances in voxels of the middles and the edges' middles of flat
+/// triangles from the interfaces that they stand for. All zero where there is no bound.
+struct DeviationInfo {
+  double first_max = 0;          ///< the largest, of the mesh of the sizing field
+  double max = 0, mean = 0;      ///< of the mesh in the end
+  std::int64_t first_above = 0;  ///< triangles above the bound, of the mesh of the sizing field
+  int rounds = 0;                ///< of refining
+  std::int64_t inserted = 0;     ///< particles that refining has put in
+  /// Triangles above the bound in the end: those whose edges are too short to be divided, those at junctions, others.
+  std::int64_t above_detail = 0, above_junctions = 0, above_others = 0;
+  std::vector<Vec3d> places;  ///< the middles of the worst of these, world; at most 100
+  std::int64_t above() const { return above_detail + above_junctions + above_others; }
+};
+
 /// What became of the fields and particles, for the report.
 struct MeshInfo {
   Int3 blocks{};          ///< of 8^3 voxels
@@ -108,6 +124,7 @@ struct MeshInfo {
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration
   StarUse stars;                    ///< of the improvement, where `triangles` is stars
+  DeviationInfo deviation;          ///< where `max_deviation` is set
   double final_energy = 0;          ///< mean on surfaces, by the tree with theta 0, alike for all solvers; 0: a draft
 };
 
@@ -189,13 +206,18 @@ class MeshPipeline {
   /// them. False where none had to run; else the particles are dropped.
   virtual bool build_fields() = 0;
   virtual void relax() = 0;               ///< stages seed, relax, population
-  virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, mend; world coordinates
+  virtual SurfaceMesh triangulate() = 0;  ///< stages triangulate, smooth, remesh; world coordinates
 
   /// How many particles the next `relax` makes room for: there are never more to be shown. Needs the fields. It is
   /// `relax` that throws Error where they do not fit into the memory.
   virtual std::int64_t particle_capacity() const = 0;
   virtual MeshParticles particles() const = 0;
   virtual SurfaceDistance surface_distance(const SurfaceMesh& mesh) = 0;  ///< stage quality
+  /// Where points of the world come to lie on the junctions of two, three or four materials (ascending; the others
+  /// 0xffff): on the interface that vertices lie on. Not finite where there is none within 6 voxels; with `within`,
+  /// also where the interface ends before that at its rim. Needs the fields.
+  virtual std::vector<Vec3d> onto_junctions(std::span<const Vec3d> points, std::span<const Junction> junctions,
+                                            bool within) = 0;
   /// Material at points of the world (the outside beyond the volume). Needs the fields; also within `progress` of
   /// `relax`.
   virtual std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) = 0;

@@ -57,11 +57,13 @@ class MeshPipelineOf : public MeshPipeline {
     else
       relaxed_ = particles_.download();
     const bool stars = triangles_from_string(used.triangles) == TriangleSource::stars;
-    const ImprovementRule rule{used.smooth, used.mend, stars, exec_.device().threads(), stop_};
+    const ImprovementRule rule{used.smooth,        used.remesh,           stars, exec_.device().threads(), stop_,
+                               used.max_deviation, deviation_detail(used)};
     ImprovedMesh made = MeshImprovement(particles_, fields_.table(), fields_.frame(), rule, tell_).run();
     info_.points_final = made.particles[0], info_.curves_final = made.particles[1];
     info_.surfaces_final = made.particles[2];
     info_.stars = made.stars;
+    info_.deviation = made.deviation;
     info_.final = particles_.count();
     return std::move(made.mesh);
   }
@@ -75,6 +77,12 @@ class MeshPipelineOf : public MeshPipeline {
     auto stage = exec_.stage("quality");
     const DistanceSamples samples = distance_samples(mesh);
     return summarise_distances(samples, distance_to_interfaces(exec_, fields_, samples.points, samples.interfaces));
+  }
+
+  std::vector<Vec3d> onto_junctions(std::span<const Vec3d> points, std::span<const Junction> junctions,
+                                    bool within) override {
+    require_fields();
+    return nacre::onto_junctions(exec_, fields_, points, junctions, within);
   }
 
   std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) override {

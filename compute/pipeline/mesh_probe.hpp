@@ -103,6 +103,24 @@ struct DistanceToInterface {
   }
 };
 
+/// Where a point comes to lie on its junction, voxels; not finite where that is more than 6 voxels away or, with
+/// `margin` the least, beyond its rim.
+struct PointOntoJunction {
+  MaterialBricksView field;
+  float margin;  ///< voxels; see junction_margin
+  const Vec3f* point;
+  const Junction* junction;
+  Vec3f* on;
+  NACRE_HD void operator()(std::int64_t i) const {
+    on[i] = Vec3f(NAN);
+    JunctionPoint at;
+    const Junction j = junction[i];
+    if (!field.inside(point[i], 3) || !project(field, j, point[i], 6, at)) return;
+    if (junction_margin(field, j, at.p, at.steepness) < margin) return;
+    on[i] = at.p;
+  }
+};
+
 /// Points of the world as the fields' kernels take them, temporary in the caller's scope; those far off are brought
 /// nearer, and what is no number becomes such a point.
 template <class Backend>
@@ -183,6 +201,36 @@ std::vector<float> distance_to_interfaces(Executor<Backend>& exec, const MeshFie
   exec.for_each(std::int64_t(points.size()),
                 detail::DistanceToInterface{fields.bricks().view(), position.data(), junction.data(), distance.data()});
   return distance.download();
+}
+
+/// Where points of the world come to lie on junctions, world; not finite where there is none nearby or, `within` its
+/// rim, where the junction ends before that. A junction without materials has no points.
+template <class Backend>
+std::vector<Vec3d> onto_junctions(Executor<Backend>& exec, const MeshFields<Backend>& fields,
+                                  std::span<const Vec3d> points, std::span<const Junction> junctions, bool within) {
+  std::vector<Vec3d> result(points.size(), Vec3d(NAN));
+  std::vector<std::size_t> asked;
+  std::vector<Vec3d> from;
+  std::vector<Junction> onto;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (junctions[i].material(1) == 0xffff) continue;
+    asked.push_back(i);
+    from.push_back(points[i]);
+    onto.push_back(junctions[i]);
+  }
+  if (asked.empty()) return result;
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  const Array<Vec3f> position = detail::upload_points(exec, fields.frame(), from);
+  Array<Junction> junction = arena.template temporary<Junction>(onto.size());
+  junction.upload(onto);
+  Array<Vec3f> on = arena.template temporary<Vec3f>(onto.size());
+  exec.for_each(std::int64_t(onto.size()), detail::PointOntoJunction{fields.bricks().view(), within ? -0.02f : -3e38f,
+                                                                     position.data(), junction.data(), on.data()});
+  const std::vector<Vec3f> found = on.download();
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    if (is_finite(found[k])) result[asked[k]] = fields.frame().to_world(Vec3d(found[k]));
+  return result;
 }
 
 }  // namespace nacre

@@ -10,7 +10,7 @@ namespace {
 
 auto of_fields(const MeshParameters& p) {
   return std::tie(p.kernel, p.tighten, p.stairs, p.epsilon, p.delta, p.min_size, p.max_size, p.sizes, p.curvature,
-                  p.subcells);
+                  p.max_deviation, p.subcells);
 }
 
 auto of_relax(const MeshParameters& p) {
@@ -20,7 +20,7 @@ auto of_relax(const MeshParameters& p) {
 
 auto of_tree(const MeshParameters& p) { return std::tie(p.theta, p.step, p.momentum); }
 
-auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.mend, p.triangles); }
+auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.remesh, p.triangles); }
 
 }  // namespace
 

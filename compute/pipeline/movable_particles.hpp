@@ -35,6 +35,9 @@ class MovableParticles {
   /// How the materials of junctions change at points on these, voxels; zero where the fields end.
   virtual std::vector<JunctionGradients> junction_gradients(std::span<const Vec3f> points,
                                                             std::span<const Junction> junctions) = 0;
+  /// Where points of the world come to lie on junctions, as MeshPipeline::onto_junctions.
+  virtual std::vector<Vec3d> onto_junctions(std::span<const Vec3d> points, std::span<const Junction> junctions,
+                                            bool within) = 0;
   /// Does `work` as a part of the stage of that name.
   virtual void in_stage(std::string_view name, const std::function<void()>& work) = 0;
 };

@@ -51,7 +51,9 @@ std::int64_t require_room_for(double expected, std::int64_t interfaces, std::siz
                     std::to_string(std::int64_t(bytes / (1 << 20))) + " MiB; " + std::to_string(free >> 20) +
                     " MiB are free",
                 device.too_small(parameters.particles > 0 ? "lower `particles`"
-                                                          : "raise `max_size` and `min_size`, or `epsilon`"));
+                                 : parameters.max_deviation > 0
+                                     ? "raise `max_deviation`, `max_size` and `min_size`, or `epsilon`"
+                                     : "raise `max_size` and `min_size`, or `epsilon`"));
   return std::int64_t(capacity);
 }
 

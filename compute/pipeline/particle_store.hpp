@@ -71,6 +71,10 @@ class ParticleStore : public MovableParticles {
                                                     std::span<const Junction> junctions) override {
     return nacre::junction_gradients(exec_, fields_, points, junctions);
   }
+  std::vector<Vec3d> onto_junctions(std::span<const Vec3d> points, std::span<const Junction> junctions,
+                                    bool within) override {
+    return nacre::onto_junctions(exec_, fields_, points, junctions, within);
+  }
   void in_stage(std::string_view name, const std::function<void()>& work) override {
     auto stage = exec_.stage(name);
     work();

@@ -1,4 +1,5 @@
 // Nacre: writes meshes for Abaqus and CalculiX (.inp).
+#include <optional>
 #include <set>
 
 #include "engine/io/cell_faces.hpp"
@@ -22,13 +23,13 @@ void write_abaqus_list(Chunks& out, const std::set<std::uint32_t>& numbers) {
   }
 }
 
-void write_abaqus_points(Chunks& out, std::span<const Vec3d> points) {
+void write_abaqus_points(Chunks& out, const MeshParts& mesh) {
   out.print("*NODE\n");
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.point_count(); ++i) {
     out.print("{}", i + 1);
     for (int axis = 0; axis < 3; ++axis) {
       out.print(", ");
-      out.number(points[i][axis]);
+      out.number(mesh.point(i)[axis]);
     }
     out.print("\n");
   }
@@ -37,20 +38,20 @@ void write_abaqus_points(Chunks& out, std::span<const Vec3d> points) {
 /// A name in full, where the word for it says less.
 void write_abaqus_comment(Chunks& out, const std::string& name) { out.print("** {}\n", in_utf8(name, 200)); }
 
-/// The elements of one group: `corners(i)` is empty unless element i is in it. They are numbered from `number` on.
-template <class Element>
+/// The elements of one group: `points(i)` is none unless element i is in it. They are numbered from `number` on.
+template <class PointsOf>
 void write_abaqus_elements(Chunks& out, const MeshParts::Group& group, const std::string& word, const char* type,
-                           std::size_t count, std::uint64_t& number, Element corners) {
+                           std::size_t count, std::uint64_t& number, PointsOf points_of) {
   write_abaqus_comment(out, group.name);
   out.print("*ELEMENT, TYPE={}, ELSET={}\n", type, word);
   std::set<std::uint32_t> points;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto element = corners(i);
-    if (element.empty()) continue;
+    const std::optional<MeshParts::Element> element = points_of(i);
+    if (!element) continue;
     out.print("{}", ++number);
-    for (const std::uint32_t corner : element) {
-      out.print(", {}", std::uint64_t(corner) + 1);
-      points.insert(corner);
+    for (const std::uint32_t point : *element) {
+      out.print(", {}", std::uint64_t(point) + 1);
+      points.insert(point);
     }
     out.print("\n");
   }
@@ -64,11 +65,10 @@ void write_abaqus_triangles(Chunks& out, const MeshParts& mesh) {
   std::uint64_t number = 0;
   for (const auto& [pair, group] : mesh.interfaces) {
     sets.push_back(identifiers.of(group.name));
-    write_abaqus_elements(
-        out, group, sets.back(), "S3", mesh.triangles.size(), number, [&, pair = pair](std::size_t i) {
-          const Triangle& t = mesh.triangles[i];
-          return mesh.materials[i] == pair ? std::vector<std::uint32_t>{t.a, t.b, t.c} : std::vector<std::uint32_t>{};
-        });
+    write_abaqus_elements(out, group, sets.back(), mesh.second ? "STRI65" : "S3", mesh.triangles.size(), number,
+                          [&, pair = pair](std::size_t i) {
+                            return mesh.materials[i] == pair ? std::optional(mesh.triangle(i)) : std::nullopt;
+                          });
   }
   for (const std::string& set : sets)
     for (const char* side : {"SPOS", "SNEG"})
@@ -94,11 +94,12 @@ void write_abaqus_tetrahedra(Chunks& out, const MeshParts& mesh) {
   std::uint64_t number = 0;
   for (const auto& [m, group] : mesh.volumes) {
     name_of[m] = sets.of(group.name);
-    write_abaqus_elements(out, group, name_of[m], "C3D4", mesh.cells.size(), number, [&, m = m](std::size_t i) {
-      if (mesh.material[i] != m) return std::span<const std::uint32_t>();
-      numbers[i] = number + 1;
-      return std::span<const std::uint32_t>(mesh.cells[i]);
-    });
+    write_abaqus_elements(out, group, name_of[m], mesh.second ? "C3D10" : "C3D4", mesh.cells.size(), number,
+                          [&, m = m](std::size_t i) -> std::optional<MeshParts::Element> {
+                            if (mesh.material[i] != m) return std::nullopt;
+                            numbers[i] = number + 1;
+                            return mesh.cell(i);
+                          });
   }
   std::vector<CellFace> faces = cell_faces(mesh.cells);
   std::erase_if(faces, [&](const CellFace& f) {
@@ -124,7 +125,7 @@ void write_abaqus(const fs::path& file, const MeshParts& mesh) {
   out.print("*HEADING\nMesh of materials, by Nacre\n");
   for (std::size_t at = 0; at < mesh.origin.size(); at += abaqus_piece)
     out.print("** {}\n", mesh.origin.substr(at, abaqus_piece));
-  write_abaqus_points(out, mesh.points);
+  write_abaqus_points(out, mesh);
   mesh.cells.empty() ? write_abaqus_triangles(out, mesh) : write_abaqus_tetrahedra(out, mesh);
   out.flush();
   target.commit();

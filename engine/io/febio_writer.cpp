@@ -1,5 +1,7 @@
 // Nacre: writes meshes for FEBio (.feb).
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "engine/io/chunks.hpp"
 #include "engine/io/mesh_format_writers.hpp"
@@ -17,17 +19,25 @@ std::string unique_febio_name(const std::string& name, std::set<std::string>& ta
   return xml_escaped(unique);
 }
 
+/// Numbers from 1.
+template <class Points>
+std::string febio_points(const Points& points) {
+  std::string text;
+  for (const std::uint32_t point : points)
+    text += fmt::format("{}{}", text.empty() ? "" : ",", std::uint64_t(point) + 1);
+  return text;
+}
+
 /// Elements of one kind after the other: some readers take them in this order only.
 void write_febio_materials(Chunks& out, const MeshParts& mesh) {
   std::set<std::string> taken;
   std::uint64_t number = 0;
   for (const auto& [m, group] : mesh.volumes) {
-    out.print("<Elements type=\"tet4\" name=\"{}\">\n", unique_febio_name(group.name, taken));
+    out.print("<Elements type=\"{}\" name=\"{}\">\n", mesh.second ? "tet10" : "tet4",
+              unique_febio_name(group.name, taken));
     for (std::size_t i = 0; i < mesh.cells.size(); ++i) {
       if (mesh.material[i] != m) continue;
-      const auto& c = mesh.cells[i];
-      out.print("<elem id=\"{}\">{},{},{},{}</elem>\n", ++number, std::uint64_t(c[0]) + 1, std::uint64_t(c[1]) + 1,
-                std::uint64_t(c[2]) + 1, std::uint64_t(c[3]) + 1);
+      out.print("<elem id=\"{}\">{}</elem>\n", ++number, febio_points(mesh.cell(i)));
     }
     out.print("</Elements>\n");
   }
@@ -38,7 +48,8 @@ void write_febio_node_sets(Chunks& out, const MeshParts& mesh) {
   for (const auto& [m, group] : mesh.volumes) {
     std::set<std::uint32_t> points;
     for (std::size_t i = 0; i < mesh.cells.size(); ++i)
-      if (mesh.material[i] == m) points.insert(mesh.cells[i].begin(), mesh.cells[i].end());
+      if (mesh.material[i] == m)
+        for (const std::uint32_t point : mesh.cell(i)) points.insert(point);
     out.print("<NodeSet name=\"{}\">", unique_febio_name(group.name, taken));
     bool first = true;
     for (const std::uint32_t point : points) {
@@ -56,9 +67,14 @@ void write_febio_surface(Chunks& out, const MeshParts& mesh, const MaterialPair&
   std::uint64_t number = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (mesh.materials[i] != pair) continue;
-    const Triangle& t = mesh.triangles[i];
-    out.print("<tri3 id=\"{}\">{},{},{}</tri3>\n", ++number, std::uint64_t(t.a) + 1,
-              std::uint64_t(out_of_first ? t.c : t.b) + 1, std::uint64_t(out_of_first ? t.b : t.c) + 1);
+    const MeshParts::Element t = mesh.triangle(i);
+    std::vector<std::uint32_t> points(t.begin(), t.end());
+    if (out_of_first) {
+      std::swap(points[1], points[2]);
+      if (points.size() == 6) std::swap(points[3], points[5]);
+    }
+    const char* kind = points.size() == 6 ? "tri6" : "tri3";
+    out.print("<{} id=\"{}\">{}</{}>\n", kind, ++number, febio_points(points), kind);
   }
   out.print("</Surface>\n");
 }
@@ -93,11 +109,11 @@ void write_febio(const fs::path& file, const MeshParts& mesh) {
   Chunks out(target);
   out.print("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{}<febio_spec version=\"4.0\">\n", xml_origin(mesh.origin));
   out.print("<Mesh>\n<Nodes name=\"all\">\n");
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.point_count(); ++i) {
     out.print("<node id=\"{}\">", i + 1);
     for (int axis = 0; axis < 3; ++axis) {
       if (axis > 0) out.print(",");
-      out.number(mesh.points[i][axis]);
+      out.number(mesh.point(i)[axis]);
     }
     out.print("</node>\n");
   }

@@ -61,16 +61,16 @@ std::vector<GmshEntity> entities_of(const MeshParts& mesh) {
     volume[m] = entities.size();
     entities.push_back({3, &group, {}, bounds_of(mesh, m), {}});
   }
-  std::vector<bool> placed(mesh.points.size());
+  std::vector<bool> placed(mesh.point_count());
   const auto use = [&](GmshEntity& entity, std::uint32_t point) {
-    entity.box.add(mesh.points[point]);
+    entity.box.add(mesh.point(point));
     if (!placed[point]) entity.points.push_back(point);
     placed[point] = true;
   };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) use(entities[surface.at(mesh.materials[i])], mesh.triangles[i][k]);
+    for (const std::uint32_t point : mesh.triangle(i)) use(entities[surface.at(mesh.materials[i])], point);
   for (std::size_t i = 0; i < mesh.cells.size(); ++i)
-    for (const std::uint32_t corner : mesh.cells[i]) use(entities[volume.at(mesh.material[i])], corner);
+    for (const std::uint32_t point : mesh.cell(i)) use(entities[volume.at(mesh.material[i])], point);
   return entities;
 }
 
@@ -96,28 +96,28 @@ void write_gmsh4_nodes(Chunks& out, const MeshParts& mesh, const std::vector<Gms
   GmshCount blocks = 0, points = 0;
   for (const GmshEntity& entity : entities) blocks += !entity.points.empty(), points += entity.points.size();
   out.print("$Nodes\n");
-  for (const GmshCount count : {blocks, points, GmshCount(1), GmshCount(mesh.points.size())}) out.raw(count);
+  for (const GmshCount count : {blocks, points, GmshCount(1), GmshCount(mesh.point_count())}) out.raw(count);
   for (const GmshEntity& entity : entities) {
     if (entity.points.empty()) continue;
     for (const std::int32_t head : {entity.dimension, entity.group->tag, 0}) out.raw(head);
     out.raw(GmshCount(entity.points.size()));
     for (const std::uint32_t point : entity.points) out.raw(GmshCount(point) + 1);
-    for (const std::uint32_t point : entity.points) out.raw(mesh.points[point]);
+    for (const std::uint32_t point : entity.points) out.raw(mesh.point(point));
   }
   out.print("\n$EndNodes\n");
 }
 
-/// A block of elements of one group: `corner(i, k)` of those elements i that are `in` it.
-template <class In, class Corner>
+/// A block of elements of one group: `element(i)` of those i that are `in` it.
+template <class In, class ElementOf>
 void write_gmsh4_block(Chunks& out, int dimension, const MeshParts::Group& group, std::size_t count, GmshCount& number,
-                       In in, Corner corner) {
-  constexpr std::int32_t triangle = 2, tetrahedron = 4;
-  for (const std::int32_t head : {dimension, group.tag, dimension == 2 ? triangle : tetrahedron}) out.raw(head);
+                       std::size_t points, In in, ElementOf element) {
+  for (const std::int32_t head : {dimension, group.tag, gmsh_type(points)}) out.raw(head);
   out.raw(GmshCount(group.cells));
   for (std::size_t i = 0; i < count; ++i) {
     if (!in(i)) continue;
     out.raw(++number);
-    for (int k = 0; k <= dimension; ++k) out.raw(GmshCount(corner(i, k)) + 1);
+    const MeshParts::Element of = element(i);
+    for (std::size_t k = 0; k < points; ++k) out.raw(GmshCount(of[gmsh_order(points, k)]) + 1);
   }
 }
 
@@ -130,12 +130,13 @@ void write_gmsh4_elements(Chunks& out, const MeshParts& mesh) {
   GmshCount number = 0;
   for (const auto& [pair, group] : mesh.interfaces)
     write_gmsh4_block(
-        out, 2, group, mesh.triangles.size(), number, [&, p = pair](std::size_t i) { return mesh.materials[i] == p; },
-        [&](std::size_t i, int k) { return mesh.triangles[i][k]; });
+        out, 2, group, mesh.triangles.size(), number, mesh.second ? 6 : 3,
+        [&, p = pair](std::size_t i) { return mesh.materials[i] == p; },
+        [&](std::size_t i) { return mesh.triangle(i); });
   for (const auto& [m, group] : mesh.volumes)
     write_gmsh4_block(
-        out, 3, group, mesh.cells.size(), number, [&, m = m](std::size_t i) { return mesh.material[i] == m; },
-        [&](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; });
+        out, 3, group, mesh.cells.size(), number, mesh.second ? 10 : 4,
+        [&, m = m](std::size_t i) { return mesh.material[i] == m; }, [&](std::size_t i) { return mesh.cell(i); });
   out.print("\n$EndElements\n");
 }
 

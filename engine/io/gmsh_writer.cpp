@@ -21,12 +21,14 @@ std::string quoted(const std::string& name) {
   return out + '"';
 }
 
-void write_points(Chunks& out, std::span<const Vec3d> points) {
-  out.print("$Nodes\n{}\n", points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    out.raw(std::int32_t(i + 1));
-    out.raw(points[i]);
-  }
+void write_points(Chunks& out, const GmshMesh& mesh) {
+  out.print("$Nodes\n{}\n", mesh.points.size() + mesh.nodes.size());
+  std::int32_t number = 0;
+  for (const std::span<const Vec3d> some : {mesh.points, mesh.nodes})
+    for (const Vec3d& p : some) {
+      out.raw(++number);
+      out.raw(p);
+    }
   out.print("\n$EndNodes\n");
 }
 
@@ -37,17 +39,17 @@ void write_groups(Chunks& out, const GmshMesh& mesh) {
   std::set<std::string> taken;
   for (const GmshMesh::Block& block : mesh.blocks)
     for (const GmshMesh::Group& group : block.groups)
-      out.print("{} {} {}\n", block.corners - 1, group.tag, gmsh_name(group.name, group.tag, taken));
+      out.print("{} {} {}\n", block.dimension, group.tag, gmsh_name(group.name, group.tag, taken));
   out.print("$EndPhysicalNames\n");
 }
 
 void write_cells(Chunks& out, const GmshMesh& mesh) {
-  constexpr std::int32_t triangle = 2, tetrahedron = 4, tags = 2;
+  constexpr std::int32_t tags = 2;
   out.print("$Elements\n{}\n", mesh.cells());
   std::int32_t number = 0;
   for (const GmshMesh::Block& block : mesh.blocks) {
     if (block.cells == 0) continue;
-    out.raw(block.corners == 3 ? triangle : tetrahedron);
+    out.raw(gmsh_type(std::size_t(block.points)));
     out.raw(std::int32_t(block.cells));
     out.raw(tags);
     for (std::size_t i = 0; i < block.cells; ++i) {
@@ -55,7 +57,7 @@ void write_cells(Chunks& out, const GmshMesh& mesh) {
       out.raw(++number);
       out.raw(group);  // physical
       out.raw(group);  // elementary
-      for (int k = 0; k < block.corners; ++k) out.raw(std::int32_t(block.corner(i, k) + 1));
+      for (int k = 0; k < block.points; ++k) out.raw(std::int32_t(block.point(i, k) + 1));
     }
   }
   out.print("\n$EndElements\n");
@@ -84,6 +86,12 @@ std::string gmsh_name(const std::string& given, std::int32_t tag, std::set<std::
   return name;
 }
 
+std::int32_t gmsh_type(std::size_t points) { return points == 3 ? 2 : points == 4 ? 4 : points == 6 ? 9 : 11; }
+
+std::size_t gmsh_order(std::size_t points, std::size_t k) {
+  return points == 10 && k >= 8 ? 17 - k : k;  // of a tetrahedron, edge 23 comes before 13
+}
+
 std::size_t GmshMesh::cells() const {
   std::size_t sum = 0;
   for (const Block& block : blocks) sum += block.cells;
@@ -92,7 +100,7 @@ std::size_t GmshMesh::cells() const {
 
 void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh) {
   constexpr auto most = std::size_t(std::numeric_limits<std::int32_t>::max());
-  if (mesh.points.size() > most || mesh.cells() > most)
+  if (mesh.points.size() + mesh.nodes.size() > most || mesh.cells() > most)
     throw Error("cannot write " + file.string(), "Gmsh's format counts to 2,147,483,647", "use .vtp or .vtu");
   OutputFile target(file);
   Chunks out(target);
@@ -101,7 +109,7 @@ void write_gmsh(const std::filesystem::path& file, const GmshMesh& mesh) {
   out.print("\n$EndMeshFormat\n");
   if (!mesh.origin.empty()) out.print("$Comments\n{}\n$EndComments\n", mesh.origin);
   write_groups(out, mesh);
-  write_points(out, mesh.points);
+  write_points(out, mesh);
   write_cells(out, mesh);
   for (const GmshMesh::Numbers& numbers : mesh.numbers) write_numbers(out, numbers, mesh);
   out.flush();

@@ -10,9 +10,9 @@ namespace nacre {
 /// Each writes one file, complete or not at all. Groups have the names of `mesh`, changed where the format allows fewer
 /// characters. Throws Error if there are more points or cells than the format can count, or if writing fails.
 
-/// .inp for Abaqus and CalculiX. Tetrahedra (C3D4): *ELSET and *NSET per material, and for each interface of A and B a
-/// *SURFACE A_B of the faces of A's elements and B_A of those of B's. Triangles alone (S3): *ELSET and *NSET per
-/// interface, and its two sides (SPOS, SNEG) as *SURFACE.
+/// .inp for Abaqus and CalculiX. Tetrahedra (C3D4, C3D10): *ELSET and *NSET per material, and for each interface of A
+/// and B a *SURFACE A_B of the faces of A's elements and B_A of those of B's. Triangles alone (S3; of second
+/// order STRI65, which CalculiX calls S6): *ELSET and *NSET per interface, and its two sides (SPOS, SNEG) as *SURFACE.
 void write_abaqus(const std::filesystem::path& file, const MeshParts& mesh);
 
 /// .msh of version 4.1, binary: an entity with a physical group per interface (dimension 2) and per material (3), and
@@ -20,7 +20,8 @@ void write_abaqus(const std::filesystem::path& file, const MeshParts& mesh);
 void write_gmsh4(const std::filesystem::path& file, const MeshParts& mesh);
 
 /// .mesh of MFEM 4.7 and later (version 1.3): tetrahedra with an attribute per material, triangles with a boundary
-/// attribute per interface, and the sets of attributes that have their names.
+/// attribute per interface, and the sets of attributes that have their names. At second order the positions are a grid
+/// function (H1_3D_P2).
 void write_mfem(const std::filesystem::path& file, const MeshParts& mesh);
 
 /// .feb of FEBio 4: only a <Mesh>, for `<Mesh from="FILE"/>` in a model: Elements and NodeSet per material, Surface per

@@ -106,7 +106,7 @@ std::string Identifiers::of(const std::string& name) {
 
 void check_counts(const std::filesystem::path& file, const MeshParts& mesh, const char* format) {
   constexpr auto most = std::size_t(std::numeric_limits<std::int32_t>::max());
-  if (mesh.points.size() > most || mesh.triangles.size() + mesh.cells.size() > most)
+  if (mesh.point_count() > most || mesh.triangles.size() + mesh.cells.size() > most)
     throw Error("cannot write " + file.string(), fmt::format("{} counts to 2,147,483,647", format), "use .vtp or .vtu");
 }
 

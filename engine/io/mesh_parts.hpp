@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "compute/meshing/surface_mesh.hpp"
+#include "compute/meshing/second_order.hpp"
 
 namespace nacre {
 
@@ -25,6 +25,26 @@ struct MeshParts {
     std::string name;
     std::size_t cells;  ///< > 0
   };
+  /// The points of a triangle or a tetrahedron: its corners and, at second order, the nodes on its edges 01 12 20, and
+  /// 03 13 23 of a tetrahedron.
+  class Element {
+   public:
+    template <std::size_t corners, std::size_t sides>
+    Element(const std::array<std::uint32_t, corners>& corner, const std::array<std::uint32_t, sides>* node,
+            std::size_t first_node)
+        : size_(corners + (node ? sides : 0)) {
+      for (std::size_t k = 0; k < corners; ++k) point_[k] = corner[k];
+      for (std::size_t k = corners; k < size_; ++k) point_[k] = std::uint32_t(first_node + (*node)[k - corners]);
+    }
+    std::size_t size() const { return size_; }
+    std::uint32_t operator[](std::size_t k) const { return point_[k]; }
+    const std::uint32_t* begin() const { return point_.data(); }
+    const std::uint32_t* end() const { return point_.data() + size_; }
+
+   private:
+    std::array<std::uint32_t, 10> point_{};
+    std::size_t size_;
+  };
 
   std::span<const Vec3d> points;
   std::span<const Triangle> triangles;      ///< seen from the side of the pair's first, corners run counter-clockwise
@@ -33,8 +53,17 @@ struct MeshParts {
   std::span<const std::uint16_t> material;              ///< of each cell
   std::map<MaterialPair, Group> interfaces;             ///< pairs that occur, numbered from 1
   std::map<std::uint16_t, Group>
-      volumes;         ///< materials that cells have; the labels if all are positive, else materials
-  std::string origin;  ///< how the mesh came about (engine/run/origin.hpp); empty if that is not known
+      volumes;                          ///< materials that cells have; the labels if all are positive, else materials
+  const SecondOrder* second = nullptr;  ///< nodes on edges, numbered behind `points`; null: there are none
+  std::string origin;                   ///< how the mesh came about (engine/run/origin.hpp); empty if that is not known
+
+  std::size_t point_count() const { return points.size() + (second ? second->nodes.size() : 0); }
+  const Vec3d& point(std::size_t i) const { return i < points.size() ? points[i] : second->nodes[i - points.size()]; }
+  Element triangle(std::size_t i) const {
+    const Triangle& t = triangles[i];
+    return {std::array{t.a, t.b, t.c}, second ? &second->triangles[i] : nullptr, points.size()};
+  }
+  Element cell(std::size_t i) const { return {cells[i], second ? &second->cells[i] : nullptr, points.size()}; }
 };
 
 /// The names of materials for a file: each is followed by its label if another material has the same name, and is

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <system_error>
 
 #include "compute/device/error.hpp"
@@ -130,11 +131,16 @@ void write_obj(const fs::path& file, const SurfaceMesh& mesh, Labels labels, con
   target.commit();
 }
 
+std::span<const Vec3d> nodes_of(const MeshParts& mesh) {
+  return mesh.second ? std::span<const Vec3d>(mesh.second->nodes) : std::span<const Vec3d>();
+}
+
 /// Triangles, one physical group per pair of materials.
 GmshMesh::Block gmsh_triangles(const MeshParts& mesh) {
   GmshMesh::Block block;
+  block.points = mesh.second ? 6 : 3;
   block.cells = mesh.triangles.size();
-  block.corner = [&mesh](std::size_t i, int k) { return mesh.triangles[i][k]; };
+  block.point = [&mesh](std::size_t i, int k) { return mesh.triangle(i)[std::size_t(k)]; };
   block.group = [&mesh](std::size_t i) { return mesh.interfaces.at(mesh.materials[i]).tag; };
   for (const auto& [pair, group] : mesh.interfaces) block.groups.push_back({group.tag, group.name});
   return block;
@@ -143,6 +149,7 @@ GmshMesh::Block gmsh_triangles(const MeshParts& mesh) {
 void write_msh(const fs::path& file, const SurfaceMesh& mesh, const MeshParts& parts, Labels labels) {
   GmshMesh out;
   out.points = mesh.points;
+  out.nodes = nodes_of(parts);
   out.origin = parts.origin;
   out.blocks.push_back(gmsh_triangles(parts));
   for (CellNumbers& side : side_numbers(mesh, labels))
@@ -150,26 +157,44 @@ void write_msh(const fs::path& file, const SurfaceMesh& mesh, const MeshParts& p
   write_gmsh(file, out);
 }
 
+/// One material's surface of its own.
+struct MaterialSurface {
+  SurfaceMesh mesh;
+  std::optional<SecondOrder> second;
+};
+
 /// The facets of one material, oriented so that their normals point out of it, with the points that they use.
-SurfaceMesh surface_of(const SurfaceMesh& mesh, std::uint16_t material) {
-  constexpr std::uint32_t none = 0xffffffff;
-  std::vector<std::uint32_t> number(mesh.points.size(), none);
-  SurfaceMesh surface;
+MaterialSurface surface_of(const SurfaceMesh& mesh, std::uint16_t material, const SecondOrder* second) {
+  std::vector<std::uint32_t> number(mesh.points.size(), none), node_number(second ? second->nodes.size() : 0, none);
+  MaterialSurface surface;
+  if (second) surface.second.emplace();
   const auto use = [&](std::uint32_t p) {
     if (number[p] == none) {
-      number[p] = std::uint32_t(surface.points.size());
-      surface.points.push_back(mesh.points[p]);
+      number[p] = std::uint32_t(surface.mesh.points.size());
+      surface.mesh.points.push_back(mesh.points[p]);
     }
     return number[p];
   };
+  const auto use_node = [&](std::uint32_t n) {
+    if (node_number[n] == none) {
+      node_number[n] = std::uint32_t(surface.second->nodes.size());
+      surface.second->nodes.push_back(second->nodes[n]);
+    }
+    return node_number[n];
+  };
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
-    if (mesh.materials[i][1] == material)
-      surface.triangles.push_back({use(t.a), use(t.b), use(t.c)});
-    else if (mesh.materials[i][0] == material)
-      surface.triangles.push_back({use(t.a), use(t.c), use(t.b)});
+    const bool second_side = mesh.materials[i][1] == material;
+    if (!second_side && mesh.materials[i][0] != material) continue;
+    const std::uint32_t a = use(t.a), b = use(second_side ? t.b : t.c), c = use(second_side ? t.c : t.b);
+    surface.mesh.triangles.push_back({a, b, c});
+    if (!second) continue;
+    const auto& n = second->triangles[i];
+    const std::uint32_t ab = use_node(second_side ? n[0] : n[2]), bc = use_node(n[1]),
+                        ca = use_node(second_side ? n[2] : n[0]);
+    surface.second->triangles.push_back({ab, bc, ca});
   }
-  surface.materials.assign(surface.triangles.size(), {0, material});
+  surface.mesh.materials.assign(surface.mesh.triangles.size(), {0, material});
   return surface;
 }
 
@@ -190,12 +215,13 @@ namespace {
 struct PartsFormat {
   const char* extension;
   Writer surface, tetrahedra;
+  bool second_order;
 };
 constexpr std::array parts_formats{
-    PartsFormat{".msh4", write_gmsh4, write_gmsh4}, PartsFormat{".inp", write_abaqus, write_abaqus},
-    PartsFormat{".mesh", nullptr, write_mfem},      PartsFormat{".feb", nullptr, write_febio},
-    PartsFormat{".foam", nullptr, write_openfoam},  PartsFormat{".xdmf", write_xdmf, write_xdmf},
-    PartsFormat{".glb", write_gltf, nullptr},
+    PartsFormat{".msh4", write_gmsh4, write_gmsh4, true}, PartsFormat{".inp", write_abaqus, write_abaqus, true},
+    PartsFormat{".mesh", nullptr, write_mfem, true},      PartsFormat{".feb", nullptr, write_febio, true},
+    PartsFormat{".foam", nullptr, write_openfoam, false}, PartsFormat{".xdmf", write_xdmf, write_xdmf, false},
+    PartsFormat{".glb", write_gltf, nullptr, false},
 };
 
 const PartsFormat* parts_format(const std::string& extension) {
@@ -205,37 +231,43 @@ const PartsFormat* parts_format(const std::string& extension) {
 }
 
 /// One group, which has the name of the material whatever is around it.
-void write_one_material(const fs::path& file, SurfaceMesh&& surface, Labels labels, const std::string& name,
+void write_one_material(const fs::path& file, MaterialSurface&& own, Labels labels, const std::string& name,
                         const std::string& origin) {
+  SurfaceMesh& surface = own.mesh;
   const std::string extension = checked_extension(file, surface_mesh_extensions());
   MeshParts parts = surface_parts(surface, labels, {});
   parts.interfaces.begin()->second.name = name;
   parts.origin = origin;
+  parts.second = own.second ? &*own.second : nullptr;
   if (const PartsFormat* format = parts_format(extension)) return format->surface(file, parts);
-  if (extension == ".msh") return write_gmsh(file, {surface.points, {gmsh_triangles(parts)}, {}, origin});
+  if (extension == ".msh")
+    return write_gmsh(file, {surface.points, nodes_of(parts), {gmsh_triangles(parts)}, {}, origin});
   write_surface(file, {std::move(surface.points), std::move(surface.triangles), {}}, std::nullopt, origin);
 }
 
-void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels, const Names& names,
-               const std::string& origin) {
-  constexpr int vtk_tetrahedron = 10;
-  const std::uint64_t cells = mesh.cells.size();
+void write_vtu(const fs::path& path, const MeshParts& mesh, Labels labels, const Names& names) {
+  constexpr int vtk_tetrahedron = 10, vtk_quadratic_tetrahedron = 24;
+  const std::uint64_t cells = mesh.cells.size(), each = mesh.second ? 10 : 4;
+  const int type = mesh.second ? vtk_quadratic_tetrahedron : vtk_tetrahedron;
   const CellNumbers material = cell_numbers("material", labels, [&mesh](std::uint64_t i) { return mesh.material[i]; });
   Inline numbers;
   std::string xml = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
       "header_type=\"UInt64\">\n<UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-      xml_origin(origin) + announce_names(labels, names), mesh.points.size(), cells);
+      xml_origin(mesh.origin) + announce_names(labels, names), mesh.point_count(), cells);
   xml += announce_cell_data(numbers, cells, std::span(&material, 1));
-  const std::uint64_t bytes = mesh.points.size() * sizeof(Vec3d);
-  xml += "<Points>\n" + numbers.announce("Float64", "Points", 3, bytes, [&](Base64Text& file) {
-    file.write(mesh.points.data(), bytes);
-  }) + "</Points>\n<Cells>\n";
-  xml += announce_indices(numbers, "connectivity", 4 * cells, mesh.points.size(),
-                          [&mesh](std::uint64_t i) { return mesh.cells[i / 4][i % 4]; });
-  xml += announce_indices(numbers, "offsets", cells, 4 * cells, [](std::uint64_t i) { return 4 * i + 4; });
-  xml += numbers.announce("UInt8", "types", 1, cells, [cells](Base64Text& file) {
-    write_generated<std::uint8_t>(file, cells, [](std::uint64_t) { return vtk_tetrahedron; });
+  xml += "<Points>\n" +
+         numbers.announce("Float64", "Points", 3, mesh.point_count() * sizeof(Vec3d),
+                          [&](Base64Text& file) {
+                            file.write(mesh.points.data(), mesh.points.size_bytes());
+                            file.write(nodes_of(mesh).data(), nodes_of(mesh).size_bytes());
+                          }) +
+         "</Points>\n<Cells>\n";
+  xml += announce_indices(numbers, "connectivity", each * cells, mesh.point_count(),
+                          [&mesh, each](std::uint64_t i) { return mesh.cell(i / each)[i % each]; });
+  xml += announce_indices(numbers, "offsets", cells, each * cells, [each](std::uint64_t i) { return each * i + each; });
+  xml += numbers.announce("UInt8", "types", 1, cells, [cells, type](Base64Text& file) {
+    write_generated<std::uint8_t>(file, cells, [type](std::uint64_t) { return type; });
   });
   OutputFile file(path);
   numbers.write(file, xml + "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
@@ -245,9 +277,12 @@ void write_vtu(const fs::path& path, const TetrahedralMesh& mesh, Labels labels,
 /// Tetrahedra, one physical group per material.
 GmshMesh::Block gmsh_tetrahedra(const MeshParts& mesh) {
   GmshMesh::Block block;
-  block.corners = 4;
+  block.dimension = 3;
+  block.points = mesh.second ? 10 : 4;
   block.cells = mesh.cells.size();
-  block.corner = [&mesh](std::size_t i, int k) { return mesh.cells[i][std::size_t(k)]; };
+  block.point = [&mesh, n = std::size_t(block.points)](std::size_t i, int k) {
+    return mesh.cell(i)[gmsh_order(n, std::size_t(k))];
+  };
   block.group = [&mesh](std::size_t i) { return mesh.volumes.at(mesh.material[i]).tag; };
   for (const auto& [m, group] : mesh.volumes) block.groups.push_back({group.tag, group.name});
   return block;
@@ -258,6 +293,7 @@ GmshMesh::Block gmsh_tetrahedra(const MeshParts& mesh) {
 void write_msh(const fs::path& file, const MeshParts& parts) {
   GmshMesh out;
   out.points = parts.points;
+  out.nodes = nodes_of(parts);
   out.origin = parts.origin;
   out.blocks = {gmsh_triangles(parts), gmsh_tetrahedra(parts)};
   write_gmsh(file, out);
@@ -279,6 +315,20 @@ std::vector<std::string> tetrahedral_mesh_extensions() {
   return extensions;
 }
 
+void check_second_order(const fs::path& file, bool tetrahedra) {
+  const auto has_second = [](const std::string& extension) {
+    const PartsFormat* format = parts_format(extension);
+    return format ? format->second_order : extension == ".msh" || extension == ".vtu";
+  };
+  std::vector<std::string> known = tetrahedra ? tetrahedral_mesh_extensions() : surface_mesh_extensions();
+  const std::string extension = lower_extension(file);
+  if (has_second(extension)) return;
+  std::erase_if(known, [&](const std::string& each) { return !has_second(each); });
+  throw Error(fmt::format("cannot write {} with `element_order` 2", file.string()),
+              fmt::format("{} files have no elements with nodes on their edges", extension),
+              fmt::format("use one of {}, or `element_order` 1", fmt::join(known, " ")));
+}
+
 std::vector<std::string> mesh_extensions() {
   std::vector<std::string> all = surface_mesh_extensions();
   for (const std::string& extension : tetrahedral_mesh_extensions())
@@ -287,9 +337,10 @@ std::vector<std::string> mesh_extensions() {
 }
 
 void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
-                        std::span<const std::string> names, const std::string& origin) {
+                        std::span<const std::string> names, const std::string& origin, const SecondOrder* second) {
   const std::string extension = checked_extension(file, surface_mesh_extensions());
   check(file, mesh, labels);
+  if (second) check_second_order(file, false);
   if (extension == ".vtp")
     return write_vtp(file, std::span<const Vec3d>(mesh.points), mesh.triangles, {}, std::nullopt,
                      side_numbers(mesh, labels),
@@ -301,21 +352,24 @@ void write_surface_mesh(const fs::path& file, const SurfaceMesh& mesh, Labels la
   if (format || extension == ".msh") {
     MeshParts parts = surface_parts(mesh, labels, full);
     parts.origin = origin;
+    parts.second = second;
     return format ? format->surface(file, parts) : write_msh(file, mesh, parts, labels);
   }
   write_surface(file, {mesh.points, mesh.triangles, {}}, std::nullopt, origin);
 }
 
 std::vector<fs::path> write_material_surfaces(const fs::path& file, const SurfaceMesh& mesh, Labels labels,
-                                              std::span<const std::string> names, const std::string& origin) {
+                                              std::span<const std::string> names, const std::string& origin,
+                                              const SecondOrder* second) {
   checked_extension(file, surface_mesh_extensions());
   check(file, mesh, labels);
+  if (second) check_second_order(file, false);
   const Names full = full_names(labels, names);
   std::vector<fs::path> written;
   try {
     for (std::size_t m = 1; m < labels.size(); ++m) {
-      SurfaceMesh surface = surface_of(mesh, std::uint16_t(m));
-      if (surface.triangles.empty()) continue;
+      MaterialSurface surface = surface_of(mesh, std::uint16_t(m), second);
+      if (surface.mesh.triangles.empty()) continue;
       const std::string name = fmt::format("{}_{}{}", file.stem().string(), labels[m], file.extension().string());
       write_one_material(file.parent_path() / name, std::move(surface), labels,
                          material_name(std::uint16_t(m), labels, full), origin);
@@ -330,15 +384,18 @@ std::vector<fs::path> write_material_surfaces(const fs::path& file, const Surfac
 }
 
 void write_tetrahedral_mesh(const fs::path& file, const TetrahedralMesh& mesh, const SurfaceMesh& surface,
-                            Labels labels, std::span<const std::string> names, const std::string& origin) {
+                            Labels labels, std::span<const std::string> names, const std::string& origin,
+                            const SecondOrder* second) {
   const std::string extension = checked_extension(file, tetrahedral_mesh_extensions());
   check(file, mesh, labels);
   check(file, surface, labels);
   if (surface.points.size() > mesh.points.size()) fail(file, "its surface has more points than it");
   const Names full = full_names(labels, names);
-  if (extension == ".vtu") return write_vtu(file, mesh, labels, full, origin);
+  if (second) check_second_order(file, true);
   MeshParts parts = volume_parts(mesh, surface, labels, full);
   parts.origin = origin;
+  parts.second = second;
+  if (extension == ".vtu") return write_vtu(file, parts, labels, full);
   const PartsFormat* format = parts_format(extension);
   format ? format->tetrahedra(file, parts) : write_msh(file, parts);
 }

@@ -15,6 +15,21 @@ std::string mfem_name(const std::string& name) {
   return text + '"';
 }
 
+constexpr const char* mfem_nodes_follow =
+    "\nnodes\nFiniteElementSpace\nFiniteElementCollection: H1_3D_P2\nVDim: 3\nOrdering: 1\n\n";
+
+/// MFEM numbers edges as they come, cell after cell, and those of a cell as 01 02 03 12 13 23.
+std::vector<std::uint32_t> in_mfem_order(const SecondOrder& second) {
+  std::vector<std::uint32_t> nodes;
+  std::vector<bool> placed(second.nodes.size());
+  for (const auto& cell : second.cells)
+    for (const std::size_t side : {0, 2, 3, 1, 4, 5}) {
+      if (!placed[cell[side]]) nodes.push_back(cell[side]);
+      placed[cell[side]] = true;
+    }
+  return nodes;
+}
+
 /// One set for each group, with its attribute alone.
 template <class Groups>
 void write_mfem_sets(Chunks& out, const char* section, const Groups& groups) {
@@ -47,8 +62,11 @@ void write_mfem(const fs::path& file, const MeshParts& mesh) {
     out.print("{} {} {} {} {}\n", mesh.interfaces.at(mesh.materials[i]).tag, triangle, t.a, t.b, t.c);
   }
   write_mfem_sets(out, "bdr_attribute_sets", mesh.interfaces);
-  out.print("\nvertices\n{}\n3\n", mesh.points.size());
+  out.print("\nvertices\n{}\n", mesh.points.size());
+  out.print("{}", mesh.second ? mfem_nodes_follow : "3\n");
   for (const Vec3d& p : mesh.points) out.point(p, "");
+  if (mesh.second)
+    for (const std::uint32_t node : in_mfem_order(*mesh.second)) out.point(mesh.second->nodes[node], "");
   out.print("\nmfem_mesh_end\n");
   out.flush();
   target.commit();

@@ -202,6 +202,42 @@ json cells_json(const MeshInput& input, const MeshResult& r) {
           {"materials", materials}};
 }
 
+json range_json(const DeviationRange& range) { return {{"mean", range.mean}, {"max", range.max}}; }
+
+json second_order_json(const MeshInput& input, const MeshResult& r) {
+  const SecondOrder& s = *r.second;
+  const std::vector<double> volume = enclosed_volumes(r.mesh, s, int(input.labels.size()));
+  json materials = json::array();
+  for (std::size_t m = 1; m < volume.size(); ++m)
+    materials.push_back({{"label", input.labels[m]}, {"volume", volume[m]}});
+  return {{"elements", r.cells ? "tetrahedra" : "triangles"},
+          {"nodes", s.nodes.size()},
+          {"on_surfaces", s.on_surfaces},
+          {"on_curves", s.on_curves},
+          {"left_straight", s.left_straight},
+          {"pulled_back", s.pulled_back},
+          {"straightened", s.straightened},
+          {"curved_elements", s.curved_elements},
+          {"least_scaled_jacobian", s.least_jacobian},
+          {"deviation_voxels", {{"order_1", range_json(r.flat)}, {"order_2", range_json(r.curved)}}},
+          {"materials", materials}};
+}
+
+json deviation_json(const DeviationInfo& d, double bound) {
+  json places = json::array();
+  for (const Vec3d& p : d.places) places.push_back(vector_json(p));
+  return {{"bound_voxels", bound},
+          {"max_voxels", d.max},
+          {"mean_voxels", d.mean},
+          {"met", d.above() == 0},
+          {"triangles_above",
+           {{"too_small_to_divide", d.above_detail}, {"at_junctions", d.above_junctions}, {"others", d.above_others}}},
+          {"places", places},
+          {"before_refining", {{"max_voxels", d.first_max}, {"triangles_above", d.first_above}}},
+          {"rounds", d.rounds},
+          {"inserted_particles", d.inserted}};
+}
+
 }  // namespace
 
 void add_mesh_report(json& report, const MeshInput& input, const Settings& settings, const MeshInfo& info,
@@ -214,7 +250,10 @@ void add_mesh_report(json& report, const MeshInput& input, const Settings& setti
   report["mesh"] = mesh_json(input, result);
   if (settings.mesh.quality == "best") report["mesh"]["short_of_best"] = short_of_best_json(result.mesh);
   if (info.stars.meshes + info.stars.fallbacks > 0) report["mesh"]["stars"] = stars_json(info.stars);
+  if (settings.mesh.max_deviation > 0)
+    report["mesh"]["deviation"] = deviation_json(info.deviation, settings.mesh.max_deviation);
   if (result.cells) report["tetrahedra"] = cells_json(input, result);
+  if (result.second) report["second_order"] = second_order_json(input, result);
 }
 
 std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const MeshResult& result, double seconds) {
@@ -232,10 +271,16 @@ std::string mesh_summary(const MeshInput& input, const MeshInfo& info, const Mes
   text += fmt::format("radius ratio {:.3f} mean, {:.3f} min; triangles {:.3f} voxels from the interface on average",
                       result.quality.all.radius_ratio_mean, result.quality.all.radius_ratio_min,
                       result.distance.facet_mean);
+  if (const DeviationInfo& d = info.deviation; d.max > 0)
+    text += fmt::format("\ntriangles at most {:.3g} voxels from the interface{}", d.max,
+                        d.above() > 0 ? fmt::format(", {} above the bound", d.above()) : "");
   if (result.cells)
     text += fmt::format("\n{} tetrahedra, dihedral angles {:.1f} to {:.1f} degrees, {:.2f}% within 10 to 160",
                         result.cell_quality.cells, result.cell_quality.dihedral_min, result.cell_quality.dihedral_max,
                         100 * result.cell_quality.share_within_10_160);
+  if (result.second)
+    text += fmt::format("\nnodes on {} edges; triangles {:.2g} voxels from the interface at most, flat ones {:.2g}",
+                        result.second->nodes.size(), result.curved.max, result.flat.max);
   return text + fmt::format("\n{:.1f} s{}", seconds,
                             result.interrupted ? ", interrupted: the particles were not finished" : "");
 }

@@ -17,7 +17,7 @@ void apply_thesis_preset(Settings& settings) {
   m.delete_above = 1.35;
   m.subcells = 3;
   m.smooth = 0;
-  m.mend = 0;
+  m.remesh = 0;
   m.by_density = false;
 }
 

@@ -68,13 +68,17 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< seen from the side of the first material, counter-clockwise
   std::vector<std::array<std::uint16_t, 2>> sides;      ///< per triangle: materials on its two sides, lower one first
   std::vector<Material> materials;                      ///< entry 0 is the outside
+  std::vector<std::array<std::uint32_t, 3>> midsides;   ///< knob `element_order` 2: per triangle, the points on its
+                                                        ///< edges 01 12 20, which come behind all corners; else empty
 };
 
 /// The insides of the materials. The facets between them are exactly the triangles of the mesh that was filled.
 struct Tetrahedra {
-  std::vector<std::array<double, 3>> points;        ///< those of the mesh first, in its order
-  std::vector<std::array<std::uint32_t, 4>> cells;  ///< positive volume
-  std::vector<std::uint16_t> material;              ///< per cell, never 0
+  std::vector<std::array<double, 3>> points;           ///< the corners of the mesh first, in its order
+  std::vector<std::array<std::uint32_t, 4>> cells;     ///< positive volume
+  std::vector<std::uint16_t> material;                 ///< per cell, never 0
+  std::vector<std::array<std::uint32_t, 6>> midsides;  ///< knob `element_order` 2: per cell, the points on its edges 01
+                                                       ///< 12 20 03 13 23, which come behind all corners; else empty
 };
 
 /// Where particles are, world coordinates; one entry per particle in every array.
@@ -132,7 +136,9 @@ class NACRE_API Meshing {
   /// Runs what is left to do. The reference is valid until the next change.
   const Mesh& mesh();
   const MeshQuality& quality();
-  /// Fills the mesh; the knob `max_cell` bounds its edges. The reference is valid until the next change.
+  /// Fills the mesh; the knob `max_cell` bounds its edges. With `element_order` 2 its points on edges of the mesh lie
+  /// on the interfaces, or nearer to the edges where cells would be turned inside out. The reference is valid until the
+  /// next change.
   const Tetrahedra& tetrahedra();
 
   /// Version, device, knobs, input, timings and measures of what was computed so far, as JSON: what the program writes
@@ -145,9 +151,11 @@ class NACRE_API Meshing {
 };
 
 /// Writes the triangles in the format of the file's extension: surface_extensions(). Every triangle carries the labels
-/// on its two sides where the format has a place for them. Throws Error.
+/// on its two sides where the format has a place for them. Triangles with midsides go into .msh, .msh4 and .inp. Throws
+/// Error.
 NACRE_API void save(const std::filesystem::path& file, const Mesh& mesh);
-/// Writes the tetrahedra that `mesh` was filled with: volume_extensions(). Every cell carries its label. Throws Error.
+/// Writes the tetrahedra that `mesh` was filled with: volume_extensions(). Every cell carries its label. Cells
+/// with midsides go into all formats but .foam; the mesh's own midsides are left out. Throws Error.
 NACRE_API void save(const std::filesystem::path& file, const Mesh& mesh, const Tetrahedra& tetrahedra);
 /// Lower case, with dot.
 NACRE_API std::vector<std::string> surface_extensions();

@@ -20,6 +20,7 @@ def save_mesh(
     triangles: NDArray[np.int64],
     sides: NDArray[np.uint16],
     materials: list[tuple[int, str]],
+    midsides: NDArray[np.int64],
     /,
 ) -> None: ...
 def save_cells(
@@ -31,6 +32,7 @@ def save_cells(
     cell_points: NDArray[np.float64],
     cells: NDArray[np.int64],
     material: NDArray[np.uint16],
+    midsides: NDArray[np.int64],
     /,
 ) -> None: ...
 def save_picture(file: str, image: NDArray[np.uint8], /) -> None: ...

@@ -27,6 +27,7 @@ class MeshKnobs(TypedDict, total=False):
     max_size: float  #: largest distance between particles, at least min_size [voxels]
     sizes: str  #: WHAT:SIZE[,WHAT:SIZE...]: largest distance there, instead of max_size; WHAT: a label, a name, box x0 y0 z0 x1 y1 z1, or ball x y z radius (in the units of the data) [voxels]
     curvature: bool  #: also bound the sizing field by epsilon / largest curvature
+    max_deviation: float  #: largest distance of triangles from the interface that they stand for: particles are nearer where it bends; 0: any [voxels]
     quality: Literal["draft", "standard", "best"]  #: draft: quick, for looking and for turning knobs; best: more rounds of everything
     solver: Literal["tree", "redblack", "serial"]  #: how particles are moved
     theta: float  #: tree solver: a node smaller than theta times its distance counts as one particle
@@ -40,11 +41,12 @@ class MeshKnobs(TypedDict, total=False):
     control_every: int  #: iterations between two controls of the population
     by_density: bool  #: serial and redblack solvers: control the population by estimated density, not by the thesis's rule
     smooth: int  #: how often vertices are moved within the triangles around them [rounds]
-    mend: int  #: how often, at most, bad triangles are repaired after triangulation [rounds]
+    remesh: int  #: how often, at most, bad triangles are repaired after triangulation [rounds]
     triangulation: Literal["auto", "delaunay", "stars"]  #: what triangles are made of: cells of the Delaunay triangulation, or each particle's neighbours (stars), which is quicker; auto: stars for a draft of a surface, else cells
     seeds: Literal["auto", "embedding", "marching-cubes"]  #: where particles on surfaces begin; auto: with the tree solver on the embedding, else at vertices of marching cubes
     particles: int  #: seed this many on surfaces (junctions as usual) and add none; 0: as many as the sizing field asks for
     max_cell: float  #: longest edge of the tetrahedra; 0: they grow with the distance from the surface [voxels]
+    element_order: int  #: 2: triangles and tetrahedra with a node on each edge, those of interfaces curved; 1: straight
 
 class FlowKnobs(TypedDict, total=False):
     """Knobs of `nacre.flow`."""

@@ -84,8 +84,11 @@ class Tetrahedra:
     def __init__(self, mesh: Mesh, data: dict[str, Any]) -> None:
         self._mesh = mesh
         self._material: NDArray[np.uint16] = data["material"]
-        self.points: NDArray[np.float64] = data["points"]  #: (n, 3), those of the mesh first
-        self.cells: NDArray[np.int64] = data["cells"]  #: (k, 4), positive volume
+        self.points: NDArray[np.float64] = data["points"]  #: (n, 3), the corners of the mesh first, points on edges last
+        #: (k, 4), positive volume; of second order (k, 10): then the points on the edges 01 12 20 03 13 23, as in VTK
+        self.cells: NDArray[np.int64] = data["cells"]
+        if len(data["midsides"]):
+            self.cells = np.hstack([self.cells, data["midsides"]])
         labels = np.array([label for label, _ in mesh._materials], dtype=np.int64)
         self.labels: NDArray[np.int64] = labels[self._material]  #: (k,) the label of each cell
 
@@ -94,17 +97,27 @@ class Tetrahedra:
         """Names of labels, where known."""
         return self._mesh.names
 
+    @property
+    def order(self) -> int:
+        """2 where cells have points on their edges, else 1."""
+        return 2 if self.cells.shape[1] == 10 else 1
+
     def save(self, file: str | os.PathLike[str]) -> None:
         """Write cells, and the triangles where the format has a place for them; `nacre.volume_extensions`."""
         m = self._mesh
+        corners, midsides = (np.ascontiguousarray(part) for part in (self.cells[:, :4], self.cells[:, 4:]))
+        if self.order == 1:
+            midsides = np.empty((0, 6), np.int64)
+        border = m.points[: m._corners]  # the mesh may be of another order
         _core.save_cells(
-            os.fspath(file), m.points, m.triangles, m._sides, m._materials, self.points, self.cells, self._material
+            os.fspath(file), border, m.triangles, m._sides, m._materials, self.points, corners, self._material, midsides
         )
 
     def to_pyvista(self) -> Any:
         """A `pyvista.UnstructuredGrid` with the cell array `material`: labels."""
         pyvista = _package("pyvista")
-        grid = pyvista.UnstructuredGrid({pyvista.CellType.TETRA: self.cells}, self.points)
+        kind = pyvista.CellType.QUADRATIC_TETRA if self.order == 2 else pyvista.CellType.TETRA
+        grid = pyvista.UnstructuredGrid({kind: self.cells}, self.points)
         grid.cell_data["material"] = self.labels
         _add_names(grid, self.names)
         return grid
@@ -112,7 +125,8 @@ class Tetrahedra:
     def to_meshio(self) -> Any:
         """A `meshio.Mesh` with the cell data `material`."""
         meshio = _package("meshio")
-        return meshio.Mesh(self.points, [("tetra", self.cells)], cell_data={"material": [self.labels]})
+        kind = "tetra10" if self.order == 2 else "tetra"
+        return meshio.Mesh(self.points, [(kind, self.cells)], cell_data={"material": [self.labels]})
 
     def __repr__(self) -> str:
         return f"<nacre.Tetrahedra: {len(self.cells)} cells, {len(self.points)} points>"
@@ -128,9 +142,13 @@ class Mesh:
         self._data = data
         self._materials: list[tuple[int, str]] = data["materials"]
         self._sides: NDArray[np.uint16] = data["sides"]
-        self.points: NDArray[np.float64] = data["points"]  #: (n, 3)
+        self.points: NDArray[np.float64] = data["points"]  #: (n, 3), points on edges last
         #: (k, 3); counter-clockwise as seen from the side of `materials[:, 0]`
         self.triangles: NDArray[np.int64] = data["triangles"]
+        midsides: NDArray[np.int64] = data["midsides"]
+        #: (k, 3) with the knob `element_order` 2, the points on the edges 01 12 20; else None
+        self.midsides: NDArray[np.int64] | None = midsides if len(midsides) else None
+        self._corners = int(midsides.min()) if len(midsides) else len(self.points)
         labels = np.array([label for label, _ in self._materials], dtype=np.int64)
         self.materials: NDArray[np.int64] = labels[self._sides]  #: (k, 2) the labels on the two sides
 
@@ -156,7 +174,7 @@ class Mesh:
             raise Error("the run that made this mesh has gone on", "a knob was changed", "ask the run's new mesh")
         return self._run
 
-    def tetrahedra(self, max_cell: float | None = None) -> Tetrahedra:
+    def tetrahedra(self, max_cell: float | None = None, order: int | None = None) -> Tetrahedra:
         """Fill every material but the outside.
 
         Parameters
@@ -164,8 +182,13 @@ class Mesh:
         max_cell : float, optional
             Longest edge of the tetrahedra, in voxels (the smallest spacing); 0: they grow with the distance from the
             surface. None: as the knob of the run says.
+        order : int, optional
+            2: with a point on each edge, which lies on the interface where the edge belongs to one, or nearer to the
+            edge where a cell would be turned inside out; 1: straight. None: as the knob `element_order` of the run says.
         """
         run = self._live_run()
+        if order is not None:
+            run._native.set("element_order", knob("order", order))
         if max_cell is not None:
             run._native.set("max_cell", knob("max_cell", max_cell))
         return Tetrahedra(self, run._native.tetrahedra())
@@ -195,7 +218,8 @@ class Mesh:
         if not surface_only and os.path.splitext(path)[1].lower() in _core.volume_extensions():
             self.tetrahedra().save(path)
         else:
-            _core.save_mesh(path, self.points, self.triangles, self._sides, self._materials)
+            midsides = np.empty((0, 3), np.int64) if self.midsides is None else self.midsides
+            _core.save_mesh(path, self.points, self.triangles, self._sides, self._materials, midsides)
 
     def surface(self, label: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Points and triangles of the closed surface of one material, with normals that point out of it."""
@@ -207,9 +231,12 @@ class Mesh:
         return self.points[used], corners.reshape(-1, 3).astype(np.int64)
 
     def to_pyvista(self) -> Any:
-        """A `pyvista.PolyData` with the cell arrays `material_0` and `material_1`: the labels on both sides."""
+        """A `pyvista.PolyData` with the cell arrays `material_0` and `material_1`: the labels on both sides.
+
+        Its triangles are flat, also those of second order.
+        """
         pyvista = _package("pyvista")
-        surface = pyvista.PolyData.from_regular_faces(self.points, self.triangles)
+        surface = pyvista.PolyData.from_regular_faces(self.points[: self._corners], self.triangles)
         surface.cell_data["material_0"] = self.materials[:, 0]
         surface.cell_data["material_1"] = self.materials[:, 1]
         _add_names(surface, self.names)
@@ -219,7 +246,9 @@ class Mesh:
         """A `meshio.Mesh` with the cell data `material_0` and `material_1`."""
         meshio = _package("meshio")
         data = {"material_0": [self.materials[:, 0]], "material_1": [self.materials[:, 1]]}
-        return meshio.Mesh(self.points, [("triangle", self.triangles)], cell_data=data)
+        if self.midsides is None:
+            return meshio.Mesh(self.points, [("triangle", self.triangles)], cell_data=data)
+        return meshio.Mesh(self.points, [("triangle6", np.hstack([self.triangles, self.midsides]))], cell_data=data)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Arrays, quality and report are pickled; the run is not."""

@@ -96,8 +96,10 @@ def save_tetrahedra(
     known = {int(key): str(name) for key, name in (names or {}).items()}
     materials = [(outside, known.get(outside, ""))] + [(int(kind), known.get(int(kind), "")) for kind in kinds]
     border = positions[: int(is_first.sum())]
+    straight = np.empty((0, 6), np.int64)
+    material = material.astype(np.uint16)
     _core.save_cells(
-        os.fspath(file), border, number[triangles], sides, materials, positions, number[corners], material.astype(np.uint16)
+        os.fspath(file), border, number[triangles], sides, materials, positions, number[corners], material, straight
     )
 
 

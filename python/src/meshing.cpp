@@ -56,6 +56,7 @@ nb::dict mesh_dict(const Mesh& mesh) {
   result["triangles"] = corner_rows(mesh.triangles);
   result["sides"] = rows(mesh.sides);
   result["materials"] = material_list(mesh);
+  result["midsides"] = corner_rows(mesh.midsides);
   return result;
 }
 
@@ -64,6 +65,7 @@ nb::dict cells_dict(const Tetrahedra& cells) {
   result["points"] = rows(cells.points);
   result["cells"] = corner_rows(cells.cells);
   result["material"] = column(cells.material);
+  result["midsides"] = corner_rows(cells.midsides);
   return result;
 }
 
@@ -160,18 +162,21 @@ void bind_meshing(nb::module_& module) {
 
   module.def("save_mesh",
              [](const std::string& file, const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
-                const Rows<std::uint16_t, 2>& sides, const nb::list& materials) {
-               const Mesh mesh = mesh_of(points, triangles, sides, pairs_of(materials));
+                const Rows<std::uint16_t, 2>& sides, const nb::list& materials, const Rows<std::int64_t, 3>& midsides) {
+               Mesh mesh = mesh_of(points, triangles, sides, pairs_of(materials));
+               mesh.midsides = to_corners<3>(midsides);
                nb::gil_scoped_release release;
                save(file, mesh);
              });
   module.def("save_cells",
              [](const std::string& file, const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
                 const Rows<std::uint16_t, 2>& sides, const nb::list& materials, const Rows<double, 3>& cell_points,
-                const Rows<std::int64_t, 4>& cells, const Column<std::uint16_t>& material) {
+                const Rows<std::int64_t, 4>& cells, const Column<std::uint16_t>& material,
+                const Rows<std::int64_t, 6>& midsides) {
                const Mesh mesh = mesh_of(points, triangles, sides, pairs_of(materials));
                Tetrahedra filled{to_rows<3>(cell_points), to_corners<4>(cells),
-                                 std::vector<std::uint16_t>(material.data(), material.data() + material.shape(0))};
+                                 std::vector<std::uint16_t>(material.data(), material.data() + material.shape(0)),
+                                 to_corners<6>(midsides)};
                nb::gil_scoped_release release;
                save(file, mesh, filled);
              });

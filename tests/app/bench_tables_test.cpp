@@ -67,7 +67,7 @@ void BenchTables::expect_scalar_tables() const {
       EXPECT_LE(ours(quality, who + ": mean ratio"), 1) << name;
       EXPECT_GT(ours(quality, who + ": mean ratio"), ours(quality, who + ": smallest ratio")) << name;
     }
-    EXPECT_GT(ours(quality, "own settings: mean ratio"), 0.9) << "smoothed and mended, however short the run";
+    EXPECT_GT(ours(quality, "own settings: mean ratio"), 0.9) << "smoothed and remeshed, however short the run";
     EXPECT_NEAR(ours(times, "serial / tree"), ours(times, "serial: s") / ours(times, "tree: s"), 1e-9);
   }
   double before = 0;

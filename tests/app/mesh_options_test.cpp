@@ -105,7 +105,7 @@ TEST(MeshCommandLine, TheSourcesPresetGivesWayToWhatIsSaid) {
   EXPECT_EQ(preset["delete_above"], 1.35);
   EXPECT_EQ(preset["mesh_subcells"], 3);
   EXPECT_EQ(preset["smooth"], 0);
-  EXPECT_EQ(preset["mend"], 0);
+  EXPECT_EQ(preset["remesh"], 0);
   EXPECT_EQ(preset["by_density"], false);
   EXPECT_EQ(preset["kernel"], "catmull-rom");
   EXPECT_EQ(preset["ideal_energy"], 0);

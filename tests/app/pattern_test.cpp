@@ -37,7 +37,7 @@ TEST_F(Pattern, PictureValuesAndReport) {
   for (const char* texture : {"spots", "stripes"}) {
     const Outcome run =
         nacre(small_pattern("sphere") + Arguments{"--texture", texture, "--image", path(std::string(texture) + ".png"),
-                                              "--out", path("v.vtp"), "--report", path("r.json")});
+                                                  "--out", path("v.vtp"), "--report", path("r.json")});
     ASSERT_EQ(run.status, 0) << run.err;
     const json report = read_json("r.json");
     EXPECT_EQ(report["parameters"]["texture"], texture);
@@ -63,8 +63,8 @@ TEST_F(Pattern, OneThreadOrFourMakeTheSameBytes) {
 
 TEST_F(Pattern, WhatIsNotOfferedIsRefusedWithAdvice) {
   const auto refused = [&](const std::string& sample, const Arguments& arguments, const Arguments& parts) {
-    expect_failure(nacre(small_pattern(sample) + Arguments{"--texture", "spots", "--image", path("p.png")} + arguments), 1,
-                   parts);
+    expect_failure(nacre(small_pattern(sample) + Arguments{"--texture", "spots", "--image", path("p.png")} + arguments),
+                   1, parts);
     EXPECT_FALSE(exists("p.png"));
   };
   refused("sphere", {"--method", "octree"}, {"--texture spots", "--method grid"});

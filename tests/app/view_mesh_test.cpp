@@ -10,7 +10,7 @@ namespace {
 
 /// A mesh that is soon done: 20 iterations for its curve, 20 for its surfaces.
 const Arguments quick = {"--sample", "two-spheres", "--detail", "20",      "--set",  "iterations=20",
-                         "--set",    "mend=0",      "--size",   "200x150", "--quiet"};
+                         "--set",    "remesh=0",    "--size",   "200x150", "--quiet"};
 
 class ViewMesh : public MeshTest {
  protected:

@@ -40,7 +40,7 @@ row() {
     return
   fi
   local values=() total=0
-  for stage in read materials tighten distance sizing embed seed relax population triangulate smooth mend quality write; do
+  for stage in read materials tighten distance sizing embed seed relax population triangulate smooth remesh quality write; do
     values+=("$stage=$(stage_seconds "$report" "$stage")")
   done
   [[ $(report_value "$report" mesh.sound) != true ]] || sound=yes
@@ -60,7 +60,7 @@ row() {
       fields = s["materials"] + s["tighten"] + s["distance"] + s["sizing"] + s["embed"]
       printf "| %s | %d | %d | %d | %.1f | %.1f | %.1f | %.1f | %.1f | %.2f | %.3f | %.3f | %.3f | %.5f | %.3f | %d | %d | %d | %s | %.2f |\n",
         name, particles, triangles, iterations, total, fields, s["relax"] + s["population"] + s["seed"], s["triangulate"],
-        s["smooth"] + s["mend"], particles * iterations / total / 1e6, mean, least, away, 100 * under, facets, off, open,
+        s["smooth"] + s["remesh"], particles * iterations / total / 1e6, mean, least, away, 100 * under, facets, off, open,
         lost, sound, memory / 1e9
     }')
   echo "$line"
@@ -69,7 +69,7 @@ row() {
 
 machine
 echo
-printf '| data | particles | triangles | iterations | whole command, s | fields, s | particles, s | triangulate, s | smooth and mend, s |'
+printf '| data | particles | triangles | iterations | whole command, s | fields, s | particles, s | triangulate, s | smooth and remesh, s |'
 printf ' million particle-iterations per second of the whole | radius ratio mean | min | min away from junctions |'
 printf ' under 25 degrees away from junctions, %% | facet centres off the interface, voxels | non-manifold edges |'
 printf ' boundary edges | lost labels | sound | peak memory, GB |\n'
@@ -94,10 +94,10 @@ row aneurism "$data/scalar/ct/aneurism.vti" --isovalue 100
 row engine "$data/scalar/ct/engine.vti" --isovalue 100
 row skull "$data/scalar/skull_2.9.inr" --isovalue 2.9
 
-# solver_run SOLVER ITERATIONS REPORT: the same seeds for all, none added or deleted, nothing smoothed or mended, no
+# solver_run SOLVER ITERATIONS REPORT: the same seeds for all, none added or deleted, nothing smoothed or remeshed, no
 # end before the last iteration. Fails where the run does.
 solver_run() {
-  "$nacre" mesh --sample torso "${words[@]}" --quiet --solver "$1" --iterations "$2" --stagnation 0 --smooth 0 --mend 0 \
+  "$nacre" mesh --sample torso "${words[@]}" --quiet --solver "$1" --iterations "$2" --stagnation 0 --smooth 0 --remesh 0 \
     --control-every 100 --set seeds=embedding --particles "${NACRE_BENCH_PARTICLES:-300000}" --report "$3" \
     >/dev/null 2>"$out/mesh-solver.err"
 }

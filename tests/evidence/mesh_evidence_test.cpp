@@ -105,7 +105,7 @@ TEST(MeshEvidence, ShellOneVoxelThinGivenAsDistances) {
 /// One smooth closed surface at uniform size.
 MeshRun uniform(const PlaceFunction& f, const std::string& solver, int iterations, bool smoothed) {
   MeshParameters parameters;
-  if (!smoothed) parameters.smooth = parameters.mend = 0;
+  if (!smoothed) parameters.smooth = parameters.remesh = 0;
   parameters.solver = solver;
   parameters.min_size = parameters.max_size = 1;
   parameters.iterations = iterations;
@@ -125,7 +125,7 @@ TEST(MeshEvidence, UniformSizeOnASmoothSurface) {  // 88 iterations and twice si
   }
 }
 
-TEST(MeshEvidence, EverySolverByItself) {  // nothing smoothed or mended
+TEST(MeshEvidence, EverySolverByItself) {  // nothing smoothed or remeshed
   for (const char* solver : {"redblack", "serial", "tree"}) {
     const MeshRun run = uniform(torus(middle, 9.6, 4.4), solver, 60, false);
     expect_topology(run.mesh, {0, 0});

@@ -33,6 +33,10 @@ mesh surface.msh4 --surface-only
 mesh surface.inp --surface-only
 mesh surface.xdmf --surface-only
 "$python" "$here/read_meshes.py" "$work"
+mesh curved.vtu --element-order 2 --report "$work/curved.json"
+for file in curved.msh curved.msh4 curved.inp curved.mesh curved.feb; do mesh "$file" --element-order 2; done
+for file in shells.msh4 shells.inp; do mesh "$file" --element-order 2 --surface-only; done
+"$python" "$here/read_second_order.py" "$work"
 
 info() { "$nacre" info --json "$work/$1" "${@:2}" >"$work/$1.json"; }
 for file in labels.mgz labels.mgh; do info "$file" --names "$work/names.txt"; done

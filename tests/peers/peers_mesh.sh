@@ -51,7 +51,7 @@ mesh_3_cells() {
   local labels=$out/$1-$2.nrrd work="tetrahedra of $1 $2" size
   cells_ours() {
     ours "$out/ours.vtu" "$out/ours.json" "$labels"
-    our_seconds "$out/ours.json" materials tighten distance sizing embed seed relax population triangulate smooth mend tetrahedra
+    our_seconds "$out/ours.json" materials tighten distance sizing embed seed relax population triangulate smooth remesh tetrahedra
   }
   cells_ours >/dev/null
   mesh_3() { "${prefix[@]}" "$build/bin/peer_mesh_3" "$labels" "$out/theirs.off" threads="$threads" work=cells "$@"; }

@@ -52,7 +52,7 @@ ours() {
 our_seconds() {
   local report=$1 stage total=0
   shift
-  (($#)) || set -- materials tighten distance sizing embed seed relax population triangulate smooth mend
+  (($#)) || set -- materials tighten distance sizing embed seed relax population triangulate smooth remesh
   for stage in "$@"; do total="$total + $(stage_seconds "$report" "$stage" | grep . || echo 0)"; done
   awk "BEGIN { print $total }"
 }

@@ -81,6 +81,39 @@ def test_tetrahedra_fill_the_materials(ball_mesh):
     assert len(ball_mesh.tetrahedra(max_cell=0).cells) == len(t.cells)
 
 
+def test_second_order(program, tmp_path):
+    write_nrrd(tmp_path / "a.nrrd", two_balls(20))
+    options = ("mesh", tmp_path / "a.nrrd", "--labels", "--max-size", "2", "--element-order", "2")
+    mesh = nacre.mesh(two_balls(20), labels=True, max_size=2, element_order=2)
+    for file, surface_only in (("a.vtu", False), ("a.msh", False), ("b.msh4", True)):
+        program(*options, "--out", tmp_path / file, *(["--surface-only"] if surface_only else []))
+        mesh.save(tmp_path / f"ours_{file}", surface_only)
+        assert result_bytes(tmp_path / f"ours_{file}") == result_bytes(tmp_path / file)
+    t = mesh.tetrahedra()
+    assert t.order == 2 and t.cells.shape[1] == 10 and t.cells.max() == len(t.points) - 1
+    a, b = t.points[t.cells[:, 0]], t.points[t.cells[:, 1]]
+    off = np.linalg.norm(t.points[t.cells[:, 4]] - (a + b) / 2, axis=1)
+    assert (off < 0.31 * np.linalg.norm(b - a, axis=1)).all() and off.max() > 0
+    assert mesh.midsides.shape == mesh.triangles.shape and mesh.midsides.min() > mesh.triangles.max()
+    report = mesh.report["second_order"]
+    assert report["nodes"] == len(t.points) - t.cells[:, :4].max() - 1
+    assert report["deviation_voxels"]["order_2"]["mean"] < report["deviation_voxels"]["order_1"]["mean"]
+    straight = mesh.tetrahedra(order=1)
+    assert straight.order == 1 and np.array_equal(straight.cells, t.cells[:, :4])
+    straight.save(tmp_path / "straight.msh")  # of a mesh that has midsides
+    with pytest.raises(nacre.Error, match="1..2"):
+        mesh.tetrahedra(order=3)
+    with pytest.raises(nacre.Error, match="element_order"):
+        mesh.save(tmp_path / "a.stl")
+
+
+def test_a_bound_on_the_deviation():
+    mesh = nacre.mesh(two_balls(20), labels=True, max_size=3, epsilon=2, max_deviation=0.06)
+    found = mesh.report["mesh"]["deviation"]
+    assert found["met"] and found["max_voxels"] <= 0.06
+    assert mesh.quality.sound and mesh.quality.distance_max < 0.061
+
+
 def test_stages_and_a_changed_knob():
     run = nacre.meshing(two_balls(16), max_size=2.0)
     names, counts = [], []

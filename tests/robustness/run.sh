@@ -75,7 +75,7 @@ one() {
     words=(flow "$file" --vectors @swirl --resolution 48 --steps 1 --size 96x72 --image "$folder/out/picture.png" --quiet)
     result=picture.png
   elif [[ $command == mesh ]]; then
-    words=(mesh "$file" --min-size 3 --max-size 3 --iterations 3 --set smooth=1 --set mend=1 --out "$folder/out/mesh.ply" --quiet)
+    words=(mesh "$file" --min-size 3 --max-size 3 --iterations 3 --set smooth=1 --set remesh=1 --out "$folder/out/mesh.ply" --quiet)
     result=mesh.ply
   fi
   TMPDIR=$folder/tmp timeout -k 5 60 "$program" "${words[@]}" >"$folder/stdout" 2>"$folder/stderr" </dev/null || status=$?

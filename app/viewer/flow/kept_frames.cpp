@@ -23,9 +23,10 @@ void KeptFrames::keep(int position, const Buffer& shown, const FlowMoment& momen
 }
 
 int KeptFrames::nearest(int position) const {
-  return std::min_element(frames_.begin(), frames_.end(), [&](const auto& a, const auto& b) {
-           return std::abs(a.first - position) < std::abs(b.first - position);
-         })->first;
+  return std::min_element(
+             frames_.begin(), frames_.end(),
+             [&](const auto& a, const auto& b) { return std::abs(a.first - position) < std::abs(b.first - position); })
+      ->first;
 }
 
 void KeptFrames::drop(int position) {

@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "app/viewer/mesh/mesh_worker.hpp"
 #include "compute/device/error.hpp"
 #include "compute/meshing/tetrahedra.hpp"
 #include "engine/io/mesh_writer.hpp"
+#include "engine/run/mesh_result.hpp"
 #include "engine/scene/volume/materials.hpp"
 #include "engine/system/extension.hpp"
 
@@ -187,31 +189,38 @@ void MeshWorker::fill_slice() {
 
 void MeshWorker::write_result() {
   std::filesystem::path file;
-  bool complete;
+  bool complete, curved, fields;
   double max_cell;
   {
     std::scoped_lock lock(mutex_);
     file = *std::exchange(file_, std::nullopt);
     complete = next_ == MeshStage::done;
     max_cell = wanted_.max_cell;
+    curved = wanted_.element_order == 2;
+    fields = fields_;
     progress_ = {"write", -1, 0, 0, 0};
     writing_ = true;
   }
   MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; wait until it is made"};
   const auto write = [&] {
     const MeshInput& input = viewed_->input;
+    if (curved) check_second_order(file, has_cells(file));
+    if (curved && !fields)
+      throw Error("an earlier mesh has no interfaces to put nodes on", "the fields are those of other knobs",
+                  "make it again, or set `element_order` to 1");
+    std::optional<TetrahedralMesh> cells;
     if (has_cells(file)) {
-      TetrahedralMesh cells;
-      {
-        StageTimers::Scope scope(pipeline_->timers(), "tetrahedra");
-        cells = fill_with_tetrahedra(*mesh_, longest_edge(max_cell, input.spacing), &interrupt_);
-      }
-      StageTimers::Scope scope(pipeline_->timers(), "write");
-      write_tetrahedral_mesh(file, cells, *mesh_, input.labels, input.names);
-    } else {
-      StageTimers::Scope scope(pipeline_->timers(), "write");
-      write_surface_mesh(file, *mesh_, input.labels, input.names);
+      StageTimers::Scope scope(pipeline_->timers(), "tetrahedra");
+      cells = fill_with_tetrahedra(*mesh_, longest_edge(max_cell, input.spacing), &interrupt_);
     }
+    std::optional<SecondOrder> nodes;
+    if (curved) nodes = mesh_nodes(*mesh_, cells ? &*cells : nullptr, *pipeline_, &interrupt_);
+    const SecondOrder* second = nodes ? &*nodes : nullptr;
+    StageTimers::Scope scope(pipeline_->timers(), "write");
+    if (cells)
+      write_tetrahedral_mesh(file, *cells, *mesh_, input.labels, input.names, "", second);
+    else
+      write_surface_mesh(file, *mesh_, input.labels, input.names, "", second);
     told.failure.clear();
   };
   if (complete)

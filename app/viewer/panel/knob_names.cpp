@@ -75,7 +75,7 @@ std::string plain_name(const std::string& knob) {
       {"min_size", "Smallest triangles"},
       {"epsilon", "Follow thin parts"},
       {"tighten", "Smooth the voxels"},
-      {"mend", "Repair bad triangles"},
+      {"remesh", "Repair bad triangles"},
       {"iterations", "Most iterations"},
   };
   const auto found = names.find(knob);
@@ -86,7 +86,7 @@ const std::vector<std::string>& basic_knobs(const std::string& job) {
   static const std::vector<std::string> flow{"resolution", "ttl",   "streaks", "contrast",
                                              "step_cells", "steps", "time",    "speed_power"};
   static const std::vector<std::string> mesh{"quality",  "labels",  "isovalue", "materials", "max_size",
-                                             "min_size", "epsilon", "tighten",  "mend",      "iterations"};
+                                             "min_size", "epsilon", "tighten",  "remesh",    "iterations"};
   return job == "mesh" ? mesh : flow;
 }
 

@@ -82,11 +82,11 @@ const std::vector<KnobPreset>& built_in_presets() {
       {"standard",
        "mesh",
        "as the viewer begins",
-       {{"min_size", "0.5"}, {"max_size", "1"}, {"iterations", "70"}, {"mend", "12"}}},
+       {{"min_size", "0.5"}, {"max_size", "1"}, {"iterations", "70"}, {"remesh", "12"}}},
       {"best",
        "mesh",
        "small triangles where the body is curved, until nothing moves any more",
-       {{"min_size", "0.4"}, {"max_size", "1"}, {"epsilon", "0.35"}, {"iterations", "200"}, {"mend", "30"}}},
+       {{"min_size", "0.4"}, {"max_size", "1"}, {"epsilon", "0.35"}, {"iterations", "200"}, {"remesh", "30"}}},
   };
   return all;
 }

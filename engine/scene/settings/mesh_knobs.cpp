@@ -127,6 +127,15 @@ std::vector<Knob> field_knobs(Settings& s) {
        .group = sizing,
        .help = "also bound the sizing field by epsilon / largest curvature",
        .value = &m.curvature},
+      {.name = "max_deviation",
+       .group = sizing,
+       .unit = "voxels",
+       .help = "largest distance of triangles from the interface that they stand for: particles are nearer where it "
+               "bends; 0: any",
+       .value = &m.max_deviation,
+       .min = 0.001,
+       .max = 1000,
+       .or_zero = true},
   };
 }
 
@@ -209,13 +218,14 @@ std::vector<Knob> particle_knobs(Settings& s) {
        .value = &m.smooth,
        .min = 0,
        .max = 100},
-      {.name = "mend",
+      {.name = "remesh",
        .group = group,
        .unit = "rounds",
-       .help = "how often, at most, bad triangles are repaired after triangulation",
-       .value = &m.mend,
+       .help = "how often, at most, particles are deleted and inserted at bad triangles (local remeshing)",
+       .value = &m.remesh,
        .min = 0,
-       .max = 100},
+       .max = 100,
+       .old_names = {"mend"}},
       {.name = "triangulation",
        .group = group,
        .help =
@@ -242,6 +252,13 @@ std::vector<Knob> particle_knobs(Settings& s) {
        .value = &s.max_cell,
        .min = 0,
        .max = 1e6},
+      {.name = "element_order",
+       .group = "cells",
+       .help = "2: triangles and tetrahedra with a node on each edge, those of interfaces curved; 1: straight",
+       .value = &s.element_order,
+       .min = 1,
+       .max = 2,
+       .old_names = {"order"}},
   };
 }
 

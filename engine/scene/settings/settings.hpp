@@ -85,7 +85,8 @@ struct Settings {
   MeshParameters mesh;
   MaterialSettings materials;
   ViewSettings view;
-  double max_cell = 0;  ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
+  double max_cell = 0;    ///< longest edge of tetrahedra, voxels; 0: they grow with the distance from the surface
+  int element_order = 1;  ///< of triangles and tetrahedra in files: 2 with a node on each edge
 
   std::string patch;                                          ///< names of the parts of a case to show; empty: all
   std::string vectors;                                        ///< array name or @field; empty: chosen

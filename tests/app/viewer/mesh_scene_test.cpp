@@ -20,7 +20,7 @@ class MeshInView : public test::SceneInView<MeshScene> {
     if (session_.inputs.empty()) session_.sample = "two-spheres", session_.detail = 20;
     session_.settings.mesh.iterations = iterations;
     if (iterations > 20) session_.settings.mesh.stagnation = 0;
-    session_.settings.mesh.mend = 0;
+    session_.settings.mesh.remesh = 0;
     SceneOptions options;
     options.open_device = [] { return make_cpu_device(2); };
     options.lockstep = lockstep;

@@ -38,7 +38,7 @@ struct MeshWorkerRun {
     session.sample = "two-spheres";
     session.detail = 20;
     session.settings.mesh.iterations = 30;
-    session.settings.mesh.mend = 1;
+    session.settings.mesh.remesh = 1;
     preset(session);
     worker = std::make_unique<MeshWorker>(session, make_cpu_device(threads), lockstep, false, live);
   }
@@ -166,7 +166,7 @@ TEST(MeshWorker, OnlyWhatDependsOnAKnobRunsAgain) {
   EXPECT_EQ(run.rerun("delta", "0.3"), "sizing embed " + particles);
   EXPECT_EQ(run.rerun("epsilon", "0.6"), "distance sizing embed " + particles);  // which looks farther
   EXPECT_EQ(run.rerun("tighten", "1"), "tighten distance sizing embed " + particles);
-  EXPECT_EQ(run.rerun("mend", "0"), "triangulate quality");
+  EXPECT_EQ(run.rerun("remesh", "0"), "triangulate quality");
   EXPECT_EQ(run.rerun("merge", "2:1"), "classify materials tighten distance sizing embed " + particles);
   EXPECT_EQ(run.order, "VBITM");
   EXPECT_EQ(run.rerun("worst", "5"), "");
@@ -215,8 +215,8 @@ TEST(MeshWorker, AfterAMeshWasBroughtBackOthersAreMadeAsEver) {
   run.settle();
   run.rerun("max_size", "1.6");
   run.rerun("max_size", "1");  // brought back; the pipeline is at 1.6
-  EXPECT_EQ(run.rerun("mend", "0"), "distance sizing embed seed triangulate quality");
-  MeshWorkerRun fresh(false, 2, [](Session& session) { session.settings.mesh.mend = 0; });
+  EXPECT_EQ(run.rerun("remesh", "0"), "distance sizing embed seed triangulate quality");
+  MeshWorkerRun fresh(false, 2, [](Session& session) { session.settings.mesh.remesh = 0; });
   fresh.settle();
   EXPECT_EQ(run.triangles, fresh.triangles);
   EXPECT_FALSE(run.brought_back);

@@ -190,7 +190,7 @@ class MeshInTime : public InTime<MeshScene> {
     session_.sample = "two-spheres";
     session_.detail = 20;
     session_.settings.mesh.iterations = 20;
-    session_.settings.mesh.mend = 0;
+    session_.settings.mesh.remesh = 0;
     SceneOptions options;
     options.open_device = [] { return make_cpu_device(2); };
     options.lockstep = lockstep;

@@ -115,7 +115,7 @@ TEST(Attempt, NewPointsShareTheFateOfTheirPatch) {
   const TwoBadPlaces positions;
   Attempt attempt = positions.attempt();
   std::vector<Vec3d> points = positions.points;
-  points.erase(points.begin() + 400);  // the north is mended; in the south comes a third
+  points.erase(points.begin() + 400);  // the north is remeshed; in the south comes a third
   points.push_back(beside(points[positions.south], -0.002));
   Marks gone(402, 0);
   gone[400] = 1;

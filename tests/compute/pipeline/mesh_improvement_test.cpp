@@ -54,6 +54,11 @@ class SphereParticles : public MovableParticles {
   std::vector<JunctionGradients> junction_gradients(std::span<const Vec3f> points, std::span<const Junction>) override {
     return std::vector<JunctionGradients>(points.size());
   }
+  std::vector<Vec3d> onto_junctions(std::span<const Vec3d> points, std::span<const Junction>, bool) override {
+    std::vector<Vec3d> on;
+    for (const Vec3d& p : points) on.push_back(p * (radius / length(p)));
+    return on;
+  }
   void in_stage(std::string_view name, const std::function<void()>& work) override {
     stages.insert(std::string(name));
     work();
@@ -91,8 +96,8 @@ class SphereParticles : public MovableParticles {
   HostParticles particles_;
 };
 
-ImprovedMesh improve(SphereParticles& particles, int smooth, int mend) {
-  const ImprovementRule rule{smooth, mend, false, 1, nullptr};
+ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0) {
+  const ImprovementRule rule{smooth, remesh, false, 1, nullptr, deviation, 0.25};
   const TellStage tell = [](std::string_view, double fraction, int, double) {
     EXPECT_GE(fraction, 0.85);
     EXPECT_LE(fraction, 0.94);
@@ -133,15 +138,38 @@ TEST(MeshImprovement, MendingTakesOutWhatSpoilsTriangles) {
   EXPECT_TRUE(check_topology(made.mesh, 2).sound());
   EXPECT_GT(surface_quality(made.mesh).all.radius_ratio_min, worst_defects.ratio);
   EXPECT_EQ(std::size_t(particles.count()), made.mesh.points.size()) << "the particles are those of the mesh";
-  EXPECT_TRUE(particles.stages.contains("mend"));
+  EXPECT_TRUE(particles.stages.contains("remesh"));
+}
+
+/// A part of the sphere where particles are half as dense: there are more in the end, and nowhere else.
+TEST(MeshImprovement, ParticlesAreAddedWhereTrianglesAreTooFarAway) {
+  std::vector<Vec3d> directions;
+  int number = 0;
+  for (const Vec3d& d : even_directions(even))
+    if (d.z < 0.5 || ++number % 2 == 0) directions.push_back(d);
+  SphereParticles loose(directions), bounded(directions);
+  const double before = improve(loose, 2, 12).deviation.max;
+  EXPECT_EQ(before, 0) << "nothing is measured without a bound";
+  const ImprovedMesh made = improve(bounded, 2, 12, 0.045);
+  EXPECT_GT(made.deviation.first_max, 0.045);
+  EXPECT_GT(made.deviation.first_above, 0);
+  EXPECT_GT(made.deviation.inserted, 0);
+  EXPECT_LE(made.deviation.max, 0.045);
+  EXPECT_EQ(made.deviation.above(), 0);
+  EXPECT_TRUE(made.deviation.places.empty());
+  EXPECT_TRUE(check_topology(made.mesh, 2).sound());
+  EXPECT_GT(surface_quality(made.mesh).all.radius_ratio_min, worst_defects.ratio);
+  EXPECT_EQ(std::size_t(bounded.count()), made.mesh.points.size()) << "the particles are those of the mesh";
+  EXPECT_TRUE(bounded.stages.contains("refine"));
 }
 
 TEST(MeshImprovement, StopsWhenAsked) {
   SphereParticles particles(even_directions(even));
   const std::atomic<bool> stop = true;
   const TellStage tell = [](std::string_view, double, int, double) {};
-  EXPECT_THROW(MeshImprovement(particles, particles.table, particles.frame, {2, 12, false, 1, &stop}, tell).run(),
-               Interrupted);
+  EXPECT_THROW(
+      MeshImprovement(particles, particles.table, particles.frame, {2, 12, false, 1, &stop, 0, 0.25}, tell).run(),
+      Interrupted);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ class MeshInterrupt : public ::testing::TestWithParam<std::string> {
     EXPECT_NEAR(report.materials[1].volume + report.materials[2].volume, 4 * M_PI / 3 * 7.2 * 7.2 * 7.2, 80);
     EXPECT_GT(report.junction_edges, 30);
     EXPECT_LT(pipeline_->surface_distance(mesh).vertex_max, 0.1);
-    for (const float size : pipeline_->particles().size) EXPECT_GT(size, 0.4f);  // of those that mending added, too
+    for (const float size : pipeline_->particles().size) EXPECT_GT(size, 0.4f);  // of those that remeshing added, too
   }
 
   const std::unique_ptr<Device> device_ = make_cpu_device();

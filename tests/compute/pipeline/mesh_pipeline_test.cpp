@@ -157,7 +157,7 @@ TEST(MeshPipeline, TellsHowFarItIs) {
   int calls = 0;
   std::int64_t particles = 0;
   pipeline->progress = [&](const MeshProgress& p) {
-    EXPECT_GE(p.fraction, last - 0.08) << p.stage;  // mending goes back a little
+    EXPECT_GE(p.fraction, last - 0.08) << p.stage;  // remeshing goes back a little
     last = p.fraction;
     EXPECT_LE(p.fraction, 1);
     particles = std::max(particles, p.particles);

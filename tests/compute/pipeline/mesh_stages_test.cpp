@@ -72,7 +72,7 @@ const std::vector<Change>& changes() {
       {"nothing", [](P&) {}, {}},
       {"theta", [](P& p) { p.theta = 0.8; }, {}},
       {"iterations", [](P& p) { p.iterations = 20; }, {}},
-      {"mend", [](P& p) { p.mend = 1; }, {}},
+      {"remesh", [](P& p) { p.remesh = 1; }, {}},
       {"delta", [](P& p) { p.delta = 0.2; }, sizes},
       {"epsilon, which bounds the medial balls", [](P& p) { p.epsilon = 0.3; }, distances},
       {"epsilon, beyond what bounds them", [](P& p) { p.epsilon = 2; }, distances},
@@ -131,7 +131,7 @@ TEST(MeshStages, TheStepsBehindTheFieldsRunWhole) {
   pipeline->parameters = few_iterations();
   pipeline->load(volume);
   pipeline->build_fields();
-  const Names moves{"seed", "relax", "population"}, meshes{"triangulate", "mend", "smooth"};
+  const Names moves{"seed", "relax", "population"}, meshes{"triangulate", "remesh", "smooth"};
   EXPECT_EQ(stages_of(*pipeline, [&] { pipeline->relax(); }), moves);
   EXPECT_EQ(stages_of(*pipeline, [&] { pipeline->triangulate(); }), meshes);
   pipeline->parameters.theta = 0.8;
@@ -167,7 +167,7 @@ TEST(MeshStages, TheWayToTheKnobsDoesNotMatter) {
   }
 }
 
-/// So few iterations that there is much to mend.
+/// So few iterations that there is much to remesh.
 MeshParameters hasty() {
   MeshParameters parameters;
   parameters.iterations = 4;
@@ -178,20 +178,20 @@ TEST(MeshStages, TriangulatingAgainBeginsWithTheParticlesBeforeMending) {
   const auto device = make_cpu_device();
   const MeshVolume volume = three_balls();
   MeshParameters parameters = hasty();
-  parameters.mend = 0;
-  const SurfaceMesh unmended = run_mesh(*device, volume, parameters).mesh;
+  parameters.remesh = 0;
+  const SurfaceMesh unremeshed = run_mesh(*device, volume, parameters).mesh;
   const auto pipeline = make_mesh_pipeline(*device);
   pipeline->parameters = hasty();
   pipeline->load(volume);
   pipeline->build_fields();
   pipeline->relax();
-  const SurfaceMesh mended = pipeline->triangulate();
-  EXPECT_FALSE(mended.triangles == unmended.triangles) << "nothing to mend: this test would show nothing";
-  expect_same(pipeline->triangulate(), mended);
-  pipeline->parameters.mend = 0;
-  expect_same(pipeline->triangulate(), unmended);
-  pipeline->parameters.mend = hasty().mend;
-  expect_same(pipeline->triangulate(), mended);
+  const SurfaceMesh remeshed = pipeline->triangulate();
+  EXPECT_FALSE(remeshed.triangles == unremeshed.triangles) << "nothing to remesh: this test would show nothing";
+  expect_same(pipeline->triangulate(), remeshed);
+  pipeline->parameters.remesh = 0;
+  expect_same(pipeline->triangulate(), unremeshed);
+  pipeline->parameters.remesh = hasty().remesh;
+  expect_same(pipeline->triangulate(), remeshed);
 }
 
 class MeshStops : public ::testing::Test {

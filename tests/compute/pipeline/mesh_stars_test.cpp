@@ -103,9 +103,9 @@ TEST(MeshStars, ADraftTakesLessOnlyAndTheBestMore) {
   EXPECT_EQ(draft.triangles, "stars");
   EXPECT_LT(draft.iterations, p.iterations);
   EXPECT_LT(draft.smooth, p.smooth);
-  p.iterations = 3, p.mend = 0, p.triangles = "delaunay";  // said so
+  p.iterations = 3, p.remesh = 0, p.triangles = "delaunay";  // said so
   EXPECT_EQ(at_quality(p).iterations, 3);
-  EXPECT_EQ(at_quality(p).mend, 0);
+  EXPECT_EQ(at_quality(p).remesh, 0);
   EXPECT_EQ(at_quality(p).triangles, "delaunay");
   p.quality = "best";
   EXPECT_GT(at_quality(p).iterations, MeshParameters().iterations);

@@ -8,6 +8,7 @@
 
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
+#include "compute/device/random.hpp"
 #include "compute/pipeline/volume_frame.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 

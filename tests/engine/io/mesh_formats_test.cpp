@@ -156,6 +156,90 @@ TEST(MeshFormats, FebioHasPartsSurfacesAndPairs) {
   EXPECT_NE(file.find("<primary>liver &amp; bile - kidney, left</primary>"), file.npos);
 }
 
+std::string written_at_second_order(const std::string& file, bool cells) {
+  const TemporaryFolder folder;
+  const SecondOrder second = test::two_bodies_nodes(cells);
+  if (cells)
+    write_tetrahedral_mesh(folder / file, two_cells(), two_bodies(), body_labels, names, "", &second);
+  else
+    write_surface_mesh(folder / file, two_bodies(), body_labels, names, "", &second);
+  EXPECT_EQ(folder.entries(), 1u);
+  return read_all(folder / file);
+}
+
+TEST(MeshFormats, AbaqusHasNodesOnEdges) {
+  const std::string cells = written_at_second_order("a.inp", true);
+  EXPECT_NE(cells.find("\n6, 0.5, 0, 0\n7, 0, 0.5, 0\n"), cells.npos);
+  EXPECT_NE(cells.find("*ELEMENT, TYPE=C3D10, ELSET=liver_bile\n1, 1, 2, 3, 4, 6, 10, 7, 8, 11, 13\n"
+                       "*NSET, NSET=liver_bile\n1, 2, 3, 4, 6, 7, 8, 10, 11, 13\n"),
+            cells.npos);
+  EXPECT_NE(cells.find("TYPE=C3D10, ELSET=kidney_left\n2, 1, 3, 2, 5, 7, 10, 6, 9, 14, 12\n"), cells.npos);
+  const std::string triangles = written_at_second_order("a.inp", false);
+  EXPECT_NE(triangles.find("TYPE=STRI65, ELSET=liver_bile_kidney_left\n7, 1, 2, 3, 6, 10, 7\n"), triangles.npos)
+      << triangles;
+}
+
+TEST(MeshFormats, FebioHasNodesOnEdges) {
+  const std::string file = written_at_second_order("a.feb", true);
+  EXPECT_NE(file.find("<Elements type=\"tet10\" name=\"liver &amp; bile\">\n"
+                      "<elem id=\"1\">1,2,3,4,6,10,7,8,11,13</elem>\n"),
+            file.npos);
+  EXPECT_NE(file.find("liver &amp; bile - kidney, left\">\n<tri6 id=\"1\">1,3,2,7,10,6</tri6>\n"), file.npos);
+  EXPECT_NE(file.find("kidney, left - liver &amp; bile\">\n<tri6 id=\"1\">1,2,3,6,10,7</tri6>\n"), file.npos);
+  EXPECT_NE(file.find("<node id=\"14\">0,0.5,-0.5</node>"), file.npos);
+  EXPECT_NE(file.find("<NodeSet name=\"kidney, left\">1,2,3,5,6,7,9,10,12,14</NodeSet>"), file.npos);
+}
+
+TEST(MeshFormats, MfemHasAGridFunctionOfPositions) {
+  const std::string file = written_at_second_order("a.mesh", true);
+  EXPECT_NE(file.find("\nvertices\n5\n\nnodes\nFiniteElementSpace\nFiniteElementCollection: H1_3D_P2\nVDim: 3\n"
+                      "Ordering: 1\n\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 0 -1\n"
+                      "0.5 0 0\n0 0.5 0\n0 0 0.5\n0.5 0.5 0\n0.5 0 0.5\n0 0.5 0.5\n"
+                      "0 0 -0.5\n0 0.5 -0.5\n0.5 0 -0.5\n\nmfem_mesh_end\n"),
+            file.npos)
+      << file;
+}
+
+TEST(MeshFormats, GmshHasTheLastTwoNodesTheOtherWayRound) {
+  const std::array<std::int32_t, 10> wanted = {1, 2, 3, 4, 6, 10, 7, 8, 13, 11};
+  const std::string bytes(reinterpret_cast<const char*>(wanted.data()), sizeof wanted);
+  EXPECT_NE(written_at_second_order("a.msh", true).find(bytes), std::string::npos);
+  const std::array<std::uint64_t, 10> wide = {1, 2, 3, 4, 6, 10, 7, 8, 13, 11};
+  const std::string wide_bytes(reinterpret_cast<const char*>(wide.data()), sizeof wide);
+  EXPECT_NE(written_at_second_order("a.msh4", true).find(wide_bytes), std::string::npos);
+  const std::array<std::int32_t, 6> triangle = {1, 2, 3, 6, 10, 7};
+  EXPECT_NE(written_at_second_order("a.msh", false)
+                .find(std::string(reinterpret_cast<const char*>(triangle.data()), sizeof triangle)),
+            std::string::npos);
+}
+
+TEST(MeshFormats, MaterialsApartHaveTheirNodes) {
+  const TemporaryFolder folder;
+  const SecondOrder second = test::two_bodies_nodes(false);
+  const auto files = write_material_surfaces(folder / "a.inp", two_bodies(), body_labels, names, "", &second);
+  ASSERT_EQ(files.size(), 2u);
+  // The second body from its first triangle, {0, 1, 2} with the body inside: points and nodes as they come.
+  const std::string file = read_all(files[1]);
+  EXPECT_NE(file.find("TYPE=STRI65, ELSET=kidney_left\n1, 1, 2, 3, 5, 6, 7\n"), file.npos) << file;
+  EXPECT_NE(file.find("\n4, 0, 0, -1\n5, 0.5, 0, 0\n6, 0.5, 0.5, 0\n7, 0, 0.5, 0\n"), file.npos) << file;
+}
+
+TEST(MeshFormats, FormatsWithoutNodesOnEdgesSaySo) {
+  const TemporaryFolder folder;
+  const SecondOrder second = test::two_bodies_nodes(true);
+  for (const char* file : {"a.foam"}) {
+    try {
+      write_tetrahedral_mesh(folder / file, two_cells(), two_bodies(), body_labels, names, "", &second);
+      ADD_FAILURE() << file;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(".vtu"), std::string::npos) << error.what();
+    }
+  }
+  for (const char* file : {"a.stl", "a.vtp", "a.glb", "a.obj", "a.ply", "a.off"})
+    EXPECT_THROW(write_surface_mesh(folder / file, two_bodies(), body_labels, names, "", &second), Error) << file;
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
 TEST(MeshFormats, OpenFoamHasPatchesAndZones) {
   const TemporaryFolder folder;
   write_tetrahedral_mesh(folder / "a.foam", two_cells(), two_bodies(), body_labels, names);

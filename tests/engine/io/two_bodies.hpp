@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "compute/meshing/surface_mesh.hpp"
+#include "compute/meshing/second_order.hpp"
 
 namespace nacre::test {
 
@@ -26,6 +26,16 @@ inline TetrahedralMesh two_cells() {
   mesh.cells = {{0, 1, 2, 3}, {0, 2, 1, 4}};
   mesh.material = {1, 3};
   return mesh;
+}
+
+/// Nodes in the middles of the edges, of the cells or of the triangles alone: those of the edges 01 02 03 04 12 13 14
+/// 23 24, in this order.
+inline SecondOrder two_bodies_nodes(bool cells) {
+  const TetrahedralMesh filled = two_cells();
+  return second_order(two_bodies(), cells ? &filled : nullptr,
+                      [](std::span<const Vec3d> points, std::span<const Junction>) {
+                        return std::vector<Vec3d>(points.begin(), points.end());
+                      });
 }
 
 }  // namespace nacre::test

@@ -15,33 +15,20 @@ namespace {
 /// Knobs of MeshParameters by name, for the tree solver.
 const std::map<std::string, MeshRerun>& begins() {
   static const std::map<std::string, MeshRerun> list{
-      {"tighten", MeshRerun::fields},
-      {"stairs", MeshRerun::fields},
-      {"kernel", MeshRerun::fields},
-      {"mesh_subcells", MeshRerun::fields},
-      {"epsilon", MeshRerun::fields},
-      {"delta", MeshRerun::fields},
-      {"min_size", MeshRerun::fields},
-      {"max_size", MeshRerun::fields},
-      {"sizes", MeshRerun::fields},
-      {"curvature", MeshRerun::fields},
-      {"solver", MeshRerun::relax},
-      {"theta", MeshRerun::relax},
-      {"iterations", MeshRerun::relax},
-      {"stagnation", MeshRerun::relax},
-      {"step", MeshRerun::relax},
-      {"momentum", MeshRerun::relax},
-      {"ideal_energy", MeshRerun::relax},
-      {"add_below", MeshRerun::relax},
-      {"delete_above", MeshRerun::relax},
-      {"control_every", MeshRerun::relax},
-      {"particles", MeshRerun::relax},
-      {"seed", MeshRerun::relax},
-      {"seeds", MeshRerun::relax},
-      {"by_density", MeshRerun::nothing},
-      {"mend", MeshRerun::triangulate},
-      {"smooth", MeshRerun::triangulate},
-      {"triangulation", MeshRerun::triangulate},
+      {"tighten", MeshRerun::fields},       {"stairs", MeshRerun::fields},
+      {"kernel", MeshRerun::fields},        {"mesh_subcells", MeshRerun::fields},
+      {"epsilon", MeshRerun::fields},       {"delta", MeshRerun::fields},
+      {"min_size", MeshRerun::fields},      {"max_size", MeshRerun::fields},
+      {"sizes", MeshRerun::fields},         {"curvature", MeshRerun::fields},
+      {"max_deviation", MeshRerun::fields}, {"solver", MeshRerun::relax},
+      {"theta", MeshRerun::relax},          {"iterations", MeshRerun::relax},
+      {"stagnation", MeshRerun::relax},     {"step", MeshRerun::relax},
+      {"momentum", MeshRerun::relax},       {"ideal_energy", MeshRerun::relax},
+      {"add_below", MeshRerun::relax},      {"delete_above", MeshRerun::relax},
+      {"control_every", MeshRerun::relax},  {"particles", MeshRerun::relax},
+      {"seed", MeshRerun::relax},           {"seeds", MeshRerun::relax},
+      {"by_density", MeshRerun::nothing},   {"remesh", MeshRerun::triangulate},
+      {"smooth", MeshRerun::triangulate},   {"triangulation", MeshRerun::triangulate},
       {"quality", MeshRerun::fields},
   };
   return list;
@@ -121,7 +108,7 @@ TEST(MeshRerun, OtherSolversDoNotUseTheTreesKnobs) {
 
 TEST(MeshRerun, TheEarliestStepCounts) {
   MeshParameters after;
-  after.mend = 1, after.theta = 0.7;
+  after.remesh = 1, after.theta = 0.7;
   EXPECT_EQ(mesh_rerun({}, after), MeshRerun::relax);
   after.delta = 0.3;
   EXPECT_EQ(mesh_rerun({}, after), MeshRerun::fields);

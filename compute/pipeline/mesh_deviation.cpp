@@ -1,0 +1,256 @@
+// Nacre: how far flat triangles are from the interfaces that they stand for, and where new points bring them nearer.
+#include "compute/pipeline/mesh_deviation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "compute/meshing/quality.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr double least_spacing = 0.7;  ///< of a new point from others, in `detail`
+constexpr double apart = 1.3;          ///< new points from each other, in their distances from old ones
+constexpr std::size_t most_named = 100;
+
+/// Side k of a triangle, as one of the sides of the mesh.
+struct Side {
+  std::uint32_t a, b;
+  std::array<std::uint16_t, 2> materials;
+  std::uint32_t triangle;
+  std::uint8_t k;
+
+  auto edge() const { return std::tie(a, b); }
+};
+
+std::vector<Side> sides_of(const SurfaceMesh& mesh) {
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      sides.push_back({std::min(a, b), std::max(a, b), mesh.materials[t], t, std::uint8_t(k)});
+    }
+  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+    return std::tie(s.a, s.b, s.materials, s.triangle) < std::tie(t.a, t.b, t.materials, t.triangle);
+  });
+  return sides;
+}
+
+/// The curve that sides at one edge lie on; no junction where two materials meet there.
+Junction curve_of(std::span<const Side> sides) {
+  std::vector<std::uint16_t> met;
+  for (const Side& s : sides) met.insert(met.end(), s.materials.begin(), s.materials.end());
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  return met.size() == 3 ? Junction(met[0], met[1], met[2]) : Junction();
+}
+
+/// Calls visit(sides at one edge) for each edge.
+template <class Visit>
+void for_each_edge(std::span<const Side> sides, const Visit& visit) {
+  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
+    end = begin + 1;
+    while (end < sides.size() && sides[end].edge() == sides[begin].edge()) ++end;
+    visit(sides.subspan(begin, end - begin));
+  }
+}
+
+/// A place where a mesh is measured, and sides or a triangle that the distance belongs to.
+class Samples {
+ public:
+  explicit Samples(const SurfaceMesh& mesh) : mesh_(mesh), sides_(sides_of(mesh)) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Triangle& c = mesh.triangles[t];
+      add((mesh.points[c.a] + mesh.points[c.b] + mesh.points[c.c]) / 3.0,
+          Junction(mesh.materials[t][0], mesh.materials[t][1]));
+    }
+    for_each_edge(sides_, [&](std::span<const Side> at) {
+      const Vec3d middle = 0.5 * (mesh.points[at[0].a] + mesh.points[at[0].b]);
+      const auto* last = &at[0].materials;
+      add(middle, Junction((*last)[0], (*last)[1]));
+      for (const Side& s : at.subspan(1))
+        if (s.materials != *last) last = &s.materials, add(middle, Junction((*last)[0], (*last)[1]));
+      if (const Junction curve = curve_of(at); !(curve == Junction())) add(middle, curve);
+    });
+  }
+
+  MeshDeviation measure(const NearestOnJunctions& onto, double unit) const {
+    const std::vector<Vec3d> on = onto(points_, junctions_);
+    const auto away = [&](std::size_t i) { return is_finite(on[i]) ? float(length(on[i] - points_[i]) / unit) : 0.0f; };
+    MeshDeviation result;
+    const std::size_t n = mesh_.triangles.size();
+    result.triangle.resize(n);
+    result.on_rim.assign(n, {-1, -1, -1});
+    for (std::size_t t = 0; t < n; ++t) result.triangle[t] = away(t);
+    std::size_t next = n;
+    for_each_edge(sides_, [&](std::span<const Side> at) {
+      const bool rim = !(curve_of(at) == Junction());
+      std::size_t i = next;
+      float largest = 0;
+      for (std::size_t s = 0; s < at.size(); ++s) {
+        if (s > 0 && at[s].materials != at[s - 1].materials) ++i;
+        largest = std::max(largest, away(i));
+        result.triangle[at[s].triangle] = std::max(result.triangle[at[s].triangle], away(i));
+      }
+      next = i + 1;
+      if (!rim) return;
+      largest = std::max(largest, away(next++));
+      for (const Side& s : at) {
+        result.on_rim[s.triangle][s.k] = largest;
+        result.triangle[s.triangle] = std::max(result.triangle[s.triangle], largest);
+      }
+    });
+    for (const float d : result.triangle) result.max = std::max(result.max, double(d)), result.mean += d;
+    result.mean /= double(std::max<std::size_t>(n, 1));
+    return result;
+  }
+
+ private:
+  void add(const Vec3d& point, const Junction& junction) {
+    points_.push_back(point);
+    junctions_.push_back(junction);
+  }
+
+  const SurfaceMesh& mesh_;
+  std::vector<Side> sides_;
+  std::vector<Vec3d> points_;
+  std::vector<Junction> junctions_;
+};
+
+/// Chooses new points one after the other.
+class Insertion {
+ public:
+  Insertion(const SurfaceMesh& mesh, const MeshDeviation& deviation, const DeviationRule& rule)
+      : mesh_(mesh), deviation_(deviation), rule_(rule), beside_(mesh.points.size()) {}
+
+  /// False where the triangle is too small.
+  bool divide(std::uint32_t t) {
+    const Triangle& c = mesh_.triangles[t];
+    const std::array<Vec3d, 3> p{mesh_.points[c.a], mesh_.points[c.b], mesh_.points[c.c]};
+    const Vec3d u = p[1] - p[0], v = p[2] - p[0], n = cross(u, v);
+    const double square = dot(n, n);
+    if (!(square > 0)) return false;
+    const Vec3d centre = p[0] + (dot(u, u) * cross(v, n) + dot(v, v) * cross(n, u)) / (2 * square);
+    const double radius = length(centre - p[0]);
+    int rim = -1;
+    for (int k = 0; k < 3; ++k) {
+      const float off = deviation_.on_rim[t][std::size_t(k)];
+      if (off < 0) continue;
+      const Vec3d a = p[std::size_t(k)], b = p[std::size_t((k + 1) % 3)];
+      const bool encroached = length(centre - 0.5 * (a + b)) < 0.5 * length(b - a);
+      const bool worse = rim < 0 || off > deviation_.on_rim[t][std::size_t(rim)];
+      if ((off > rule_.most || encroached) && worse) rim = k;
+    }
+    if (rim >= 0) {
+      const std::uint32_t a = c[rim], b = c[(rim + 1) % 3];
+      return insert(0.5 * (mesh_.points[a] + mesh_.points[b]), 0.5 * length(mesh_.points[b] - mesh_.points[a]), t,
+                    third_at(t, a, b));
+    }
+    return insert(centre, radius, t, 0xffff);
+  }
+
+  std::vector<MeshDefects::NewPoint> take() { return std::move(found_); }
+
+ private:
+  bool insert(const Vec3d& position, double free, std::uint32_t t, std::uint16_t third) {
+    if (free < least_spacing * rule_.detail) return false;
+    const Triangle& c = mesh_.triangles[t];
+    for (int k = 0; k < 3; ++k)
+      for (const std::uint32_t other : beside_[c[k]])
+        if (length(found_[other].position - position) < apart * free) return true;  // that one comes first
+    for (int k = 0; k < 3; ++k) beside_[c[k]].push_back(std::uint32_t(found_.size()));
+    found_.push_back({position, mesh_.materials[t], c.a, third});
+    return true;
+  }
+
+  /// The material that meets those of triangle `t` at its side from a to b.
+  std::uint16_t third_at(std::uint32_t t, std::uint32_t a, std::uint32_t b) {
+    if (sides_.empty()) sides_ = sides_of(mesh_);
+    const std::uint32_t low = std::min(a, b), high = std::max(a, b);
+    const auto [first, last] = std::equal_range(sides_.begin(), sides_.end(), Side{low, high, {}, 0, 0},
+                                                [](const Side& s, const Side& r) { return s.edge() < r.edge(); });
+    for (auto s = first; s != last; ++s)
+      for (const std::uint16_t m : s->materials)
+        if (m != mesh_.materials[t][0] && m != mesh_.materials[t][1]) return m;
+    return 0xffff;
+  }
+
+  const SurfaceMesh& mesh_;
+  const MeshDeviation& deviation_;
+  const DeviationRule& rule_;
+  std::vector<Side> sides_;
+  std::vector<std::vector<std::uint32_t>> beside_;  ///< per point: new points in triangles at it
+  std::vector<MeshDefects::NewPoint> found_;
+};
+
+}  // namespace
+
+MeshDeviation measure_deviation(const SurfaceMesh& mesh, const NearestOnJunctions& onto, double unit) {
+  return Samples(mesh).measure(onto, unit);
+}
+
+DeviationRange sampled_deviation(const SurfaceMesh& mesh, const SecondOrder* second, const NearestOnJunctions& onto,
+                                 double unit) {
+  constexpr double third = 1.0 / 3, sixth = 1.0 / 6;
+  constexpr std::array<std::array<double, 3>, 7> places{{{third, third, third},
+                                                         {1 - 2 * sixth, sixth, sixth},
+                                                         {sixth, 1 - 2 * sixth, sixth},
+                                                         {sixth, sixth, 1 - 2 * sixth},
+                                                         {0.75, 0.25, 0},
+                                                         {0, 0.75, 0.25},
+                                                         {0.25, 0, 0.75}}};
+  std::vector<Vec3d> points;
+  std::vector<Junction> junctions;
+  points.reserve(places.size() * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& c = mesh.triangles[t];
+    const Junction interface(mesh.materials[t][0], mesh.materials[t][1]);
+    for (const auto& at : places) {
+      points.push_back(second ? point_of_triangle(nodes_of_triangle(mesh, *second, t), at)
+                              : at[0] * mesh.points[c.a] + at[1] * mesh.points[c.b] + at[2] * mesh.points[c.c]);
+      junctions.push_back(interface);
+    }
+  }
+  const std::vector<Vec3d> on = onto(points, junctions);
+  DeviationRange range;
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < on.size(); ++i) {
+    if (!is_finite(on[i])) continue;
+    const double away = length(on[i] - points[i]) / unit;
+    range.mean += away;
+    range.max = std::max(range.max, away);
+    ++found;
+  }
+  range.mean /= double(std::max<std::size_t>(found, 1));
+  return range;
+}
+
+DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,
+                                     const DeviationRule& rule) {
+  DeviationRefinement result;
+  std::vector<std::uint32_t> above;
+  for (std::uint32_t t = 0; t < deviation.triangle.size(); ++t)
+    if (deviation.triangle[t] > rule.most) above.push_back(t);
+  result.above = std::int64_t(above.size());
+  if (above.empty()) return result;
+  std::stable_sort(above.begin(), above.end(),
+                   [&](std::uint32_t s, std::uint32_t t) { return deviation.triangle[s] > deviation.triangle[t]; });
+  const std::vector<std::uint8_t> at_junction = junction_points(mesh);
+  Insertion insertion(mesh, deviation, rule);
+  for (const std::uint32_t t : above) {
+    const Triangle& c = mesh.triangles[t];
+    if (!insertion.divide(t))
+      ++result.above_detail;
+    else if (at_junction[c.a] || at_junction[c.b] || at_junction[c.c])
+      ++result.above_junctions;
+  }
+  result.insert = insertion.take();
+  above.resize(std::min(above.size(), most_named));
+  result.worst = std::move(above);
+  return result;
+}
+
+}  // namespace nacre

@@ -1,0 +1,63 @@
+// Nacre: how far flat triangles are from the interfaces that they stand for, and where new points bring them nearer.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "compute/field/interface.hpp"
+#include "compute/meshing/defects.hpp"
+#include "compute/meshing/second_order.hpp"
+#include "compute/pipeline/mesh_pipeline.hpp"
+
+namespace nacre {
+
+/// Where points of the world come to lie on junctions, their rims left out of account.
+using NearestOnJunctions = std::function<std::vector<Vec3d>(std::span<const Vec3d>, std::span<const Junction>)>;
+
+/// Distances of a mesh from its interfaces, in the unit asked for.
+struct MeshDeviation {
+  std::vector<float> triangle;               ///< the largest at its middle and those of its edges; of these on curves,
+                                             ///< also from the curve
+  std::vector<std::array<float, 3>> on_rim;  ///< of the edges 01 12 20 on junction curves; -1 for others
+  double max = 0, mean = 0;                  ///< of `triangle`
+};
+
+/// Measures `mesh`; lengths are divided by `unit`. A position without an interface nearby counts as 0.
+MeshDeviation measure_deviation(const SurfaceMesh& mesh, const NearestOnJunctions& onto, double unit);
+
+/// Mean and largest distance.
+struct DeviationRange {
+  double mean = 0, max = 0;
+};
+
+/// At seven points of every triangle, as it is with its nodes or (where `second` is null) flat: its middle, three
+/// around that, and one on each edge, a quarter from its end. Lengths are divided by `unit`.
+DeviationRange sampled_deviation(const SurfaceMesh& mesh, const SecondOrder* second, const NearestOnJunctions& onto,
+                                 double unit);
+
+/// Bounds of a refinement, world units.
+struct DeviationRule {
+  double most;    ///< that a triangle may deviate
+  double detail;  ///< no new point is put nearer to others than 0.7 of this
+};
+
+/// What brings the triangles above the bound nearer.
+struct DeviationRefinement {
+  std::vector<MeshDefects::NewPoint> insert;
+  std::int64_t above = 0;            ///< triangles above the bound
+  std::int64_t above_detail = 0;     ///< of these, those too small to be divided
+  std::int64_t above_junctions = 0;  ///< of the others, those with a corner where more than two materials meet
+  std::vector<std::uint32_t> worst;  ///< of these triangles at most 100, the worst first
+};
+
+/// New points in the triangles above the bound: at the middle of an edge on a junction curve, where that is too far
+/// away or where the triangle's circumcentre is nearer to the edge's middle than its ends; else at the circumcentre,
+/// which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
+/// 2005, "Provably good sampling and meshing of surfaces"). Points of one call keep 1.3 times that distance from each
+/// other.
+DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,
+                                     const DeviationRule& rule);
+
+}  // namespace nacre

@@ -1,0 +1,105 @@
+// Nacre: particles added where triangles are too far from their interfaces.
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "compute/device/error.hpp"
+#include "compute/pipeline/mesh_improvement.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int most_turns = 4;       ///< of adding particles and then improving triangles
+constexpr int most_rounds = 8;      ///< of adding particles in one turn;
+constexpr int rounds_smoothed = 5;  ///< so many of them smooth around new particles
+constexpr int mending_of_turn = 6;  ///< rounds of remeshing in one turn, at most
+constexpr int smoothing_turns = 4;
+
+}  // namespace
+
+/// Better is a mesh that touches itself less often, then one with fewer triangles above the bound that could be
+/// divided, then one with better triangles.
+bool MeshImprovement::better(const Kept& a, const Kept& b) {
+  const auto rank = [](const Kept& k) {
+    return std::make_tuple(k.made.touching.size(), k.further.above - k.further.above_detail, -k.made.fitness);
+  };
+  return rank(a) < rank(b);
+}
+
+void MeshImprovement::measure(Kept& kept) {
+  particles_.in_stage("refine", [&] {
+    kept.deviation = measure_deviation(
+        kept.made.mesh,
+        [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+          return particles_.onto_junctions(points, junctions, false);
+        },
+        frame_.unit);
+    // Rules are in voxels, meshes in the world.
+    kept.further = refine_deviation(kept.made.mesh, kept.deviation, {rule_.deviation, rule_.detail * frame_.unit});
+  });
+  check_stop(rule_.stop);
+}
+
+/// Adds particles, and smooths what is around them. False where there is no room for any.
+bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
+  const std::size_t before = std::size_t(particles_.count());
+  particles_.in_stage("refine", [&] { particles_.replace(std::vector<std::uint8_t>(before, 0), further.insert); });
+  const std::size_t added = std::size_t(particles_.count()) - before;
+  deviation_.inserted += std::int64_t(added);
+  if (added == 0) return false;
+  made = triangulate();
+  if (!smooths || rule_.smooth == 0) return true;
+  std::vector<std::uint8_t> fresh(made.mesh.points.size()), moving(made.mesh.points.size());
+  for (std::size_t v = 0; v < fresh.size(); ++v) fresh[v] = made.point_of[v] >= before;
+  for (const Triangle& t : made.mesh.triangles)
+    if (fresh[t.a] || fresh[t.b] || fresh[t.c]) moving[t.a] = moving[t.b] = moving[t.c] = 1;
+  smooth(made, moving, {smoothing_turns, 0});
+  made = triangulate();
+  return true;
+}
+
+/// Adds particles in the triangles that are too far away, until there are none or nothing helps; then improves bad
+/// triangles, and so on in turn.
+void MeshImprovement::refine(Kept& best) {
+  measure(best);
+  deviation_.first_max = best.deviation.max;
+  deviation_.first_above = best.further.above;
+  Kept answer = best;
+  for (int turn = 0; turn < most_turns; ++turn) {
+    particles_.upload(best.particles);
+    Kept now = best;
+    for (int round = 0; round < most_rounds && !now.further.insert.empty(); ++round) {
+      tell_("refine", fraction(), round + 1, 0);
+      ++deviation_.rounds;
+      if (!add_where_far(now.made, now.further, round < rounds_smoothed)) break;
+      now.particles = particles_.download();
+      measure(now);
+      if (better(now, best)) best = now;
+    }
+    if (better(best, answer)) answer = best;
+    if (best.made.fitness >= 1 || turn + 1 == most_turns) break;
+    particles_.upload(best.particles);
+    remeshed_ = std::max(1, std::min(remeshed_, rule_.remesh - mending_of_turn));
+    bad_ = std::int64_t(1) << 40;
+    std::optional<Kept> improved = best;
+    settle(improved);
+    if (!(improved->made.fitness > best.made.fitness)) break;
+    best = std::move(*improved);
+    measure(best);
+    if (better(best, answer)) answer = best;
+    if (best.further.insert.empty()) break;
+  }
+  best = std::move(answer);
+  deviation_.max = best.deviation.max;
+  deviation_.mean = best.deviation.mean;
+  deviation_.above_detail = best.further.above_detail;
+  deviation_.above_junctions = best.further.above_junctions;
+  deviation_.above_others = best.further.above - best.further.above_detail - best.further.above_junctions;
+  for (const std::uint32_t t : best.further.worst) {
+    const Triangle& c = best.made.mesh.triangles[t];
+    deviation_.places.push_back((best.made.mesh.points[c.a] + best.made.mesh.points[c.b] + best.made.mesh.points[c.c]) /
+                                3.0);
+  }
+}
+
+}  // namespace nacre

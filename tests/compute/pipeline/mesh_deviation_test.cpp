@@ -1,0 +1,157 @@
+// Nacre: how far triangles are from their interfaces, and meshes whose deviation is bounded.
+#include "compute/pipeline/mesh_deviation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "compute/device/cpu_device.hpp"
+#include "compute/meshing/topology.hpp"
+#include "tests/compute/icosphere.hpp"
+#include "tests/compute/pipeline/mesh_volumes.hpp"
+
+namespace nacre::test {
+namespace {
+
+constexpr double radius = 3;
+
+std::vector<Vec3d> onto_sphere(std::span<const Vec3d> points, std::span<const Junction>) {
+  std::vector<Vec3d> on;
+  for (const Vec3d& p : points) on.push_back(p * (radius / length(p)));
+  return on;
+}
+
+TEST(MeshDeviation, IsThatOfTheMiddleOfAFlatTriangle) {
+  const SurfaceMesh mesh = icosphere(0, radius);
+  const MeshDeviation deviation = measure_deviation(mesh, onto_sphere, 2);
+  const double inner = radius * std::sqrt((5 + 2 * std::sqrt(5.0)) / 15);  // of an icosahedron's inscribed sphere
+  ASSERT_EQ(deviation.triangle.size(), 20u);
+  for (const float d : deviation.triangle) EXPECT_NEAR(d, (radius - inner) / 2, 1e-6);
+  EXPECT_NEAR(deviation.max, (radius - inner) / 2, 1e-6);
+  EXPECT_NEAR(deviation.mean, deviation.max, 1e-6);
+  EXPECT_EQ(deviation.on_rim[0], (std::array<float, 3>{-1, -1, -1}));
+}
+
+TEST(MeshDeviation, EdgesOfCurvesAreMeasuredFromTheCurve) {
+  SurfaceMesh mesh;
+  mesh.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
+  mesh.triangles = {{0, 2, 1}, {0, 3, 1}, {0, 4, 1}};
+  mesh.materials = {{1, 2}, {2, 7}, {1, 7}};
+  const auto onto = [](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+    std::vector<Vec3d> on(points.begin(), points.end());
+    for (std::size_t i = 0; i < on.size(); ++i)
+      if (junctions[i] == Junction(1, 2, 7)) on[i].y += 0.25;
+    return on;
+  };
+  const MeshDeviation deviation = measure_deviation(mesh, onto, 1);
+  EXPECT_EQ(deviation.triangle, (std::vector<float>{0.25f, 0.25f, 0.25f}));
+  EXPECT_EQ(deviation.on_rim[0], (std::array<float, 3>{-1, -1, 0.25f}));
+  const DeviationRefinement further = refine_deviation(mesh, deviation, {0.1, 0.25});
+  ASSERT_EQ(further.insert.size(), 1u) << "the three wish for one point";
+  EXPECT_EQ(further.insert[0].position, Vec3d(0, 0, 0.5));
+  std::array<std::uint16_t, 3> met{further.insert[0].materials[0], further.insert[0].materials[1],
+                                   further.insert[0].third};
+  std::sort(met.begin(), met.end());
+  EXPECT_EQ(met, (std::array<std::uint16_t, 3>{1, 2, 7}));
+  EXPECT_EQ(further.above, 3);
+  EXPECT_EQ(further.above_junctions, 3);
+}
+
+TEST(MeshDeviation, NewPointsKeepAwayFromAllOthers) {
+  const SurfaceMesh mesh = icosphere(1, radius);
+  const MeshDeviation deviation = measure_deviation(mesh, onto_sphere, 1);
+  const DeviationRefinement further = refine_deviation(mesh, deviation, {0.5 * deviation.max, 0.25});
+  EXPECT_GT(further.insert.size(), 10u);
+  EXPECT_EQ(further.above_detail, 0);
+  const double edge = length(mesh.points[mesh.triangles[0].a] - mesh.points[mesh.triangles[0].b]);
+  for (std::size_t i = 0; i < further.insert.size(); ++i) {
+    for (const Vec3d& p : mesh.points) EXPECT_GT(length(p - further.insert[i].position), 0.5 * edge);
+    for (std::size_t j = 0; j < i; ++j)
+      EXPECT_GT(length(further.insert[j].position - further.insert[i].position), 0.5 * edge);
+  }
+  const DeviationRefinement none = refine_deviation(mesh, deviation, {0.5 * deviation.max, 10});
+  EXPECT_TRUE(none.insert.empty()) << "the triangles are too small for such a detail";
+  EXPECT_EQ(none.above_detail, none.above);
+  EXPECT_EQ(refine_deviation(mesh, deviation, {1.01 * deviation.max, 0.25}).above, 0);
+}
+
+/// The largest distance of middles of triangles and edges, by a formula.
+double largest_off(const SurfaceMesh& mesh, const PlaceFunction& distance) {
+  double most = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d &a = mesh.points[t.a], &b = mesh.points[t.b], &c = mesh.points[t.c];
+    for (const Vec3d& p : {(a + b + c) / 3.0, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5})
+      most = std::max(most, std::fabs(distance(p)));
+  }
+  return most;
+}
+
+struct Body {
+  const char* name;
+  Int3 dims;
+  PlaceFunction distance;
+};
+
+/// Distances of voxels are exact near these surfaces, so that what the fields make of them is nearly so.
+std::vector<Body> bodies() {
+  const Vec3d c(15.3, 15.1, 14.8);
+  return {{"ball", {31, 31, 31}, ball(c, 11)}, {"torus", {40, 40, 20}, [](const Vec3d& p) {
+                                                  const Vec3d r = p - Vec3d(19.6, 19.3, 9.7);
+                                                  const double out = std::hypot(r.x, r.y) - 12;
+                                                  return 5 - std::hypot(out, r.z);
+                                                }}};
+}
+
+TEST(MeshDeviation, TheBoundHoldsWhereParticlesMayBeFarApart) {
+  const auto device = make_cpu_device();
+  for (const Body& body : bodies())
+    for (const double bound : {0.05, 0.02}) {
+      MeshParameters parameters;
+      parameters.max_size = 6;
+      parameters.min_size = 0.5;
+      parameters.epsilon = 2;
+      parameters.max_deviation = bound;
+      const MeshRun run = run_mesh(*device, scalar_volume(body.dims, body.distance), parameters);
+      const DeviationInfo& d = run.info.deviation;
+      EXPECT_LE(d.max, bound) << body.name;
+      EXPECT_EQ(d.above(), 0) << body.name;
+      EXPECT_GT(d.max, 0.5 * bound) << body.name << ": more triangles than needed";
+      EXPECT_LE(largest_off(run.mesh, body.distance), bound + 0.004) << body.name;
+      EXPECT_TRUE(check_topology(run.mesh, 2).sound()) << body.name;
+    }
+}
+
+TEST(MeshDeviation, TheBoundHoldsAtJunctions) {
+  const auto device = make_cpu_device();
+  MeshParameters parameters;
+  parameters.max_size = 3;
+  parameters.epsilon = 1;
+  parameters.max_deviation = 0.05;
+  const MeshRun run = run_mesh(*device, three_balls(), parameters);
+  EXPECT_LE(run.info.deviation.max, 0.05);
+  EXPECT_EQ(run.info.deviation.above(), 0);
+  EXPECT_TRUE(check_topology(run.mesh, 4).sound());
+}
+
+TEST(MeshDeviation, WhatCannotBeReachedIsSaid) {
+  const auto device = make_cpu_device();
+  MeshParameters parameters;
+  parameters.max_deviation = 0.001;
+  const MeshRun run = run_mesh(
+      *device,
+      label_volume({14, 14, 14}, 2, [](const Vec3d& p) { return length(p - Vec3d(6.6, 6.4, 6.5)) < 2.6 ? 1 : 0; }),
+      parameters);
+  const DeviationInfo& d = run.info.deviation;
+  EXPECT_GT(d.max, 0.001);
+  EXPECT_GT(d.above_detail, 0);
+  EXPECT_FALSE(d.places.empty());
+  EXPECT_TRUE(check_topology(run.mesh, 2).sound());
+}
+
+TEST(MeshDeviation, NoBoundNoWork) {
+  const auto device = make_cpu_device();
+  const MeshRun run = run_mesh(*device, scalar_volume({20, 20, 20}, ball({9.5, 9.5, 9.5}, 6)));
+  EXPECT_EQ(run.info.deviation.rounds, 0);
+  EXPECT_EQ(run.info.deviation.max, 0);
+}
+
+}  // namespace
+}  // namespace nacre::test
