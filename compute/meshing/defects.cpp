@@ -40,8 +40,8 @@ int flat_corner(const std::array<double, 3>& angles) {
   return angles[widest] > flat_angle ? widest : -1;
 }
 
-/// The point whose removal remeshes a bad triangle, or `none`; `few`: bodies of no more points keep it. One that all but
-/// coincides with another is of no use to any body.
+/// The point whose removal does away with a bad triangle, or `none`; `few`: bodies of no more points keep it. One that
+/// all but coincides with another is of no use to any body.
 std::uint32_t culprit(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
                       std::span<const float> size, int flat, const DefectRule& rule, std::size_t& few) {
   const Triangle& c = mesh.triangles[t];

@@ -170,8 +170,8 @@ struct RenderOptions {
   BackFaces back_faces = BackFaces::shown;
 };
 
-/// An embedded surface and the texture on it: all that can be asked of it. Its implementations are GridFlow, GridPattern
-/// and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
+/// An embedded surface and the texture on it: all that can be asked of it. Its implementations are GridFlow,
+/// GridPattern and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
 /// Interrupted when the watched flag is set.
 class FlowMethod {
  public:

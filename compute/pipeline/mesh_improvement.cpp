@@ -21,8 +21,8 @@ struct AttemptKind {
   bool shakes;  ///< smoothing begins from random positions
   bool remeshes;
 };
-/// Tried in turn: smoothing and remeshing together; fewer steps, for particles that flip to and fro; remeshing alone, which
-/// leaves the other particles where they are; and both again from a random start.
+/// Tried in turn: smoothing and remeshing together; fewer steps, for particles that flip to and fro; remeshing alone,
+/// which leaves the other particles where they are; and both again from a random start.
 constexpr std::array<AttemptKind, 4> attempt_kinds{
     {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
 
