@@ -171,8 +171,8 @@ struct RenderOptions {
 };
 
 /// An embedded surface and the texture on it: all that can be asked of it. Its implementations are GridFlow,
-/// GridPattern and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been started, and
-/// Interrupted when the watched flag is set.
+/// GridPattern and OctreeFlow; FlowMethodOn has what they share. Throws Error where it is asked for more than has been
+/// started, and Interrupted when the watched flag is set.
 class FlowMethod {
  public:
   virtual ~FlowMethod() = default;

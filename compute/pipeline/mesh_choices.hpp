@@ -47,8 +47,8 @@ SeedOrigin seeds_from_string(std::string_view text, Solver solver);
 
 /// The parameters that a run with these works with. A draft has one closest-point cell per voxel and axis, 8
 /// iterations, one round of smoothing and six of remeshing, or fewer where `parameters` say so, triangles of stars
-/// unless told otherwise, and does not measure the energy at the end; the best has at least 120 iterations, four rounds of
-/// smoothing and 40 of remeshing. Standard changes nothing.
+/// unless told otherwise, and does not measure the energy at the end; the best has at least 120 iterations, four rounds
+/// of smoothing and 40 of remeshing. Standard changes nothing.
 MeshParameters at_quality(const MeshParameters& parameters);
 
 /// All choices of a set of parameters.

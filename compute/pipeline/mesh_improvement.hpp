@@ -49,8 +49,9 @@ struct ImprovedMesh {
 };
 
 /// Triangulates particles and changes them until the triangles get no better. First the clear defects are remeshed,
-/// then all particles are smoothed, then there are attempts at what is still bad. The best mesh after smoothing is kept.
-/// Where the deviation is bounded, particles are added in the triangles above the bound, in turn with further attempts.
+/// then all particles are smoothed, then there are attempts at what is still bad. The best mesh after smoothing is
+/// kept. Where the deviation is bounded, particles are added in the triangles above the bound, in turn with further
+/// attempts.
 class MeshImprovement {
  public:
   /// All arguments must outlive the object.
