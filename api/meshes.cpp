@@ -62,20 +62,17 @@ std::vector<std::array<std::uint32_t, N>> take_nodes(std::vector<Vec3d>& points,
 
 /// The nodes of the triangles' edges, which are edges of cells.
 void name_nodes_of_triangles(SecondOrder& second, const SurfaceMesh& surface, const TetrahedralMesh& filled) {
-  constexpr std::array<std::array<std::size_t, 2>, 6> sides{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-  const auto key = [](std::uint32_t a, std::uint32_t b) {
-    return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
-  };
   std::vector<std::pair<std::uint64_t, std::uint32_t>> node_of;
   node_of.reserve(6 * filled.cells.size());
   for (std::size_t i = 0; i < filled.cells.size(); ++i)
     for (std::size_t e = 0; e < 6; ++e)
-      node_of.emplace_back(key(filled.cells[i][sides[e][0]], filled.cells[i][sides[e][1]]), second.cells[i][e]);
+      node_of.emplace_back(edge_key(filled.cells[i][cell_edges[e][0]], filled.cells[i][cell_edges[e][1]]),
+                           second.cells[i][e]);
   std::sort(node_of.begin(), node_of.end());
   for (const Triangle& t : surface.triangles) {
     second.triangles.emplace_back();
     for (int k = 0; k < 3; ++k) {
-      const std::pair wanted(key(t[k], t[(k + 1) % 3]), std::uint32_t(0));
+      const std::pair wanted(edge_key(t[k], t[(k + 1) % 3]), std::uint32_t(0));
       const auto at = std::lower_bound(node_of.begin(), node_of.end(), wanted);
       if (at == node_of.end() || at->first != wanted.first) throw Error("a triangle has an edge that no cell has");
       second.triangles.back()[std::size_t(k)] = at->second;

@@ -14,12 +14,9 @@
 namespace nacre {
 namespace {
 
-constexpr std::array<std::array<int, 2>, 6> cell_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 constexpr double farthest = 0.3;  ///< that a node goes from the middle of its edge, in lengths of the edge
-constexpr int halvings = 5;       ///< of a node's way, to find how far it may go
+constexpr int halvings = 5;       ///< of a node's displacement, to find how far it may go
 constexpr int most_rounds = 40;
-
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) { return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b); }
 
 void sort_unique(std::vector<std::uint64_t>& keys) {
   tbb::parallel_sort(keys.begin(), keys.end());
@@ -31,7 +28,7 @@ struct EdgeTable {
   std::vector<std::uint64_t> of_triangles, others;
 
   std::uint32_t number(std::uint32_t a, std::uint32_t b) const {
-    const std::uint64_t key = key_of(a, b);
+    const std::uint64_t key = edge_key(a, b);
     const auto first = std::lower_bound(of_triangles.begin(), of_triangles.end(), key);
     if (first != of_triangles.end() && *first == key) return std::uint32_t(first - of_triangles.begin());
     return std::uint32_t(of_triangles.size() +
@@ -43,12 +40,12 @@ EdgeTable edges_of(const SurfaceMesh& surface, const TetrahedralMesh* filled) {
   EdgeTable table;
   table.of_triangles.reserve(3 * surface.triangles.size());
   for (const Triangle& t : surface.triangles)
-    for (int k = 0; k < 3; ++k) table.of_triangles.push_back(key_of(t[k], t[(k + 1) % 3]));
+    for (int k = 0; k < 3; ++k) table.of_triangles.push_back(edge_key(t[k], t[(k + 1) % 3]));
   sort_unique(table.of_triangles);
   if (!filled) return table;
   table.others.reserve(6 * filled->cells.size());
   for (const auto& cell : filled->cells)
-    for (const auto& [i, j] : cell_edges) table.others.push_back(key_of(cell[std::size_t(i)], cell[std::size_t(j)]));
+    for (const auto& [i, j] : cell_edges) table.others.push_back(edge_key(cell[i], cell[j]));
   sort_unique(table.others);
   std::vector<std::uint64_t> inner;
   std::set_difference(table.others.begin(), table.others.end(), table.of_triangles.begin(), table.of_triangles.end(),
@@ -89,13 +86,17 @@ class PullBack {
   using Corners = std::array<std::uint32_t, corners>;
   using Nodes = std::array<std::uint32_t, sides>;
 
-  /// `way`: per node of the triangles' edges, from the middle of the edge to where it is to be.
-  PullBack(std::span<const Vec3d> points, std::span<const Vec3d> middles, std::span<const Vec3d> way,
+  /// `displacement`: per node of the triangles' edges, from the middle of the edge to where it is to be.
+  PullBack(std::span<const Vec3d> points, std::span<const Vec3d> middles, std::span<const Vec3d> displacement,
            std::span<const Nodes> nodes, std::function<Corners(std::size_t)> corners_of)
-      : points_(points), middles_(middles), way_(way), nodes_(nodes), corners_of_(std::move(corners_of)) {
-    share_.assign(way.size(), 1);
-    for (std::size_t k = 0; k < way.size(); ++k)
-      if (way[k] == Vec3d()) share_[k] = 0;
+      : points_(points),
+        middles_(middles),
+        displacement_(displacement),
+        nodes_(nodes),
+        corners_of_(std::move(corners_of)) {
+    share_.assign(displacement.size(), 1);
+    for (std::size_t k = 0; k < displacement.size(); ++k)
+      if (displacement[k] == Vec3d()) share_[k] = 0;
   }
 
   void run(const std::atomic<bool>* stop) {
@@ -127,7 +128,7 @@ class PullBack {
     return std::any_of(nodes_[i].begin(), nodes_[i].end(), [&](std::uint32_t n) { return bends(n); });
   }
   Vec3d position(std::uint32_t node) const {
-    return bends(node) ? middles_[node] + share_[node] * way_[node] : middles_[node];
+    return bends(node) ? middles_[node] + share_[node] * displacement_[node] : middles_[node];
   }
   double jacobian(std::uint32_t i) const {
     std::array<Vec3d, corners + sides> at;
@@ -176,21 +177,21 @@ class PullBack {
     shorten(std::vector<std::uint32_t>(nodes), i, straight);
   }
 
-  std::span<const Vec3d> points_, middles_, way_;
+  std::span<const Vec3d> points_, middles_, displacement_;
   std::span<const Nodes> nodes_;
   std::function<Corners(std::size_t)> corners_of_;
-  std::vector<double> share_;            ///< per node of the triangles' edges: of its way
+  std::vector<double> share_;            ///< per node of the triangles' edges: of its displacement
   std::vector<std::uint32_t> elements_;  ///< that had a curved edge at first
   double least_ = 1;
 };
 
 /// From the middle of each edge of a triangle to its interface.
-std::vector<Vec3d> ways_to_interfaces(const SurfaceMesh& surface, SecondOrder& second, std::size_t edges,
+std::vector<Vec3d> displacements_onto(const SurfaceMesh& surface, SecondOrder& second, std::size_t edges,
                                       const OntoJunctions& onto) {
   const std::vector<Junction> junctions = junctions_of(surface, second, edges);
   const std::span<const Vec3d> middles = std::span(second.nodes).first(edges);
   const std::vector<Vec3d> target = onto(middles, junctions);
-  std::vector<Vec3d> way(edges);
+  std::vector<Vec3d> displacement(edges);
   for (std::size_t k = 0; k < edges; ++k) {
     const auto [a, b] = second.edges[k];
     const Vec3d step = target[k] - middles[k];
@@ -199,24 +200,25 @@ std::vector<Vec3d> ways_to_interfaces(const SurfaceMesh& surface, SecondOrder& s
       ++second.left_straight;
       continue;
     }
-    way[k] = step;
+    displacement[k] = step;
     ++(order == 2 ? second.on_surfaces : second.on_curves);
   }
-  return way;
+  return displacement;
 }
 
 template <class Elements>
-void bend(SecondOrder& second, std::span<const Vec3d> way, Elements&& elements, const std::atomic<bool>* stop) {
+void bend(SecondOrder& second, std::span<const Vec3d> displacement, Elements&& elements,
+          const std::atomic<bool>* stop) {
   elements.run(stop);
   second.least_jacobian = elements.least();
   second.curved_elements = elements.curved();
-  for (std::size_t k = 0; k < way.size(); ++k) {
-    if (way[k] == Vec3d()) continue;
+  for (std::size_t k = 0; k < displacement.size(); ++k) {
+    if (displacement[k] == Vec3d()) continue;
     const double share = elements.share()[k];
     second.pulled_back += share < 1;
     second.straightened += share == 0;
   }
-  for (std::size_t k = 0; k < way.size(); ++k) second.nodes[k] += elements.share()[k] * way[k];
+  for (std::size_t k = 0; k < displacement.size(); ++k) second.nodes[k] += elements.share()[k] * displacement[k];
 }
 
 }  // namespace
@@ -227,7 +229,7 @@ double scaled_jacobian(const std::array<Vec3d, 10>& node) {
   std::array<std::array<Vec3d, 4>, 4> b;
   for (std::size_t k = 0; k < 4; ++k) b[k][k] = node[k];
   for (std::size_t e = 0; e < 6; ++e) {
-    const auto i = std::size_t(cell_edges[e][0]), j = std::size_t(cell_edges[e][1]);
+    const auto [i, j] = cell_edges[e];
     b[i][j] = b[j][i] = 2.0 * node[4 + e] - 0.5 * (node[i] + node[j]);
   }
   std::array<std::array<Vec3d, 4>, 3> column;
@@ -337,17 +339,17 @@ SecondOrder second_order(const SurfaceMesh& surface, const TetrahedralMesh* fill
   if (filled) second.cells.resize(filled->cells.size());
   tbb::parallel_for(std::size_t(0), second.cells.size(), [&](std::size_t i) {
     const auto& c = filled->cells[i];
-    for (std::size_t e = 0; e < 6; ++e)
-      second.cells[i][e] = table.number(c[std::size_t(cell_edges[e][0])], c[std::size_t(cell_edges[e][1])]);
+    for (std::size_t e = 0; e < 6; ++e) second.cells[i][e] = table.number(c[cell_edges[e][0]], c[cell_edges[e][1]]);
   });
-  const std::vector<Vec3d> way = ways_to_interfaces(surface, second, on_triangles, onto);
+  const std::vector<Vec3d> displacement = displacements_onto(surface, second, on_triangles, onto);
   if (filled)
-    bend(second, way,
-         PullBack<4, 6>(points, second.nodes, way, second.cells, [&](std::size_t i) { return filled->cells[i]; }),
+    bend(second, displacement,
+         PullBack<4, 6>(points, second.nodes, displacement, second.cells,
+                        [&](std::size_t i) { return filled->cells[i]; }),
          stop);
   else
-    bend(second, way,
-         PullBack<3, 3>(points, second.nodes, way, second.triangles,
+    bend(second, displacement,
+         PullBack<3, 3>(points, second.nodes, displacement, second.triangles,
                         [&](std::size_t i) {
                           const Triangle& t = surface.triangles[i];
                           return std::array<std::uint32_t, 3>{t.a, t.b, t.c};

@@ -1,6 +1,7 @@
 // Nacre: meshes of second order: a node on each edge, and on the interface where the edge belongs to one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -12,6 +13,13 @@
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
+
+/// The edges of a tetrahedron in the order of its midside nodes; the first three are those of a triangle.
+inline constexpr std::array<std::array<std::size_t, 2>, 6> cell_edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+/// The same for both directions of an edge.
+inline std::uint64_t edge_key(std::uint32_t a, std::uint32_t b) {
+  return std::uint64_t(std::min(a, b)) << 32 | std::max(a, b);
+}
 
 /// The midside nodes of a mesh of n points. Node k is point n + k of the mesh of second order.
 struct SecondOrder {

@@ -58,7 +58,7 @@ void for_each_edge(std::span<const Side> sides, const Visit& visit) {
   }
 }
 
-/// A place where a mesh is measured, and sides or a triangle that the distance belongs to.
+/// Points at which a mesh is measured, and the sides or the triangle that each distance belongs to.
 class Samples {
  public:
   explicit Samples(const SurfaceMesh& mesh) : mesh_(mesh), sides_(sides_of(mesh)) {
@@ -195,20 +195,20 @@ MeshDeviation measure_deviation(const SurfaceMesh& mesh, const NearestOnJunction
 DeviationRange sampled_deviation(const SurfaceMesh& mesh, const SecondOrder* second, const NearestOnJunctions& onto,
                                  double unit) {
   constexpr double third = 1.0 / 3, sixth = 1.0 / 6;
-  constexpr std::array<std::array<double, 3>, 7> places{{{third, third, third},
-                                                         {1 - 2 * sixth, sixth, sixth},
-                                                         {sixth, 1 - 2 * sixth, sixth},
-                                                         {sixth, sixth, 1 - 2 * sixth},
-                                                         {0.75, 0.25, 0},
-                                                         {0, 0.75, 0.25},
-                                                         {0.25, 0, 0.75}}};
+  constexpr std::array<std::array<double, 3>, 7> samples{{{third, third, third},
+                                                          {1 - 2 * sixth, sixth, sixth},
+                                                          {sixth, 1 - 2 * sixth, sixth},
+                                                          {sixth, sixth, 1 - 2 * sixth},
+                                                          {0.75, 0.25, 0},
+                                                          {0, 0.75, 0.25},
+                                                          {0.25, 0, 0.75}}};
   std::vector<Vec3d> points;
   std::vector<Junction> junctions;
-  points.reserve(places.size() * mesh.triangles.size());
+  points.reserve(samples.size() * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& c = mesh.triangles[t];
     const Junction interface(mesh.materials[t][0], mesh.materials[t][1]);
-    for (const auto& at : places) {
+    for (const auto& at : samples) {
       points.push_back(second ? point_of_triangle(nodes_of_triangle(mesh, *second, t), at)
                               : at[0] * mesh.points[c.a] + at[1] * mesh.points[c.b] + at[2] * mesh.points[c.c]);
       junctions.push_back(interface);

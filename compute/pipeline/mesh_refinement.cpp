@@ -9,10 +9,10 @@
 namespace nacre {
 namespace {
 
-constexpr int most_turns = 4;       ///< of adding particles and then improving triangles
-constexpr int most_rounds = 8;      ///< of adding particles in one turn;
-constexpr int rounds_smoothed = 5;  ///< so many of them smooth around new particles
-constexpr int mending_of_turn = 6;  ///< rounds of remeshing in one turn, at most
+constexpr int most_turns = 4;         ///< of adding particles and then improving triangles
+constexpr int most_rounds = 8;        ///< of adding particles in one turn;
+constexpr int rounds_smoothed = 5;    ///< so many of them smooth around new particles
+constexpr int remeshing_of_turn = 6;  ///< rounds of remeshing in one turn, at most
 constexpr int smoothing_turns = 4;
 
 }  // namespace
@@ -79,7 +79,7 @@ void MeshImprovement::refine(Kept& best) {
     if (better(best, answer)) answer = best;
     if (best.made.fitness >= 1 || turn + 1 == most_turns) break;
     particles_.upload(best.particles);
-    remeshed_ = std::max(1, std::min(remeshed_, rule_.remesh - mending_of_turn));
+    remeshed_ = std::max(1, std::min(remeshed_, rule_.remesh - remeshing_of_turn));
     bad_ = std::int64_t(1) << 40;
     std::optional<Kept> improved = best;
     settle(improved);

@@ -60,4 +60,10 @@ class TriangleTree {
   std::vector<Box> boxes_;            ///< node k over 2 k and 2 k + 1, from 1; the leaves come last
 };
 
+/// Between the values of the corners of a triangle.
+template <class Value>
+Value interpolate(std::span<const Value> values, const Triangle& t, const Vec3d& weights) {
+  return values[t.a] * float(weights.x) + values[t.b] * float(weights.y) + values[t.c] * float(weights.z);
+}
+
 }  // namespace nacre

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t most_regions = 1000;
 
-double interpolate(const Triangle& t, const Vec3d& weights, std::span<const float> values) {
+double concentration_at(const Triangle& t, const Vec3d& weights, std::span<const float> values) {
   return values[t.a] * weights.x + values[t.b] * weights.y + values[t.c] * weights.z;
 }
 
@@ -179,7 +179,7 @@ void DyeRun::draw(Image& image, const Camera& camera) const {
       const Vec3d weights = tree_.weights_at(hit->triangle, hit->position);
       std::array<double, most_dyes> mix{};
       for (std::size_t d = 0; d < dyes_.size(); ++d)
-        mix[d] = std::clamp(interpolate(t, weights, dyes_[d].concentration), 0.0, 1.0);
+        mix[d] = std::clamp(concentration_at(t, weights, dyes_[d].concentration), 0.0, 1.0);
       blend_dye(image.at(x, y), mix);
     }
   });
@@ -195,7 +195,7 @@ std::vector<PointArray> DyeRun::at(std::span<const Vec3d> points) const {
     const Triangle& t = tree_.triangles()[hit->triangle];
     const Vec3d weights = tree_.weights_at(hit->triangle, hit->position);
     for (std::size_t d = 0; d < dyes_.size(); ++d)
-      arrays[d].values[i] = float(interpolate(t, weights, dyes_[d].concentration));
+      arrays[d].values[i] = float(concentration_at(t, weights, dyes_[d].concentration));
   });
   return arrays;
 }

@@ -4,50 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "compute/device/error.hpp"
 #include "engine/picture/dye_colours.hpp"
+#include "engine/scene/settings/number_list.hpp"
 
 namespace nacre {
 namespace {
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == at)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
-  return begin == text.npos ? "" : text.substr(begin, end - begin + 1);
-}
-
-std::optional<double> number(const std::string& with_blanks) {
-  const std::string text = trimmed(with_blanks);
-  double value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value)) return {};
-  return value;
-}
-
-/// "A,B,..." where all are numbers.
-std::optional<std::vector<double>> numbers(const std::string& text) {
-  std::vector<double> all;
-  for (const std::string& part : split(text, ',')) {
-    const std::optional<double> each = number(part);
-    if (!each) return {};
-    all.push_back(*each);
-  }
-  return all;
-}
 
 DyeSource parse_source(const std::string& text) {
   const auto bad = [&](const std::string& why) {
@@ -57,9 +22,9 @@ DyeSource parse_source(const std::string& text) {
   DyeSource source;
   source.text = text;
   const std::vector<std::string> points = split(text, '/');
-  if (numbers(points.back())) {
+  if (parse_numbers(points.back())) {
     for (const std::string& point : points) {
-      const auto p = numbers(point);
+      const auto p = parse_numbers(point);
       const std::size_t wanted = &point == &points.back() ? 4 : 3;
       if (!p || p->size() != wanted)
         throw bad(points.size() == 1 ? "a ball has four numbers" : "a curve has three numbers a point, and a radius");
@@ -70,8 +35,8 @@ DyeSource parse_source(const std::string& text) {
     return source;
   }
   const std::vector<std::string> ends = split(text, ':');
-  if (ends.size() == 2 && numbers(ends[0]) && numbers(ends[1])) {
-    const std::vector<double> a = *numbers(ends[0]), b = *numbers(ends[1]);
+  if (ends.size() == 2 && parse_numbers(ends[0]) && parse_numbers(ends[1])) {
+    const std::vector<double> a = *parse_numbers(ends[0]), b = *parse_numbers(ends[1]);
     if (a.size() != 3 || b.size() != 3) throw bad("a box has two corners of three numbers");
     source.box = true;
     source.low = min(Vec3d(a[0], a[1], a[2]), Vec3d(b[0], b[1], b[2]));
@@ -82,10 +47,10 @@ DyeSource parse_source(const std::string& text) {
   source.array = text.substr(0, sign);
   if (source.array.empty()) throw bad("it names no array");
   if (sign == text.npos) return source;
-  const std::optional<double> value = number(text.substr(sign + 1));
-  if (!value) throw bad("what follows = is no number");
+  const auto value = parse_numbers(text.substr(sign + 1));
+  if (!value || value->size() != 1) throw bad("what follows = is no number");
   source.by_value = true;
-  source.value = *value;
+  source.value = value->front();
   return source;
 }
 

@@ -3,14 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "compute/device/error.hpp"
 #include "compute/raycast/triangle_tree.hpp"
+#include "engine/scene/settings/number_list.hpp"
 #include "engine/scene/surface/extent.hpp"
 
 namespace nacre {
@@ -20,18 +18,11 @@ constexpr int analytic_times = 65;
 constexpr double farthest = 0.1;  ///< from the surface, of its diagonal
 
 Vec3d parse_point(const std::string& text) {
-  std::array<double, 3> p{};
-  const char *at = text.data(), *const end = at + text.size();
-  for (std::size_t k = 0; k < 3; ++k) {
-    while (at < end && *at == ' ') ++at;
-    const auto [next, error] = std::from_chars(at, end, p[k]);
-    at = next;
-    while (at < end && *at == ' ') ++at;
-    if (error != std::errc() || !std::isfinite(p[k]) || (k < 2 ? at == end || *at++ != ',' : at != end))
-      throw Error("`probe` takes no point '" + text + "'", "a point has three numbers",
-                  "use X,Y,Z, and semicolons between several");
-  }
-  return {p[0], p[1], p[2]};
+  const auto p = parse_numbers(text);
+  if (!p || p->size() != 3)
+    throw Error("`probe` takes no point '" + text + "'", "a point has three numbers",
+                "use X,Y,Z, and semicolons between several");
+  return {(*p)[0], (*p)[1], (*p)[2]};
 }
 
 std::vector<double> times_of(const VectorsInTime& input) {
@@ -40,11 +31,6 @@ std::vector<double> times_of(const VectorsInTime& input) {
   for (int k = 0; k < analytic_times; ++k)
     times.push_back(input.start() + (input.end() - input.start()) * k / (analytic_times - 1));
   return times;
-}
-
-template <class Value>
-Value at_point(std::span<const Value> values, const Triangle& t, const Vec3d& w) {
-  return values[t.a] * float(w.x) + values[t.b] * float(w.y) + values[t.c] * float(w.z);
 }
 
 }  // namespace
@@ -84,12 +70,12 @@ std::vector<FlowProbe> flow_probes(VectorsInTime& input, const std::string& text
     for (std::size_t k = 0; k < probes.size(); ++k) {
       FlowProbe& probe = probes[k];
       const Triangle& tri = triangles[probe.triangle];
-      const Vec3f vector = at_point<Vec3f>(vectors, tri, weights[k]);
+      const Vec3f vector = interpolate<Vec3f>(vectors, tri, weights[k]);
       const Vec3f normal(normalized(cross(shape[tri.b] - shape[tri.a], shape[tri.c] - shape[tri.a])));
       probe.times.push_back(t);
       probe.vectors.push_back(vector);
       probe.speeds.push_back(length(vector - normal * dot(vector, normal)));
-      if (!scalar.empty()) probe.scalars.push_back(at_point<float>(scalar, tri, weights[k]));
+      if (!scalar.empty()) probe.scalars.push_back(interpolate<float>(scalar, tri, weights[k]));
     }
   }
   return probes;

@@ -19,12 +19,6 @@ Range kept_part(const std::optional<ClipPlane>& clip, const Vec3d& from, const V
   return part;
 }
 
-template <class Value>
-auto interpolate(const std::vector<Value>& values, const Triangle& t, const Vec3d& weights) {
-  using Scalar = float;
-  return values[t.a] * Scalar(weights.x) + values[t.b] * Scalar(weights.y) + values[t.c] * Scalar(weights.z);
-}
-
 }  // namespace
 
 std::optional<ProbeResult> FlowScene::probe(const Vec3d& from, const Vec3d& along) {
@@ -41,12 +35,12 @@ std::vector<std::string> FlowScene::describe(const TriangleHit& hit) {
       fmt::format("position: {:.5g} {:.5g} {:.5g}", hit.position.x, hit.position.y, hit.position.z),
       fmt::format("triangle: {}", hit.triangle)};
   if (vectors_) {
-    const Vec3f v = interpolate(*vectors_, t, hit.weights);
+    const Vec3f v = interpolate<Vec3f>(*vectors_, t, hit.weights);
     lines.push_back(fmt::format("{}: {:.4g} {:.4g} {:.4g}", results_.data.array, v.x, v.y, v.z));
     lines.push_back(fmt::format("magnitude: {:.4g}", length(v)));
   }
   if (!scalar_.empty())
-    lines.push_back(fmt::format("{}: {:.4g}", results_.data.color, interpolate(scalar_, t, hit.weights)));
+    lines.push_back(fmt::format("{}: {:.4g}", results_.data.color, interpolate<float>(scalar_, t, hit.weights)));
   lines.push_back("time: " + time_text(results_.time));
   if (!shown_ || looks_back_) return lines;
   // The texture's value lies on the device of compute: the worker looks it up between its steps.

@@ -11,6 +11,7 @@
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "engine/render/camera_motion.hpp"
 #include "engine/run/flow_maps.hpp"
+#include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/prepare.hpp"
 
 namespace nacre {
@@ -63,9 +64,7 @@ void FlowPanel::data_tab(Session& session) {
   knob_widget(session.settings, "vectors", flow_choices(results_.offer, "vectors"));
   if (ImGui::CollapsingHeader("colours", ImGuiTreeNodeFlags_DefaultOpen)) colours(session);
   if (!results_.tree || results_.corners.empty()) return;
-  Vec3d low = results_.corners.front(), high = low;
-  for (const Vec3d& p : results_.corners) low = min(low, p), high = max(high, p);
-  const Vec3d size = high - low;
+  const Vec3d size = Extent(results_.corners).size();
   ImGui::Separator();
   text(fmt::format("{} triangles, {} points", grouped((long long)results_.tree->triangles().size()),
                    grouped((long long)results_.tree->points().size())));

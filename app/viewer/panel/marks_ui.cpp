@@ -9,18 +9,9 @@
 #include "app/viewer/scene/marks.hpp"
 #include "engine/picture/dye_colours.hpp"
 #include "engine/render/camera_motion.hpp"
+#include "engine/scene/surface/extent.hpp"
 
 namespace nacre {
-namespace {
-
-double diagonal_of(const std::vector<Vec3d>& points) {
-  if (points.empty()) return 0;
-  Vec3d low = points.front(), high = low;
-  for (const Vec3d& p : points) low = min(low, p), high = max(high, p);
-  return length(high - low);
-}
-
-}  // namespace
 
 /// The point of the scene that the mouse is over; none: it is over a panel, or over nothing.
 std::optional<Vec3d> Ui::under_cursor(const Session& session, Scene& scene, const UiFacts& facts) {
@@ -59,7 +50,7 @@ void Ui::release_dye(Session& session, Scene& scene, const UiFacts& facts, bool 
   if (another && std::size_t(std::count(dye.begin(), dye.end(), '|')) + 1 >= most_dyes)
     return show_note(fmt::format("dye: there are {} colours", most_dyes));
   constexpr double share = 0.015;  // of the diagonal
-  const double radius = share * diagonal_of(scene.corners());
+  const double radius = share * Extent(scene.corners()).diagonal();
   if (!dye.empty()) dye += another ? '|' : ';';
   dye += fmt::format("{:.6g},{:.6g},{:.6g},{:.3g}", point->x, point->y, point->z, radius);
 }

@@ -113,7 +113,7 @@ struct Settings {
   int fps = 25;
   bool legend = true, time_stamp = true;
   bool topology = false;      ///< critical points and separatrices are drawn
-  bool tracks = false;        ///< the ways of critical points in time are drawn
+  bool tracks = false;        ///< the paths of critical points in time are drawn
   std::string probe;          ///< points of which the times are told (engine/run/flow_probes.hpp); empty: none
   bool streamlines = false;   ///< evenly spaced streamlines are drawn
   double persistence = 0.02;  ///< share of the reference speed; zeros that cancel below it are left out

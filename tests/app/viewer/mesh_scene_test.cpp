@@ -266,7 +266,7 @@ TEST_F(MeshInView, WritesWhereItIsLiveToo) {
     EXPECT_EQ(std::count(formats.begin(), formats.end(), format), 1) << format;
 }
 
-TEST_F(MeshInView, AFailureIsToldAndOtherKnobsMendIt) {
+TEST_F(MeshInView, AFailureIsToldAndOtherKnobsEndIt) {
   open(true);
   ASSERT_TRUE(settles());
   change([](Settings& s) { s.materials.materials = "77"; });

@@ -288,7 +288,7 @@ TEST(MeshWorker, CancelKeepsWhatThereIsAndResumeBeginsAgain) {
   EXPECT_EQ(run.failure, "");
 }
 
-TEST(MeshWorker, AFailureIsToldAndOtherKnobsMendIt) {
+TEST(MeshWorker, AFailureIsToldAndOtherKnobsEndIt) {
   MeshWorkerRun run;
   run.settle();
   EXPECT_EQ(run.rerun("materials", "77"), "classify");

@@ -294,7 +294,7 @@ TEST(FlowWorker, AChangeInterruptsWhatIsUnderWay) {
   }
 }
 
-TEST(FlowWorker, AFailureIsToldAndOtherKnobsMendIt) {
+TEST(FlowWorker, AFailureIsToldAndOtherKnobsEndIt) {
   WorkerRun run;
   run.change([](Settings& s) { s.flow.resolution = 1 << 20; });
   EXPECT_NE(run.failure, "");
