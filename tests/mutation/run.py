@@ -13,8 +13,9 @@ All changes are compiled at once, each behind a switch that the environment vari
 one build serves for all. A change that cannot be switched so, as in a constant, is built alone.
 """
 import argparse
+import collections
+import hashlib
 import os
-import random
 import re
 import shutil
 import subprocess
@@ -109,16 +110,32 @@ def candidates():
                 yield path, number, lines[number]
 
 
+def draw(seed):
+    """All candidates with a change each, in an order of chance: ((path, number, line), (kind, new line)).
+
+    The order is by a hash of the line itself, so that the same lines are drawn after an edit elsewhere."""
+    def lot(*parts):
+        return hashlib.sha256("\0".join([str(seed), *parts]).encode()).digest()
+
+    drawn, seen = [], collections.Counter()
+    for path, number, line in candidates():
+        seen[path, line] += 1
+        hashed = lot(path, line, str(seen[path, line]))
+        changes = changes_of(line)
+        drawn.append((hashed, (path, number, line), changes[int.from_bytes(hashed[:8], "big") % len(changes)]))
+    return [entry[1:] for entry in sorted(drawn)]
+
+
 def judges_of(path):
     folder = max((prefix for prefix in JUDGES if path.startswith(prefix + "/")), key=len)
     return JUDGES[folder]
 
 
-def run(words, folder, log, limit=None):
+def run(command, folder, log, limit=None):
     """Exit status; None where it took longer than the limit."""
     with open(log, "w", encoding="utf-8") as out:
         try:
-            return subprocess.run(["nice", "-n", "5"] + words, cwd=folder, stdout=out, stderr=out, timeout=limit).returncode
+            return subprocess.run(["nice", "-n", "5"] + command, cwd=folder, stdout=out, stderr=out, timeout=limit).returncode
         except subprocess.TimeoutExpired:
             return None
 
@@ -136,10 +153,10 @@ def prepare(scratch, options):
         if not os.path.exists(target) or open(source, "rb").read() != open(target, "rb").read():
             shutil.copy(source, target)
     if not os.path.exists(os.path.join(tree, "build/release/build.ninja")):
-        words = ["cmake", "--preset", "release", "-DNACRE_CUDA=OFF"] + options
+        command = ["cmake", "--preset", "release", "-DNACRE_CUDA=OFF"] + options
         if shutil.which("ccache"):
-            words += ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
-        if run(words, tree, os.path.join(scratch, "configure.log")) != 0:
+            command += ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_C_COMPILER_LAUNCHER=ccache"]
+        if run(command, tree, os.path.join(scratch, "configure.log")) != 0:
             sys.exit("the copy could not be configured: see " + os.path.join(scratch, "configure.log"))
     return tree
 
@@ -216,8 +233,8 @@ class Copy:
     def build(self, judges):
         """The positions (path, line from 0) that errors are at; none: it was built."""
         log = os.path.join(self.scratch, "build.log")
-        words = ["ninja", "-C", self.build_folder, "-k", "0", "-j", str(self.jobs)] + ["test_" + judge for judge in judges]
-        if run(words, self.tree, log) == 0:
+        command = ["ninja", "-C", self.build_folder, "-k", "0", "-j", str(self.jobs)] + ["test_" + judge for judge in judges]
+        if run(command, self.tree, log) == 0:
             return []
         with open(log, encoding="utf-8", errors="replace") as file:
             found = re.findall(r"((?:compute|engine)/[\w/]+\.[ch]pp):(\d+)", file.read())
@@ -226,10 +243,10 @@ class Copy:
     def notice(self, judges, number):
         """What noticed; empty: nothing did."""
         for judge in judges:
-            words = ["env", f"NACRE_MUTANT={number}", os.path.join(self.build_folder, "bin/test_" + judge),
+            command = ["env", f"NACRE_MUTANT={number}", os.path.join(self.build_folder, "bin/test_" + judge),
                      "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + FILTER.get(judge, "*")]
             log = os.path.join(self.scratch, "test.log")
-            status = run(words, self.build_folder, log, TIME_LIMIT)
+            status = run(command, self.build_folder, log, TIME_LIMIT)
             if status is None:
                 return f"test_{judge}: it did not end"
             if status != 0:
@@ -272,8 +289,7 @@ def main():
     parser.add_argument("--cmake", action="append", default=[], help="an option for CMake; may be given again")
     arguments = parser.parse_args()
 
-    dice = random.Random(arguments.seed)
-    drawn = [(line, dice.choice(changes_of(line[2]))) for line in dice.sample(list(candidates()), 4 * arguments.count)]
+    drawn = draw(arguments.seed)[:4 * arguments.count]
     if arguments.list:
         for number, ((path, line, old), (kind, new)) in enumerate(drawn[:arguments.count], 1):
             print(f"{number:3} {path}:{line + 1} {kind}\n    - {old.strip()}\n    + {new.strip()}")
