@@ -38,6 +38,16 @@ struct GridSurfaceOf {
     return {{offset.x, offset.y, offset.z}, texture.seed_triangle[s]};
   }
 
+  /// About the closest point of a position, both in texture cells: those that the cells of the grid around it know,
+  /// interpolated. Off the surface where these lie on different sheets; false where the grid does not reach.
+  NACRE_HD_INLINE bool foot_near(const Vec3d& position, Vec3d& foot) const {
+    const Vec3d in_grid = position * double(texture.inverse_refine);
+    nacre::Lanes offset;
+    if (!interpolate_linear(texture.grid, texture.grid.offset, Vec3f(in_grid), offset)) return false;
+    foot = (in_grid + Vec3d(xyz(offset))) * double(texture.refine);
+    return true;
+  }
+
   class Cursor {
    public:
     NACRE_HD_INLINE explicit Cursor(const GridSurfaceOf& surface) : cursor_(surface.texture) {}
@@ -76,6 +86,9 @@ struct BrickSurface {
     const CellPoint point = view.point[BrickOctreeView::Cursor(view).find(position)];
     return {point.offset(view.quantum), point.triangle};
   }
+
+  /// The band is too thin to say more than its surface cells do.
+  NACRE_HD_INLINE bool foot_near(const Vec3d&, Vec3d&) const { return false; }
 
   class Cursor {
    public:

@@ -17,6 +17,9 @@ struct ThesisSurface {
     return {view.point[s].offset(view.quantum), view.point[s].triangle};
   }
 
+  /// The band is too thin to say more than its surface cells do.
+  NACRE_HD_INLINE bool foot_near(const Vec3d&, Vec3d&) const { return false; }
+
   class Cursor {
    public:
     NACRE_HD_INLINE explicit Cursor(const ThesisSurface& surface) : cursor_(surface.view) {}
@@ -46,7 +49,10 @@ void for_each_surface_cell_of(Executor<Backend>& exec, const ThesisSurface& surf
 struct SameMaterial {
   MeshView now, before;
 
-  NACRE_HD bool is_near(const Vec3d&, Vec3d&) const { return false; }
+  template <class Surface>
+  NACRE_HD bool is_near(const Surface&, double, const Vec3d&, Vec3d&) const {
+    return false;
+  }
 
   NACRE_HD bool operator()(std::uint32_t triangle, const Vec3d& p, Vec3d& there) const {
     const Vec3d w = barycentric(now.corners(triangle), p);
@@ -65,10 +71,18 @@ struct ClosestMaterial {
   double reach;  ///< in cells of the other domain
   bool at_rest;  ///< the other surface is as it was embedded: its embedding knows closest points near it
 
-  /// Where to ask the embedding before the triangles are searched.
-  NACRE_HD bool is_near(const Vec3d& p, Vec3d& there) const {
-    there = p * scale + shift;
-    return at_rest;
+  /// Where to look for a cell of the embedding before the triangles are searched. `texel`: edge of its cells.
+  template <class Surface>
+  NACRE_HD bool is_near(const Surface& embedded, double texel, const Vec3d& p, Vec3d& there) const {
+    if (!at_rest) return false;
+    const Vec3d position = p * scale + shift;
+    if (!embedded.foot_near(position / texel, there)) {
+      there = position;
+      return true;
+    }
+    there = there * texel;
+    const Vec3d d = there - position;
+    return dot(d, d) <= reach * reach;
   }
 
   NACRE_HD bool operator()(std::uint32_t, const Vec3d& p, Vec3d& there) const {
@@ -92,7 +106,7 @@ struct FindSource {
     const SurfaceFoot foot = surface.foot(s, position);
     const Vec3d point = (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * texel;
     Vec3d there;
-    source[s] = origin.is_near(point, there) ? cell_at(there) : no_cell;
+    source[s] = origin.is_near(before, texel_before, point, there) ? cell_at(there) : no_cell;
     if (source[s] == no_cell && origin(foot.triangle, point, there)) source[s] = cell_at(there);
   }
 

@@ -108,6 +108,19 @@ TEST_F(FlowMaps, BadInputIsNamed) {
   expect_failure(nacre(Arguments{"flow", poles(), path("o_1.vtp")} + to_file), 1, {"flow map", "same triangles"});
 }
 
+TEST_F(FlowMaps, DyeThatNothingMovesIsRefusedUnlessItDiffuses) {
+  const Arguments run = Arguments{"flow", sphere("still.vtp", [](const Vec3d&) { return Vec3d(); }), "--quiet", "--dye",
+                                  "0,0,1,0.3", "--report", path("r.json")} +
+                        small_flow_maps;
+  const Outcome refused = nacre(run);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.err.find("would stay where it is"), std::string::npos) << refused.err;
+  for (const char* much : {"0.01", "1"}) {
+    const Outcome done = nacre(run + Arguments{"--dye-diffusion", much});
+    EXPECT_EQ(done.status, 0) << done.err;
+  }
+}
+
 const Arguments few_dyed = {"--resolution", "64", "--size", "192x192", "--no-legend"};
 
 class DyeOfFlow : public AppTest {

@@ -1,14 +1,14 @@
-# Nacre: how the bench scripts begin: their words, where reports go, which machine this is. To be sourced.
+# Nacre: how the bench scripts begin: their options, where reports go, which machine this is. To be sourced.
 source "$(dirname "${BASH_SOURCE[0]}")/report.sh"
 
-# begin_bench COMMAND BINARY [WORDS of nacre COMMAND...]: sets nacre, words, data and out ($OUT, or a folder that is
+# begin_bench COMMAND BINARY [OPTIONS of nacre COMMAND...]: sets nacre, options, data and out ($OUT, or a folder that is
 # removed at the end), failed=0. Exits 2 where BINARY is no program.
 begin_bench() {
   local command=$1
   shift
-  (($#)) || { echo "usage: $command.sh BINARY [words of nacre $command]" >&2; exit 2; }
+  (($#)) || { echo "usage: $command.sh BINARY [options of nacre $command]" >&2; exit 2; }
   nacre=$1
-  words=("${@:2}")
+  options=("${@:2}")
   [[ -x $nacre ]] || { echo "$command.sh: $nacre is not a program" >&2; exit 2; }
   data=${NACRE_DATA:-$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../../../shared/data}
   failed=0

@@ -8,7 +8,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/begin.sh"
 begin_bench bounds "$@"
 main_runs
-((${#words[@]} == 1)) || { echo "usage: bounds.sh NACRE CEILINGS" >&2; exit 2; }
+((${#options[@]} == 1)) || { echo "usage: bounds.sh NACRE CEILINGS" >&2; exit 2; }
 
 # The stages. Run, stage, how often it goes over its elements (a number, `calls` or `launches` of the stage, or a value of
 # the report), the elements, then for one time: the bytes of all arrays that are read or written, each once, by what they
@@ -76,7 +76,7 @@ values() {
        }' "$1"
 }
 
-# rows RUN WORDS...: runs it; its rows.
+# rows RUN OPTIONS...: runs it; its rows.
 rows() {
   local output=(--out "$out/mesh.vtp")
   [[ $2 != flow ]] || output=(--image "$out/picture.png" --size 640x480)
@@ -100,7 +100,7 @@ rows() {
     }'
 }
 
-"${words[0]}" | tr -d '{}",:' >"$out/ceilings"
+"${options[0]}" | tr -d '{}",:' >"$out/ceilings"
 echo "$(machine), $(date -u +%F); at most, a second:"
 cat "$out/ceilings"
 echo

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Nacre: the speed table of docs/performance/flow.md: drivaer and the built-in train at 256 to 2048 texture cells.
-# Usage: flow.sh BINARY [nacre flow's words, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
+# Usage: flow.sh BINARY [nacre flow's options, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_RESOLUTIONS, NACRE_BENCH_STEPS (default 10), NACRE_DATA (folder that holds drivaer.pvd).
 set -euo pipefail
 source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/begin.sh"
@@ -12,7 +12,7 @@ steps=${NACRE_BENCH_STEPS:-10}
 row() {
   local name=$1 resolution=$2 report="$out/flow-$1-$2.json"
   shift 2
-  if ! "$nacre" flow "$@" "${words[@]}" --quiet --resolution "$resolution" --ttl 2 --steps "$steps" --size 1024x768 \
+  if ! "$nacre" flow "$@" "${options[@]}" --quiet --resolution "$resolution" --ttl 2 --steps "$steps" --size 1024x768 \
     --image "$out/flow-$name-$resolution.png" --report "$report" >/dev/null 2>"$out/flow-$name-$resolution.err"; then
     printf '| %s | %d | failed: %s |\n' "$name" "$resolution" "$(head -n 1 "$out/flow-$name-$resolution.err")"
     failed=1

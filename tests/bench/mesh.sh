@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Nacre: the meshing tables of docs/performance/meshing.md: the phantoms, real volumes where they are, and the three solvers.
-# Usage: mesh.sh BINARY [words of nacre mesh, e.g. --device cuda]. Reports go to $OUT where it is set.
+# Usage: mesh.sh BINARY [options of nacre mesh, e.g. --device cuda]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_CASES (names, default all; `solvers` is the second table, `tetrahedra` the third), NACRE_DATA (folder that holds
 # labels/ and scalar/), NACRE_BENCH_PARTICLES and NACRE_BENCH_ITERATIONS (of the second table).
 set -euo pipefail
@@ -34,7 +34,7 @@ row() {
     echo "mesh.sh: $name left out: no $1" >&2
     return 0
   fi
-  if ! "$nacre" mesh "$@" "${words[@]}" --quiet --out "$out/mesh-$name.vtp" --report "$report" >/dev/null 2>"$out/mesh-$name.err"; then
+  if ! "$nacre" mesh "$@" "${options[@]}" --quiet --out "$out/mesh-$name.vtp" --report "$report" >/dev/null 2>"$out/mesh-$name.err"; then
     printf '| %s | failed: %s |\n' "$name" "$(head -n 1 "$out/mesh-$name.err")"
     failed=1
     return
@@ -97,7 +97,7 @@ row skull "$data/scalar/skull_2.9.inr" --isovalue 2.9
 # solver_run SOLVER ITERATIONS REPORT: the same seeds for all, none added or deleted, nothing smoothed or remeshed, no
 # end before the last iteration. Fails where the run does.
 solver_run() {
-  "$nacre" mesh --sample torso "${words[@]}" --quiet --solver "$1" --iterations "$2" --stagnation 0 --smooth 0 --remesh 0 \
+  "$nacre" mesh --sample torso "${options[@]}" --quiet --solver "$1" --iterations "$2" --stagnation 0 --smooth 0 --remesh 0 \
     --control-every 100 --set seeds=embedding --particles "${NACRE_BENCH_PARTICLES:-300000}" --report "$3" \
     >/dev/null 2>"$out/mesh-solver.err"
 }
@@ -138,7 +138,7 @@ fill_row() {
     echo "mesh.sh: tetrahedra of $name left out: no $1" >&2
     return 0
   fi
-  if ! "$nacre" mesh "$@" "${words[@]}" --quiet --out "$out/mesh-$name.vtu" --report "$report" >/dev/null 2>"$out/mesh-fill.err"; then
+  if ! "$nacre" mesh "$@" "${options[@]}" --quiet --out "$out/mesh-$name.vtu" --report "$report" >/dev/null 2>"$out/mesh-fill.err"; then
     printf '| %s | failed: %s |\n' "$name" "$(head -n 1 "$out/mesh-fill.err")"
     failed=1
     return

@@ -6,7 +6,7 @@
 #   source  both octrees on the train, steady, at 512, 1024 and 2048
 #   embree  the builder against Embree: bench_octree_build (its target is not built by default), beside BINARY
 #   stray   a million stray triangles at 4096
-# Usage: octree.sh BINARY [nacre flow's words, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
+# Usage: octree.sh BINARY [nacre flow's options, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
 set -euo pipefail
 source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/begin.sh"
 begin_bench octree "$@"
@@ -17,11 +17,11 @@ steps=${NACRE_BENCH_STEPS:-2}
 # wanted CASE: whether it is asked for.
 wanted() { [[ -z ${NACRE_BENCH_CASES:-} || " $NACRE_BENCH_CASES " == *" $1 "* ]]; }
 
-# flow NAME WORDS...: one run, its report in $out/octree-NAME.json; says so if it fails.
+# flow NAME OPTIONS...: one run, its report in $out/octree-NAME.json; says so if it fails.
 flow() {
   local name=$1
   shift
-  "$nacre" flow --method octree --quiet --ttl 2 --warmup 0 "$@" "${words[@]}" --report "$out/octree-$name.json" \
+  "$nacre" flow --method octree --quiet --ttl 2 --warmup 0 "$@" "${options[@]}" --report "$out/octree-$name.json" \
     >/dev/null 2>"$out/octree-$name.err" && return
   printf '| %s | failed: %s |\n' "$name" "$(head -n 1 "$out/octree-$name.err")"
   failed=1
@@ -61,7 +61,7 @@ both() {
     'BEGIN { printf "| %d | %.2f | %.2f | %.1f | %.3f | %.2f | %.1f |\n", n, a, b, b / a, c, d, d / c }'
 }
 
-# builder MESH WORDS...: bench_octree_build's ratios at each of its resolutions.
+# builder MESH OPTIONS...: bench_octree_build's ratios at each of its resolutions.
 builder() {
   "$(dirname "$nacre")/bench_octree_build" "$@" threads="$(nproc)" | awk -v radius="${3#radius=}" '
     / triangles, / { mesh = $1; sub(/.*\//, "", mesh); sub(/,$/, "", mesh); triangles = $2; n = $4; cells = $5 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Nacre: the table of spots and stripes in docs/performance/flow.md: drivaer and the built-in train, beside streaks.
-# Usage: patterns.sh BINARY [nacre flow's words, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
+# Usage: patterns.sh BINARY [nacre flow's options, e.g. --device cuda --threads 2]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_RESOLUTIONS, NACRE_BENCH_STEPS (default 5), NACRE_DATA (folder that holds drivaer.pvd).
 set -euo pipefail
 source "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/begin.sh"
@@ -12,7 +12,7 @@ steps=${NACRE_BENCH_STEPS:-5}
 row() {
   local name=$1 resolution=$2 texture=$3 made="$out/patterns-$1-$2-$3"
   shift 3
-  if ! "$nacre" flow "$@" "${words[@]}" --quiet --texture "$texture" --resolution "$resolution" --steps "$steps" \
+  if ! "$nacre" flow "$@" "${options[@]}" --quiet --texture "$texture" --resolution "$resolution" --steps "$steps" \
     --size 1024x768 --image "$made.png" --report "$made.json" >/dev/null 2>"$made.err"; then
     printf '| %s | %d | %s | failed: %s |\n' "$name" "$resolution" "$texture" "$(head -n 1 "$made.err")"
     failed=1

@@ -10,9 +10,9 @@ begin_bench profile "$@"
 main_runs
 threads=$(nproc)
 echo "$(machine), $(date -u +%F)"
-((${#words[@]} == 0)) || "${words[0]}"
+((${#options[@]} == 0)) || "${options[0]}"
 
-# run REPORT WORDS...: what it makes lies in $out.
+# run REPORT OPTIONS...: what it makes lies in $out.
 run() {
   local output=(--out "$out/mesh.vtp")
   [[ $2 != flow ]] || output=(--image "$out/picture.png" --size 640x480)
@@ -40,7 +40,7 @@ element_time() {
     'BEGIN { printf "%.0f ns (%d)\n", 1e9 * s * t / n / i, n }'
 }
 
-# profile NAME SMALL LARGE: two runs, by their words.
+# profile NAME SMALL LARGE: two runs, by their options.
 profile() {
   local sampler=() small large
   read -ra small <<<"$2"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Nacre: what a window costs: a step of the flow beside the command's, by turns; a window at rest; one that is hidden;
 # and how long a cancelled computation goes on. Under Xvfb, with software OpenGL.
-# Usage: viewer.sh BINARY [words of nacre flow and nacre view, e.g. --threads 2]. Reports go to $OUT where it is set.
+# Usage: viewer.sh BINARY [options of nacre flow and nacre view, e.g. --threads 2]. Reports go to $OUT where it is set.
 # Environment: NACRE_BENCH_RESOLUTION (default 512), NACRE_BENCH_ROUNDS (default 3), NACRE_BENCH_SECONDS that a window
 # steps or rests (default 20), NACRE_DATA (folder that holds drivaer.pvd).
 set -euo pipefail
@@ -43,9 +43,9 @@ compare() {
   local name=$1 round ratios=()
   shift
   for ((round = 0; round < rounds; ++round)); do
-    "$nacre" flow "$@" "${words[@]}" --quiet --resolution "$resolution" --steps 10 --image "$out/$name.png" \
+    "$nacre" flow "$@" "${options[@]}" --quiet --resolution "$resolution" --steps 10 --image "$out/$name.png" \
       --report "$out/$name-flow-$round.json" >/dev/null
-    open_window "$nacre" "$@" "${words[@]}" --quiet --resolution "$resolution" --report "$out/$name-view-$round.json"
+    open_window "$nacre" "$@" "${options[@]}" --quiet --resolution "$resolution" --report "$out/$name-view-$round.json"
     until_true "a step" rests
     sleep "$seconds"
     quit_window || true
@@ -65,7 +65,7 @@ if ((rounds > 0)); then
   [[ -z $drivaer ]] || compare drivaer "$drivaer"
 fi
 
-open_window "$nacre" --sample torus "${words[@]}" --quiet --resolution 64 --set play=false
+open_window "$nacre" --sample torus "${options[@]}" --quiet --resolution 64 --set play=false
 until_true "a paused flow" rests
 sleep 3
 printf '| torus, 64 | paused: per cent of a core | %s | 2 |\n' "$(share_of_core "$viewer")"
@@ -75,7 +75,7 @@ printf '| torus, 64 | hidden: per cent of a core | %s | 2 |\n' "$(share_of_core 
 kill "$viewer"
 wait "$viewer" || true
 
-open_window "$nacre" --sample torus "${words[@]}" --quiet --resolution "$((2 * resolution))"
+open_window "$nacre" --sample torus "${options[@]}" --quiet --resolution "$((2 * resolution))"
 until_true "an embedding" titled '^(embed|start)'
 begin=$(date +%s%N)
 xdotool key Escape

@@ -57,6 +57,20 @@ TEST(Triangulate, StarKeepsItsArea) {
   EXPECT_NEAR(signed_area(triangles, points), 5 * 0.3 * std::sin(std::numbers::pi / 5), 1e-12);
 }
 
+TEST(Triangulate, APolygonIsTheSameFromWhicheverCornerItBegins) {
+  // Seen from the first corner, all triangles of a fan but the first are the wrong way round.
+  const std::vector<Vec3d> points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1.2, 0}, {0.8, 1, 0}};
+  for (std::uint32_t first = 0; first < 5; ++first) {
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t i = 0; i < 5; ++i) corners.push_back((first + i) % 5);
+    std::vector<Triangle> triangles;
+    triangulate(corners, points, triangles);
+    ASSERT_EQ(triangles.size(), 3u);
+    for (const Triangle& t : triangles) EXPECT_GT(signed_area({t}, points), 0) << first;
+    EXPECT_NEAR(signed_area(triangles, points), 6.02, 1e-12) << first;
+  }
+}
+
 TEST(Triangulate, LargePolygonsEnd) {
   std::vector<Vec3d> points;
   std::vector<std::uint32_t> corners;

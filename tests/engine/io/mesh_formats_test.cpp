@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -135,6 +136,23 @@ TEST(MeshFormats, Gmsh4HasAnEntityPerGroup) {
   }
   EXPECT_EQ(bounds, (std::vector<std::int32_t>{1, -3, 2, 3})) << "the interface of both points out of the second";
   EXPECT_EQ(file.substr(at, 14), "\n$EndEntities\n");
+  at = file.find("$Elements\n") + 10 + 32;
+  for (const auto& [tag, elements] : std::map<std::int32_t, std::vector<std::vector<std::uint64_t>>>{
+           {1, {{2, 3, 4}, {1, 4, 3}, {1, 2, 4}}},
+           {2, {{2, 5, 3}, {1, 3, 5}, {1, 5, 2}}},
+           {3, {{1, 2, 3}}},
+           {5, {{1, 2, 3, 4}}},
+           {300, {{1, 3, 2, 5}}}}) {
+    at += 4;  // the dimension
+    EXPECT_EQ(take(std::int32_t()), tag);
+    at += 4;  // the type
+    ASSERT_EQ(take(std::uint64_t()), elements.size());
+    for (const std::vector<std::uint64_t>& nodes : elements) {
+      at += 8;  // the number of the element
+      for (const std::uint64_t node : nodes) EXPECT_EQ(take(std::uint64_t()), node) << tag;
+    }
+  }
+  EXPECT_EQ(file.substr(at, 14), "\n$EndElements\n");
 }
 
 TEST(MeshFormats, MfemHasAttributesWithNames) {
@@ -282,6 +300,13 @@ TEST(MeshFormats, GltfHasAMeshPerPair) {
   const auto asset = nlohmann::json::parse(file.substr(20, head[3]));
   ASSERT_EQ(asset["meshes"].size(), 3u);
   EXPECT_EQ(asset["nodes"][3]["name"], "liver & bile - kidney, left");
+  std::set<std::string> colours;
+  for (const auto& material : asset["materials"]) {
+    const auto& rgb = material["pbrMetallicRoughness"]["baseColorFactor"];
+    EXPECT_NEAR(rgb[0].get<double>() + rgb[1].get<double>() + rgb[2].get<double>(), 1.35, 1e-9) << "alike in lightness";
+    colours.insert(rgb.dump());
+  }
+  EXPECT_EQ(colours.size(), 3u);
   const auto& accessor = asset["accessors"][asset["meshes"][2]["primitives"][0]["attributes"]["POSITION"].get<int>()];
   EXPECT_EQ(accessor["count"], 3);
   EXPECT_EQ(accessor["max"], (nlohmann::json{0.5, 0.5, 0})) << "about the centre of the box";

@@ -115,6 +115,19 @@ TEST(StackedBars, PartsArePutOnTopOfEachOtherAndSumToOne) {
   for (const char* name : {">left<", ">right<", ">low<", ">high<"}) EXPECT_EQ(count(svg, name), 1) << name;
 }
 
+TEST(StackedBars, NamesStandBesideTheirColours) {
+  const std::string svg = svg_stacked_bars({"title", "share", {"bar"}, {{"low", {1}}, {"high", {3}}}});
+  static const std::regex entry(R"x(<rect x="([-0-9.]+)" y="([-0-9.]+)" width="14" height="14"[^>]*/>\s*)x"
+                                R"x(<text x="([-0-9.]+)" y="([-0-9.]+)"[^>]*>(\w+)<)x");
+  std::vector<std::string> names;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), entry); it != std::sregex_iterator(); ++it) {
+    EXPECT_NEAR(std::stod((*it)[3]) - std::stod((*it)[1]), 14 + 8, 0.11);
+    EXPECT_NEAR(std::stod((*it)[4]) - std::stod((*it)[2]), 11.5, 0.11);
+    names.push_back((*it)[5]);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"low", "high"}));
+}
+
 TEST(StackedBars, EmptyOnesAreEmptyAndWrongOnesAreRefused) {
   for (const double h : heights(svg_stacked_bars({"title", "share", {"bar"}, {{"part", {0}}}}))) EXPECT_EQ(h, 0);
   for (const double h : heights(svg_stacked_bars({"title", "share", {"bar"}, {{"part", {nan}}}}))) EXPECT_EQ(h, 0);

@@ -197,6 +197,13 @@ TEST(SampleList, DefaultsShowNoFacets) {
   }
 }
 
+/// docs/performance/flow.md has figures of these.
+TEST(SampleList, DefaultsAreThoseOfTheFigures) {
+  EXPECT_EQ(make_sample("train").load(0).triangles.size(), 145728u);
+  EXPECT_EQ(make_sample("torus").load(0).triangles.size(), 161640u);
+  EXPECT_EQ(make_sample("pulse").load(0).triangles.size(), 106032u);
+}
+
 TEST(SampleList, UnknownNamesAndDetailsAreTold) {
   const auto message = [](const std::string& name, int detail) -> std::string {
     try {
