@@ -82,6 +82,15 @@ TEST(SmallComponents, PartsThatGrowTogetherStay) {
   for (std::size_t i = 0; i < 125; ++i) EXPECT_EQ(mesh.material[i], cube()[i]);
 }
 
+TEST(SmallComponents, APartBesideOneThatWasGivenToItStays) {
+  std::vector<std::uint8_t> values(125, 1);
+  values[0] = 2;                          // in the corner: two of its three neighbours are 3
+  values[1] = values[5] = values[6] = 3;  // too small alone, but not with that one
+  const MeshVolume mesh = cleaned(values, 4);
+  EXPECT_EQ(mesh.labels, (Labels{0, 1, 3}));
+  for (const std::size_t voxel : {0, 1, 5, 6}) EXPECT_EQ(mesh.material[voxel], 2) << voxel;
+}
+
 TEST(SmallComponents, DiagonalNeighboursAreNotConnected) {
   std::vector<std::uint8_t> values(125, 0);
   std::fill(values.begin() + 75, values.end(), std::uint8_t(1));

@@ -1,4 +1,4 @@
-// Nacre: looks into a mesh run: fields at points, particles and boxes as a renderer gets them.
+// Nacre: a mesh run probed: fields at points, particles and boxes as a renderer gets them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
