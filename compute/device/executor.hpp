@@ -2,9 +2,11 @@
 // definition for their backend (executor_cpu.hpp, executor_cuda.cuh) and instantiate.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "compute/device/arena.hpp"
 #include "compute/device/backend.hpp"
@@ -30,12 +32,28 @@ class ExecutorBase {
   Arena& arena() { return arena_; }
   StageTimers& timers() { return timers_; }
 
-  /// Set from a signal handler or another thread; the next launch throws Interrupted.
-  void watch(const std::atomic<bool>* stop) { stop_ = stop; }
+  /// `stop`: set from a signal handler or another thread; the next launch throws Interrupted. `share`: how much of a
+  /// long call is done, 0..1, for another thread to read. Either may be null.
+  void watch(const std::atomic<bool>* stop, std::atomic<float>* share = nullptr) { stop_ = stop, share_ = share; }
   bool stopped() const { return is_set(stop_); }
   void check_stop() const { nacre::check_stop(stop_); }
 
+  void tell_share(double share) {
+    if (share_) share_->store(float(share), std::memory_order_relaxed);
+  }
+  /// The next launch is this part of the work of a long call: the share grows from one to the other meanwhile.
+  void next_is(double from, double to) {
+    tell_share(from);
+    part_ = {from, to};
+  }
+
  protected:
+  /// Where a launch begins and ends in the share, which it tells; equal where nobody has said so, or wants to know.
+  std::array<double, 2> take_part() {
+    const std::array<double, 2> part = std::exchange(part_, {});
+    return share_ ? part : std::array<double, 2>{};
+  }
+
   /// At the head of every launch.
   void begin_launch() {
     check_stop();
@@ -47,6 +65,8 @@ class ExecutorBase {
   Arena arena_;
   StageTimers timers_;
   const std::atomic<bool>* stop_ = nullptr;
+  std::atomic<float>* share_ = nullptr;
+  std::array<double, 2> part_{};
 };
 
 /// Executor<Cpu> and Executor<Cuda> both give:

@@ -162,13 +162,22 @@ class Executor<Cpu> : public ExecutorBase {
   /// Calls body(first, last) over pieces of 0..n-1 on the device's workers; leaves early when the user asks to stop.
   template <class Body>
   void run(std::int64_t n, const Body& body) {
+    const auto [from, to] = take_part();
     if (n <= 0) return;
+    std::atomic<std::int64_t> done{0};
+    const auto tell = [&, from = from, to = to](std::int64_t more) {
+      const std::int64_t all = done.fetch_add(more, std::memory_order_relaxed) + more;
+      tell_share(from + (to - from) * double(all) / double(n));
+    };
     {
       CpuDevice::Access access(cpu_);
-      cpu_.workers().execute([&] {
+      cpu_.workers().execute([&, tells = to > from] {
         tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, n), [&](const tbb::blocked_range<std::int64_t>& range) {
-          for (std::int64_t first = range.begin(); first < range.end() && !stopped(); first += piece)
-            body(first, std::min(first + piece, range.end()));
+          for (std::int64_t first = range.begin(); first < range.end() && !stopped(); first += piece) {
+            const std::int64_t last = std::min(first + piece, range.end());
+            body(first, last);
+            if (tells) tell(last - first);
+          }
         });
       });
     }

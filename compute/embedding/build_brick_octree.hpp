@@ -260,6 +260,7 @@ class BrickOctreeBuilder {
       for (std::uint64_t first = 0; first < count; first += most) {
         const auto n = std::int64_t(std::min<std::uint64_t>(most, count - first));
         OctreeBrick* brick = found.data() + first;
+        exec_.next_is(double(first) / count, double(first + std::uint64_t(n)) / count);
         exec_.for_each_team(n, ClosestInBrick{clusters, radius_, tree_.quantum, lists.runs.code.data() + first,
                                               lists.runs.start.data() + first, lists.item.data(), brick, point.data()});
         exec_.for_each(n, CountCells{brick, band.data(), surface.data()});

@@ -191,6 +191,7 @@ ClosestPointGrid build_closest_point_grid(Executor<Backend>& exec, const MeshVie
                                    clusters.bound.data(), clusters.corners.data(),
                                    frame.data(),          float(std::max({dims.x, dims.y, dims.z})) * 1.1e-7f};
     const int octets = detail::ClosestOfOctet::octets(sub);
+    exec.next_is(0.05, 0.3);
     exec.for_each(std::int64_t(grid.brick_count) * octets * octets * octets,
                   detail::ClosestOfOctet{grid.view(), view, list_start.data(), pairs.data(), grid.offset.data(),
                                          grid.triangle.data()});

@@ -289,6 +289,7 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
 
   fine.texel = arena.permanent<std::uint32_t>(fine.cells);
   fine.texel.fill_bytes(0);
+  exec.next_is(0.35, 0.5);
   exec.for_each(triangles, detail::MarkSurface{mesh, fine.view(grid), fine.texel.data()});
   Arena::Scope scope(arena);
   Array<std::uint32_t> first = arena.temporary<std::uint32_t>(blocks);
@@ -297,10 +298,13 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
   fine.position = arena.permanent<std::uint32_t>(fine.surface_cells);
   fine.seed = arena.permanent<Float4>(fine.surface_cells);
   fine.seed_triangle = arena.permanent<std::uint32_t>(fine.surface_cells);
+  exec.next_is(0.5, 0.75);
   exec.for_each_team(blocks, detail::NumberSurface{mesh, fine.view(grid), first.data(), fine.texel.data(),
                                                    fine.position.data(), fine.seed.data(), fine.seed_triangle.data()});
+  exec.next_is(0.75, 0.9);
   exec.for_each_team(blocks, detail::ExtendSurface{fine.view(grid), fine.texel.data()});
   fine.neighbour = arena.permanent<std::uint32_t>(6 * std::size_t(fine.surface_cells));
+  exec.next_is(0.9, 1);
   exec.for_each(fine.surface_cells, detail::FindNeighbours{fine.view(grid), fine.neighbour.data()});
   return fine;
 }

@@ -212,7 +212,7 @@ struct WeighNeighbours {
 
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t at = inner[i];
-    Stencil<3> around;
+    Stencil<3> around{};
     around.find(grid, grid.cell(at) - Int3(1));
     float* out = rows.row(i);
     float sum = 0;

@@ -36,9 +36,11 @@ class FlowMethodOn : public FlowMethod {
     make_arrays(vectors);
     warm_up();
     shows_ = first_ == step_;
-    show();
-    ++launched_;
-    for (int k = first_; k < step_; ++k) shows_ = k + 1 == step_, advance(k);
+    show(), ++launched_;
+    for (int k = first_; k < step_; ++k) {
+      shows_ = k + 1 == step_, advance(k);
+      exec_.tell_share(double(k + 1 - first_) / double(step_ - first_));
+    }
     exec_.wait();
   }
 

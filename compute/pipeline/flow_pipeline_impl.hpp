@@ -30,7 +30,7 @@ class FlowPipelineOf final : public FlowPipeline {
   double carry(const FlowMesh& mesh, const FlowVectors& vectors, FlowCarry how) override {
     const FlowMethod& before = flow();
     if (!spare_) spare_ = std::make_unique<Executor<Backend>>(device_);
-    spare_->watch(stop_);
+    spare_->watch(stop_, share_);
     spare_->arena().rewind(0);
     spare_->timers() = exec_->timers();
     std::unique_ptr<FlowMethod> method = make_method(*spare_);
@@ -54,9 +54,9 @@ class FlowPipelineOf final : public FlowPipeline {
   std::size_t peak_bytes() const override {
     return exec_->arena().peak_bytes() + (spare_ ? spare_->arena().peak_bytes() : 0);
   }
-  void watch(const std::atomic<bool>* stop) override {
-    stop_ = stop;
-    exec_->watch(stop);
+  void watch(const std::atomic<bool>* stop, std::atomic<float>* share) override {
+    stop_ = stop, share_ = share;
+    exec_->watch(stop, share);
   }
 
  private:
@@ -76,6 +76,7 @@ class FlowPipelineOf final : public FlowPipeline {
   Device& device_;
   std::unique_ptr<Executor<Backend>> exec_, spare_;  ///< spare: null before the first `carry`
   const std::atomic<bool>* stop_ = nullptr;
+  std::atomic<float>* share_ = nullptr;
 };
 
 }  // namespace nacre

@@ -53,7 +53,7 @@ class FlowScene : public Scene {
   bool settled() const override;
   std::string title() const override;
   std::string state() const override;
-  SceneProgress progress() const override { return {worker_.stage(), -1}; }
+  SceneProgress progress() const override { return {worker_.stage(), worker_.share()}; }
   Transport transport() const override;
   const std::string& failure() const override { return failure_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }

@@ -43,7 +43,7 @@ FlowWorker::FlowWorker(const Session& session, std::unique_ptr<Device> device, b
   if (has_lines(wanted_)) due_.add(FlowStage::lines);
   if (!wanted_.probe.empty()) due_.add(FlowStage::probes);
   if (is_ftle(wanted_.color)) due_.add(FlowStage::colours);
-  pipeline_->watch(&interrupt_);
+  pipeline_->watch(&interrupt_, &share_);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -238,6 +238,7 @@ void FlowWorker::perform(FlowStage stage, std::unique_lock<std::mutex>& lock) {
   take_timers(*pipeline_);
   lock.lock();
   doing_.reset();
+  share_ = -1;
   if (!lost_.empty() && failure.empty()) failure = lost_;
   if (interrupted || !failure.empty()) undo(stage, failure);
 }

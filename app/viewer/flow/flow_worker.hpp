@@ -218,6 +218,7 @@ class FlowWorker : public Worker<FlowEvent> {
   void write(const std::filesystem::path& file);
 
   std::string stage() const;  ///< what it does now, for the panel: "embedding"; empty: nothing
+  double share() const { return share_; }  ///< how much of that is done, 0..1; below 0: not known
 
  private:
   struct FocusRequest {
@@ -279,6 +280,7 @@ class FlowWorker : public Worker<FlowEvent> {
   static std::vector<float> scalar(VectorsInTime& vectors, double time);
   static std::shared_ptr<const std::vector<Vec3f>> vectors_at(VectorsInTime& vectors, double time);
 
+  std::atomic<float> share_{-1};
   const SessionInput input_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<FlowPipeline> pipeline_;

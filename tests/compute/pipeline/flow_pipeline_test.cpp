@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <set>
+#include <string>
 
 #include "compute/device/device.hpp"
 #include "compute/device/error.hpp"
@@ -67,6 +70,24 @@ TEST_P(FlowDoor, MemoryOfWhoDrawsIsWrittenAndNeverRead) {
   pipeline_->flow().step();
   EXPECT_NE(pipeline_->flow().shown(), shown);
   EXPECT_EQ(drawn, std::vector<float>(drawn.size(), 7.0f));
+}
+
+TEST_P(FlowDoor, AnotherThreadCanReadHowMuchIsDone) {
+  std::atomic<float> share{-1};
+  pipeline_->watch(nullptr, &share);
+  pipeline_->embed({points_, triangles_, normals_});
+  EXPECT_EQ(share, std::string(GetParam()) == "thesis" ? -1 : 1) << "the thesis octree does not tell";
+  std::vector<float> seen;
+  vectors_.end = 1;
+  vectors_.at = [&](double, std::span<Vec3f> out) {
+    seen.push_back(share);
+    std::fill(out.begin(), out.end(), Vec3f(1, 0.5f, 0));
+  };
+  share = -1;
+  pipeline_->flow().start(vectors_);
+  EXPECT_EQ(share, 1);
+  EXPECT_TRUE(std::is_sorted(seen.begin(), seen.end()));
+  EXPECT_GT(std::set<float>(seen.begin(), seen.end()).size(), 2u) << "it grows from step to step of the warm-up";
 }
 
 TEST_P(FlowDoor, TheBackgroundIsOpaqueUnlessAskedToBeTransparent) {
