@@ -121,7 +121,7 @@ struct FlowLookup {
   enum class Kind {
     grid,    ///< RefinedGridView says how
     octree,  ///< BrickOctreeView
-    thesis   ///< SourceOctreeView
+    thesis   ///< ThesisOctreeView
   };
   Kind kind = Kind::grid;
   std::uint64_t values = 0;  ///< how many are shown
