@@ -160,6 +160,7 @@ class FlowScene : public Scene {
   void seek(int position);
   void restart_at(int position);
   void show_kept(int position);
+  void warm_up_behind();
   bool play_kept();
   void forget_frames();
   int steps_in_all() const { return std::max(1, settings_.flow.steps); }

@@ -76,6 +76,14 @@ void FlowScene::show_kept(int position) {
   ++version_;
 }
 
+/// Brings the worker to the time of a frame that was looked back at.
+void FlowScene::warm_up_behind() {
+  if (newest_ == position_)
+    looks_back_ = false;
+  else
+    restart_at(position_);
+}
+
 /// Goes on from a frame that was looked back at, as far as frames are at hand; then the worker goes on, or starts over.
 /// False: the next frame is the worker's.
 bool FlowScene::play_kept() {

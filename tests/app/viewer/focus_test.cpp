@@ -227,6 +227,18 @@ TEST_F(FocusInView, ManyMovesLeaveNothingBehind) {
   EXPECT_TRUE(scene_->warnings().empty()) << scene_->warnings().front();
 }
 
+TEST_F(FocusInView, ComesAfterAnUndoThatShowsKeptFrames) {
+  open();
+  look(1);
+  let_pass();
+  for (const double step_cells : {5.0, session_.settings.flow.step_cells, 5.0}) {
+    change([&](Settings& s) { s.flow.step_cells = step_cells; });
+    let_pass();
+  }
+  look(16);
+  EXPECT_TRUE(becomes_focused());
+}
+
 TEST_F(FocusInView, ViewsThatShowNothingOrStandInsideHaveNone) {
   open();
   look(16, 50);
