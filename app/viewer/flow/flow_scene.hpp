@@ -200,6 +200,7 @@ class FlowScene : public Scene {
   FlowView seen_{{}, 0, 0};           ///< of the last frame
   double now_ = 0, rests_since_ = 0;  ///< seconds
   bool looked_ = false;               ///< a focus was asked for, for this view
+  bool moved_since_ = false;          ///< the camera, since a kept frame has been seen
   bool awaits_focus_ = false;         ///< that is not answered
   bool begun_looking_ = false;        ///< a frame was made in lockstep
   bool lockstep_ = false;             ///< frames wait for their focus

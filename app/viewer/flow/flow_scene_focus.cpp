@@ -71,6 +71,7 @@ void FlowScene::await_focus(const View& view) {
 bool FlowScene::sees(const View& view) {
   const FlowView seen{view.camera, view.width, view.height};
   if (seen == seen_) return true;
+  moved_since_ = looks_back_ && seen_.height > 0;
   seen_ = seen;
   looked_ = false;
   if (awaits_focus_) worker_.stop_focus();
@@ -101,7 +102,7 @@ bool FlowScene::cells_are_fine() const { return !shown_ || shown_->info.cell_siz
 /// Not while a step is being made, so that no step comes between the focus and its first values.
 void FlowScene::ask_focus() {
   if (looked_ || !settings_.focus || !complete() || seen_.height <= 0 || cells_are_fine()) return;
-  if (looks_back_ && !settings_.view.play && !worker_.busy()) warm_up_behind();
+  if (moved_since_ && !settings_.view.play && !worker_.busy()) warm_up_behind();
   if (focus_changes() || looks_back_ || warming_ || newest_ < 0 || next_ || shown_->values.writing()) return;
   looked_ = awaits_focus_ = true;
   worker_.focus(seen_, lockstep_ ? picture_budget(seen_) : window_budget(seen_), ++focus_request_);

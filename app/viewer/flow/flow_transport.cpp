@@ -1,6 +1,7 @@
 // Nacre: the time of a flow in the viewer: what is shown again, what is computed, and where it starts over.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/viewer/flow/flow_scene.hpp"
 
@@ -76,10 +77,12 @@ void FlowScene::show_kept(int position) {
   ++version_;
 }
 
-/// Brings the worker to the time of a frame that was looked back at.
+/// Brings the worker to the time of a frame that is looked back at, by the cheapest means.
 void FlowScene::warm_up_behind() {
-  if (newest_ == position_)
-    looks_back_ = false;
+  moved_since_ = false;
+  if (!std::exchange(looks_back_, false) || newest_ == position_) return;
+  if (newest_ < 0 && position_after(1) == position_)
+    stale_ = true;  // it has started just before
   else
     restart_at(position_);
 }
