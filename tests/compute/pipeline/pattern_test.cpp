@@ -19,7 +19,7 @@ class Patterns : public ::testing::Test {
     for (const Triangle& t : mesh_.triangles)
       for (int k = 0; k < 3; ++k) normals_.push_back(Vec3f(normalized(mesh_.points[t[k]])));
     FlowParameters& p = pipeline_->parameters;
-    p.resolution = 160;
+    p.resolution = 112;
     p.refine = 2;
     p.pattern_spacing = 14;
   }
