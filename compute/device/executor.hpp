@@ -41,7 +41,8 @@ class ExecutorBase {
   void tell_share(double share) {
     if (share_) share_->store(float(share), std::memory_order_relaxed);
   }
-  /// The next launch is this part of the work of a long call: the share grows from one to the other meanwhile.
+  /// The next launch is this part of the work of a long call: the share is `from`, and on the CPU grows to `to`
+  /// meanwhile.
   void next_is(double from, double to) {
     tell_share(from);
     part_ = {from, to};

@@ -226,7 +226,8 @@ class FlowPipeline {
 
   virtual StageTimers& timers() = 0;
   virtual std::size_t peak_bytes() const = 0;             ///< of the arena
-  /// `stop` is checked between and inside launches; `share` tells how much of `embed` or `start` is done, 0..1.
+  /// `stop` is checked between and inside launches; `share` tells how much of `embed` (but of the thesis octree) or of
+  /// `start` is done, 0..1.
   virtual void watch(const std::atomic<bool>* stop, std::atomic<float>* share = nullptr) = 0;
 
  protected:

@@ -280,7 +280,7 @@ class FlowWorker : public Worker<FlowEvent> {
   static std::vector<float> scalar(VectorsInTime& vectors, double time);
   static std::shared_ptr<const std::vector<Vec3f>> vectors_at(VectorsInTime& vectors, double time);
 
-  std::atomic<float> share_{-1};
+  std::atomic<float> share_{-1};  ///< written by the pipeline
   const SessionInput input_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<FlowPipeline> pipeline_;

@@ -58,7 +58,7 @@ TEST(Triangulate, StarKeepsItsArea) {
 }
 
 TEST(Triangulate, APolygonIsTheSameFromWhicheverCornerItBegins) {
-  // Seen from the first corner, all triangles of a fan but the first are the wrong way round.
+  // Without its first triangle, the fan of the first corner is the wrong way round.
   const std::vector<Vec3d> points = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1.2, 0}, {0.8, 1, 0}};
   for (std::uint32_t first = 0; first < 5; ++first) {
     std::vector<std::uint32_t> corners;
