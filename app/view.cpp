@@ -15,6 +15,7 @@
 #include "engine/run/presets.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
+#include "engine/scene/session/compared.hpp"
 #include "engine/scene/settings/knobs.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/prepare.hpp"
@@ -108,6 +109,7 @@ void check_names(const Session& session) {
   });
   with_usage_errors([&] { check_particle_sizes(session.settings.mesh); });
   check_picture_options(session.settings);
+  if (compares(session)) with_usage_errors([&] { check_names(compared_session(session)); });
 }
 
 /// Unknown names are found before the work begins, also in the events of a script.

@@ -61,6 +61,7 @@ class FlowScene : public Scene {
   SceneTotals totals() const override;
   int steps() const { return results_.steps; }
   void set_lockstep(bool on) override { lockstep_ = on; }
+  void hold_while(std::function<bool()> held) override { held_ = std::move(held); }
   /// Ends the waiting of frames in lockstep; null: nothing does.
   void set_stop(const std::atomic<bool>* stop) { stop_ = stop; }
   bool focused() const;  ///< a close-up is shown with cells as fine as pixels, fully faded in
@@ -204,6 +205,7 @@ class FlowScene : public Scene {
   bool awaits_focus_ = false;         ///< that is not answered
   bool begun_looking_ = false;        ///< a frame was made in lockstep
   bool lockstep_ = false;             ///< frames wait for their focus
+  std::function<bool()> held_;        ///< it makes no step; empty: it may
   const std::atomic<bool>* stop_ = nullptr;
   int focus_request_ = 0;       ///< the newest
   std::array<Vec3d, 2> box_{};  ///< around the surface: lower and upper corner

@@ -217,7 +217,7 @@ class FlowWorker : public Worker<FlowEvent> {
   /// Writes the values as `nacre flow --out` does, after what goes on; ends with FlowWritten.
   void write(const std::filesystem::path& file);
 
-  std::string stage() const;  ///< what it does now, for the panel: "embedding"; empty: nothing
+  std::string stage() const;               ///< what it does now, for the panel: "embedding"; empty: nothing
   double share() const { return share_; }  ///< how much of that is done, 0..1; below 0: not known
 
  private:

@@ -14,14 +14,14 @@
 namespace nacre {
 
 /// The point of the scene that the mouse is over; none: it is over a panel, or over nothing.
-std::optional<Vec3d> Ui::under_cursor(const Session& session, Scene& scene, const UiFacts& facts) {
+std::optional<Vec3d> Ui::under_cursor(const Session& session, const UiFacts& facts) {
   const ImGuiIO& io = ImGui::GetIO();
   std::optional<ProbeResult> probed;
   if (session.camera && !io.WantCaptureMouse && ImGui::IsMousePosValid()) {
-    const FreeArea area = free_area(session.settings.view, facts.width, facts.height);
+    const FreeArea& area = facts.pointed.area;
     const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
     const auto [from, along] = ray_under(facts.camera, x, y, area.aspect());
-    probed = scene.probe(from, along);
+    probed = facts.pointed.scene.probe(from, along);
   }
   if (!probed) show_note("point at the surface with the mouse, then press the key");
   return probed ? std::optional(probed->position) : std::nullopt;
@@ -29,7 +29,7 @@ std::optional<Vec3d> Ui::under_cursor(const Session& session, Scene& scene, cons
 
 /// One more point of the ruler; after the third it begins again.
 void Ui::measure(Session& session, Scene& scene, const UiFacts& facts) {
-  const std::optional<Vec3d> point = under_cursor(session, scene, facts);
+  const std::optional<Vec3d> point = under_cursor(session, facts);
   if (!point) return;
   std::string& ruler = session.settings.view.ruler;
   std::vector<Vec3d> points = parse_ruler(ruler);
@@ -44,7 +44,7 @@ void Ui::measure(Session& session, Scene& scene, const UiFacts& facts) {
 /// One more source of the last dye, or of another one.
 void Ui::release_dye(Session& session, Scene& scene, const UiFacts& facts, bool another) {
   if (!scene.is_flow()) return show_note("dye: for flows only");
-  const std::optional<Vec3d> point = under_cursor(session, scene, facts);
+  const std::optional<Vec3d> point = under_cursor(session, facts);
   if (!point) return;
   std::string& dye = session.settings.dye;
   if (another && std::size_t(std::count(dye.begin(), dye.end(), '|')) + 1 >= most_dyes)
@@ -58,7 +58,7 @@ void Ui::release_dye(Session& session, Scene& scene, const UiFacts& facts, bool 
 /// One more point of which the panel shows what is there through time.
 void Ui::plot_point(Session& session, Scene& scene, const UiFacts& facts) {
   if (!scene.is_flow()) return show_note("graph: for flows only");
-  const std::optional<Vec3d> point = under_cursor(session, scene, facts);
+  const std::optional<Vec3d> point = under_cursor(session, facts);
   if (!point) return;
   std::string& probe = session.settings.probe;
   if (!probe.empty()) probe += ';';
@@ -66,8 +66,8 @@ void Ui::plot_point(Session& session, Scene& scene, const UiFacts& facts) {
   show_note("graph: in the tab \"result\"");
 }
 
-void Ui::ask_note(Session& session, Scene& scene, const UiFacts& facts) {
-  note_place_ = under_cursor(session, scene, facts);
+void Ui::ask_note(Session& session, const UiFacts& facts) {
+  note_place_ = under_cursor(session, facts);
   opens_note_ = note_place_.has_value();
   note_.clear();
 }

@@ -15,6 +15,7 @@
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
+#include "engine/scene/session/compared.hpp"
 
 namespace nacre {
 namespace {
@@ -158,6 +159,36 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
   ImGui::EndMenu();
 }
 
+/// What a second view shows. Its knobs are in the tab "look".
+void Ui::compare_menu(Session& session) {
+  if (!ImGui::BeginMenu("Compare with")) return;
+  std::string& compare = session.settings.view.compare;
+  const auto show = [&](const std::string& what) {
+    compare = what;
+    session.settings.view.tab = PanelTab::look;
+  };
+  if (ImGui::MenuItem("nothing", nullptr, compare.empty()))
+    compare.clear(), session.settings.view.compare_knobs.clear();
+  if (ImGui::MenuItem("the same data", nullptr, compare == compare_same)) show(compare_same);
+  if (ImGui::MenuItem("a file ...")) {
+    std::vector<std::string> extensions = data_extensions();
+    extensions.pop_back();  // a session
+    dialog_.open(FileDialog::Mode::open, "compare with", std::move(extensions));
+    then_ = [](const std::vector<fs::path>& files, Session& changed, UiRequests&) {
+      changed.settings.view.compare = compare_text({files, "", 0});
+    };
+  }
+  const auto samples_of = [&](const char* title, const auto& all) {
+    if (!ImGui::BeginMenu(title)) return;
+    for (const auto& sample : all)
+      if (ImGui::MenuItem(sample.name.c_str())) show(compare_text({{}, sample.name, 0}));
+    ImGui::EndMenu();
+  };
+  samples_of("a sample of flow", samples());
+  samples_of("a sample of volumes", phantoms());
+  ImGui::EndMenu();
+}
+
 void Ui::view_menu(Session& session, UiRequests& requests) {
   if (!ImGui::BeginMenu("View")) return;
   ViewSettings& view = session.settings.view;
@@ -166,6 +197,7 @@ void Ui::view_menu(Session& session, UiRequests& requests) {
     if (ImGui::MenuItem(v.name, std::string(1, v.key).c_str())) requests.look_from = v.view;
   if (session.camera) ImGui::MenuItem("Orthographic", "o", &session.camera->orthographic);
   cameras_menu(session);
+  compare_menu(session);
   bool ball = view.turning == Turning::trackball;
   if (ImGui::MenuItem("Trackball", "b", &ball)) view.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
@@ -266,7 +298,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'p': view.panel = !view.panel; break;
       case 't': view.theme = other(view.theme); break;
       case 'd': measure(session, scene, facts); break;
-      case 'n': ask_note(session, scene, facts); break;
+      case 'n': ask_note(session, facts); break;
       case 'g': plot_point(session, scene, facts); break;
       case 'r':
       case 'R': release_dye(session, scene, facts, key == 'R'); break;
@@ -319,7 +351,7 @@ void Ui::quit_window(UiRequests& requests) {
 }
 
 void Ui::welcome_card(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests) {
-  if (!facts.opening.empty()) welcome_.hide();
+  if (facts.opening) welcome_.hide();
   const WelcomeCard::Wish wish = welcome_.draw(area, facts.recent);
   if (wish.open) ask_open();
   if (!wish.sample.empty()) open_sample(wish.sample, session);

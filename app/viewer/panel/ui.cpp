@@ -9,6 +9,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/viewer/panel/compare_panel.hpp"
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "app/viewer/scene/free_area.hpp"
@@ -130,6 +131,7 @@ void look_tab(Session& session, ScenePanel& panel) {
     for (const char* name : names) knob_widget(settings, name);
   };
   if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back", "back_faces"});
+  if (ImGui::CollapsingHeader("compare")) compare_section(session);
   if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
   if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
   if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size", "panel_side", "panel_width"});
@@ -237,8 +239,7 @@ void Ui::status(const ViewSettings& view, Scene& scene, const UiFacts& facts, Ui
   const auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
                      ImGuiWindowFlags_NoNav;
   if (ImGui::Begin("status", nullptr, fixed)) {
-    const SceneProgress progress =
-        facts.opening.empty() ? scene.progress() : SceneProgress{"opening " + facts.opening, -1};
+    const SceneProgress& progress = facts.progress;
     if (!progress.stage.empty()) {
       if (ImGui::Button("cancel")) requests.cancel = true;
       ImGui::SameLine();
@@ -271,13 +272,14 @@ void Ui::status(const ViewSettings& view, Scene& scene, const UiFacts& facts, Ui
   ImGui::End();
 }
 
-void Ui::probe_window(Scene& scene, const Camera& camera, const FreeArea& area) {
+void Ui::probe_window(const PointedView& pointed, const Camera& camera) {
+  const FreeArea& area = pointed.area;
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
   if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return;
   const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
   const auto [from, along] = ray_under(camera, x, y, area.aspect());
-  const std::optional<ProbeResult> probed = scene.probe(from, along);
+  const std::optional<ProbeResult> probed = pointed.scene.probe(from, along);
   if (!probed) return;
   ImGui::SetNextWindowPos(ImVec2(float(area.x) + 8, float(area.y) + 8));  // the time is in the corner below
   ImGui::SetNextWindowBgAlpha(0.7f);
@@ -314,7 +316,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     const bool played = session.settings.view.play;
     transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
     if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
-    if (session.camera) probe_window(scene, facts.camera, area);
+    if (session.camera) probe_window(facts.pointed, facts.camera);
   }
   welcome_card(session, facts, area, requests);
   error_window(area);

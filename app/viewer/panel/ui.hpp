@@ -19,9 +19,17 @@
 
 namespace nacre {
 
+/// The view that the mouse is over.
+struct PointedView {
+  Scene& scene;
+  FreeArea area;
+};
+
 /// Facts about the loop, for the panels.
 struct UiFacts {
   ScenePanel& panel;
+  PointedView pointed;
+  SceneProgress progress;  ///< of what is computed, or read
   const FrameClock& clock;
   std::string renderer;
   const std::vector<std::filesystem::path>& recent;
@@ -32,7 +40,7 @@ struct UiFacts {
   int width = 0, height = 0;
   Camera camera;               ///< of what is seen
   std::vector<KeyPress> keys;  ///< since the last frame
-  std::string opening;         ///< what is being read, and will be shown when it can be; empty: nothing
+  bool opening = false;        ///< something is being read, and will be shown when it can be
 };
 
 /// What the user wants of the program.
@@ -87,20 +95,21 @@ class Ui {
   void knob_tab(Session& session);
   void status(const ViewSettings& view, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void screenshot_window(const UiFacts& facts);
-  void probe_window(Scene& scene, const Camera& camera, const FreeArea& area);
+  void probe_window(const PointedView& pointed, const Camera& camera);
   void error_window(const FreeArea& area);
   void quit_window(UiRequests& requests);
   void welcome_card(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests);
   void help_windows(const UiFacts& facts, const FreeArea& area);
   // Marks; in marks_ui.cpp.
-  std::optional<Vec3d> under_cursor(const Session& session, Scene& scene, const UiFacts& facts);
+  std::optional<Vec3d> under_cursor(const Session& session, const UiFacts& facts);
   void measure(Session& session, Scene& scene, const UiFacts& facts);
   void plot_point(Session& session, Scene& scene, const UiFacts& facts);
   void release_dye(Session& session, Scene& scene, const UiFacts& facts, bool another);
-  void ask_note(Session& session, Scene& scene, const UiFacts& facts);
+  void ask_note(Session& session, const UiFacts& facts);
   void note_window(Session& session);
   void marks_menu(Session& session);
   void cameras_menu(Session& session);
+  void compare_menu(Session& session);
   bool close_topmost();
   void ask_open();
   void ask_result(Scene& scene);

@@ -5,6 +5,8 @@
 
 #include "app/viewer/scene/marks.hpp"
 #include "engine/picture/legend.hpp"
+#include "engine/picture/lettering.hpp"
+#include "engine/picture/text.hpp"
 
 namespace nacre {
 
@@ -16,10 +18,33 @@ Rgba paper_of(const std::string& background) {
   return {std::uint8_t(rgb >> 16), std::uint8_t(rgb >> 8), std::uint8_t(rgb), 255};
 }
 
-void Captions::draw(Scene& scene, const View& view, const Settings& settings) {
+namespace {
+
+/// One line in the left upper corner, as far as it fits.
+Image heading_sheet(int width, int height, const std::string& line, const Rgba& paper) {
+  Image sheet = clear_sheet(width, height, paper);
+  const float pixels = lettering_size(sheet);
+  if (pixels <= 0) return {};
+  const int margin = int(pixels);
+  draw_lettering(sheet, margin, margin, text_to_fit(line, pixels, width - 2 * margin), pixels,
+                 ink_for(sheet, 0, 0, width, 3 * margin));
+  return sheet;
+}
+
+}  // namespace
+
+void Captions::draw(Scene& scene, const View& view, const Settings& settings, const std::string& heading) {
   draw_scene(scene, view);
   if (settings.legend) draw_triad(view, settings.background);
+  if (settings.legend && !heading.empty()) draw_heading(view, settings.background, heading);
   draw_marks(view, settings, scene.unit());
+}
+
+void Captions::draw_heading(const View& view, const std::string& background, const std::string& line) {
+  const Headed wanted{view.width, view.height, line, background};
+  if (headed_ != wanted) heading_.set_image(heading_sheet(view.width, view.height, line, paper_of(background)));
+  headed_ = wanted;
+  heading_.draw(view);
 }
 
 void Captions::draw_marks(const View& view, const Settings& settings, const std::string& unit) {

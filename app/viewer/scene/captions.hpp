@@ -12,8 +12,9 @@ namespace nacre {
 
 class Captions {
  public:
-  /// Draws into what is bound. Images are made and go up only where they differ from the last ones.
-  void draw(Scene& scene, const View& view, const Settings& settings);
+  /// Draws into what is bound. Images are made and go up only where they differ from the last ones. `heading`: a line
+  /// at the top, with the legend.
+  void draw(Scene& scene, const View& view, const Settings& settings, const std::string& heading = {});
   /// Of another scene.
   void forget() { drawn_ = {}; }
 
@@ -21,6 +22,7 @@ class Captions {
   void draw_scene(Scene& scene, const View& view);
   void draw_marks(const View& view, const Settings& settings, const std::string& unit);
   void draw_triad(const View& view, const std::string& background);
+  void draw_heading(const View& view, const std::string& background, const std::string& line);
 
   /// What an image was made for.
   struct Made {
@@ -40,7 +42,13 @@ class Captions {
     std::string ruler, notes, unit, background;
     bool operator==(const Marked&) const = default;
   };
-  OverlayPass scene_, triad_, marks_;
+  struct Headed {
+    int width = 0, height = 0;
+    std::string line, background;
+    bool operator==(const Headed&) const = default;
+  };
+  OverlayPass scene_, triad_, marks_, heading_;
+  Headed headed_;
   Marked marked_;
   Made drawn_;
   Seen seen_;

@@ -53,6 +53,8 @@ class Scene {
   virtual bool advance_and_wait(const std::atomic<bool>& stop, double patience) = 0;
   /// Waits for frames from now on, as SceneOptions::lockstep.
   virtual void set_lockstep(bool) {}
+  /// A flow makes no step while this is true: it waits for one that it is compared with. Empty: it never waits.
+  virtual void hold_while(std::function<bool()>) {}
 
   /// Takes over `settings`, in which these knobs have changed. What they do not concern goes on; what they do begins
   /// again from there.

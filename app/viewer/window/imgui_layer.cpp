@@ -63,6 +63,11 @@ void ImGuiLayer::dress(const ViewSettings& view) {
   size_ = size;
 }
 
+std::array<float, 2> ImGuiLayer::cursor() const {
+  const ImVec2& at = ImGui::GetIO().MousePos;
+  return {at.x, at.y};
+}
+
 /// Replaces what the backend polls: a user may do more in a frame than can be polled at its end.
 void ImGuiLayer::take_input() {
   const InputFrame input = window_->next_input();

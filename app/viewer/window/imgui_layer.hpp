@@ -23,6 +23,7 @@ class ImGuiLayer {
 
   /// Keys with ctrl, and Escape, that went down in this frame.
   const std::vector<KeyPress>& chords() const { return chords_; }
+  std::array<float, 2> cursor() const;  ///< pixels from the left upper corner
 
   /// Is the user in the middle of something: pulling a slider, typing?
   static bool busy();

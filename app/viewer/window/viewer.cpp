@@ -68,6 +68,7 @@ void Viewer::make_graphics() {
 void Viewer::drop_graphics() {
   opening_.reset();
   left_.clear();
+  comparison_.close();
   open_.reset();  // before the context that all of it lives in
   frame_.reset();
   captions_.reset();
@@ -85,7 +86,7 @@ void Viewer::begin_again() {
 
 bool Viewer::done() const {
   // What has no window and no end of its own ends with the mesh.
-  const bool settled = !window_ && options_.frames == 0 && options_.session.duration <= 0 && scene().settled();
+  const bool settled = !window_ && options_.frames == 0 && options_.session.duration <= 0 && all_settled();
   return (quit_ && !saving_.on()) || settled || (!window_ && player_->ended()) ||
          (options_.frames > 0 && counted_ >= options_.frames);
 }
@@ -100,6 +101,7 @@ void Viewer::frame() {
   leave_lost_device();
   const bool advanced = advance_scene();
   if (scene().settle_knobs(session_)) settled_knobs_ = may_differ_ = true;
+  if (comparison_.on() && comparison_.settle_knobs(session_)) settled_knobs_ = may_differ_ = true;
   if (options_.offscreen && !scene().failure().empty()) throw Error(scene().failure());
   const double begin = now();
   const DrawDemand::Shown shown = what_is_shown(width, height);
@@ -135,9 +137,9 @@ void Viewer::frame() {
 }
 
 DrawDemand::Shown Viewer::what_is_shown(int width, int height) const {
-  const SceneProgress progress = scene().progress();
+  const SceneProgress progress = this->progress();
   return {{width, height},
-          scene().version(),
+          scene().version() + (comparison_.on() ? comparison_.scene().version() : 0),
           progress.stage.empty() ? "" : fmt::format("{} {:.3f}", progress.stage, progress.fraction),
           fmt::format("{} {} {} {}", scene().halted(), saving_.name(), scene().failure(), opening_.has_value())};
 }
@@ -151,14 +153,18 @@ bool Viewer::needs_frame(double time, const DrawDemand::Shown& shown, bool chang
 
 bool Viewer::advance_scene() {
   const bool filming = film_.from_menu();
-  if (!filming && waits()) return scene().advance_and_wait(*options_.stop, endless);
   bool advanced = !filming;
+  const auto wait = [&](double patience) {
+    advanced = scene().advance_and_wait(*options_.stop, patience);
+    if (advanced && comparison_.on()) comparison_.advance_and_wait(scene(), *options_.stop);
+  };
+  if (!filming && waits()) return wait(endless), advanced;
   attempt([&] {
-    if (filming && scene().failure().empty())
-      advanced = scene().advance_and_wait(*options_.stop, 0.05);
-    else
-      scene().advance(now());
+    if (filming && scene().failure().empty()) return wait(0.05);
+    if (comparison_.on()) comparison_.advance(scene(), now());
+    scene().advance(now());
   });
+  if (const std::string failure = comparison_.take_failure(); !failure.empty()) show_error(failure);
   return advanced;
 }
 
@@ -171,7 +177,7 @@ void Viewer::add_to_video() {
     if (!window_) throw;
     show_error(error.what());
     if (!from_menu) result_.lost_video = error.what();
-    scene().set_lockstep(waits());
+    set_lockstep(waits());
   }
 }
 
@@ -179,38 +185,50 @@ void Viewer::draw_scene(Framebuffer& frame, const FreeArea& area, const std::arr
   frame.bind();
   frame.clear(background);
   if (!framing_.ready()) return;
-  frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
-  const View view = scene_view(session_, scene().corners(), turned_, area.width, area.height);
+  const auto bind = [&](const FreeArea& part) {
+    frame.bind_part(part.x, frame.height() - part.y - part.height, part.width, part.height);
+  };
+  const auto [first, second] = views(area);
+  bind(first);
+  const View view = scene_view(session_, scene().corners(), turned_, first.width, first.height);
   scene().draw(view);
-  captions_->draw(scene(), view, session_.settings);
+  captions_->draw(scene(), view, session_.settings, comparison_.first_heading());
+  if (second.width > 0) {
+    bind(second);
+    comparison_.draw(session_, turned_, second.width, second.height);
+  }
   frame.bind();
 }
 
 void Viewer::draw(int width, int height, double seconds) {
   imgui_->begin(width, height, seconds, session_.settings.view);
   const FreeArea area = ui_.free_area(session_.settings.view, width, height);
-  area_ = area;
-  framing_.keep(session_, scene(), area, options_.first_camera);
+  const auto [first, second] = views(area);
+  area_ = first;
+  framing_.keep(session_, scene(), first, options_.first_camera);
   draw_scene(*frame_, area, background_of(session_.settings));
-  if (session_.camera) move_by_hand(*session_.camera, area);
-  const UiFacts facts{*open_.panel,     clock_,
+  const bool at_second = second.width > 0 && imgui_->cursor()[0] >= second.x;
+  const PointedView pointed{at_second ? comparison_.scene() : scene(), at_second ? second : first};
+  if (session_.camera) move_by_hand(*session_.camera, pointed);
+  const UiFacts facts{*open_.panel,     pointed,
+                      progress(),       clock_,
                       result_.renderer, recent_.files(),
                       undo_.can_undo(), undo_.can_redo(),
                       recording_.on(),  film_.from_menu() ? film_.length() : "",
                       saving_.name(),   width,
                       height,           orbit(session_.camera.value_or(Camera()), turned_),
-                      imgui_->chords(), opening_ ? input_name(opening_->session) : ""};
+                      imgui_->chords(), opening_.has_value()};
   requests_ = ui_.draw(session_, scene(), facts);
   imgui_->end();
   if (window_) frame_->show_in_window();
 }
 
-void Viewer::move_by_hand(Camera& camera, const FreeArea& area) {
+void Viewer::move_by_hand(Camera& camera, const PointedView& pointed) {
   const Camera seen = orbit(camera, turned_);
   Camera moved = seen;
-  move_camera(moved, session_.settings.view.turning, area, diameter_of(scene().seen()),
-              [this](const Vec3d& from, const Vec3d& along) -> std::optional<Vec3d> {
-                const std::optional<ProbeResult> met = scene().probe(from, along);
+  move_camera(moved, session_.settings.view.turning, pointed.area, diameter_of(scene().seen()),
+              [&](const Vec3d& from, const Vec3d& along) -> std::optional<Vec3d> {
+                const std::optional<ProbeResult> met = pointed.scene.probe(from, along);
                 return met ? std::optional(met->position) : std::nullopt;
               });
   if (moved == seen) return;
@@ -239,6 +257,7 @@ bool Viewer::take_changes() {
     open();
   else if (!change->input && !change->knobs.empty())
     scene().set_settings(session_.settings, ChangedKnobs(change->knobs));
+  if (change->input || !change->knobs.empty()) follow_comparison();
   told_ = session_;
   return true;
 }
@@ -256,6 +275,7 @@ void Viewer::finish() {
   if (options_.picture && frame_) result_.image = frame_->read();
   if (!options_.out.empty() && !result_.interrupted) scene().write_result(options_.out);
   scene().finish();
+  if (comparison_.on()) comparison_.scene().finish();
   const SceneTotals totals = scene().totals();
   result_.steps = totals.steps;
   result_.copied_bytes = totals.copied_bytes;

@@ -12,6 +12,7 @@
 #include "app/viewer/scene/scene_view.hpp"
 #include "app/viewer/scene/worker.hpp"
 #include "app/viewer/window/camera_control.hpp"
+#include "app/viewer/window/comparison.hpp"
 #include "app/viewer/window/draw_demand.hpp"
 #include "app/viewer/window/event_log.hpp"
 #include "app/viewer/window/film.hpp"
@@ -72,6 +73,14 @@ class Viewer {
   void leave_scene();
   Scene& scene() const { return *open_.scene; }
 
+  // The second scene goes along with the first.
+  void follow_comparison();
+  bool all_settled() const { return scene().settled() && (!comparison_.on() || comparison_.scene().settled()); }
+  void halt();
+  void resume();
+  void set_lockstep(bool on);
+  SceneProgress progress() const;
+
   // Another input beside the one that is shown; in opening.cpp.
   struct Opening {
     OpenScene open;
@@ -103,7 +112,7 @@ class Viewer {
   double patience() const {
     if (!draws_on_demand()) return 0;
     if (opening_) return shortest_frame;
-    return !scene().settled() && !scene().halted() ? shortest_frame : 0.1;
+    return !all_settled() && !scene().halted() ? shortest_frame : 0.1;
   }
 
   DrawDemand::Shown what_is_shown(int width, int height) const;
@@ -114,11 +123,15 @@ class Viewer {
 
   /// A video that cannot be written ends; what is seen in a window goes on.
   void add_to_video();
+  /// Where the first and the second scene are drawn; without a second, the first has all, and the other is empty.
+  std::array<FreeArea, 2> views(const FreeArea& area) const {
+    return comparison_.on() ? halves(area) : std::array{area, FreeArea{}};
+  }
   void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background);
   void draw(int width, int height, double seconds);
 
   /// What the hand takes hold of is what is seen, as far as it has turned.
-  void move_by_hand(Camera& camera, const FreeArea& area);
+  void move_by_hand(Camera& camera, const PointedView& pointed);
 
   /// From where it is seen now, as far as it has turned.
   void fit_what_is_seen() {
@@ -208,6 +221,7 @@ class Viewer {
   OpenScene open_;
   std::optional<Opening> opening_;
   LeftScenes left_;
+  Comparison comparison_;
   Ui ui_;
   Undo undo_;
   RecentFiles recent_;

@@ -17,7 +17,7 @@ void Viewer::try_to_quit() {
 
 std::vector<std::string> Viewer::reasons_to_stay() const {
   std::vector<std::string> reasons;
-  const SceneProgress progress = scene().progress();
+  const SceneProgress progress = this->progress();
   if (!progress.stage.empty()) reasons.push_back(fmt::format("The computation ({}) has not finished.", progress.stage));
   if (film_.from_menu()) reasons.push_back("A video is being recorded.");
   if (recording_.on() && !recording_.has_file()) reasons.push_back("Your actions are being recorded.");
@@ -39,6 +39,35 @@ void Viewer::open() {
   leave_scene();
   note_recent();
   open_ = open_scene(session_, scene_options());
+  comparison_.close();
+  follow_comparison();
+}
+
+void Viewer::follow_comparison() {
+  attempt([&] { comparison_.follow(session_, scene_options()); });
+  if (!comparison_.on()) scene().hold_while({});
+}
+
+void Viewer::halt() {
+  scene().cancel();
+  if (comparison_.on()) comparison_.scene().cancel();
+}
+
+void Viewer::resume() {
+  scene().resume();
+  if (comparison_.on()) comparison_.scene().resume();
+}
+
+void Viewer::set_lockstep(bool on) {
+  scene().set_lockstep(on);
+  if (comparison_.on()) comparison_.scene().set_lockstep(on);
+}
+
+/// Of what is read, else of the first scene, else of the second.
+SceneProgress Viewer::progress() const {
+  if (opening_) return {"opening " + input_name(opening_->session), -1};
+  const SceneProgress first = scene().progress();
+  return first.stage.empty() && comparison_.on() ? comparison_.scene().progress() : first;
 }
 
 /// A number of frames is for headless runs to compare with: these do not begin again after the last time.
@@ -53,7 +82,8 @@ void Viewer::note_recent() {
 }
 
 void Viewer::leave_lost_device() {
-  const std::string why = scene().lost_device();
+  const std::string why =
+      scene().lost_device().empty() && comparison_.on() ? comparison_.scene().lost_device() : scene().lost_device();
   if (why.empty() || spare_ || !window_) return;
   spare_ = true;
   show_error(fmt::format("{} stopped working ({}); the processor computes from now on", scene().device().name(), why));
@@ -86,8 +116,8 @@ void Viewer::obey(const UiRequests& requests) {
   if (requests.cancel && opening_)
     give_opening_up();
   else if (requests.cancel)
-    scene().cancel();
-  if (requests.resume) scene().resume();
+    halt();
+  if (requests.resume) resume();
   if (session_.camera && requests.fit) fit_what_is_seen();
   if (session_.camera && !requests.look_from.empty()) framing_.look_from(requests.look_from, session_, scene(), area_);
   if (requests.load_session) attempt([&] { load_session(*requests.load_session); });
@@ -126,14 +156,14 @@ void Viewer::obey_recording(const UiRequests& requests) {
     attempt([&] {
       film_.begin(*requests.film, session_.settings.fps, options_.stop);
       time_.set_fps(session_.settings.fps);
-      scene().set_lockstep(true);
+      set_lockstep(true);
     });
   if (requests.end_film && film_.from_menu()) {
     attempt([&] {
       film_.finish();
       ui_.show_note(fmt::format("saved {} ({})", film_.file().string(), film_.length()));
     });
-    scene().set_lockstep(waits());
+    set_lockstep(waits());
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "compute/device/error.hpp"
 #include "engine/scene/session/camera_json.hpp"
+#include "engine/scene/session/compared.hpp"
 #include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
@@ -30,6 +31,7 @@ std::string camera_beside(const path& folder, const std::string& camera) {
 /// Settings that name files, with whole names.
 void find_files_beside(const path& folder, Settings& settings) {
   settings.camera = camera_beside(folder, settings.camera);
+  settings.view.compare = compare_beside(folder, settings.view.compare);
   for (std::string* file : {&settings.materials.names, &settings.materials.size_image})
     if (!file->empty()) *file = beside(folder, *file).string();
 }

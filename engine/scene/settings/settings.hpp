@@ -64,6 +64,8 @@ struct ViewSettings {
   std::string ruler;                           ///< x y z;x y z;...: points to measure between
   std::string notes;                           ///< x y z text;...
   std::string cameras;                         ///< name:numbers;...: to come back to
+  std::string compare;        ///< same, sample:NAME or FILE[;FILE...]: shown in a second view; empty: there is none
+  std::string compare_knobs;  ///< name=value[;...]: in which the second view differs
   PanelSide panel_side = PanelSide::left;
   double panel_width = 1;  ///< 1: normal
   bool preview = true;     ///< of a volume, a quick surface until there is a better one

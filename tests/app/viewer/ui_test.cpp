@@ -33,6 +33,8 @@ class UiTest : public ImGuiFrames {
 
   void draw() override {
     const UiFacts facts{panel_,
+                        {scene_, ui_.free_area(session_.settings.view, width, height)},
+                        scene_.progress(),
                         clock_,
                         "renderer",
                         recent_,
@@ -44,8 +46,7 @@ class UiTest : public ImGuiFrames {
                         width,
                         height,
                         Camera(),
-                        std::exchange(keys_, {}),
-                        ""};
+                        std::exchange(keys_, {})};
     const UiRequests requests = ui_.draw(session_, scene_, facts);
     cancelled_ = cancelled_ || requests.cancel;
   }

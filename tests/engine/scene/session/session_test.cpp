@@ -111,8 +111,9 @@ Settings other_settings() {
       set_knob(settings, knob.name, knob.choices.back());
     else if (std::holds_alternative<std::string*>(knob.value))
       set_knob(settings, knob.name,
-               knob.name == "names" || knob.name == "size_image" ? "/data/other"
-                                                                 : "other");  // a file, whose name becomes whole
+               knob.name == "names" || knob.name == "size_image" || knob.name == "compare"
+                   ? "/data/other"
+                   : "other");  // a file, whose name becomes whole
     else
       set_knob(settings, knob.name, std::to_string(std::int64_t(between)));
   }
