@@ -152,7 +152,6 @@ void FlowScene::advance(double now) {
   ask_boxes();
   watch_view(now);
   if (!wants_step() || now - last_step_ < 1 / (settings_.fps * settings_.view.play_speed)) return;
-  if (held_ && !stale_ && held_()) return;
   if (play_kept() || begin_step(false)) last_step_ = now;
 }
 

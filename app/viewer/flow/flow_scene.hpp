@@ -61,7 +61,7 @@ class FlowScene : public Scene {
   SceneTotals totals() const override;
   int steps() const { return results_.steps; }
   void set_lockstep(bool on) override { lockstep_ = on; }
-  void hold_while(std::function<bool()> held) override { held_ = std::move(held); }
+  void keep_together(std::function<int()> ahead) override { ahead_ = std::move(ahead); }
   /// Ends the waiting of frames in lockstep; null: nothing does.
   void set_stop(const std::atomic<bool>* stop) { stop_ = stop; }
   bool focused() const;  ///< a close-up is shown with cells as fine as pixels, fully faded in
@@ -136,7 +136,10 @@ class FlowScene : public Scene {
   void take(FlowWritten& told) { written_ = std::move(told.failure); }
   void take(FlowInterrupted& told);
   void take(FlowFailed& told) { failure_ = std::move(told.what); }
-  bool wants_step() const { return (settings_.view.play && !ended()) || stale_; }
+  bool wants_step() const {
+    const int ahead = ahead_ ? ahead_() : 0;
+    return stale_ || ahead < 0 || (ahead == 0 && settings_.view.play && !ended());
+  }
 
   // Focus, in flow_scene_focus.cpp.
   void watch_view(double now);
@@ -205,7 +208,7 @@ class FlowScene : public Scene {
   bool awaits_focus_ = false;         ///< that is not answered
   bool begun_looking_ = false;        ///< a frame was made in lockstep
   bool lockstep_ = false;             ///< frames wait for their focus
-  std::function<bool()> held_;        ///< it makes no step; empty: it may
+  std::function<int()> ahead_;        ///< of the flow that it is compared with; empty: there is none
   const std::atomic<bool>* stop_ = nullptr;
   int focus_request_ = 0;       ///< the newest
   std::array<Vec3d, 2> box_{};  ///< around the surface: lower and upper corner

@@ -53,8 +53,9 @@ class Scene {
   virtual bool advance_and_wait(const std::atomic<bool>& stop, double patience) = 0;
   /// Waits for frames from now on, as SceneOptions::lockstep.
   virtual void set_lockstep(bool) {}
-  /// A flow makes no step while this is true: it waits for one that it is compared with. Empty: it never waits.
-  virtual void hold_while(std::function<bool()>) {}
+  /// `ahead`: by how many steps a flow is ahead of one that it is compared with. It waits while that is above 0, and
+  /// makes steps, also while paused, while it is below. Empty: it is compared with none.
+  virtual void keep_together(std::function<int()>) {}
 
   /// Takes over `settings`, in which these knobs have changed. What they do not concern goes on; what they do begins
   /// again from there.

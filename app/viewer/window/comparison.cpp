@@ -52,8 +52,8 @@ void Comparison::follow(const Session& first, const SceneOptions& options) {
 
 void Comparison::advance(Scene& first, double now) {
   const auto ahead = [this, &first] { return on() ? steps_ahead(first.transport(), scene().transport()) : 0; };
-  first.hold_while([ahead] { return ahead() > 0; });
-  scene().hold_while([ahead] { return ahead() < 0; });
+  first.keep_together(ahead);
+  scene().keep_together([ahead] { return -ahead(); });
   scene().advance(now);
 }
 

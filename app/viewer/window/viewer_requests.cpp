@@ -45,7 +45,7 @@ void Viewer::open() {
 
 void Viewer::follow_comparison() {
   attempt([&] { comparison_.follow(session_, scene_options()); });
-  if (!comparison_.on()) scene().hold_while({});
+  if (!comparison_.on()) scene().keep_together({});
 }
 
 void Viewer::halt() {

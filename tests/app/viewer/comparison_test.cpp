@@ -2,6 +2,7 @@
 #include "app/viewer/window/comparison.hpp"
 
 #include <chrono>
+#include <functional>
 
 #include "app/viewer/flow/flow_scene.hpp"
 #include "compute/device/error.hpp"
@@ -113,6 +114,25 @@ TEST_F(ComparisonInView, InAWindowNoneIsMoreThanAStepAhead) {
   }
   EXPECT_GE(scene_->steps(), 20);
   EXPECT_GE(static_cast<FlowScene&>(comparison_.scene()).steps(), 19);
+}
+
+TEST_F(ComparisonInView, PausedTheyComeToTheSameTime) {
+  open();
+  double now = 0;
+  const auto go_on_until = [&](const std::function<bool()>& done) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (!done() && std::chrono::steady_clock::now() < end) {
+      now += 10;
+      comparison_.advance(*scene_, now);
+      scene_->advance(now);
+    }
+    return done();
+  };
+  ASSERT_TRUE(go_on_until([&] { return scene_->steps() >= 3 && ahead() != 0; }));
+  change([](Settings& settings) { settings.view.play = false; });
+  comparison_.follow(session_, options());
+  EXPECT_TRUE(go_on_until([&] { return scene_->settled() && comparison_.scene().settled(); }));
+  EXPECT_EQ(ahead(), 0);
 }
 
 TEST_F(ComparisonInView, KnobsOfTheFirstAreThoseOfTheSecondUnlessTheyDiffer) {
