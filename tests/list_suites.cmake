@@ -1,5 +1,6 @@
-# Writes OUT, in which ctest reads the suites of PROGRAM as tests NAME.<Suite>, with LABEL where one is given; those that match
-# PACED take two processors. Run by CMake after each build of the program.
+# Writes OUT, in which ctest reads the suites of PROGRAM as tests NAME.<Suite>, with LABEL where one is given, or else the label
+# "all" where the name of the suite begins with Long; those that match PACED take two processors. Run by CMake after each build
+# of the program.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE said RESULT_VARIABLE status TIMEOUT 60)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "${PROGRAM} could not list its tests: ${status}")
@@ -14,6 +15,8 @@ foreach(suite IN LISTS suites)
   endif()
   if(LABEL)
     list(APPEND properties LABELS ${LABEL})
+  elseif(suite MATCHES "^(.*/)?Long")
+    list(APPEND properties LABELS all)
   endif()
   list(JOIN properties " " properties)
   string(APPEND text "add_test([==[${NAME}.${suite}]==] [==[${PROGRAM}]==] [==[--gtest_filter=${suite}.*]==])\n"

@@ -3,6 +3,7 @@
 
 # nacre_test_program(<name> [FOLDER <folder>] [LABEL <label>] [NEEDS_VIEWER] [PACED <regular expression>] LINK <libraries>)
 # Makes test_<name> from the *_test.cpp below the folder (default: the name); its suites become the tests <name>.<Suite>.
+# A program with a label is built by the target long_tests alone.
 # PACED: suites in which somebody acts at their own pace: two processors for each. Without what it needs, each of its files becomes a test that is
 # skipped.
 function(nacre_test_program name)
@@ -24,8 +25,12 @@ function(nacre_test_program name)
   endif()
 
   add_executable(test_${name} ${sources})
+  if(arg_LABEL)
+    set_target_properties(test_${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    add_dependencies(long_tests test_${name})
+  endif()
   target_link_libraries(test_${name} PRIVATE test_paths ${arg_LINK} GTest::gtest_main)
-  nacre_unity(test_${name})
+  nacre_unity(test_${name} 16)
   # Compiled for speed of compiling. The numerics come first in the link, so that where an inline function or a template is in
   # both, theirs is kept: what is tested is what the program runs, and one function does not round in two ways.
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
@@ -37,7 +42,11 @@ function(nacre_test_program name)
   add_custom_command(TARGET test_${name} POST_BUILD BYPRODUCTS ${suites} VERBATIM
     COMMAND ${CMAKE_COMMAND} -DNAME=${name} -DPROGRAM=$<TARGET_FILE:test_${name}> -DOUT=${suites}
       "-DLABEL=${arg_LABEL}" "-DPACED=${arg_PACED}" -P ${CMAKE_CURRENT_SOURCE_DIR}/list_suites.cmake)
+  set(labelled)
+  if(arg_LABEL)
+    set(labelled "  set_tests_properties(${name}.not_built PROPERTIES LABELS ${arg_LABEL})\n")
+  endif()
   file(WRITE ${suites}.include "if(EXISTS \"${suites}\")\n  include(\"${suites}\")\nelse()\n"
-    "  add_test(${name}.not_built test_${name}_not_built)\nendif()\n")
+    "  add_test(${name}.not_built test_${name}_not_built)\n${labelled}endif()\n")
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${suites}.include)
 endfunction()

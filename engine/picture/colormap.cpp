@@ -66,7 +66,7 @@ class Spline {
   bool closed_;
 };
 
-Color srgb_of(const Color& oklab) {
+Color srgb_of_oklab(const Color& oklab) {
   Color color = linear_from_oklab(oklab);
   for (float& c : color) c = srgb_from_linear(std::clamp(c, 0.f, 1.f));
   return color;
@@ -88,7 +88,7 @@ std::vector<Color> walk(const Spline& spline, bool closed) {
     const float s = along.back() * float(i) / float(steps);
     const auto after = std::upper_bound(along.begin() + 1, along.end() - 1, s) - along.begin();
     const float width = along[after] - along[after - 1];
-    table.push_back(srgb_of(mix(curve[after - 1], curve[after], width > 0 ? (s - along[after - 1]) / width : 0.f)));
+    table.push_back(srgb_of_oklab(mix(curve[after - 1], curve[after], width > 0 ? (s - along[after - 1]) / width : 0.f)));
   }
   return table;
 }

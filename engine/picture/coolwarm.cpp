@@ -33,7 +33,7 @@ Msh msh_of(const Color& srgb) {
   return {magnitude, std::acos(lightness / magnitude), std::atan2(b, a)};
 }
 
-Color srgb_of(const Msh& c) {
+Color srgb_of_msh(const Msh& c) {
   const double lightness = c.magnitude * std::cos(c.saturation), chroma = c.magnitude * std::sin(c.saturation);
   const double y = (lightness + 16) / 116;
   const double f[3] = {y + chroma * std::cos(c.hue) / 500, y, y - chroma * std::sin(c.hue) / 200};
@@ -70,7 +70,7 @@ std::vector<Color> coolwarm_colours(int count) {
     const Msh& end = t < 0.5 ? cool : warm;
     const double s = t < 0.5 ? 2 * t : 2 - 2 * t;  // from the end to the middle
     const double hue = spun_hue(end, middle);
-    colours.push_back(srgb_of(
+    colours.push_back(srgb_of_msh(
         {end.magnitude + s * (middle - end.magnitude), (1 - s) * end.saturation, end.hue + s * (hue - end.hue)}));
   }
   return colours;

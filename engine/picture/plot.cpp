@@ -74,7 +74,7 @@ class Svg {
   std::string text_;
 };
 
-struct Axis {
+struct PlotAxis {
   double low = 0, high = 1;
   bool log = false;
   Ticks ticks;
@@ -86,8 +86,8 @@ struct Axis {
   }
 };
 
-Axis make_axis(double low, double high, bool log, const std::vector<double>& marks) {
-  Axis axis{low, high, log, {}};
+PlotAxis make_axis(double low, double high, bool log, const std::vector<double>& marks) {
+  PlotAxis axis{low, high, log, {}};
   if (log) {
     const double room = std::pow(high / low, 0.04);
     axis.low = high > low ? low / room : low / 2, axis.high = high > low ? high * room : high * 2;
@@ -106,7 +106,7 @@ Axis make_axis(double low, double high, bool log, const std::vector<double>& mar
 }
 
 /// Throws Error if a line is invalid, or if no line has a point.
-std::array<Axis, 2> axes_of(const LinePlot& plot) {
+std::array<PlotAxis, 2> axes_of(const LinePlot& plot) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   double low[2]{inf, inf}, high[2]{-inf, -inf};
   const auto visible = [](double v, bool log) { return std::isfinite(v) && (!log || v > 0); };
@@ -123,14 +123,14 @@ std::array<Axis, 2> axes_of(const LinePlot& plot) {
   return {make_axis(low[0], high[0], plot.log_x, plot.x_ticks), make_axis(low[1], high[1], plot.log_y, {})};
 }
 
-double across(const Axis& axis, double v) { return left + (right - left) * axis.share(v); }
-double up(const Axis& axis, double v) { return bottom - (bottom - top) * axis.share(v); }
+double across(const PlotAxis& axis, double v) { return left + (right - left) * axis.share(v); }
+double up(const PlotAxis& axis, double v) { return bottom - (bottom - top) * axis.share(v); }
 
 std::string with_power(const std::string& label, int exponent) {
   return exponent == 0 ? label : label + " (" + power_of_ten(exponent) + ")";
 }
 
-void draw_axes(Svg& svg, const Axis& x, const Axis& y, const LinePlot& plot) {
+void draw_axes(Svg& svg, const PlotAxis& x, const PlotAxis& y, const LinePlot& plot) {
   for (std::size_t i = 0; i < y.ticks.values.size(); ++i) {
     const double at = up(y, y.ticks.values[i]);
     svg.line(left, at, right, at, "#dddddd");
@@ -147,7 +147,7 @@ void draw_axes(Svg& svg, const Axis& x, const Axis& y, const LinePlot& plot) {
   svg.y_label(with_power(plot.y_label, y.ticks.exponent));
 }
 
-void draw_line(Svg& svg, const Axis& x, const Axis& y, const PlotLine& line, const char* colour) {
+void draw_line(Svg& svg, const PlotAxis& x, const PlotAxis& y, const PlotLine& line, const char* colour) {
   std::string path, dots;
   bool pen_down = false;
   for (std::size_t i = 0; i < line.x.size(); ++i) {
@@ -210,10 +210,10 @@ std::string svg_stacked_bars(const StackedBars& plot) {
   for (const std::string& bar : plot.bars) longest = std::max(longest, bar.size());
   Svg svg;
   svg.begin(plot.title, std::max(height, bottom + 30 + 0.87 * letter * double(longest)));  // names slope by 60 degrees
-  const Axis y{0, 1, false, nice_ticks(0, 1, 5)};
+  const PlotAxis y{0, 1, false, nice_ticks(0, 1, 5)};
   LinePlot frame;
   frame.y_label = plot.y_label;
-  draw_axes(svg, Axis{}, y, frame);
+  draw_axes(svg, PlotAxis{}, y, frame);
   const double pitch = (right - left) / double(n);
   std::vector<double> from(n, 0.0);
   for (std::size_t p = 0; p < plot.parts.size(); ++p) {

@@ -39,7 +39,9 @@ class BenchTest : public AppTest {
   }
 };
 
-TEST_F(BenchTest, ATableStandsBesideTheSourcesFigures) {
+using LongBench = BenchTest;
+
+TEST_F(LongBench, ATableStandsBesideTheSourcesFigures) {
   const Outcome run = nacre(small_bench + Arguments{"3.4", "--json", path("bench.json"), "--plots", path("plots")});
   ASSERT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.err, "");
@@ -127,7 +129,7 @@ TEST_F(BenchTest, KnobsTurnWhatTheTableDoesNotSet) {
   expect_failure(compared, 1, {"iterations 1", "max_size 3"});
 }
 
-TEST_F(BenchTest, LossesFailAndNameTheirRow) {
+TEST_F(LongBench, LossesFailAndNameTheirRow) {
   const json report = arena_report();
   const Outcome lost = compare(with_ratios_times(report, 10, 0.1));
   EXPECT_EQ(lost.status, 1);
@@ -137,7 +139,7 @@ TEST_F(BenchTest, LossesFailAndNameTheirRow) {
   EXPECT_TRUE(contains(gained.out, "none lost more than 30%")) << gained.out;
 }
 
-TEST_F(BenchTest, ARowWithRatiosThatIsMissingFailsWithItsName) {
+TEST_F(LongBench, ARowWithRatiosThatIsMissingFailsWithItsName) {
   const json report = with_ratios_times(arena_report(), 0.1, 10);  // what is there gains, however the two runs went
   json last = report;
   json& rows = last["tables"][0]["rows"];

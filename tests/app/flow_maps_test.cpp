@@ -109,8 +109,10 @@ TEST_F(FlowMaps, BadInputIsNamed) {
 }
 
 TEST_F(FlowMaps, DyeThatNothingMovesIsRefusedUnlessItDiffuses) {
-  const Arguments run = Arguments{"flow", sphere("still.vtp", [](const Vec3d&) { return Vec3d(); }), "--quiet", "--dye",
-                                  "0,0,1,0.3", "--report", path("r.json")} +
+  const Arguments run = Arguments{"flow",        sphere("still.vtp", [](const Vec3d&) { return Vec3d(); }),
+                                  "--quiet",     "--dye",
+                                  "0,0,1,0.3",   "--report",
+                                  path("r.json")} +
                         small_flow_maps;
   const Outcome refused = nacre(run);
   EXPECT_EQ(refused.status, 1);

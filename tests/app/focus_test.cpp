@@ -34,7 +34,9 @@ class FocusTest : public AppTest {
   }
 };
 
-TEST_F(FocusTest, ACloseUpIsAsSharpAsTheWhole) {
+using LongFocusTest = FocusTest;
+
+TEST_F(LongFocusTest, ACloseUpIsAsSharpAsTheWhole) {
   look(2.4);
   ASSERT_EQ(draw({"--resolution", "240"}).status, 0);
   EXPECT_FALSE(report().contains("focus"));

@@ -36,4 +36,6 @@ class ViewTest : public testing::Test {
   TemporaryFolder folder;
 };
 
+using UserAtTheWindow = ViewTest;  ///< who acts at their own pace: little else runs beside these tests
+
 }  // namespace nacre::test

@@ -74,6 +74,8 @@ class Scripts : public ViewTest {
   }
 };
 
+using LongScripts = Scripts;
+
 TEST_F(Scripts, OfADurationHaveFramesFromItsStartToItsEnd) {
   const Outcome run = play(demo(), {"--record", path("frames"), "--report", path("r.json")});
   ASSERT_EQ(run.status, 0) << run.err;
@@ -223,7 +225,7 @@ TEST_F(Scripts, AnInterruptLeavesNoHalfVideoButWhatWasDone) {
   EXPECT_EQ(read_json(folder / "done.json")["sample"], "sphere");
 }
 
-TEST_F(Scripts, ThousandFramesTakeNoMoreMemoryThanAFew) {
+TEST_F(LongScripts, ThousandFramesTakeNoMoreMemoryThanAFew) {
   json changes;
   for (int k = 1; k < 20; ++k)
     changes.push_back({{"time", 10.0 * k}, {"knobs", {{"resolution", k % 2 ? 32 : 48}, {"edges", k % 3 == 0}}}});

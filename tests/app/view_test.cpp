@@ -201,7 +201,7 @@ TEST_F(View, WindowUnderXvfb) {
   EXPECT_GT(coloured, image.width * image.height / 10);
 }
 
-TEST_F(View, KeysAndMouseInTheWindow) {
+TEST_F(UserAtTheWindow, KeysAndMouseInTheWindow) {
   const fs::path recording = folder / "done.json", report = folder / "keys.json", png = folder / "keys.png";
   const Outcome outcome = run("/bin/bash", {source_file("tests/app/view_keys.sh"), program_path, recording.string(),
                                             report.string(), png.string()});
@@ -223,7 +223,7 @@ TEST_F(View, KeysAndMouseInTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
-TEST_F(View, AWindowAsksBeforeSomethingIsLostAndCtrlCWritesWhatQuittingWrites) {
+TEST_F(UserAtTheWindow, AWindowAsksBeforeSomethingIsLostAndCtrlCWritesWhatQuittingWrites) {
   const Outcome outcome =
       run("/bin/bash", {source_file("tests/app/view_quit.sh"), program_path, folder.path().string()});
   if (outcome.status == 77) GTEST_SKIP() << outcome.err;
@@ -251,7 +251,7 @@ Image panel_in_window(const std::string& fault, const fs::path& png, const Argum
   return panel;
 }
 
-TEST_F(View, OnADenserScreenPanelsAndLettersGrow) {
+TEST_F(UserAtTheWindow, OnADenserScreenPanelsAndLettersGrow) {
   const Image small = panel_in_window("none", folder / "small.png", {});
   if (small.pixels.empty()) GTEST_SKIP() << "no Xvfb here";
   const Image moved = panel_in_window("other-screen@10", folder / "moved.png", {});
@@ -261,7 +261,7 @@ TEST_F(View, OnADenserScreenPanelsAndLettersGrow) {
   EXPECT_FALSE(panel_in_window("other-screen", folder / "last.png", {}).pixels.empty());  // to and fro, every frame
 }
 
-TEST_F(View, AnySizeAndScreenOfTheWindow) {
+TEST_F(UserAtTheWindow, AnySizeAndScreenOfTheWindow) {
   const fs::path recording = folder / "done.json", report = folder / "screens.json";
   const Outcome outcome =
       run("/bin/bash", {source_file("tests/app/view_screens.sh"), program_path, recording.string(), report.string()});
@@ -271,7 +271,7 @@ TEST_F(View, AnySizeAndScreenOfTheWindow) {
 }
 
 /// A frame of the video is a step, seen or not; then the window is pulled larger, and what it shows fills it.
-TEST_F(View, AMinimisedWindowIsFilmedAndAPulledOneIsFilled) {
+TEST_F(UserAtTheWindow, AMinimisedWindowIsFilmedAndAPulledOneIsFilled) {
   const fs::path video = folder / "flow.mp4", report = folder / "film.json", png = folder / "screen.png";
   const Outcome outcome = run("/bin/bash", {source_file("tests/app/view_film.sh"), program_path, video.string(),
                                             report.string(), png.string()});
@@ -294,7 +294,7 @@ TEST_F(View, AMinimisedWindowIsFilmedAndAPulledOneIsFilled) {
       EXPECT_LT(*std::max_element(screen.at(x, y), screen.at(x, y) + 3), 60) << x << ' ' << y;
 }
 
-TEST_F(View, ANewcomerGetsAVideoAndAMesh) {
+TEST_F(UserAtTheWindow, ANewcomerGetsAVideoAndAMesh) {
   const fs::path flow = folder / "flow.vtp", labels = folder / "labels.nrrd";
   ASSERT_EQ(nacre({"sample", "torus", "--detail", "48", "--out", flow.string()}).status, 0);
   ASSERT_EQ(nacre({"sample", "three-sectors", "--detail", "24", "--out", labels.string()}).status, 0);

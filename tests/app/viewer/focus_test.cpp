@@ -110,6 +110,8 @@ class FocusInView : public test::SceneInView<FlowScene> {
   double now_ = 0;
 };
 
+using LongFocusInView = FocusInView;
+
 TEST_F(FocusInView, ACloseUpBecomesSharpAndGoingBackOutIsImmediate) {
   for (const EmbeddingKind method : {EmbeddingKind::grid, EmbeddingKind::octree}) {
     session_.settings.flow.method = method;
@@ -205,7 +207,7 @@ TEST_F(FocusInView, FramesOfBeforeAreShownWithoutIt) {
 }
 
 /// Views come faster than a focus is made; knobs and time change meanwhile.
-TEST_F(FocusInView, ManyMovesLeaveNothingBehind) {
+TEST_F(LongFocusInView, ManyMovesLeaveNothingBehind) {
   open();
   look(16);
   ASSERT_TRUE(becomes_focused());

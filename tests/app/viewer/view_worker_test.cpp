@@ -100,11 +100,11 @@ TEST(FlowWorker, StepsWriteWhatIsToBeShown) {
 
 TEST(FlowWorker, MayEndWhileItAnswers) {
   const Vec3d position = make_sample("sphere", 24).load(0).points[5];
-  for (int k = 0; k < 100; ++k) {
+  for (int k = 0; k < 40; ++k) {
     WorkerRun run;
     run.step();
     run.worker->sample(position);
-    std::this_thread::sleep_for(std::chrono::microseconds(k));
+    std::this_thread::sleep_for(std::chrono::microseconds(5 * k / 2));
     run.worker->finish();  // an interruption that left the thread would end the program
   }
 }

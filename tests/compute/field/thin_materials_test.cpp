@@ -90,7 +90,7 @@ TEST(ThinMaterials, TheRarestGiveWayAndNoMoreThanMustBe) {
 }
 
 /// An atlas of 90 labels in a cube of 16 voxels.
-TEST(ThinMaterials, ACrowdedAtlasIsMeshedAndCounted) {
+TEST(LongThinMaterials, ACrowdedAtlasIsMeshedAndCounted) {
   const Int3 dims{16, 16, 16};
   MeshVolume volume = label_volume(dims, 91, [](const Vec3d&) { return 0; });
   volume.material = cells_of(dims, 90, 3);

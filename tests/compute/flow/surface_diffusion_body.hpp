@@ -203,10 +203,10 @@ void TheLimitIsStableAndMoreIsNot(Executor<Backend>& exec) {
     Random random(1);
     const auto noise = [&](const Vec3d&) { return Pair{float(random.between(-1, 1)), 0}; };
     sphere.set(noise);
-    sphere.go(1000, sphere.stable_step());
+    sphere.go(300, sphere.stable_step());
     EXPECT_LT(sphere.largest(), 1) << vectors;
     sphere.set(noise);
-    sphere.go(1000, 2.5 * sphere.stable_step());
+    sphere.go(300, 2.5 * sphere.stable_step());
     EXPECT_GT(sphere.largest(), 1e3) << vectors;
   }
 }
