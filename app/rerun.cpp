@@ -29,12 +29,14 @@ struct RerunOptions {
 /// Whether the origin has only what nacre writes: a file from somewhere else must not make it write other files than
 /// the one result.
 bool is_harmless(const Origin& origin) {
-  static const std::regex option("--(per-material|surface-only|cut-away|chunk=[0-9]+/[0-9]+|lead-in=[0-9]+)");
+  static const std::regex option(
+      "--(per-material|surface-only|cut-away|chunk=[0-9]+/[0-9]+|lead-in=[0-9]+|offscreen|frames-count=[0-9]+)");
   static const std::regex output(
       "image|video|out|particles-out|haemodynamics|topology-out|streamlines-out|ftle-out|tracks-out|report");
   static const std::regex extension("(\\.[a-z0-9]+)?");
   const auto fits = [](const std::string& text, const std::regex& form) { return std::regex_match(text, form); };
-  return (origin.command == "flow" || origin.command == "mesh") && fits(origin.output, output) &&
+  const bool of_view = origin.command == "view" && origin.output == "image";
+  return (origin.command == "flow" || origin.command == "mesh" || of_view) && fits(origin.output, output) &&
          std::all_of(origin.options.begin(), origin.options.end(),
                      [&](const auto& each) { return fits(each, option); }) &&
          std::all_of(origin.beside.begin(), origin.beside.end(), [&](const auto& each) {
@@ -49,10 +51,15 @@ Origin require_origin(const fs::path& file) {
   const std::optional<Origin> origin = find_origin(file);
   if (!origin)
     throw Error(file.string() + " does not say how it was made",
-                "it is not of `nacre flow` or `nacre mesh`, or its format has no place for that",
+                "it is not of Nacre, or its format has no place for that",
                 "give the report of that run: nacre rerun REPORT.json --out FILE");
   if (origin->interrupted)
     throw Error(file.string() + " cannot be made again", "Ctrl-C ended its run, and it does not say when");
+  const bool in_window = origin->command == "view" && (origin->output != "image" || origin->options.empty());
+  if (in_window)
+    throw Error(file.string() + " cannot be made again", "it is of a window, or of a script",
+                lower_extension(file) == ".png" ? "nacre view --session " + file.string() + " shows it again"
+                                                : "its inputs and knobs are in the file");
   if (!is_harmless(*origin))
     throw Error(file.string() + " cannot be made again", "what it says of how it was made is not by nacre");
   return *origin;
@@ -159,7 +166,7 @@ void run_rerun(const RerunOptions& options, const std::function<void(const Argum
 void add_rerun_command(CLI::App& program, std::function<void()>& run, std::function<void(const Arguments&)> execute) {
   CLI::App* command = program.add_subcommand("rerun", "make a result again from what it says of itself, and compare");
   auto options = std::make_shared<RerunOptions>();
-  command->add_option("FILE", options->file, "a picture, video, mesh, values or report of nacre flow or nacre mesh")
+  command->add_option("FILE", options->file, "a picture, video, mesh, values or report of nacre flow, mesh or view")
       ->required();
   command->add_option("--out", options->out, "write it to this file instead of comparing it with FILE");
   command->add_option("--threads", options->threads, "worker threads, at most one per processor (0: all)")

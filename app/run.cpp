@@ -20,7 +20,7 @@ void add_input_options(CLI::App& command, InputOptions& input, const std::string
 Session requested_session(const CommonOptions& options, const InputOptions& input, const KnobOptions& knobs,
                           std::string_view command, const std::function<void(Settings&)>& preset) {
   Session session;
-  if (!options.session.empty()) session = read_session(options.session);
+  if (!options.session.empty()) session = open_session(options.session);
   session.events.clear();  // what is asked for is the state at the start
   session.duration = 0;
   if (!input.files.empty() || !input.sample.empty()) {

@@ -9,9 +9,11 @@
 #include "app/mesh_run.hpp"
 #include "app/picture_options.hpp"
 #include "app/run.hpp"
+#include "engine/io/named_files.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/run/origin.hpp"
 #include "engine/run/presets.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
@@ -154,6 +156,27 @@ void check_view_outputs(const ViewOptions& options, const Session& session) {
   });
 }
 
+/// How something that the viewer shows came about. A mesh is that of the command, so that it can be made again.
+std::string view_origin(const Session& shown, const std::string& output, const std::string& backend) {
+  const bool mesh = output == "out" && is_mesh_input(shown);
+  Session session = shown;
+  if (mesh) session.camera.reset();
+  Origin origin = origin_of(session, mesh ? "mesh" : "view", backend, named_files(session.inputs));
+  origin.output = output;
+  return origin_text(origin);
+}
+
+/// Frames that are counted and wait for the computation can be made again.
+std::string image_origin(const ViewOptions& options, const ViewerOptions& viewer, const ViewerResult& result) {
+  if (!options.offscreen || options.live || !options.script.empty())
+    return view_origin(result.shown, "screenshot", result.backend);
+  Origin origin = origin_of(viewer.session, "view", result.backend, named_files(viewer.session.inputs));
+  origin.options = {"--offscreen"};
+  if (viewer.frames > 0) origin.options.push_back(fmt::format("--frames-count={}", viewer.frames));
+  origin.output = "image";
+  return origin_text(origin);
+}
+
 nlohmann::json frame_report(const ViewerResult& result) {
   std::vector<double> seconds = result.frame_seconds;
   std::sort(seconds.begin(), seconds.end());
@@ -194,8 +217,8 @@ nlohmann::json view_report(const ViewerResult& result, const Session& session) {
 
 /// Finishes and lists the files: the last picture, the frames, the result, and those that the session itself has
 /// written. `lost_video` receives the reason where the video could not be finished.
-std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerResult& result, FrameSink* record,
-                                       std::string& lost_video) {
+std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerOptions& viewer,
+                                       const ViewerResult& result, FrameSink* record, std::string& lost_video) {
   std::vector<std::string> outputs;
   for (const std::filesystem::path& file : result.pictures) outputs.push_back(file.string());
   if (record && lost_video.empty()) try {
@@ -206,7 +229,7 @@ std::vector<std::string> write_outputs(const ViewOptions& options, const ViewerR
     }
   if (!options.image.empty()) {
     if (result.image.pixels.empty()) throw Error("no frame was drawn", "", "keep the window open longer");
-    write_png(options.image, result.image);
+    write_png(options.image, result.image, image_origin(options, viewer, result));
     outputs.push_back(options.image);
   }
   if (!options.out.empty() && !result.interrupted) outputs.push_back(options.out);
@@ -223,11 +246,17 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   check_view_outputs(options, viewer.session);
   if (!options.common.save_session.empty()) write_text(options.common.save_session, session_text(viewer.session));
   viewer.welcome = !options.offscreen && has_no_input(options);
-  viewer.open_device = [&] { return open_device(options.common); };
+  std::string backend;  // of the newest device
+  const auto open = [&](const CommonOptions& common) {
+    std::unique_ptr<Device> device = open_device(common);
+    backend = device->backend();
+    return device;
+  };
+  viewer.open_device = [&] { return open(options.common); };
   viewer.open_spare_device = [&] {
     CommonOptions spare = options.common;
     spare.device = "cpu";
-    return open_device(spare);
+    return open(spare);
   };
   viewer.offscreen = options.offscreen;
   viewer.live = options.live;
@@ -237,10 +266,12 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
   viewer.picture = !options.image.empty();
   const std::unique_ptr<FrameSink> record = make_record(options, settings.fps);
+  if (record) record->describe(view_origin(viewer.session, "video", backend));
   viewer.video = record.get();
   viewer.out = options.out;
   if (!options.save_recording.empty())
     viewer.recorded = [&](const Session& done) { write_text(options.save_recording, session_text(done)); };
+  viewer.origin = [&](const Session& shown, const std::string& output) { return view_origin(shown, output, backend); };
   viewer.stop = &interrupt_flag();
   viewer.first_camera = [](const Settings& s, const std::vector<Vec3d>& seen, bool legend) {
     return read_camera(s, seen, legend);
@@ -257,7 +288,7 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
 
   std::string lost_video = result.lost_video;
   if (result.interrupted && record) lost_video = options.record + " was not finished";
-  const std::vector<std::string> outputs = write_outputs(options, result, record.get(), lost_video);
+  const std::vector<std::string> outputs = write_outputs(options, viewer, result, record.get(), lost_video);
   write_report(options.common, view_report(result, viewer.session), outputs);
   print_outputs(outputs);
   if (result.interrupted) throw Interrupted();

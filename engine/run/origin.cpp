@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <fstream>
+#include <mutex>
 
 #include "compute/device/error.hpp"
 #include "engine/scene/session/camera_json.hpp"
 #include "engine/scene/settings/knobs.hpp"
+#include "engine/system/extension.hpp"
 #include "engine/system/sha256.hpp"
 #include "include/nacre/version.hpp"
 
@@ -22,9 +24,33 @@ constexpr int format_number = 1;
 constexpr std::string_view origin_start = "{\"Nacre origin\":";  // capitals sort before the other keys
 constexpr std::size_t longest_origin = std::size_t(4) << 20;
 
+/// The hash of a file, which is read again only where its size or its time of change has changed.
+std::string sha256_of(const fs::path& file, std::uintmax_t bytes) {
+  struct Known {
+    std::uintmax_t bytes;
+    fs::file_time_type changed;
+    std::string sha256;
+  };
+  static std::mutex mutex;
+  static std::map<fs::path, Known> known;
+  std::error_code code;
+  const fs::file_time_type changed = fs::last_write_time(file, code);
+  {
+    std::scoped_lock lock(mutex);
+    const auto found = known.find(file);
+    if (!code && found != known.end() && found->second.bytes == bytes && found->second.changed == changed)
+      return found->second.sha256;
+  }
+  std::string hash = sha256_of_file(file);
+  std::scoped_lock lock(mutex);
+  if (!code) known[file] = {bytes, changed, hash};
+  return hash;
+}
+
 OriginFile read_origin_file(const fs::path& file) {
   std::error_code code;
-  return {file.string(), fs::file_size(file, code), sha256_of_file(file)};
+  const std::uintmax_t bytes = fs::file_size(file, code);
+  return {file.string(), bytes, sha256_of(file, bytes)};
 }
 
 json files_json(const std::vector<OriginFile>& files) {
@@ -176,6 +202,31 @@ std::optional<Origin> find_origin(const fs::path& file) {
   } catch (const json::exception&) {
     throw Error(file.string() + " does not say how it was made", "what it says about that is damaged");
   }
+}
+
+Session session_of(const Origin& origin) {
+  Session session;
+  for (const OriginFile& input : origin.inputs) session.inputs.emplace_back(input.file);
+  session.sample = origin.sample;
+  session.detail = origin.detail;
+  for (const auto& [name, text] : origin.knobs) set_knob(session.settings, name, text);
+  session.camera = origin.camera;
+  return session;
+}
+
+bool may_hold_session(const fs::path& file) {
+  const std::string extension = lower_extension(file);
+  return extension == ".json" || extension == ".png";
+}
+
+Session open_session(const fs::path& file) {
+  const bool json_file = lower_extension(file) == ".json";
+  if (json_file && !origin_in_report(file)) return read_session(file);
+  const std::optional<Origin> origin = find_origin(file);
+  if (!origin)
+    throw Error(file.string() + " is not a session", "it does not say how it was made",
+                "give a session file, or a picture made by this program");
+  return session_of(*origin);
 }
 
 void check_inputs(const Origin& origin, const fs::path& result) {

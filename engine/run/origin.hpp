@@ -25,7 +25,7 @@ struct OriginFile {
 /// All that the bytes of a result depend on, and nothing else: no date, no machine, no number of threads, and not the
 /// name of the result.
 struct Origin {
-  std::string version, command;  ///< of nacre: "flow", "mesh"
+  std::string version, command;  ///< of nacre: "flow", "mesh", "view"
   std::string backend;           ///< "cpu" or "cuda"
   std::vector<OriginFile> inputs;
   std::vector<OriginFile> others;            ///< that the inputs or the knobs name
@@ -34,13 +34,13 @@ struct Origin {
   std::map<std::string, std::string> knobs;  ///< those that are not at their defaults, and the seed
   std::optional<Camera> camera;              ///< of the session, which the knob `camera` does not say
   std::vector<std::string> options;          ///< of the command, beside knobs: "--per-material"
-  std::string output;  ///< which result this is: "image", "video", "out", "particles-out", "report"
+  std::string output;  ///< which result this is: "image", "video", "out", "report"; "screenshot", of a window
   std::map<std::string, std::string> beside;  ///< of a report: the other results of the run, and their extensions
   bool interrupted = false;                   ///< the particles were stopped by Ctrl-C, and nobody knows where
 };
 
-/// The inputs with their hashes, and what of the session concerns `command`. Reads all input files. Throws Error where
-/// one cannot be read. `others`: files that the inputs name.
+/// The inputs with their hashes, and what of the session concerns `command`. Reads all input files, each once in a
+/// process as long as it does not change. Throws Error where one cannot be read. `others`: files that the inputs name.
 Origin origin_of(const Session& session, const std::string& command, const std::string& backend,
                  const std::vector<std::filesystem::path>& others);
 
@@ -52,6 +52,15 @@ nlohmann::json origin_json(const Origin& origin);
 /// The origin that a file carries, wherever in it; none if it carries none. Throws Error if it is damaged or of a later
 /// version of Nacre that this one does not understand.
 std::optional<Origin> find_origin(const std::filesystem::path& file);
+
+/// The session that a result shows: inputs, knobs and camera.
+Session session_of(const Origin& origin);
+
+/// A session file, or a result of Nacre that says how it was made, such as a picture. Throws Error as `read_session`.
+Session open_session(const std::filesystem::path& file);
+
+/// Is the file a session, or a picture or report that may say which session it shows? By its extension.
+bool may_hold_session(const std::filesystem::path& file);
 
 /// Throws Error that names the first input that is missing or has changed since.
 void check_inputs(const Origin& origin, const std::filesystem::path& result);

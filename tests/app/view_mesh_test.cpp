@@ -86,7 +86,7 @@ TEST_F(ViewMesh, OutIsThatOfTheHeadlessCommand) {
     fs::remove(path(name));
     const Outcome run = nacre(Arguments{"view", "--offscreen", "--frames-count", "3", "--out", path(name)} + quick);
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_TRUE(content(name) == mesh) << name;
+    EXPECT_TRUE(bare(name) == mesh) << name;
   }
 }
 

@@ -337,12 +337,12 @@ TEST_F(Scripts, ASessionGivesTheSameValuesHeadlessOffscreenAndInAWindow) {
   const Outcome offscreen = nacre(Arguments{"view", "--offscreen", "--out", path("view.vtp")} + session);
   if (contains(offscreen.err, "no format")) GTEST_SKIP() << offscreen.err;
   ASSERT_EQ(offscreen.status, 0) << offscreen.err;
-  EXPECT_EQ(without_origin(content("flow.vtp")), content("view.vtp"));
+  EXPECT_TRUE(without_origin(content("flow.vtp")) == without_origin(content("view.vtp")));
   const Outcome shown =
       in_window(session + Arguments{"--record", path("frames"), "--frames-count", "4", "--out", path("window.vtp")});
   if (shown.status == 77) GTEST_SKIP() << shown.err;
   ASSERT_EQ(shown.status, 0) << shown.err;
-  EXPECT_EQ(without_origin(content("flow.vtp")), content("window.vtp"));
+  EXPECT_TRUE(without_origin(content("flow.vtp")) == without_origin(content("window.vtp")));
 }
 
 TEST_F(Scripts, ASessionGivesTheSameMeshHeadlessAndOffscreen) {
@@ -354,7 +354,7 @@ TEST_F(Scripts, ASessionGivesTheSameMeshHeadlessAndOffscreen) {
   if (contains(offscreen.err, "cannot be viewed yet")) GTEST_SKIP() << offscreen.err;
   ASSERT_EQ(offscreen.status, 0) << offscreen.err;
   ASSERT_EQ(nacre(Arguments{"mesh", "--out", path("mesh.vtp")} + session).status, 0);
-  EXPECT_EQ(without_origin(content("mesh.vtp")), content("view.vtp"));
+  EXPECT_TRUE(without_origin(content("mesh.vtp")) == without_origin(content("view.vtp")));
 }
 
 TEST(DemoSessions, AreSessionsThatPlay) {

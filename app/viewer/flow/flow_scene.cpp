@@ -90,17 +90,17 @@ SceneTotals FlowScene::totals() const {
   return {results_.steps, copied_bytes(), worker_.timers(), worker_.peak_bytes()};
 }
 
-void FlowScene::write_result(const std::filesystem::path& file) {
-  begin_write(file);
+void FlowScene::write_result(const std::filesystem::path& file, const std::string& origin) {
+  begin_write(file, origin);
   static const std::atomic<bool> never{false};
   while (!written_)
     if (std::optional<FlowEvent> event = worker_.wait(never)) take(*event);
   if (const std::string why = *take_written(); !why.empty()) throw Error(why);
 }
 
-void FlowScene::begin_write(const std::filesystem::path& file) {
+void FlowScene::begin_write(const std::filesystem::path& file, const std::string& origin) {
   written_.reset();
-  worker_.write(file);
+  worker_.write(file, origin);
 }
 
 bool FlowScene::settled() const { return complete() && !wants_step() && !worker_.busy() && !focus_changes(); }

@@ -40,8 +40,8 @@ class FlowScene : public Scene {
   std::uint64_t version() const override { return version_; }
   std::uint64_t overlay_version() const override { return overlay_version_ + time_version_; }
   std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
-  void write_result(const std::filesystem::path& file) override;
-  void begin_write(const std::filesystem::path& file) override;
+  void write_result(const std::filesystem::path& file, const std::string& origin) override;
+  void begin_write(const std::filesystem::path& file, const std::string& origin) override;
   std::optional<std::string> take_written() override { return std::exchange(written_, {}); }
   std::vector<std::string> result_formats() const override { return {".vtp"}; }
 

@@ -131,10 +131,10 @@ void FlowWorker::show_boxes(std::uint64_t* memory, int embedding) {
   wake_.notify_all();
 }
 
-void FlowWorker::write(const std::filesystem::path& file) {
+void FlowWorker::write(const std::filesystem::path& file, const std::string& origin) {
   {
     std::scoped_lock lock(mutex_);
-    file_ = file;
+    file_ = {file, origin};
   }
   wake_.notify_all();
 }

@@ -215,7 +215,7 @@ class FlowWorker : public Worker<FlowEvent> {
   /// answers.
   void fill_focus(float* memory, int number);
   /// Writes the values as `nacre flow --out` does, after what goes on; ends with FlowWritten.
-  void write(const std::filesystem::path& file);
+  void write(const std::filesystem::path& file, const std::string& origin);
 
   std::string stage() const;               ///< what it does now, for the panel: "embedding"; empty: nothing
   double share() const { return share_; }  ///< how much of that is done, 0..1; below 0: not known
@@ -275,7 +275,7 @@ class FlowWorker : public Worker<FlowEvent> {
   bool step_focus(float* memory, int number);
   void answer_sample(const Vec3d& position);
   void write_boxes(std::uint64_t* memory, int embedding);
-  void write_values(const std::filesystem::path& file);
+  void write_values(const ResultFile& wanted);
   double wrapped(double time) const;
   static std::vector<float> scalar(VectorsInTime& vectors, double time);
   static std::shared_ptr<const std::vector<Vec3f>> vectors_at(VectorsInTime& vectors, double time);
@@ -316,7 +316,7 @@ class FlowWorker : public Worker<FlowEvent> {
   bool focusing_ = false, drops_focus_ = false;
   std::optional<Vec3d> sample_;
   std::optional<std::pair<std::uint64_t*, int>> boxes_;  ///< where to, and of which embedding
-  std::optional<std::filesystem::path> file_;
+  std::optional<ResultFile> file_;
   bool started_ = false, failed_ = false, cancelled_ = false, working_ = false;
   Settings wanted_;
 };

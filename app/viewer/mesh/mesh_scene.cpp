@@ -255,8 +255,8 @@ void MeshScene::warn_once(const std::string& warning) {
   if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end()) warnings_.push_back(warning);
 }
 
-void MeshScene::write_result(const std::filesystem::path& file) {
-  begin_write(file);
+void MeshScene::write_result(const std::filesystem::path& file, const std::string& origin) {
+  begin_write(file, origin);
   worker_.grant_turn(true);
   static const std::atomic<bool> never{false};
   const std::atomic<bool>& stop = stop_ ? *stop_ : never;
@@ -272,9 +272,9 @@ void MeshScene::write_result(const std::filesystem::path& file) {
   if (const std::string why = *take_written(); !why.empty()) throw Error(why);
 }
 
-void MeshScene::begin_write(const std::filesystem::path& file) {
+void MeshScene::begin_write(const std::filesystem::path& file, const std::string& origin) {
   written_.reset();
-  worker_.write(file);
+  worker_.write(file, origin);
 }
 
 std::optional<std::string> MeshScene::take_written() {

@@ -43,8 +43,8 @@ class MeshScene : public Scene {
   std::uint64_t overlay_version() const override;
   bool settle_knobs(Session& session) override;
   std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) override;
-  void write_result(const std::filesystem::path& file) override;
-  void begin_write(const std::filesystem::path& file) override;
+  void write_result(const std::filesystem::path& file, const std::string& origin) override;
+  void begin_write(const std::filesystem::path& file, const std::string& origin) override;
   std::optional<std::string> take_written() override;
   std::vector<std::string> result_formats() const override;
 

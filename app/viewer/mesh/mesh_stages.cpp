@@ -188,12 +188,12 @@ void MeshWorker::fill_slice() {
 }
 
 void MeshWorker::write_result() {
-  std::filesystem::path file;
+  ResultFile wanted;
   bool complete, curved, fields;
   double max_cell;
   {
     std::scoped_lock lock(mutex_);
-    file = *std::exchange(file_, std::nullopt);
+    wanted = *std::exchange(file_, std::nullopt);
     complete = next_ == MeshStage::done;
     max_cell = wanted_.max_cell;
     curved = wanted_.element_order == 2;
@@ -204,6 +204,7 @@ void MeshWorker::write_result() {
   MeshWritten told{complete ? "it was cancelled" : "there is no mesh yet; wait until it is made"};
   const auto write = [&] {
     const MeshInput& input = viewed_->input;
+    const std::filesystem::path& file = wanted.file;
     if (curved) check_second_order(file, has_cells(file));
     if (curved && !fields)
       throw Error("an earlier mesh has no interfaces to put nodes on", "the fields are those of other knobs",
@@ -218,9 +219,9 @@ void MeshWorker::write_result() {
     const SecondOrder* second = nodes ? &*nodes : nullptr;
     StageTimers::Scope scope(pipeline_->timers(), "write");
     if (cells)
-      write_tetrahedral_mesh(file, *cells, *mesh_, input.labels, input.names, "", second);
+      write_tetrahedral_mesh(file, *cells, *mesh_, input.labels, input.names, wanted.origin, second);
     else
-      write_surface_mesh(file, *mesh_, input.labels, input.names, "", second);
+      write_surface_mesh(file, *mesh_, input.labels, input.names, wanted.origin, second);
     told.failure.clear();
   };
   if (complete)

@@ -164,10 +164,10 @@ bool MeshWorker::slice_comes() const {
   return slice_due();
 }
 
-void MeshWorker::write(const std::filesystem::path& file) {
+void MeshWorker::write(const std::filesystem::path& file, const std::string& origin) {
   {
     std::scoped_lock lock(mutex_);
-    file_ = file;
+    file_ = {file, origin};
   }
   wake_.notify_all();
 }

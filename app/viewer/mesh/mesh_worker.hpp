@@ -154,7 +154,7 @@ class MeshWorker : public Worker<MeshEvent> {
   bool slice_comes() const;
 
   /// Writes the mesh as `nacre mesh --out` does, once it is there; ends with MeshWritten, unless it fails before.
-  void write(const std::filesystem::path& file);
+  void write(const std::filesystem::path& file, const std::string& origin);
 
   bool busy() const;
   bool settled() const;  ///< all is done and reported
@@ -226,7 +226,7 @@ class MeshWorker : public Worker<MeshEvent> {
   std::optional<LentMemory> lent_;
   std::optional<SliceRequest> slice_;
   bool slice_filled_ = false;
-  std::optional<std::filesystem::path> file_;
+  std::optional<ResultFile> file_;
   bool writing_ = false;
   MeshProgress progress_;
 };

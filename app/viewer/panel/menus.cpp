@@ -13,6 +13,7 @@
 #include "app/viewer/scene/marks.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/volume_reader.hpp"
+#include "engine/run/origin.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/session/compared.hpp"
@@ -67,14 +68,12 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
 std::vector<std::string> data_extensions() {
   std::vector<std::string> all = readable_extensions();
   for (const std::string& e : volume_extensions()) all.push_back(e);
-  all.push_back(".json");
+  all.insert(all.end(), {".json", ".png"});
   return all;
 }
 
-bool is_session(const fs::path& file) { return file.extension() == ".json"; }
-
 void open_files(const std::vector<fs::path>& files, Session& session, UiRequests& requests) {
-  if (files.size() == 1 && is_session(files[0])) {
+  if (files.size() == 1 && may_hold_session(files[0])) {
     requests.load_session = files[0];
     return;
   }
@@ -172,7 +171,7 @@ void Ui::compare_menu(Session& session) {
   if (ImGui::MenuItem("the same data", nullptr, compare == compare_same)) show(compare_same);
   if (ImGui::MenuItem("a file ...")) {
     std::vector<std::string> extensions = data_extensions();
-    extensions.pop_back();  // a session
+    extensions.resize(extensions.size() - 2);  // sessions
     dialog_.open(FileDialog::Mode::open, "compare with", std::move(extensions));
     then_ = [](const std::vector<fs::path>& files, Session& changed, UiRequests&) {
       changed.settings.view.compare = compare_text({files, "", 0});

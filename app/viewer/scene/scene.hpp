@@ -81,11 +81,11 @@ class Scene {
   /// What a ray meets first; none: nothing. `along` is unit.
   virtual std::optional<ProbeResult> probe(const Vec3d& from, const Vec3d& along) = 0;
 
-  /// Writes the result as the headless command would, in the format of the extension. Waits for the worker. Throws
-  /// Error.
-  virtual void write_result(const std::filesystem::path& file) = 0;
+  /// Writes the result as the headless command would, in the format of the extension, with its origin. Waits for the
+  /// worker. Throws Error.
+  virtual void write_result(const std::filesystem::path& file, const std::string& origin) = 0;
   /// The same without waiting. `take_written` then returns the outcome once: an empty line, or the error.
-  virtual void begin_write(const std::filesystem::path& file) = 0;
+  virtual void begin_write(const std::filesystem::path& file, const std::string& origin) = 0;
   virtual std::optional<std::string> take_written() = 0;
   /// Extensions that `write_result` takes, e.g. ".vtp".
   virtual std::vector<std::string> result_formats() const = 0;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -20,6 +21,12 @@ namespace nacre {
 
 /// Seconds that nobody waits for.
 inline constexpr double endless = 1e9;
+
+/// A result that is to be written, and how it came about.
+struct ResultFile {
+  std::filesystem::path file;
+  std::string origin;
+};
 
 /// A base class. Whoever derives from it starts `thread_` last, lets it run until `ends_`, and calls `finish` in its
 /// destructor.

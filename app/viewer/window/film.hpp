@@ -28,9 +28,10 @@ class Film {
     return fmt::format("{} frame{}, {:.1f} s", frames, frames == 1 ? "" : "s", double(frames) / fps_);
   }
 
-  /// `stop` as `make_video`'s, and Errors.
-  void begin(const std::filesystem::path& file, int fps, const std::atomic<bool>* stop) {
+  /// `stop` as `make_video`'s, and Errors. `origin`: how it comes about.
+  void begin(const std::filesystem::path& file, int fps, const std::atomic<bool>* stop, const std::string& origin) {
     own_ = make_video(file, fps, stop);
+    own_->describe(origin);
     file_ = file;
     fps_ = fps;
     before_ = frames_;

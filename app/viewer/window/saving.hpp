@@ -17,10 +17,10 @@ class Saving {
   std::string name() const { return file_.filename().string(); }  ///< empty: nothing is being written
 
   /// A mesh in the making is written when it is made. Throws Error where that cannot be, or another is being written.
-  void begin(Scene& scene, const std::filesystem::path& file) {
+  void begin(Scene& scene, const std::filesystem::path& file, const std::string& origin) {
     if (on()) throw Error(file.string() + " was not saved", name() + " is still being written", "wait for that");
     require_format(scene.result_formats(), file);
-    scene.begin_write(file);
+    scene.begin_write(file, origin);
     file_ = file;
   }
 

@@ -273,7 +273,9 @@ void Viewer::note_times(double begin, double end) {
 
 void Viewer::finish() {
   if (options_.picture && frame_) result_.image = frame_->read();
-  if (!options_.out.empty() && !result_.interrupted) scene().write_result(options_.out);
+  if (!options_.out.empty() && !result_.interrupted)
+    scene().write_result(options_.out, options_.origin(session_, "out"));
+  result_.shown = shown_session();
   scene().finish();
   if (comparison_.on()) comparison_.scene().finish();
   const SceneTotals totals = scene().totals();

@@ -34,6 +34,8 @@ struct ViewerOptions {
   std::filesystem::path out;  ///< where to write the result at the end; empty: nowhere
   const std::atomic<bool>* stop = nullptr;
   Framing::FirstCamera first_camera;
+  /// How a result came about, to be written into it: `output` is "screenshot", "video" or "out".
+  std::function<std::string(const Session& shown, const std::string& output)> origin;
   std::function<void(const Session& session)> check;  ///< of one that is opened; throws Error as for the first
   std::function<void(const std::string& line)> say;   ///< a line for stderr
 };
@@ -55,6 +57,7 @@ struct ViewerResult {
   Image image;
   std::vector<std::filesystem::path> pictures;  ///< written for events
   bool interrupted = false;                     ///< a window was ended by `stop`
+  Session shown;                                ///< at the end
   std::string lost_video;                       ///< why the video of a window could not be written; empty: it could
 };
 

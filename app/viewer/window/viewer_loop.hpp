@@ -28,6 +28,7 @@
 #include "engine/gl/framebuffer.hpp"
 #include "engine/gl/window.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/run/origin.hpp"
 #include "engine/system/output_file.hpp"
 
 namespace nacre {
@@ -141,6 +142,9 @@ class Viewer {
 
   void take_picture(const Screenshot& picture);
 
+  /// The session that shows what is seen now.
+  Session shown_session() const;
+
   /// And turns a camera that orbits: by as much in a second as in a second of a video.
   void count_time(double frame_begin, bool advanced);
 
@@ -172,8 +176,8 @@ class Viewer {
     scripted_ = player_->plays();
   }
 
-  /// Its state; where it is a recording, that is played.
-  void load_session(const std::filesystem::path& file) { play(read_session(file), file); }
+  /// Its state; where it is a recording, that is played. Also what a picture shows.
+  void load_session(const std::filesystem::path& file) { play(open_session(file), file); }
   void play(Session loaded, const std::filesystem::path& file);
   std::array<int, 2> size() const {
     if (window_) return window_->pixels();

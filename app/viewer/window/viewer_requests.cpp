@@ -100,8 +100,19 @@ void Viewer::take_picture(const Screenshot& picture) {
                picture.transparent ? std::array<float, 4>{0, 0, 0, 0} : background_of(session_.settings));
     image = large.read();
   }
-  write_png(picture.file, image);
+  write_png(picture.file, image, options_.origin(shown_session(), "screenshot"));
   result_.pictures.push_back(picture.file);
+}
+
+/// Stopped at the time that is seen.
+Session Viewer::shown_session() const {
+  Session shown = session_;
+  if (shown.camera) shown.camera = orbit(*shown.camera, turned_);
+  const Transport at = scene().transport();
+  if (at.kind != Transport::Kind::time || at.shown < 0) return shown;
+  shown.settings.view.play = false;
+  shown.settings.begin_at = begin_at_of(at.shown, std::max(1, shown.settings.flow.steps));
+  return shown;
 }
 
 void Viewer::show_error(const std::string& line) {
@@ -129,7 +140,8 @@ void Viewer::obey(const UiRequests& requests) {
       play(std::move(tour), {});
     });
   if (requests.save_session) attempt([&] { save(*requests.save_session, session_text(session_)); });
-  if (requests.save_result) attempt([&] { saving_.begin(scene(), *requests.save_result); });
+  if (requests.save_result)
+    attempt([&] { saving_.begin(scene(), *requests.save_result, options_.origin(session_, "out")); });
   obey_recording(requests);
 }
 
@@ -154,7 +166,7 @@ void Viewer::obey_recording(const UiRequests& requests) {
     });
   if (requests.film)
     attempt([&] {
-      film_.begin(*requests.film, session_.settings.fps, options_.stop);
+      film_.begin(*requests.film, session_.settings.fps, options_.stop, options_.origin(shown_session(), "video"));
       time_.set_fps(session_.settings.fps);
       set_lockstep(true);
     });
@@ -190,7 +202,7 @@ void Viewer::play(Session loaded, const std::filesystem::path& file) {
 }
 
 void Viewer::open_dropped() {
-  if (dropped_.size() == 1 && dropped_[0].extension() == ".json") {
+  if (dropped_.size() == 1 && may_hold_session(dropped_[0])) {
     const std::vector<std::filesystem::path> file = std::exchange(dropped_, {});
     return attempt([&] { load_session(file[0]); });
   }

@@ -346,9 +346,9 @@ TEST_F(FlowInView, WritesItsValues) {
   open(small_session());
   advance();
   ASSERT_EQ(scene_->result_formats(), std::vector<std::string>{".vtp"});
-  scene_->write_result(folder / "a.vtp");
+  scene_->write_result(folder / "a.vtp", "");
   EXPECT_GT(std::filesystem::file_size(folder / "a.vtp"), 1000u);
-  EXPECT_THROW(scene_->write_result(folder / "no/such/folder/a.vtp"), Error);
+  EXPECT_THROW(scene_->write_result(folder / "no/such/folder/a.vtp", ""), Error);
 }
 
 }  // namespace

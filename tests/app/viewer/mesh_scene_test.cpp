@@ -258,8 +258,8 @@ TEST_F(MeshInView, WhatIsSeenIsTheVolumeUntilThereAreParticles) {
 TEST_F(MeshInView, WritesWhereItIsLiveToo) {
   open(false);
   const test::TemporaryFolder folder;
-  EXPECT_THROW(scene_->write_result(folder / "a.nosuch"), Error);
-  scene_->write_result(folder / "a.vtp");
+  EXPECT_THROW(scene_->write_result(folder / "a.nosuch", ""), Error);
+  scene_->write_result(folder / "a.vtp", "");
   EXPECT_TRUE(std::filesystem::exists(folder / "a.vtp"));
   const std::vector<std::string> formats = scene_->result_formats();
   for (const char* format : {".vtp", ".stl", ".vtu", ".msh"})

@@ -278,7 +278,7 @@ TEST(MeshWorker, CancelKeepsWhatThereIsAndResumeBeginsAgain) {
   EXPECT_FALSE(run.worker->settled());
   EXPECT_EQ(run.triangles, 0u);
   EXPECT_FALSE(run.counts.empty());
-  run.worker->write("never.vtp");
+  run.worker->write("never.vtp", "");
   run.settle();
   EXPECT_NE(run.written, "");
   run.worker->resume();

@@ -48,8 +48,8 @@ class StillScene : public Scene {
   std::optional<ProbeResult> probe(const Vec3d&, const Vec3d&) override {
     return under_the_mouse ? std::optional(ProbeResult{*under_the_mouse, {}}) : std::nullopt;
   }
-  void write_result(const std::filesystem::path&) override {}
-  void begin_write(const std::filesystem::path&) override {}
+  void write_result(const std::filesystem::path&, const std::string&) override {}
+  void begin_write(const std::filesystem::path&, const std::string&) override {}
   std::optional<std::string> take_written() override { return {}; }
   std::vector<std::string> result_formats() const override { return {}; }
   bool complete() const override { return true; }

@@ -362,14 +362,14 @@ TEST(FlowWorker, WritesWhatIsShown) {
   const test::TemporaryFolder folder;
   WorkerRun run;
   run.step();
-  run.worker->write(folder / "values.vtp");
+  run.worker->write(folder / "values.vtp", "");
   run.settle();
   EXPECT_EQ(run.written, "");
   const FileInfo written = describe(folder / "values.vtp");
   EXPECT_EQ(written.points, run.values);
   EXPECT_TRUE(
       std::any_of(written.arrays.begin(), written.arrays.end(), [&](const ArrayInfo& a) { return a.name == "value"; }));
-  run.worker->write(folder / "no" / "such" / "folder.vtp");
+  run.worker->write(folder / "no" / "such" / "folder.vtp", "");
   run.settle();
   EXPECT_NE(run.written.value_or("").find("folder.vtp"), std::string::npos);
   EXPECT_EQ(run.failure, "") << "the flow goes on";
