@@ -133,6 +133,12 @@ TEST_F(ViewMesh, LooksChangeWhatIsSeenAndNothingElse) {
   EXPECT_LT(covered(picture(0, {"--set", "hidden=1"})), 0.85 * all);
   EXPECT_GT(difference(plain, picture(0, {"--set", "ghosts=1"})), 1);
   EXPECT_LT(covered(picture(0, {"--set", "clip=x", "--set", "clip_at=0.6"})), 0.85 * all);
+  // Across the diagonal, and half of the rest: the balls lie side by side along x, in a cube of 20 units.
+  const double half = covered(picture(0, {"--set", "clip_planes=0 1 1 10 10 10"}));
+  EXPECT_LT(half, all);
+  EXPECT_LT(covered(picture(0, {"--set", "clip_planes=0 1 1 10 10 10;-1 0 0 10 10 10"})), 0.75 * half);
+  EXPECT_EQ(covered(picture(0, {"--set", "clip_planes=0 1 1 10 10 10;0 -1 -1 10 9 9", "--set", "legend=false"})), 0)
+      << "they leave nothing";
   EXPECT_GT(difference(plain, picture(0, {"--set", "worst=30"})), 0.2);
   EXPECT_GT(difference(plain, picture(0, {"--set", "triangles=false"})), 1);  // particles instead
 }
@@ -143,6 +149,18 @@ TEST_F(ViewMesh, SlicesOfAllFields) {
         covered(picture(0, {"--set", "slice=y", "--set", std::string("slice_field=") + field, "--set", "hidden=1,2"})),
         0.15)
         << field;
+}
+
+/// The plane cuts the mesh, and its slice closes the cut.
+TEST_F(ViewMesh, ASliceInTheFirstOfTheClipPlanes) {
+  const Arguments cut = {"--set", "clip_planes=1 2 -1 10 10 10"};
+  const Image open = picture(0, cut);
+  for (const char* field : {"volume", "material", "distance", "size"}) {
+    const Arguments slice = {"--set", "slice=plane", "--set", std::string("slice_field=") + field};
+    EXPECT_GT(difference(open, picture(0, cut + slice)), 1) << field;
+    EXPECT_GT(covered(picture(0, cut + slice + Arguments{"--set", "hidden=1,2"})), 0.15) << field;
+  }
+  EXPECT_EQ(difference(picture(0), picture(0, {"--set", "slice=plane"})), 0) << "there is no plane";
 }
 
 TEST_F(ViewMesh, ALabelThatIsNotThereIsAWarning) {

@@ -107,11 +107,11 @@ void MeshScene::update_worst() {
 }
 
 /// The knob's; before there is anything else to see, the middle of the volume.
-std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
-  const int axis = slice_axis(settings_.view);
-  if (axis >= 0) return VolumePlane{axis, settings_.view.slice_at};
+std::optional<SlicePlane> MeshScene::shown_plane() const {
+  if (!results_.volume) return {};
+  if (const std::optional<SlicePlane> wanted = wanted_slice(*results_.volume, settings_.view)) return wanted;
   const bool hides = preview_drawn() && results_.volume->input.kind == MeshVolume::Kind::labels;
-  if (!complete() && !hides) return VolumePlane{2, 0.5};
+  if (!complete() && !hides) return slice_plane(results_.volume->input, 2, 0.5);
   return {};
 }
 
@@ -119,19 +119,19 @@ std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
 /// them.
 void MeshScene::update_slice() {
   if (!results_.volume) return;
-  const int axis = slice_axis(settings_.view);
-  if (axis < 0 || settings_.view.slice_field == SliceField::volume) {
+  const std::optional<SlicePlane> wanted = wanted_slice(*results_.volume, settings_.view);
+  if (!wanted || settings_.view.slice_field == SliceField::volume) {
     worker_.drop_slice();
     slice_of_field_ = false;
-    if (const std::optional<VolumePlane> plane = shown_plane())
-      show_volume_slice(plane->axis, plane->at);
+    if (const std::optional<SlicePlane> plane = shown_plane())
+      show_volume_slice(*plane);
     else
       slice_pass_.set_image({}, false);
     return;
   }
   const MeshField field = field_of(settings_.view.slice_field);
-  if (!slice_of_field_) show_volume_slice(axis, settings_.view.slice_at);
-  request_ = {request_.number + 1, axis, settings_.view.slice_at, field};
+  if (!slice_of_field_) show_volume_slice(*wanted);
+  request_ = {request_.number + 1, *wanted, field};
   worker_.ask_slice(request_);
 }
 
@@ -153,9 +153,8 @@ const Colormap& MeshScene::slice_map() const {
   return colormap(settings_.view.slice_field == SliceField::volume ? "gray" : settings_.colormap);
 }
 
-void MeshScene::show_volume_slice(int axis, double at) {
+void MeshScene::show_volume_slice(const SlicePlane& plane) {
   const ViewedVolume& volume = *results_.volume;
-  const SlicePlane plane = slice_plane(volume.input, axis, at);
   slice_values_ = volume.input.kind == MeshVolume::Kind::scalar;
   slice_range_ = volume_range();
   slice_pass_.set_image(volume_slice(volume, plane, palette_, slice_map(), slice_range_[0], slice_range_[1]),
@@ -199,7 +198,7 @@ bool MeshScene::particles_drawn() const {
 
 void MeshScene::draw(const View& frame) {
   View view = frame, whole = frame;
-  whole.clip.reset();
+  whole.clip.clear();
   view.light =
       turned_light(mesh_light(view.camera), view.camera, settings_.view.light_azimuth, settings_.view.light_height);
   const bool begun = complete();
@@ -254,7 +253,7 @@ std::uint64_t MeshScene::overlay_version() const {
   const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", settings_.legend, energies[0], energies[1], particles_drawn(),
-                  int(settings_.view.particle_color), sizes[0], sizes[1], slice_axis(settings_.view), slice_values_,
+                  int(settings_.view.particle_color), sizes[0], sizes[1], slice_has_legend(), slice_values_,
                   slice_range_[0], slice_range_[1], settings_.colormap + title_of(settings_.view.slice_field));
   return std::hash<std::string>()(key);
 }

@@ -16,10 +16,6 @@ std::string position_line(const char* name, const Vec3d& p) {
   return fmt::format("{}: {:.5g} {:.5g} {:.5g}", name, p.x, p.y, p.z);
 }
 
-bool is_cut(const std::optional<ClipPlane>& clip, const Vec3d& p) {
-  return clip && dot(clip->normal, p) < clip->offset;
-}
-
 /// Where a ray passes the parallelogram of a slice.
 std::optional<double> distance_to(const SlicePlane& plane, const Vec3d& from, const Vec3d& along) {
   const Vec3d normal = cross(plane.across, plane.up);
@@ -46,15 +42,14 @@ void describe_voxel(ProbeResult& probed, const ViewedVolume& volume, std::size_t
 /// The nearest triangle that is not hidden or cut away.
 std::optional<TriangleHit> MeshScene::first_seen(const Vec3d& from, const Vec3d& along) const {
   if (!triangles_drawn()) return {};
-  const std::optional<ClipPlane> clip = clip_plane(settings_.view, corners_);
+  const ClipPlanes clip = clip_planes(settings_.view, corners_);
   constexpr int most_layers = 100;
   double near = 0;
   for (int layer = 0; layer < most_layers; ++layer) {
     const std::optional<TriangleHit> hit = rays_.first(from, along, near);
     if (!hit) return {};
     const auto& pair = results_.mesh->materials[hit->triangle];
-    if (!is_cut(clip, hit->position) &&
-        std::max(material_styles_[pair[0]].opacity, material_styles_[pair[1]].opacity) > 0)
+    if (!clip.cut(hit->position) && std::max(material_styles_[pair[0]].opacity, material_styles_[pair[1]].opacity) > 0)
       return hit;
     near = std::nextafter(hit->distance, std::numeric_limits<double>::infinity());
   }
@@ -81,8 +76,10 @@ std::optional<ProbeResult> MeshScene::probe(const Vec3d& from, const Vec3d& alon
   const ViewedVolume& volume = *results_.volume;
   const std::optional<TriangleHit> hit = first_seen(from, along);
   std::optional<double> slice;
-  if (const std::optional<VolumePlane> plane = shown_plane())
-    slice = distance_to(slice_plane(volume.input, plane->axis, plane->at), from, along);
+  if (const std::optional<SlicePlane> plane = shown_plane()) {
+    slice = distance_to(*plane, from, along);
+    if (slice && plane->is_oblique() && !volume.index_at(from + along * *slice)) slice.reset();
+  }
   if (!hit && !slice) return {};
   const bool on_slice = slice && (!hit || *slice < hit->distance);
   ProbeResult probed;

@@ -89,12 +89,8 @@ class MeshScene : public Scene {
   void update_edges();
   void update_worst();
   void update_slice();
-  struct VolumePlane {
-    int axis;
-    double at;
-  };
-  std::optional<VolumePlane> shown_plane() const;
-  void show_volume_slice(int axis, double at);
+  std::optional<SlicePlane> shown_plane() const;
+  void show_volume_slice(const SlicePlane& plane);
   std::array<double, 2> volume_range();
   const Colormap& slice_map() const;
   std::array<double, 2> slice_range(const std::vector<float>& values, MeshField field);
@@ -105,7 +101,9 @@ class MeshScene : public Scene {
   bool preview_drawn() const {
     return settings_.view.preview && preview_surface_ && counts_.surfaces == 0 && !triangles_drawn();
   }
-  bool slice_has_legend() const { return slice_axis(settings_.view) >= 0 && slice_values_; }
+  bool slice_has_legend() const {
+    return slice_values_ && results_.volume && wanted_slice(*results_.volume, settings_.view);
+  }
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles && !looked_back_at(); }
   /// Between two iterations, for the user; a replay does not wait.
   bool paused() const { return !settings_.view.play && !lockstep_; }

@@ -45,6 +45,7 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"space", "pause and play"},
                                    {", .", "pause; one step back, one step forward"},
                                    {"d", "ruler: distance between points under the cursor; the third gives an angle"},
+                                   {"c", "clip plane that faces the camera; its handle moves and turns it"},
                                    {"g", "graph of the point under the cursor through time"},
                                    {"r, R", "release dye at the point under the cursor; R: another dye"},
                                    {"n", "note at the point under the cursor"},
@@ -265,6 +266,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'e': view.edges = !view.edges; break;
       case 'p': view.panel = !view.panel; break;
       case 't': view.theme = other(view.theme); break;
+      case 'c': clip_.add_facing(session.settings, scene.corners(), facts.camera); break;
       case 'd': measure(session, scene, facts); break;
       case 'n': ask_note(session, scene, facts); break;
       case 'g': plot_point(session, scene, facts); break;

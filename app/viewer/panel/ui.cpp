@@ -123,13 +123,13 @@ void data_tab(Session& session, const Scene& scene, ScenePanel& panel) {
   for (const std::string& warning : scene.warnings()) ImGui::TextWrapped("! %s", warning.c_str());
 }
 
-void look_tab(Session& session, ScenePanel& panel) {
-  panel.look_tab(session);
+void look_tab(Session& session, const Scene& scene, const UiFacts& facts, ClipPanel& clip) {
+  facts.panel.look_tab(session);
   Settings& settings = session.settings;
   const auto several = [&](std::initializer_list<const char*> names) {
     for (const char* name : names) knob_widget(settings, name);
   };
-  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back", "back_faces"});
+  clip.draw(settings, scene.corners(), facts.camera);
   if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
   if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
   if (ImGui::CollapsingHeader("window")) several({"turning", "theme", "text_size", "panel_side", "panel_width"});
@@ -179,7 +179,7 @@ void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
   if (!ImGui::BeginTabBar("tabs")) return;
   item("data", PanelTab::data, [&] { data_tab(session, scene, facts.panel); });
   item("knobs", PanelTab::knobs, [&] { knob_tab(session); });
-  item("look", PanelTab::look, [&] { look_tab(session, facts.panel); });
+  item("look", PanelTab::look, [&] { look_tab(session, scene, facts, clip_); });
   item("result", PanelTab::result, [&] { facts.panel.result_tab(session); });
   item("timings", PanelTab::timings, [&] { timings_tab(scene, facts); });
   ImGui::EndTabBar();
@@ -314,7 +314,10 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     const bool played = session.settings.view.play;
     transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
     if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
-    if (session.camera) probe_window(scene, facts.camera, area);
+    if (session.camera) {
+      if (facts.film.empty()) clip_.draw_handle(session.settings.view, scene.corners(), {facts.camera, area});
+      probe_window(scene, facts.camera, area);
+    }
   }
   welcome_card(session, facts, area, requests);
   error_window(area);

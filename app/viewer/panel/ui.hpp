@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/panel/clip_panel.hpp"
 #include "app/viewer/panel/file_dialog.hpp"
 #include "app/viewer/panel/frame_clock.hpp"
 #include "app/viewer/panel/knob_presets.hpp"
@@ -113,6 +114,7 @@ class Ui {
   TransportBar transport_;
   WelcomeCard welcome_;
   KnobPresets presets_;
+  ClipPanel clip_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;

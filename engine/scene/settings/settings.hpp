@@ -21,7 +21,8 @@ struct MaterialSettings {
   int layer = -1;          ///< of a segmentation whose segments overlap, from 0; -1: all, later segments over earlier
 };
 
-enum class PlaneAxis { none, x, y, z };  ///< that a plane of the viewer cuts across; none: there is no plane
+/// That a plane of the viewer cuts across. none: there is no plane; plane: in the first of `clip_planes` (a slice).
+enum class PlaneAxis { none, x, y, z, plane };
 enum class ParticleColour { energy, size };
 enum class SliceField { volume, material, distance, size };
 enum class Turning { turntable, trackball };
@@ -51,6 +52,7 @@ struct ViewSettings {
   PlaneAxis clip = PlaneAxis::none;   ///< nothing is drawn before the plane
   double clip_at = 0.5;               ///< its position in the bounding box
   bool clip_back = false;             ///< nothing is drawn behind it instead
+  std::string clip_planes;            ///< nx ny nz x y z;...: further ones, in any direction
   PlaneAxis slice = PlaneAxis::none;  ///< a plane of the volume
   double slice_at = 0.5;
   SliceField slice_field = SliceField::volume;
