@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "app/viewer/mesh/mesh_scene.hpp"
+#include "app/viewer/scene/layout.hpp"
 #include "compute/particles/energy.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
@@ -110,6 +111,7 @@ void MeshScene::update_worst() {
 std::optional<SlicePlane> MeshScene::shown_plane() const {
   if (!results_.volume) return {};
   if (const std::optional<SlicePlane> wanted = wanted_slice(*results_.volume, settings_.view)) return wanted;
+  if (three_slices()) return {};
   const bool hides = preview_drawn() && results_.volume->input.kind == MeshVolume::Kind::labels;
   if (!complete() && !hides) return slice_plane(results_.volume->input, 2, 0.5);
   return {};
@@ -192,6 +194,22 @@ std::array<double, 2> MeshScene::size_range() const {
   return {low, high > low ? high : low * 1.0001 + 1e-12};
 }
 
+/// Three orthogonal slices as the knobs say; fields of the worker are shown by the slice of the view alone.
+SliceViews* MeshScene::slices() {
+  if (!results_.volume || settings_.view.layout == ViewLayout::single) return nullptr;
+  if (!ortho_) ortho_ = std::make_unique<OrthoSlices>();
+  SliceContent content;
+  content.volume = results_.volume;
+  if (triangles_drawn()) content.mesh = results_.mesh;
+  content.crosshair = parse_crosshair(settings_.view.crosshair);
+  content.materials = settings_.view.slice_field == SliceField::material;
+  content.range = volume_range();
+  content.palette = palette_;
+  for (const MaterialStyle& style : material_styles_) content.drawn.push_back(style.opacity > 0);
+  ortho_->show(std::move(content));
+  return ortho_.get();
+}
+
 bool MeshScene::particles_drawn() const {
   return settings_.view.particles && counts_.total() > 0 && !triangles_drawn();
 }
@@ -203,6 +221,7 @@ void MeshScene::draw(const View& frame) {
       turned_light(mesh_light(view.camera), view.camera, settings_.view.light_azimuth, settings_.view.light_height);
   const bool begun = complete();
   if (shown_plane()) slice_pass_.draw(view);
+  if (three_slices() && slices()) ortho_->draw_planes(view);
   if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
   if (preview_drawn()) preview_pass_.draw(view, preview_surface_, Placement(1.0));
   if (particles_drawn()) draw_particles(view);

@@ -37,7 +37,31 @@ void describe_voxel(ProbeResult& probed, const ViewedVolume& volume, std::size_t
     probed.lines.push_back(fmt::format("{}: {:.6g}", volume.input.names[material], volume.value(index, file)));
 }
 
+/// What the volume says of a position in it.
+void describe_position(ProbeResult& probed, const ViewedVolume& volume) {
+  probed.lines.push_back(position_line("position", probed.position));
+  probed.lines.push_back(position_line("voxel", volume.to_voxels(probed.position)));
+}
+
+void describe_volume(ProbeResult& probed, const ViewedVolume& volume, bool material) {
+  const std::optional<std::size_t> index = volume.index_at(probed.position);
+  if (!index) return;
+  describe_voxel(probed, volume, *index);
+  if (material) probed.lines.push_back("material: " + material_name(volume.input, volume.material[*index]));
+}
+
 }  // namespace
+
+std::optional<ProbeResult> probe_slice(const ViewedVolume& volume, const SlicePlane& plane, const Vec3d& from,
+                                       const Vec3d& along) {
+  const std::optional<double> distance = distance_to(plane, from, along);
+  if (!distance) return {};
+  ProbeResult probed;
+  probed.position = from + along * *distance;
+  describe_position(probed, volume);
+  describe_volume(probed, volume, true);
+  return probed;
+}
 
 /// The nearest triangle that is not hidden or cut away.
 std::optional<TriangleHit> MeshScene::first_seen(const Vec3d& from, const Vec3d& along) const {
@@ -84,13 +108,9 @@ std::optional<ProbeResult> MeshScene::probe(const Vec3d& from, const Vec3d& alon
   const bool on_slice = slice && (!hit || *slice < hit->distance);
   ProbeResult probed;
   probed.position = on_slice ? from + along * *slice : hit->position;
-  probed.lines.push_back(position_line("position", probed.position));
-  probed.lines.push_back(position_line("voxel", volume.to_voxels(probed.position)));
+  describe_position(probed, volume);
   if (!on_slice) describe_hit(probed, *hit);
-  if (const std::optional<std::size_t> index = volume.index_at(probed.position)) {
-    describe_voxel(probed, volume, *index);
-    if (on_slice) probed.lines.push_back("material: " + material_name(volume.input, volume.material[*index]));
-  }
+  describe_volume(probed, volume, on_slice);
   return probed;
 }
 

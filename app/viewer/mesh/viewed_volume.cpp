@@ -128,7 +128,10 @@ SlicePlane slice_plane(const MeshInput& input, int axis, double at) {
   for (int a = 1; a < 3; ++a)
     if (std::fabs(input.axes[std::size_t(a)][axis]) > std::fabs(input.axes[std::size_t(across)][axis])) across = a;
   const bool turned = input.axes[std::size_t(across)][axis] < 0;
-  const double along = (turned ? 1 - at : at) * input.dims[across] - 0.5;
+  return layer_plane(input, across, (turned ? 1 - at : at) * input.dims[across] - 0.5);
+}
+
+SlicePlane layer_plane(const MeshInput& input, int across, double along) {
   SlicePlane plane{};
   plane.across_axis = across == 0 ? 1 : 0;
   plane.up_axis = across == 2 ? 1 : 2;
@@ -176,31 +179,34 @@ std::optional<SlicePlane> wanted_slice(const ViewedVolume& volume, const ViewSet
   return planes.empty() ? std::nullopt : slice_plane(volume, planes.front());
 }
 
-/// Along the volume's axes: each pixel is a voxel.
-static Image straight_slice(const ViewedVolume& v, const SlicePlane& plane, std::span<const Color> palette,
-                            const Colormap& map, double low, double high) {
+/// Along the volume's axes, each pixel is a voxel: calls colour_of(its index).
+template <class ColourOf>
+static Image voxel_image(const ViewedVolume& v, const SlicePlane& plane, const ColourOf& colour_of) {
   Image image(plane.width, plane.height);
   const std::size_t stride[] = {1, std::size_t(v.input.dims.x), std::size_t(v.input.dims.x) * v.input.dims.y};
   std::size_t first = 0;
   for (int a = 0; a < 3; ++a) first += stride[a] * std::size_t(plane.first[a]);
-  const auto each = [&](const auto& colour_of) {
-    for (int y = 0; y < plane.height; ++y)
-      for (int x = 0; x < plane.width; ++x)
-        put(image, std::size_t(y) * plane.width + x,
-            colour_of(first + stride[plane.across_axis] * std::size_t(x) + stride[plane.up_axis] * std::size_t(y)));
-  };
-  if (v.input.kind == MeshVolume::Kind::scalar) {
-    std::visit(
-        [&](const auto& values) {
-          each([&](std::size_t i) -> const Color& {
-            return std::isnan(double(values[i])) ? outside_colour : mapped(map, double(values[i]), low, high);
-          });
-        },
-        v.volumes->front().values);
-  } else {
-    each([&](std::size_t i) -> const Color& { return material_pixel(palette, v.material[i]); });
-  }
+  for (int y = 0; y < plane.height; ++y)
+    for (int x = 0; x < plane.width; ++x)
+      put(image, std::size_t(y) * plane.width + x,
+          colour_of(first + stride[plane.across_axis] * std::size_t(x) + stride[plane.up_axis] * std::size_t(y)));
   return image;
+}
+
+Image material_slice(const ViewedVolume& v, const SlicePlane& plane, std::span<const Color> palette) {
+  return voxel_image(v, plane, [&](std::size_t i) -> const Color& { return material_pixel(palette, v.material[i]); });
+}
+
+static Image straight_slice(const ViewedVolume& v, const SlicePlane& plane, std::span<const Color> palette,
+                            const Colormap& map, double low, double high) {
+  if (v.input.kind != MeshVolume::Kind::scalar) return material_slice(v, plane, palette);
+  return std::visit(
+      [&](const auto& values) {
+        return voxel_image(v, plane, [&](std::size_t i) -> const Color& {
+          return std::isnan(double(values[i])) ? outside_colour : mapped(map, double(values[i]), low, high);
+        });
+      },
+      v.volumes->front().values);
 }
 
 /// Linear between the centres of the voxels around `p` (in voxels), as far as there are some.

@@ -71,6 +71,9 @@ struct SlicePlane {
 /// The plane across the volume's axis that runs most along the world's `axis` (0..2), at a share of the volume.
 SlicePlane slice_plane(const MeshInput& input, int axis, double at);
 
+/// The plane through the centres of the voxels of one layer along an axis of the volume; or between two layers.
+SlicePlane layer_plane(const MeshInput& input, int axis, double layer);
+
 /// The rectangle of a plane in any direction that contains all of the plane within the volume; none where the plane
 /// misses the volume.
 std::optional<SlicePlane> slice_plane(const ViewedVolume& volume, const WorldPlane& plane);
@@ -83,6 +86,9 @@ std::optional<SlicePlane> wanted_slice(const ViewedVolume& volume, const ViewSet
 /// linearly, and pixels beyond the volume are transparent.
 Image volume_slice(const ViewedVolume& volume, const SlicePlane& plane, std::span<const Color> palette,
                    const Colormap& map, double low, double high);
+
+/// The same for a plane along the volume's axes, with the materials of a scalar volume instead of its values.
+Image material_slice(const ViewedVolume& volume, const SlicePlane& plane, std::span<const Color> palette);
 
 /// Values as colours; what is no number is transparent, infinity has the last colour.
 Image colour_values(const std::vector<float>& values, int width, int height, double low, double high,

@@ -60,7 +60,10 @@ void draw_arrow(ImDrawList& list, const std::array<double, 2>& from, const std::
                 bool lit) {
   const double dx = tip[0] - from[0], dy = tip[1] - from[1], far = std::hypot(dx, dy);
   const ImU32 colour = lit ? IM_COL32_WHITE : ink;
-  if (far < 1.5 * double(head)) return list.AddCircle(point_of(tip), head, colour, 0, 2.5f);
+  if (far < 1.5 * double(head)) {
+    list.AddCircle(point_of(tip), head, shade, 0, 5);
+    return list.AddCircle(point_of(tip), head, colour, 0, 2.5f);
+  }
   const double ux = dx / far, uy = dy / far, r = double(head);
   const std::array<double, 2> neck{tip[0] - ux * r, tip[1] - uy * r};
   line(list, from, neck, 2.5f);

@@ -15,10 +15,12 @@ namespace nacre {
 
 /// The point of the scene that the mouse is over; none: it is over a panel, or over nothing.
 std::optional<Vec3d> Ui::under_cursor(const Session& session, Scene& scene, const UiFacts& facts) {
+  if (slice_mouse_.under()) return slice_mouse_.under();
   const ImGuiIO& io = ImGui::GetIO();
   std::optional<ProbeResult> probed;
   if (session.camera && !io.WantCaptureMouse && ImGui::IsMousePosValid()) {
-    const FreeArea area = free_area(session.settings.view, facts.width, facts.height);
+    const ViewSettings& view = session.settings.view;
+    const FreeArea area = view_areas(view.layout, scene.slices(), free_area(view, facts.width, facts.height)).view;
     const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
     const auto [from, along] = ray_under(facts.camera, x, y, area.aspect());
     probed = scene.probe(from, along);

@@ -25,6 +25,8 @@ Turning other(Turning turning) { return turning == Turning::trackball ? Turning:
 
 Theme other(Theme theme) { return theme == Theme::dark ? Theme::light : Theme::dark; }
 
+ViewLayout other(ViewLayout layout) { return layout == ViewLayout::single ? ViewLayout::slices : ViewLayout::single; }
+
 /// Views of the camera and the keys that give them.
 struct NamedView {
   const char *name, *view;
@@ -48,6 +50,7 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"c", "clip plane that faces the camera; its handle moves and turns it"},
                                    {"g", "graph of the point under the cursor through time"},
                                    {"r, R", "release dye at the point under the cursor; R: another dye"},
+                                   {"l", "three slices of the volume beside the view, or the view alone"},
                                    {"n", "note at the point under the cursor"},
                                    {"1 to 9", "camera that was kept"},
                                    {"e", "edges of triangles"},
@@ -159,7 +162,7 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
   ImGui::EndMenu();
 }
 
-void Ui::view_menu(Session& session, UiRequests& requests) {
+void Ui::view_menu(Session& session, Scene& scene, UiRequests& requests) {
   if (!ImGui::BeginMenu("View")) return;
   ViewSettings& view = session.settings.view;
   if (ImGui::MenuItem("Fit", "f")) requests.fit = true;
@@ -171,6 +174,8 @@ void Ui::view_menu(Session& session, UiRequests& requests) {
   if (ImGui::MenuItem("Trackball", "b", &ball)) view.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
   ImGui::MenuItem("Edges", "e", &view.edges);
+  if (ImGui::MenuItem("Three slices", "l", view.layout != ViewLayout::single, !scene.is_flow()))
+    view.layout = other(view.layout);
   marks_menu(session);
   ImGui::MenuItem("Legend", nullptr, &session.settings.legend);
   ImGui::MenuItem("Panels", "p", &view.panel);
@@ -191,7 +196,7 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests&
     if (ImGui::MenuItem("Reset knobs")) reset_knobs(session.settings, is_mesh_input(session) ? "mesh" : "flow");
     ImGui::EndMenu();
   }
-  view_menu(session, requests);
+  view_menu(session, scene, requests);
   if (ImGui::BeginMenu("Help")) {
     if (ImGui::MenuItem("Welcome")) welcome_.show();
     if (ImGui::MenuItem("Keys and mouse", "?")) help_ = true;
@@ -268,6 +273,9 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 't': view.theme = other(view.theme); break;
       case 'c': clip_.add_facing(session.settings, scene.corners(), facts.camera); break;
       case 'd': measure(session, scene, facts); break;
+      case 'l':
+        if (!scene.is_flow()) view.layout = other(view.layout);
+        break;
       case 'n': ask_note(session, scene, facts); break;
       case 'g': plot_point(session, scene, facts); break;
       case 'r':

@@ -12,6 +12,7 @@
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "app/viewer/scene/free_area.hpp"
+#include "app/viewer/scene/slice_views.hpp"
 #include "engine/render/camera_motion.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
@@ -306,19 +307,26 @@ void Ui::error_window(const FreeArea& area) {
 UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   UiRequests requests;
   use_keys(session, scene, facts, requests);
-  const FreeArea area = free_area(session.settings.view, facts.width, facts.height);
-  if (session.settings.view.panel) {
+  ViewSettings& view = session.settings.view;
+  const FreeArea area = free_area(view, facts.width, facts.height);
+  SliceViews* const slices = scene.slices();
+  if (view.panel) {
     menus(session, scene, facts, requests);
     panel(session, scene, facts);
-    status(session.settings.view, scene, facts, requests);
-    const bool played = session.settings.view.play;
+    status(view, scene, facts, requests);
+    const bool played = view.play;
     transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
-    if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
-    if (session.camera) {
-      if (facts.film.empty()) clip_.draw_handle(session.settings.view, scene.corners(), {facts.camera, area});
-      probe_window(scene, facts.camera, area);
+    if (!played && view.play && scene.halted()) requests.resume = true;
+    if (session.camera && view_areas(view.layout, slices, area).has_view) {
+      const FreeArea seen = view_areas(view.layout, slices, area).view;
+      if (facts.film.empty()) clip_.draw_handle(view, scene.corners(), {facts.camera, seen});
+      probe_window(scene, facts.camera, seen);
     }
   }
+  if (slices)
+    slice_mouse_.draw(view, *slices, view_areas(view.layout, slices, area));
+  else
+    slice_mouse_.forget();
   welcome_card(session, facts, area, requests);
   error_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, requests);

@@ -12,6 +12,7 @@
 #include "app/viewer/panel/frame_clock.hpp"
 #include "app/viewer/panel/knob_presets.hpp"
 #include "app/viewer/panel/scene_panel.hpp"
+#include "app/viewer/panel/slice_mouse.hpp"
 #include "app/viewer/panel/transport_bar.hpp"
 #include "app/viewer/panel/welcome_card.hpp"
 #include "app/viewer/scene/free_area.hpp"
@@ -81,7 +82,7 @@ class Ui {
   void use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests);
   void menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
-  void view_menu(Session& session, UiRequests& requests);
+  void view_menu(Session& session, Scene& scene, UiRequests& requests);
   void panel(Session& session, Scene& scene, const UiFacts& facts);
   float failure_window(const ViewSettings& view, const Scene& scene, const UiFacts& facts);
   void tabs(Session& session, Scene& scene, const UiFacts& facts);
@@ -115,6 +116,7 @@ class Ui {
   WelcomeCard welcome_;
   KnobPresets presets_;
   ClipPanel clip_;
+  SliceMouse slice_mouse_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;

@@ -63,6 +63,7 @@ void Viewer::make_graphics() {
   result_.version = context_->version();
   imgui_.emplace(window_);
   captions_.emplace();
+  slice_layout_.emplace();
 }
 
 void Viewer::drop_graphics() {
@@ -71,6 +72,7 @@ void Viewer::drop_graphics() {
   open_.reset();  // before the context that all of it lives in
   frame_.reset();
   captions_.reset();
+  slice_layout_.reset();
   imgui_.reset();
   window_ = nullptr;
   context_.reset();
@@ -179,20 +181,27 @@ void Viewer::draw_scene(Framebuffer& frame, const FreeArea& area, const std::arr
   frame.bind();
   frame.clear(background);
   if (!framing_.ready()) return;
+  SliceViews* const slices = scene().slices();
+  const ViewAreas areas = view_areas(session_.settings.view.layout, slices, area);
+  if (areas.has_view) draw_view(frame, areas.view);
+  if (slices) slice_layout_->draw(frame, *slices, areas, session_.settings.background);
+  frame.bind();
+}
+
+void Viewer::draw_view(Framebuffer& frame, const FreeArea& area) {
   frame.bind_part(area.x, frame.height() - area.y - area.height, area.width, area.height);
   const View view = scene_view(session_, scene().corners(), turned_, area.width, area.height);
   scene().draw(view);
   captions_->draw(scene(), view, session_.settings);
-  frame.bind();
 }
 
 void Viewer::draw(int width, int height, double seconds) {
   imgui_->begin(width, height, seconds, session_.settings.view);
   const FreeArea area = ui_.free_area(session_.settings.view, width, height);
-  area_ = area;
-  framing_.keep(session_, scene(), area, options_.first_camera);
+  area_ = view_areas(session_.settings.view.layout, scene().slices(), area).view;
+  framing_.keep(session_, scene(), area_, options_.first_camera);
   draw_scene(*frame_, area, background_of(session_.settings));
-  if (session_.camera) move_by_hand(*session_.camera, area);
+  if (session_.camera) move_by_hand(*session_.camera, area_);
   const UiFacts facts{*open_.panel,     clock_,
                       result_.renderer, recent_.files(),
                       undo_.can_undo(), undo_.can_redo(),

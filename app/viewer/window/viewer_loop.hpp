@@ -10,6 +10,7 @@
 #include "app/viewer/scene/framing.hpp"
 #include "app/viewer/scene/scene.hpp"
 #include "app/viewer/scene/scene_view.hpp"
+#include "app/viewer/scene/slice_layout.hpp"
 #include "app/viewer/scene/worker.hpp"
 #include "app/viewer/window/camera_control.hpp"
 #include "app/viewer/window/draw_demand.hpp"
@@ -115,6 +116,7 @@ class Viewer {
   /// A video that cannot be written ends; what is seen in a window goes on.
   void add_to_video();
   void draw_scene(Framebuffer& frame, const FreeArea& area, const std::array<float, 4>& background);
+  void draw_view(Framebuffer& frame, const FreeArea& area);
   void draw(int width, int height, double seconds);
 
   /// What the hand takes hold of is what is seen, as far as it has turned.
@@ -204,6 +206,7 @@ class Viewer {
   Window* window_ = nullptr;  ///< the context, where it is one
   std::optional<ImGuiLayer> imgui_;
   std::optional<Captions> captions_;
+  std::optional<SliceLayout> slice_layout_;
   std::optional<Framebuffer> frame_;
   OpenScene open_;
   std::optional<Opening> opening_;
@@ -213,7 +216,7 @@ class Viewer {
   RecentFiles recent_;
   UiRequests requests_;
   Framing framing_;
-  FreeArea area_;
+  FreeArea area_;  ///< of the view
   FrameClock clock_;
   DrawDemand demand_;
   bool quit_ = false, spare_ = false;

@@ -25,6 +25,7 @@ struct MaterialSettings {
 enum class PlaneAxis { none, x, y, z, plane };
 enum class ParticleColour { energy, size };
 enum class SliceField { volume, material, distance, size };
+enum class ViewLayout { single, slices, x, y, z };  ///< the view; beside three slices; one slice alone
 enum class Turning { turntable, trackball };
 enum class PanelSide { left, right };
 enum class PanelTab { data, knobs, look, timings, result };
@@ -56,7 +57,9 @@ struct ViewSettings {
   PlaneAxis slice = PlaneAxis::none;  ///< a plane of the volume
   double slice_at = 0.5;
   SliceField slice_field = SliceField::volume;
-  std::string slice_range;                     ///< LO:HI of a volume's values; empty: nearly all of them
+  std::string slice_range;  ///< LO:HI of a volume's values; empty: nearly all of them
+  ViewLayout layout = ViewLayout::single;
+  std::string crosshair = "0.5 0.5 0.5";       ///< shares of the volume, along its axes: where its slices meet
   double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
   double ambient = 0.3;                        ///< share of the light that comes from everywhere
   Turning turning = Turning::turntable;        ///< how dragging rotates the camera

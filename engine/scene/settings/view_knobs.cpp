@@ -122,6 +122,15 @@ std::vector<Knob> plane_knobs(ViewSettings& l) {
        .group = group,
        .help = "LO:HI: values that a slice of a scalar volume shows in black and in white; empty: nearly all",
        .value = &l.slice_range},
+      {.name = "layout",
+       .group = group,
+       .help = "mesh: the view alone, beside three orthogonal slices of the volume, or one of these alone",
+       .value = knob_choice(l.layout),
+       .choices = {"single", "slices", "x", "y", "z"}},
+      {.name = "crosshair",
+       .group = group,
+       .help = "a b c: where the slices of the layout meet, as shares of the volume along its own axes",
+       .value = &l.crosshair},
   };
 }
 
