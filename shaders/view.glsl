@@ -7,7 +7,8 @@ uniform vec4 ray_direction;      // w = 1: the same for all pixels (orthographic
 uniform vec3 light;
 uniform float ambient;
 uniform vec2 picture_size;
-uniform vec4 clip_plane;  // keeps dot(xyz, seen) + w >= 0
+uniform vec4 clip_planes[7];  // each keeps dot(xyz, seen) + w >= 0
+uniform int clip_count;
 
 vec3 to_linear(vec3 c) { return c * c; }  // gamma 2, near sRGB
 vec3 to_encoded(vec3 c) { return sqrt(clamp(c, 0.0, 1.0)); }
@@ -21,4 +22,8 @@ float brightness(vec3 normal, vec3 seen) {
   return ambient + (1.0 - ambient) * max(dot(n, light) * facing, 0.0);
 }
 
-bool is_cut(vec3 seen) { return dot(clip_plane.xyz, seen) + clip_plane.w < 0.0; }
+bool is_cut(vec3 seen) {
+  for (int k = 0; k < clip_count; ++k)
+    if (dot(clip_planes[k].xyz, seen) + clip_planes[k].w < 0.0) return true;
+  return false;
+}

@@ -137,7 +137,7 @@ void SurfacePass::draw(const View& view, const SurfaceBuffers& surface, const Su
   program.use();
   glEnable(GL_DEPTH_TEST);
   const Blended blended(over.opacity < 1);
-  const bool one_sided = surface.closed() && !view.clip;
+  const bool one_sided = surface.closed() && view.clip.empty();
   draw_sides(program, surface, one_sided, back_faces, over.nearer);
 }
 

@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/mat3x3.hpp>
 #include <numbers>
+#include <string>
 
 namespace nacre {
 namespace {
@@ -79,6 +80,17 @@ Placement place_grid(const Vec3d& origin, double size) {
   return glm::scale(glm::translate(glm::dmat4(1.0), to_glm(origin)), glm::dvec3(size));
 }
 
+static void set_clip_planes(const Program& program, const View& view) {
+  const std::span<const ClipPlane> planes = view.clip.all();
+  for (std::size_t k = 0; k < planes.size(); ++k) {
+    const Vec3d n = normalized(planes[k].normal);
+    const double offset = planes[k].offset / std::max(length(planes[k].normal), 1e-300);
+    const std::array<float, 4> plane{float(n.x), float(n.y), float(n.z), float(dot(n, view.camera.eye) - offset)};
+    program.set(("clip_planes[" + std::to_string(k) + "]").c_str(), plane);
+  }
+  program.set("clip_count", int(planes.size()));
+}
+
 void set_view(const Program& program, const View& view, const Placement& world_from_model) {
   const glm::dmat4 seen = glm::translate(glm::dmat4(1.0), -to_glm(view.camera.eye)) * world_from_model;
   program.set("seen_from_model", floats(seen));
@@ -92,13 +104,7 @@ void set_view(const Program& program, const View& view, const Placement& world_f
   program.set("light", floats(view.light));
   program.set("ambient", view.ambient);
   program.set("picture_size", std::array<float, 2>{float(view.width), float(view.height)});
-  std::array<float, 4> plane{0, 0, 0, 1};  // cuts nothing
-  if (view.clip) {
-    const Vec3d n = normalized(view.clip->normal);
-    const double offset = view.clip->offset / std::max(length(view.clip->normal), 1e-300);
-    plane = {float(n.x), float(n.y), float(n.z), float(dot(n, view.camera.eye) - offset)};
-  }
-  program.set("clip_plane", plane);
+  set_clip_planes(program, view);
   program.set("backs", int(view.back_faces));
 }
 

@@ -1,8 +1,10 @@
 // Nacre: the view of a frame, and the placement of models in the world.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <glm/mat4x4.hpp>
-#include <optional>
+#include <span>
 
 #include "compute/raycast/camera.hpp"
 #include "engine/gl/shader.hpp"
@@ -13,6 +15,34 @@ namespace nacre {
 struct ClipPlane {
   Vec3d normal{1, 0, 0};
   double offset = 0;
+
+  bool cuts(const Vec3d& p) const { return dot(normal, p) < offset; }
+};
+
+/// The planes of a frame. Nothing is drawn where one of them cuts.
+class ClipPlanes {
+ public:
+  static constexpr std::size_t most = 7;  ///< as in shaders/view.glsl
+
+  ClipPlanes() = default;
+  explicit ClipPlanes(const ClipPlane& plane) { add(plane); }
+
+  /// One more; beyond `most` it has no effect.
+  void add(const ClipPlane& plane) {
+    if (count_ < most) planes_[count_++] = plane;
+  }
+  void clear() { count_ = 0; }
+  bool empty() const { return count_ == 0; }
+  std::span<const ClipPlane> all() const { return {planes_.data(), count_}; }
+  bool cut(const Vec3d& p) const {
+    for (const ClipPlane& plane : all())
+      if (plane.cuts(p)) return true;
+    return false;
+  }
+
+ private:
+  std::array<ClipPlane, most> planes_{};
+  std::size_t count_ = 0;
 };
 
 /// What all passes of one frame share.
@@ -22,7 +52,7 @@ struct View {
   Vec3d light{0, 0, 1};  ///< unit, towards the light
   float ambient = 0.3f;
   double extent = 0;  ///< radius of a ball around the eye that contains the scene, for orthographic cameras
-  std::optional<ClipPlane> clip;
+  ClipPlanes clip;
   BackFaces back_faces = BackFaces::shown;
 
   /// From world coordinates relative to the eye to the clip space of a Framebuffer: depth 1 near, 0 infinitely far (0

@@ -133,6 +133,12 @@ TEST_F(ViewMesh, LooksChangeWhatIsSeenAndNothingElse) {
   EXPECT_LT(covered(picture(0, {"--set", "hidden=1"})), 0.85 * all);
   EXPECT_GT(difference(plain, picture(0, {"--set", "ghosts=1"})), 1);
   EXPECT_LT(covered(picture(0, {"--set", "clip=x", "--set", "clip_at=0.6"})), 0.85 * all);
+  // Across the diagonal, and half of the rest: the balls lie side by side along x, in a cube of 47 units.
+  const double half = covered(picture(0, {"--set", "clip_planes=0 1 1 23 23 23"}));
+  EXPECT_LT(half, all);
+  EXPECT_LT(covered(picture(0, {"--set", "clip_planes=0 1 1 23 23 23;-1 0 0 20 23 23"})), 0.75 * half);
+  EXPECT_EQ(covered(picture(0, {"--set", "clip_planes=0 1 1 23 23 23;0 -1 -1 23 22 22", "--set", "legend=false"})), 0)
+      << "they leave nothing";
   EXPECT_GT(difference(plain, picture(0, {"--set", "worst=30"})), 0.2);
   EXPECT_GT(difference(plain, picture(0, {"--set", "triangles=false"})), 1);  // particles instead
 }
@@ -143,6 +149,85 @@ TEST_F(ViewMesh, SlicesOfAllFields) {
         covered(picture(0, {"--set", "slice=y", "--set", std::string("slice_field=") + field, "--set", "hidden=1,2"})),
         0.15)
         << field;
+}
+
+/// The plane cuts the mesh, and its slice closes the cut.
+TEST_F(ViewMesh, ASliceInTheFirstOfTheClipPlanes) {
+  const Arguments cut = {"--set", "clip_planes=1 2 -1 23 23 23"};
+  const Image open = picture(0, cut);
+  for (const char* field : {"volume", "material", "distance", "size"}) {
+    const Arguments slice = {"--set", "slice=plane", "--set", std::string("slice_field=") + field};
+    EXPECT_GT(difference(open, picture(0, cut + slice)), 1) << field;
+    EXPECT_GT(covered(picture(0, cut + slice + Arguments{"--set", "hidden=1,2"})), 0.15) << field;
+  }
+  EXPECT_EQ(difference(picture(0), picture(0, {"--set", "slice=plane"})), 0) << "there is no plane";
+}
+
+/// A bar of 10 x 5 voxels in a volume of 20 x 20, all along z: a file that any program could write.
+std::string bar_volume() {
+  std::string file = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 20 20 20\nencoding: raw\n\n";
+  for (int z = 0; z < 20; ++z)
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 20; ++x) file += char(x >= 5 && x < 15 && y >= 10 && y < 15 && z >= 2 && z < 18 ? 1 : 0);
+  return file;
+}
+
+TEST_F(ViewMesh, ThreeSlicesLieBesideTheView) {
+  const std::string file = write("bar.nrrd", bar_volume());
+  const Arguments words = {"view",    "--offscreen",   file,       "--size",     "400x300",
+                           "--quiet", "--set",         "remesh=0", "--set",      "legend=false",
+                           "--set",   "layout=slices", "--image",  path("s.png")};
+  const auto slices = [&](const Arguments& more) {
+    const Outcome run = nacre(words + more);
+    EXPECT_EQ(run.status, 0) << run.err;
+    return read_png(path("s.png"));
+  };
+  const Image image = slices({"--set", "material_colors=1:#3366cc"});
+  // Pixels of the bar in a part of the picture, and where they lie in it.
+  struct Found {
+    int count = 0, left = 1000, right = -1, top = 1000, bottom = -1;
+  };
+  const auto found = [](const Image& drawn, int x0, int y0) {
+    Found f;
+    for (int y = 0; y < 150; ++y)
+      for (int x = 0; x < 200; ++x) {
+        const std::uint8_t* p = drawn.at(x0 + x, y0 + y);
+        if (p[0] != 0x33 || p[1] != 0x66 || p[2] != 0xcc) continue;
+        ++f.count;
+        f.left = std::min(f.left, x), f.right = std::max(f.right, x);
+        f.top = std::min(f.top, y), f.bottom = std::max(f.bottom, y);
+      }
+    return f;
+  };
+  const double voxel = 150 / (1.12 * 20);  // pixels: the volume's 20 voxels and a margin fill the height
+  const auto expect_bar = [&](const Found& f, double left, double right, double low, double high) {
+    EXPECT_NEAR(f.left, 100 + (left - 10) * voxel, 2.5);
+    EXPECT_NEAR(f.right, 100 + (right - 10) * voxel, 2.5);
+    EXPECT_NEAR(f.top, 75 - (high - 10) * voxel, 2.5);
+    EXPECT_NEAR(f.bottom, 75 - (low - 10) * voxel, 2.5);
+    EXPECT_NEAR(f.count, (right - left) * (high - low) * voxel * voxel, 0.25 * f.count) << "but for the lines on it";
+  };
+  expect_bar(found(image, 0, 0), 5, 15, 10, 15);         // across z
+  expect_bar(found(image, 0, 150), 5, 15, 2, 18);        // across y
+  expect_bar(found(image, 200, 150), 10, 15, 2, 18);     // across x
+  const auto dark = [&](int x0, int y0, int x, int y) {  // is there an outline near this pixel?
+    for (int dy = -4; dy <= 4; ++dy)
+      for (int dx = -4; dx <= 4; ++dx)
+        if (const std::uint8_t* p = image.at(x0 + x + dx, y0 + y + dy); p[0] + p[1] + p[2] < 120) return true;
+    return false;
+  };
+  EXPECT_TRUE(dark(0, 0, int(100 - 5 * voxel), int(75 - 2.5 * voxel))) << "the mesh ends where the bar does";
+  EXPECT_FALSE(dark(0, 0, int(100 - 2.5 * voxel), int(75 - 2.5 * voxel)));
+  const Image beside = slices({"--set", "material_colors=1:#3366cc", "--set", "crosshair=0.1 0.5 0.5"});
+  EXPECT_EQ(found(beside, 200, 150).count, 0) << "there is no bar at the third voxel along x";
+  EXPECT_GT(found(beside, 0, 0).count, 1000);
+  const Image alone = slices({"--set", "material_colors=1:#3366cc", "--set", "layout=z"});
+  EXPECT_GT(found(alone, 100, 0).count, 2500) << "twice as large";
+  const Outcome flow =
+      nacre({"view", "--offscreen", "--sample", "sphere", "--detail", "24", "--resolution", "32", "--frames-count", "2",
+             "--set", "layout=slices", "--image", path("f.png"), "--size", "400x300"});
+  EXPECT_EQ(flow.status, 0);
+  EXPECT_FALSE(contains(flow.err, "layout")) << flow.err;
 }
 
 TEST_F(ViewMesh, ALabelThatIsNotThereIsAWarning) {

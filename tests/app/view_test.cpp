@@ -223,6 +223,39 @@ TEST_F(UserAtTheWindow, KeysAndMouseInTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
+TEST_F(UserAtTheWindow, AClipPlaneIsDraggedAndTheCrosshairMoved) {
+  const fs::path recording = folder / "done.json", report = folder / "planes.json", camera = folder / "camera.json";
+  std::ofstream(camera) << R"({"eye": [23.5, -150, 23.5], "target": [23.5, 23.5, 23.5], "up": [0, 0, 1], "height": 60,
+                               "orthographic": true})";
+  const Outcome outcome = run("/bin/bash", {source_file("tests/app/view_planes.sh"), program_path, recording.string(),
+                                            report.string(), camera.string()});
+  if (outcome.status == 77) GTEST_SKIP() << outcome.err;
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  std::vector<std::array<double, 6>> planes;
+  std::vector<std::string> crosshairs;
+  const nlohmann::json done = read_json(recording);
+  for (const auto& event : done.at("events")) {
+    EXPECT_FALSE(event.contains("camera")) << "the mouse was the handle's, and the slices': " << event.dump();
+    if (!event.contains("knobs")) continue;
+    if (event["knobs"].contains("crosshair")) crosshairs.push_back(event["knobs"]["crosshair"]);
+    if (!event["knobs"].contains("clip_planes")) continue;
+    std::istringstream numbers(event["knobs"]["clip_planes"].get<std::string>());
+    std::array<double, 6> plane{};
+    for (double& number : plane) numbers >> number;
+    planes.push_back(plane);
+  }
+  ASSERT_GE(planes.size(), 4u) << done.dump(1);
+  EXPECT_NEAR(planes.front()[1], 1, 1e-6) << "faces the camera";
+  double farthest = 0;
+  for (const auto& plane : planes) farthest = std::max(farthest, plane[4] - planes.front()[4]);
+  EXPECT_NEAR(farthest, 60 * 60 / 614.0, 1) << "60 pixels, of which the picture has 614";
+  EXPECT_NEAR(planes.back()[4], planes.front()[4], 1e-3) << "undone, before it was turned";
+  EXPECT_GT(std::fabs(planes.back()[0]), 0.3);
+  ASSERT_GE(crosshairs.size(), 2u);
+  EXPECT_NE(crosshairs.front(), crosshairs.back());
+  EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
+}
+
 TEST_F(UserAtTheWindow, AWindowAsksBeforeSomethingIsLostAndCtrlCWritesWhatQuittingWrites) {
   const Outcome outcome =
       run("/bin/bash", {source_file("tests/app/view_quit.sh"), program_path, folder.path().string()});

@@ -1,6 +1,7 @@
 // Nacre: what is under the cursor on the surface of a flow.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "app/viewer/flow/flow_scene.hpp"
@@ -8,14 +9,15 @@
 namespace nacre {
 namespace {
 
-/// The part of a ray that the plane leaves; low > high: none of it.
-Range kept_part(const std::optional<ClipPlane>& clip, const Vec3d& from, const Vec3d& along) {
+/// The part of a ray that the planes leave; low > high: none of it.
+Range kept_part(const ClipPlanes& clip, const Vec3d& from, const Vec3d& along) {
   Range part{0, std::numeric_limits<double>::infinity()};
-  if (!clip) return part;
-  const double before = clip->offset - dot(clip->normal, from), rate = dot(clip->normal, along);
-  if (rate > 0) part.low = std::max(0.0, before / rate);
-  if (rate < 0) part.high = before / rate;
-  if (rate == 0 && before > 0) part.high = -1;
+  for (const ClipPlane& plane : clip.all()) {
+    const double before = plane.offset - dot(plane.normal, from), rate = dot(plane.normal, along);
+    if (rate > 0) part.low = std::max(part.low, before / rate);
+    if (rate < 0) part.high = std::min(part.high, before / rate);
+    if (rate == 0 && before > 0) part.high = -1;
+  }
   return part;
 }
 
@@ -24,6 +26,7 @@ Range kept_part(const std::optional<ClipPlane>& clip, const Vec3d& from, const V
 std::optional<ProbeResult> FlowScene::probe(const Vec3d& from, const Vec3d& along) {
   if (!results_.tree) return {};
   const Range part = kept_part(view_.clip, from, along);
+  if (part.low > part.high) return {};
   const std::optional<TriangleHit> hit = results_.tree->first(from, along, part.low, part.high);
   if (!hit) return {};
   return ProbeResult{hit->position, describe(*hit)};

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "app/viewer/mesh/mesh_scene.hpp"
+#include "app/viewer/scene/layout.hpp"
 #include "compute/particles/energy.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
@@ -107,11 +108,12 @@ void MeshScene::update_worst() {
 }
 
 /// The knob's; before there is anything else to see, the middle of the volume.
-std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
-  const int axis = slice_axis(settings_.view);
-  if (axis >= 0) return VolumePlane{axis, settings_.view.slice_at};
+std::optional<SlicePlane> MeshScene::shown_plane() const {
+  if (!results_.volume) return {};
+  if (const std::optional<SlicePlane> wanted = wanted_slice(*results_.volume, settings_.view)) return wanted;
+  if (three_slices()) return {};
   const bool hides = preview_drawn() && results_.volume->input.kind == MeshVolume::Kind::labels;
-  if (!complete() && !hides) return VolumePlane{2, 0.5};
+  if (!complete() && !hides) return slice_plane(results_.volume->input, 2, 0.5);
   return {};
 }
 
@@ -119,19 +121,19 @@ std::optional<MeshScene::VolumePlane> MeshScene::shown_plane() const {
 /// them.
 void MeshScene::update_slice() {
   if (!results_.volume) return;
-  const int axis = slice_axis(settings_.view);
-  if (axis < 0 || settings_.view.slice_field == SliceField::volume) {
+  const std::optional<SlicePlane> wanted = wanted_slice(*results_.volume, settings_.view);
+  if (!wanted || settings_.view.slice_field == SliceField::volume) {
     worker_.drop_slice();
     slice_of_field_ = false;
-    if (const std::optional<VolumePlane> plane = shown_plane())
-      show_volume_slice(plane->axis, plane->at);
+    if (const std::optional<SlicePlane> plane = shown_plane())
+      show_volume_slice(*plane);
     else
       slice_pass_.set_image({}, false);
     return;
   }
   const MeshField field = field_of(settings_.view.slice_field);
-  if (!slice_of_field_) show_volume_slice(axis, settings_.view.slice_at);
-  request_ = {request_.number + 1, axis, settings_.view.slice_at, field};
+  if (!slice_of_field_) show_volume_slice(*wanted);
+  request_ = {request_.number + 1, *wanted, field};
   worker_.ask_slice(request_);
 }
 
@@ -153,9 +155,8 @@ const Colormap& MeshScene::slice_map() const {
   return colormap(settings_.view.slice_field == SliceField::volume ? "gray" : settings_.colormap);
 }
 
-void MeshScene::show_volume_slice(int axis, double at) {
+void MeshScene::show_volume_slice(const SlicePlane& plane) {
   const ViewedVolume& volume = *results_.volume;
-  const SlicePlane plane = slice_plane(volume.input, axis, at);
   slice_values_ = volume.input.kind == MeshVolume::Kind::scalar;
   slice_range_ = volume_range();
   slice_pass_.set_image(volume_slice(volume, plane, palette_, slice_map(), slice_range_[0], slice_range_[1]),
@@ -193,17 +194,34 @@ std::array<double, 2> MeshScene::size_range() const {
   return {low, high > low ? high : low * 1.0001 + 1e-12};
 }
 
+/// Three orthogonal slices as the knobs say; fields of the worker are shown by the slice of the view alone.
+SliceViews* MeshScene::slices() {
+  if (!results_.volume || settings_.view.layout == ViewLayout::single) return nullptr;
+  if (!ortho_) ortho_ = std::make_unique<OrthoSlices>();
+  SliceContent content;
+  content.volume = results_.volume;
+  if (triangles_drawn()) content.mesh = results_.mesh;
+  content.crosshair = parse_crosshair(settings_.view.crosshair);
+  content.materials = settings_.view.slice_field == SliceField::material;
+  content.range = volume_range();
+  content.palette = palette_;
+  for (const MaterialStyle& style : material_styles_) content.drawn.push_back(style.opacity > 0);
+  ortho_->show(std::move(content));
+  return ortho_.get();
+}
+
 bool MeshScene::particles_drawn() const {
   return settings_.view.particles && counts_.total() > 0 && !triangles_drawn();
 }
 
 void MeshScene::draw(const View& frame) {
   View view = frame, whole = frame;
-  whole.clip.reset();
+  whole.clip.clear();
   view.light =
       turned_light(mesh_light(view.camera), view.camera, settings_.view.light_azimuth, settings_.view.light_height);
   const bool begun = complete();
   if (shown_plane()) slice_pass_.draw(view);
+  if (three_slices() && slices()) ortho_->draw_planes(view);
   if (!begun) segment_pass_.draw(whole, outline_place_, outline_, {{0.35f, 0.38f, 0.42f, 1}, 1.5f, false});
   if (preview_drawn()) preview_pass_.draw(view, preview_surface_, Placement(1.0));
   if (particles_drawn()) draw_particles(view);
@@ -254,7 +272,7 @@ std::uint64_t MeshScene::overlay_version() const {
   const std::array<double, 2> sizes = size_range(), energies = energy_range(settings_.mesh);
   const std::string key =
       fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", settings_.legend, energies[0], energies[1], particles_drawn(),
-                  int(settings_.view.particle_color), sizes[0], sizes[1], slice_axis(settings_.view), slice_values_,
+                  int(settings_.view.particle_color), sizes[0], sizes[1], slice_has_legend(), slice_values_,
                   slice_range_[0], slice_range_[1], settings_.colormap + title_of(settings_.view.slice_field));
   return std::hash<std::string>()(key);
 }

@@ -16,10 +16,6 @@ std::string position_line(const char* name, const Vec3d& p) {
   return fmt::format("{}: {:.5g} {:.5g} {:.5g}", name, p.x, p.y, p.z);
 }
 
-bool is_cut(const std::optional<ClipPlane>& clip, const Vec3d& p) {
-  return clip && dot(clip->normal, p) < clip->offset;
-}
-
 /// Where a ray passes the parallelogram of a slice.
 std::optional<double> distance_to(const SlicePlane& plane, const Vec3d& from, const Vec3d& along) {
   const Vec3d normal = cross(plane.across, plane.up);
@@ -41,20 +37,43 @@ void describe_voxel(ProbeResult& probed, const ViewedVolume& volume, std::size_t
     probed.lines.push_back(fmt::format("{}: {:.6g}", volume.input.names[material], volume.value(index, file)));
 }
 
+/// What the volume says of a position in it.
+void describe_position(ProbeResult& probed, const ViewedVolume& volume) {
+  probed.lines.push_back(position_line("position", probed.position));
+  probed.lines.push_back(position_line("voxel", volume.to_voxels(probed.position)));
+}
+
+void describe_volume(ProbeResult& probed, const ViewedVolume& volume, bool material) {
+  const std::optional<std::size_t> index = volume.index_at(probed.position);
+  if (!index) return;
+  describe_voxel(probed, volume, *index);
+  if (material) probed.lines.push_back("material: " + material_name(volume.input, volume.material[*index]));
+}
+
 }  // namespace
+
+std::optional<ProbeResult> probe_slice(const ViewedVolume& volume, const SlicePlane& plane, const Vec3d& from,
+                                       const Vec3d& along) {
+  const std::optional<double> distance = distance_to(plane, from, along);
+  if (!distance) return {};
+  ProbeResult probed;
+  probed.position = from + along * *distance;
+  describe_position(probed, volume);
+  describe_volume(probed, volume, true);
+  return probed;
+}
 
 /// The nearest triangle that is not hidden or cut away.
 std::optional<TriangleHit> MeshScene::first_seen(const Vec3d& from, const Vec3d& along) const {
   if (!triangles_drawn()) return {};
-  const std::optional<ClipPlane> clip = clip_plane(settings_.view, corners_);
+  const ClipPlanes clip = clip_planes(settings_.view, corners_);
   constexpr int most_layers = 100;
   double near = 0;
   for (int layer = 0; layer < most_layers; ++layer) {
     const std::optional<TriangleHit> hit = rays_.first(from, along, near);
     if (!hit) return {};
     const auto& pair = results_.mesh->materials[hit->triangle];
-    if (!is_cut(clip, hit->position) &&
-        std::max(material_styles_[pair[0]].opacity, material_styles_[pair[1]].opacity) > 0)
+    if (!clip.cut(hit->position) && std::max(material_styles_[pair[0]].opacity, material_styles_[pair[1]].opacity) > 0)
       return hit;
     near = std::nextafter(hit->distance, std::numeric_limits<double>::infinity());
   }
@@ -81,19 +100,17 @@ std::optional<ProbeResult> MeshScene::probe(const Vec3d& from, const Vec3d& alon
   const ViewedVolume& volume = *results_.volume;
   const std::optional<TriangleHit> hit = first_seen(from, along);
   std::optional<double> slice;
-  if (const std::optional<VolumePlane> plane = shown_plane())
-    slice = distance_to(slice_plane(volume.input, plane->axis, plane->at), from, along);
+  if (const std::optional<SlicePlane> plane = shown_plane()) {
+    slice = distance_to(*plane, from, along);
+    if (slice && plane->is_oblique() && !volume.index_at(from + along * *slice)) slice.reset();
+  }
   if (!hit && !slice) return {};
   const bool on_slice = slice && (!hit || *slice < hit->distance);
   ProbeResult probed;
   probed.position = on_slice ? from + along * *slice : hit->position;
-  probed.lines.push_back(position_line("position", probed.position));
-  probed.lines.push_back(position_line("voxel", volume.to_voxels(probed.position)));
+  describe_position(probed, volume);
   if (!on_slice) describe_hit(probed, *hit);
-  if (const std::optional<std::size_t> index = volume.index_at(probed.position)) {
-    describe_voxel(probed, volume, *index);
-    if (on_slice) probed.lines.push_back("material: " + material_name(volume.input, volume.material[*index]));
-  }
+  describe_volume(probed, volume, on_slice);
   return probed;
 }
 

@@ -56,7 +56,9 @@ void MeshScene::set_settings(const Settings& settings, const ChangedKnobs& chang
   if (changed.has("colormap")) particle_pass_.set_map(colormap(settings_.colormap).table);
   if (changed.has_any({"hidden", "ghosts", "opacity", "material_colors"})) update_material_styles();
   if (changed.has("worst")) update_worst();
-  if (changed.has_any({"slice", "slice_at", "slice_field", "slice_range", "colormap", "material_colors"}))
+  const bool moved = settings_.view.slice == PlaneAxis::plane && changed.has("clip_planes");
+  if (moved ||
+      changed.has_any({"slice", "slice_at", "slice_field", "slice_range", "layout", "colormap", "material_colors"}))
     update_slice();
 }
 

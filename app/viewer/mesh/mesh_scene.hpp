@@ -11,6 +11,7 @@
 #include "app/viewer/mesh/kept_particles.hpp"
 #include "app/viewer/mesh/mesh_results.hpp"
 #include "app/viewer/mesh/mesh_worker.hpp"
+#include "app/viewer/mesh/ortho_slices.hpp"
 #include "app/viewer/scene/scene.hpp"
 #include "engine/interop/shared_buffer.hpp"
 #include "engine/render/line_passes.hpp"
@@ -49,8 +50,9 @@ class MeshScene : public Scene {
   std::vector<std::string> result_formats() const override;
 
   const std::vector<Vec3d>& corners() const override { return corners_; }
-  const std::vector<Vec3d>& seen() const override { return shown_plane() ? box_ : corners_; }
-  std::uint64_t seen_version() const override { return 2 * volumes_ + (shown_plane() ? 1 : 0); }
+  const std::vector<Vec3d>& seen() const override { return shows_planes() ? box_ : corners_; }
+  std::uint64_t seen_version() const override { return 2 * volumes_ + (shows_planes() ? 1 : 0); }
+  SliceViews* slices() override;
   bool has_legend() const override { return settings_.legend && (particles_drawn() || slice_has_legend()); }
   bool complete() const override { return results_.mesh || counts_.total() > 0; }
   bool settled() const override { return worker_.settled() || (paused() && worker_.waits()); }
@@ -89,12 +91,10 @@ class MeshScene : public Scene {
   void update_edges();
   void update_worst();
   void update_slice();
-  struct VolumePlane {
-    int axis;
-    double at;
-  };
-  std::optional<VolumePlane> shown_plane() const;
-  void show_volume_slice(int axis, double at);
+  std::optional<SlicePlane> shown_plane() const;
+  bool three_slices() const { return settings_.view.layout == ViewLayout::slices && results_.volume; }
+  bool shows_planes() const { return three_slices() || shown_plane(); }
+  void show_volume_slice(const SlicePlane& plane);
   std::array<double, 2> volume_range();
   const Colormap& slice_map() const;
   std::array<double, 2> slice_range(const std::vector<float>& values, MeshField field);
@@ -105,7 +105,9 @@ class MeshScene : public Scene {
   bool preview_drawn() const {
     return settings_.view.preview && preview_surface_ && counts_.surfaces == 0 && !triangles_drawn();
   }
-  bool slice_has_legend() const { return slice_axis(settings_.view) >= 0 && slice_values_; }
+  bool slice_has_legend() const {
+    return slice_values_ && results_.volume && wanted_slice(*results_.volume, settings_.view);
+  }
   bool triangles_drawn() const { return results_.mesh && !stale_ && settings_.view.triangles && !looked_back_at(); }
   /// Between two iterations, for the user; a replay does not wait.
   bool paused() const { return !settings_.view.play && !lockstep_; }
@@ -160,7 +162,8 @@ class MeshScene : public Scene {
   SliceRequest request_;
   bool slice_of_field_ = false, slice_values_ = false;
   std::array<double, 2> slice_range_{0, 1};
-  double farthest_ = 0;  ///< distance seen in slices so far
+  double farthest_ = 0;                 ///< distance seen in slices so far
+  std::unique_ptr<OrthoSlices> ortho_;  ///< of the layout, once it is wanted
 };
 
 }  // namespace nacre

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -174,11 +175,14 @@ void MeshWorker::fill_slice() {
   SliceFilled told;
   told.number = request.number;
   told.field = request.field;
-  told.plane = slice_plane(viewed_->input, request.axis, request.at);
+  told.plane = request.plane;
   const double width = length(told.plane.across), height = length(told.plane.up), longer = std::max(width, height);
   told.columns = std::max(1, int(slice_pixels * width / longer));
   told.rows = std::max(1, int(slice_pixels * height / longer));
-  told.values = pipeline_->field_at(request.field, told.plane.positions(told.columns, told.rows));
+  const std::vector<Vec3d> positions = told.plane.positions(told.columns, told.rows);
+  told.values = pipeline_->field_at(request.field, positions);
+  for (std::size_t i = 0; told.plane.is_oblique() && i < positions.size(); ++i)
+    if (!viewed_->index_at(positions[i])) told.values[i] = std::numeric_limits<float>::quiet_NaN();
   {
     std::scoped_lock lock(mutex_);
     if (slice_ && slice_->number == request.number) slice_filled_ = true;

@@ -78,7 +78,7 @@ struct MeshMeasured {
   std::shared_ptr<const MeshMeasures> measures;
 };
 
-/// A slice that was asked for: row by row, as SlicePlane::positions.
+/// A slice that was asked for: row by row, as SlicePlane::positions; no number beyond the volume.
 struct SliceFilled {
   int number = 0;  ///< of the request
   SlicePlane plane;
@@ -110,8 +110,7 @@ struct LentMemory {
 
 struct SliceRequest {
   int number = 0;  ///< larger than all before
-  int axis = 2;    ///< of the world
-  double at = 0.5;
+  SlicePlane plane;
   MeshField field = MeshField::material;
 };
 

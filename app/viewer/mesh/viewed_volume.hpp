@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "app/viewer/scene/clip.hpp"
 #include "engine/io/mesh_input.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/image.hpp"
@@ -40,7 +41,9 @@ struct ViewedVolume {
   /// What lengths in voxels are multiples of: the smallest spacing, world units.
   double voxel_length() const { return std::min({input.spacing.x, input.spacing.y, input.spacing.z}); }
   /// The index of the voxel that contains a world position; none beyond the volume.
-  std::optional<std::size_t> index_at(const Vec3d& world) const;
+  std::optional<std::size_t> index_at(const Vec3d& world) const { return index_of(to_voxels(world)); }
+  /// The same of a position in voxels.
+  std::optional<std::size_t> index_of(const Vec3d& voxel) const;
   double value(std::size_t index, std::size_t file = 0) const;
   /// Corners of the box around the voxels that are not outside, world: corner k has the far side of axis a where bit a
   /// is set.
@@ -56,8 +59,10 @@ struct ViewedVolume {
 struct SlicePlane {
   Vec3d corner, across, up;  ///< the two edges from the corner
   Int3 first;                ///< voxel at the corner
-  int across_axis, up_axis;  ///< of the volume
+  int across_axis, up_axis;  ///< of the volume; -1: in another direction than its axes
   int width, height;         ///< voxels along the edges
+
+  bool is_oblique() const { return across_axis < 0; }
 
   /// Centres of `columns` x `rows` pixels, row by row from the corner.
   std::vector<Vec3d> positions(int columns, int rows) const;
@@ -66,18 +71,29 @@ struct SlicePlane {
 /// The plane across the volume's axis that runs most along the world's `axis` (0..2), at a share of the volume.
 SlicePlane slice_plane(const MeshInput& input, int axis, double at);
 
-/// What the view asks for: 0..2; -1: none.
-int slice_axis(const ViewSettings& view);
+/// The plane through the centres of the voxels of one layer along an axis of the volume; or between two layers.
+SlicePlane layer_plane(const MeshInput& input, int axis, double layer);
+
+/// The rectangle of a plane in any direction that contains all of the plane within the volume; none where the plane
+/// misses the volume.
+std::optional<SlicePlane> slice_plane(const ViewedVolume& volume, const WorldPlane& plane);
+
+/// That of the knob `slice`, with `clip_planes` for `plane`; none: there is none.
+std::optional<SlicePlane> wanted_slice(const ViewedVolume& volume, const ViewSettings& view);
 
 /// A pixel per voxel: materials in the colours of `palette`, or the values of a scalar volume by the map, which runs
-/// from `low` to `high`. Row 0 is at the corner.
+/// from `low` to `high`. Row 0 is at the corner. In other directions than the volume's axes, values are interpolated
+/// linearly, and pixels beyond the volume are transparent.
 Image volume_slice(const ViewedVolume& volume, const SlicePlane& plane, std::span<const Color> palette,
                    const Colormap& map, double low, double high);
+
+/// The same for a plane along the volume's axes, with the materials of a scalar volume instead of its values.
+Image material_slice(const ViewedVolume& volume, const SlicePlane& plane, std::span<const Color> palette);
 
 /// Values as colours; what is no number is transparent, infinity has the last colour.
 Image colour_values(const std::vector<float>& values, int width, int height, double low, double high,
                     const Colormap& map);
-/// Material numbers as colours.
+/// Material numbers as colours; what is no number is transparent.
 Image colour_materials(const std::vector<float>& materials, int width, int height, std::span<const Color> palette);
 
 }  // namespace nacre

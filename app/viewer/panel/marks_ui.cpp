@@ -15,10 +15,11 @@ namespace nacre {
 
 /// The point of the scene that the mouse is over; none: it is over a panel, or over nothing.
 std::optional<Vec3d> Ui::under_cursor(const Session& session, const UiFacts& facts) {
+  if (slice_mouse_.under()) return slice_mouse_.under();
   const ImGuiIO& io = ImGui::GetIO();
   std::optional<ProbeResult> probed;
-  if (session.camera && !io.WantCaptureMouse && ImGui::IsMousePosValid()) {
-    const FreeArea& area = facts.pointed.area;
+  const FreeArea& area = facts.pointed.areas.view;
+  if (session.camera && facts.pointed.areas.has_view && !io.WantCaptureMouse && ImGui::IsMousePosValid()) {
     const auto [x, y] = position_in(area, io.MousePos.x, io.MousePos.y);
     const auto [from, along] = ray_under(facts.camera, x, y, area.aspect());
     probed = facts.pointed.scene.probe(from, along);

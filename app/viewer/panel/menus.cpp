@@ -27,6 +27,8 @@ Turning other(Turning turning) { return turning == Turning::trackball ? Turning:
 
 Theme other(Theme theme) { return theme == Theme::dark ? Theme::light : Theme::dark; }
 
+ViewLayout other(ViewLayout layout) { return layout == ViewLayout::single ? ViewLayout::slices : ViewLayout::single; }
+
 /// Views of the camera and the keys that give them.
 struct NamedView {
   const char *name, *view;
@@ -47,8 +49,10 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"space", "pause and play"},
                                    {", .", "pause; one step back, one step forward"},
                                    {"d", "ruler: distance between points under the cursor; the third gives an angle"},
+                                   {"c", "clip plane that faces the camera; its handle moves and turns it"},
                                    {"g", "graph of the point under the cursor through time"},
                                    {"r, R", "release dye at the point under the cursor; R: another dye"},
+                                   {"l", "three slices of the volume beside the view, or the view alone"},
                                    {"n", "note at the point under the cursor"},
                                    {"1 to 9", "camera that was kept"},
                                    {"e", "edges of triangles"},
@@ -188,7 +192,7 @@ void Ui::compare_menu(Session& session) {
   ImGui::EndMenu();
 }
 
-void Ui::view_menu(Session& session, UiRequests& requests) {
+void Ui::view_menu(Session& session, Scene& scene, UiRequests& requests) {
   if (!ImGui::BeginMenu("View")) return;
   ViewSettings& view = session.settings.view;
   if (ImGui::MenuItem("Fit", "f")) requests.fit = true;
@@ -201,6 +205,8 @@ void Ui::view_menu(Session& session, UiRequests& requests) {
   if (ImGui::MenuItem("Trackball", "b", &ball)) view.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
   ImGui::MenuItem("Edges", "e", &view.edges);
+  if (ImGui::MenuItem("Three slices", "l", view.layout != ViewLayout::single, !scene.is_flow()))
+    view.layout = other(view.layout);
   marks_menu(session);
   ImGui::MenuItem("Legend", nullptr, &session.settings.legend);
   ImGui::MenuItem("Panels", "p", &view.panel);
@@ -221,7 +227,7 @@ void Ui::menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests&
     if (ImGui::MenuItem("Reset knobs")) reset_knobs(session.settings, is_mesh_input(session) ? "mesh" : "flow");
     ImGui::EndMenu();
   }
-  view_menu(session, requests);
+  view_menu(session, scene, requests);
   if (ImGui::BeginMenu("Help")) {
     if (ImGui::MenuItem("Welcome")) welcome_.show();
     if (ImGui::MenuItem("Keys and mouse", "?")) help_ = true;
@@ -296,7 +302,11 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
       case 'e': view.edges = !view.edges; break;
       case 'p': view.panel = !view.panel; break;
       case 't': view.theme = other(view.theme); break;
+      case 'c': clip_.add_facing(session.settings, scene.corners(), facts.camera); break;
       case 'd': measure(session, scene, facts); break;
+      case 'l':
+        if (!scene.is_flow()) view.layout = other(view.layout);
+        break;
       case 'n': ask_note(session, facts); break;
       case 'g': plot_point(session, scene, facts); break;
       case 'r':

@@ -123,9 +123,9 @@ void MeshPanel::data_tab(Session& session) {
 }
 
 void MeshPanel::look_tab(Session& session) {
-  for (const char* name :
-       {"preview", "triangles", "edges", "show_particles", "particle_color", "curves", "boxes", "hidden", "ghosts",
-        "opacity", "material_colors", "worst", "slice", "slice_at", "slice_field", "slice_range"})
+  for (const char* name : {"preview", "triangles", "edges", "show_particles", "particle_color", "curves", "boxes",
+                           "hidden", "ghosts", "opacity", "material_colors", "worst", "slice", "slice_at",
+                           "slice_field", "slice_range", "layout", "crosshair"})
     knob_widget(session.settings, name);
 }
 

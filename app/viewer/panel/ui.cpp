@@ -13,6 +13,7 @@
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "app/viewer/scene/free_area.hpp"
+#include "app/viewer/scene/slice_views.hpp"
 #include "engine/render/camera_motion.hpp"
 #include "engine/scene/samples/phantoms.hpp"
 #include "engine/scene/samples/samples.hpp"
@@ -124,13 +125,13 @@ void data_tab(Session& session, const Scene& scene, ScenePanel& panel) {
   for (const std::string& warning : scene.warnings()) ImGui::TextWrapped("! %s", warning.c_str());
 }
 
-void look_tab(Session& session, ScenePanel& panel) {
-  panel.look_tab(session);
+void look_tab(Session& session, const Scene& scene, const UiFacts& facts, ClipPanel& clip) {
+  facts.panel.look_tab(session);
   Settings& settings = session.settings;
   const auto several = [&](std::initializer_list<const char*> names) {
     for (const char* name : names) knob_widget(settings, name);
   };
-  if (ImGui::CollapsingHeader("clip")) several({"clip", "clip_at", "clip_back", "back_faces"});
+  clip.draw(settings, scene.corners(), facts.camera);
   if (ImGui::CollapsingHeader("compare")) compare_section(session);
   if (ImGui::CollapsingHeader("light")) several({"light_azimuth", "light_height", "ambient"});
   if (ImGui::CollapsingHeader("picture")) several({"background", "legend", "time_stamp", "samples", "orbit"});
@@ -181,7 +182,7 @@ void Ui::tabs(Session& session, Scene& scene, const UiFacts& facts) {
   if (!ImGui::BeginTabBar("tabs")) return;
   item("data", PanelTab::data, [&] { data_tab(session, scene, facts.panel); });
   item("knobs", PanelTab::knobs, [&] { knob_tab(session); });
-  item("look", PanelTab::look, [&] { look_tab(session, facts.panel); });
+  item("look", PanelTab::look, [&] { look_tab(session, scene, facts, clip_); });
   item("result", PanelTab::result, [&] { facts.panel.result_tab(session); });
   item("timings", PanelTab::timings, [&] { timings_tab(scene, facts); });
   ImGui::EndTabBar();
@@ -273,7 +274,7 @@ void Ui::status(const ViewSettings& view, Scene& scene, const UiFacts& facts, Ui
 }
 
 void Ui::probe_window(const PointedView& pointed, const Camera& camera) {
-  const FreeArea& area = pointed.area;
+  const FreeArea& area = pointed.areas.view;
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantCaptureMouse || !ImGui::IsMousePosValid()) return;
   if (io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2]) return;
@@ -308,16 +309,25 @@ void Ui::error_window(const FreeArea& area) {
 UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   UiRequests requests;
   use_keys(session, scene, facts, requests);
-  const FreeArea area = free_area(session.settings.view, facts.width, facts.height);
-  if (session.settings.view.panel) {
+  ViewSettings& view = session.settings.view;
+  const FreeArea area = free_area(view, facts.width, facts.height);
+  const PointedView& pointed = facts.pointed;
+  if (view.panel) {
     menus(session, scene, facts, requests);
     panel(session, scene, facts);
-    status(session.settings.view, scene, facts, requests);
-    const bool played = session.settings.view.play;
+    status(view, scene, facts, requests);
+    const bool played = view.play;
     transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
-    if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
-    if (session.camera) probe_window(facts.pointed, facts.camera);
+    if (!played && view.play && scene.halted()) requests.resume = true;
+    if (session.camera && pointed.areas.has_view) {
+      if (facts.film.empty()) clip_.draw_handle(view, pointed.scene.corners(), {facts.camera, pointed.areas.view});
+      probe_window(pointed, facts.camera);
+    }
   }
+  if (SliceViews* const slices = pointed.scene.slices())
+    slice_mouse_.draw(view, *slices, pointed.areas);
+  else
+    slice_mouse_.forget();
   welcome_card(session, facts, area, requests);
   error_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, requests);

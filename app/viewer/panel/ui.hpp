@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/panel/clip_panel.hpp"
 #include "app/viewer/panel/file_dialog.hpp"
 #include "app/viewer/panel/frame_clock.hpp"
 #include "app/viewer/panel/knob_presets.hpp"
 #include "app/viewer/panel/scene_panel.hpp"
+#include "app/viewer/panel/slice_mouse.hpp"
 #include "app/viewer/panel/transport_bar.hpp"
 #include "app/viewer/panel/welcome_card.hpp"
 #include "app/viewer/scene/free_area.hpp"
@@ -22,7 +24,7 @@ namespace nacre {
 /// The view that the mouse is over.
 struct PointedView {
   Scene& scene;
-  FreeArea area;
+  ViewAreas areas;
 };
 
 /// Facts about the loop, for the panels.
@@ -88,7 +90,7 @@ class Ui {
   void use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests);
   void menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
-  void view_menu(Session& session, UiRequests& requests);
+  void view_menu(Session& session, Scene& scene, UiRequests& requests);
   void panel(Session& session, Scene& scene, const UiFacts& facts);
   float failure_window(const ViewSettings& view, const Scene& scene, const UiFacts& facts);
   void tabs(Session& session, Scene& scene, const UiFacts& facts);
@@ -122,6 +124,8 @@ class Ui {
   TransportBar transport_;
   WelcomeCard welcome_;
   KnobPresets presets_;
+  ClipPanel clip_;
+  SliceMouse slice_mouse_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;

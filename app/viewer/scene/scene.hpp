@@ -41,6 +41,8 @@ struct SceneTotals {
   std::size_t peak_bytes = 0;  ///< of the device
 };
 
+class SliceViews;
+
 class Scene {
  public:
   virtual ~Scene() = default;
@@ -97,6 +99,8 @@ class Scene {
   virtual bool has_legend() const = 0;  ///< a colour legend lies over the picture, or soon will
   virtual bool complete() const = 0;    ///< shows what it is for: the texture; particles or triangles
   virtual bool settled() const = 0;     ///< nothing more will come unless something is changed (a mesh that is done)
+  /// Slices of its volume, for the layout; null: it has none (yet).
+  virtual SliceViews* slices() { return nullptr; }
   virtual bool is_flow() const { return false; }   ///< knobs of what flows mean something
   virtual std::string unit() const { return {}; }  ///< of lengths; empty: the data do not say
   virtual std::string title() const = 0;

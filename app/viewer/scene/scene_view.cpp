@@ -21,7 +21,7 @@ View scene_view(const Session& session, std::span<const Vec3d> corners, double t
   view.width = width;
   view.height = height;
   view.light = turned_light(flow_light(view.camera), view.camera, knobs.light_azimuth, knobs.light_height);
-  view.clip = clip_plane(knobs, corners);
+  view.clip = clip_planes(knobs, corners);
   view.back_faces = settings.back_faces;
   view.ambient = float(knobs.ambient);
   view.extent = diameter_of(corners) + length(view.camera.eye - view.camera.target);

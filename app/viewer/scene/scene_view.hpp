@@ -9,7 +9,7 @@
 
 namespace nacre {
 
-/// Camera (`turned` by so many degrees by the knob `orbit`), light and clip plane, for a scene with these `corners`
+/// Camera (`turned` by so many degrees by the knob `orbit`), light and clip planes, for a scene with these `corners`
 /// (world) on width x height pixels.
 View scene_view(const Session& session, std::span<const Vec3d> corners, double turned, int width, int height);
 

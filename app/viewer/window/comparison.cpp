@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "app/viewer/scene/scene_view.hpp"
 #include "app/viewer/scene/worker.hpp"
 #include "compute/device/error.hpp"
 #include "engine/scene/settings/knobs.hpp"
@@ -31,7 +30,7 @@ int steps_ahead(const Transport& a, const Transport& b) {
 
 void Comparison::close() {
   open_.reset();
-  captions_.reset();
+  painter_.reset();
   failure_.clear();
 }
 
@@ -42,7 +41,7 @@ void Comparison::follow(const Session& first, const SceneOptions& options) {
     OpenScene opened = open_scene(wanted, options);
     close();
     open_ = std::move(opened);
-    captions_.emplace();
+    painter_.emplace();
   } else if (const ChangedKnobs changed = changed_knobs(session_, wanted); !changed.empty()) {
     scene().set_settings(wanted.settings, changed);
   }
@@ -83,11 +82,9 @@ bool Comparison::settle_knobs(Session& first) {
   return std::exchange(first.settings.view.compare_knobs, text) != text;
 }
 
-void Comparison::draw(const Session& first, double turned, int width, int height) {
+void Comparison::draw(const Framebuffer& frame, const Session& first, double turned, const FreeArea& area) {
   session_.camera = first.camera;
-  const View view = scene_view(session_, scene().corners(), turned, width, height);
-  scene().draw(view);
-  captions_->draw(scene(), view, session_.settings, headings_[1]);
+  painter_->draw(frame, scene(), session_, turned, area, headings_[1]);
 }
 
 }  // namespace nacre

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "app/viewer/panel/scene_panel.hpp"
-#include "app/viewer/scene/captions.hpp"
 #include "app/viewer/scene/free_area.hpp"
+#include "app/viewer/scene/scene_painter.hpp"
 #include "engine/scene/session/compared.hpp"
 
 namespace nacre {
@@ -33,15 +33,15 @@ class Comparison {
   /// What the data of the second scene have decided becomes a knob of it. True where the first session has changed.
   bool settle_knobs(Session& first);
 
-  /// Into the part of a frame that is bound, of this size, through the camera of the first.
-  void draw(const Session& first, double turned, int width, int height);
+  /// Into that part of a frame, through the camera of the first.
+  void draw(const Framebuffer& frame, const Session& first, double turned, const FreeArea& area);
   /// Of the first view; empty without a second one.
   std::string first_heading() const { return on() ? headings_[0] : ""; }
 
  private:
   OpenScene open_;
   Session session_;  ///< as the scene was told last
-  std::optional<Captions> captions_;
+  std::optional<ScenePainter> painter_;
   std::array<std::string, 2> headings_;
   std::string failure_;  ///< that was told
 };

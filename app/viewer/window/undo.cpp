@@ -10,10 +10,10 @@ namespace {
 
 constexpr std::size_t max_changes = 200;
 
-constexpr const char* by_itself[] = {"width",    "height", "tab",        "panel",    "play",
-                                     "begin_at", "loop",   "play_speed", "iteration"};
+constexpr const char* by_itself[] = {"width",    "height", "tab",        "panel",     "play",
+                                     "begin_at", "loop",   "play_speed", "iteration", "crosshair"};
 
-/// What playing and the window do by themselves is no change of the user's.
+/// What playing and the window do by themselves is no change of the user's, and looking around is none to take back.
 bool worth_keeping(const SessionEvent& change) {
   for (const auto& [name, text] : change.knobs)
     if (std::find(std::begin(by_itself), std::end(by_itself), name) == std::end(by_itself)) return true;

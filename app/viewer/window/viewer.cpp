@@ -62,7 +62,7 @@ void Viewer::make_graphics() {
   result_.renderer = context_->renderer();
   result_.version = context_->version();
   imgui_.emplace(window_);
-  captions_.emplace();
+  painter_.emplace();
 }
 
 void Viewer::drop_graphics() {
@@ -71,7 +71,7 @@ void Viewer::drop_graphics() {
   comparison_.close();
   open_.reset();  // before the context that all of it lives in
   frame_.reset();
-  captions_.reset();
+  painter_.reset();
   imgui_.reset();
   window_ = nullptr;
   context_.reset();
@@ -185,30 +185,21 @@ void Viewer::draw_scene(Framebuffer& frame, const FreeArea& area, const std::arr
   frame.bind();
   frame.clear(background);
   if (!framing_.ready()) return;
-  const auto bind = [&](const FreeArea& part) {
-    frame.bind_part(part.x, frame.height() - part.y - part.height, part.width, part.height);
-  };
   const auto [first, second] = views(area);
-  bind(first);
-  const View view = scene_view(session_, scene().corners(), turned_, first.width, first.height);
-  scene().draw(view);
-  captions_->draw(scene(), view, session_.settings, comparison_.first_heading());
-  if (second.width > 0) {
-    bind(second);
-    comparison_.draw(session_, turned_, second.width, second.height);
-  }
-  frame.bind();
+  painter_->draw(frame, scene(), session_, turned_, first, comparison_.first_heading());
+  if (second.width > 0) comparison_.draw(frame, session_, turned_, second);
 }
 
 void Viewer::draw(int width, int height, double seconds) {
   imgui_->begin(width, height, seconds, session_.settings.view);
   const FreeArea area = ui_.free_area(session_.settings.view, width, height);
   const auto [first, second] = views(area);
-  area_ = first;
-  framing_.keep(session_, scene(), first, options_.first_camera);
+  area_ = areas_of(scene(), session_.settings.view, first).view;
+  framing_.keep(session_, scene(), area_, options_.first_camera);
   draw_scene(*frame_, area, background_of(session_.settings));
-  const bool at_second = second.width > 0 && imgui_->cursor()[0] >= second.x;
-  const PointedView pointed{at_second ? comparison_.scene() : scene(), at_second ? second : first};
+  const bool at_second = second.width > 0 && imgui_->cursor()[0] >= float(second.x);
+  Scene& pointed_scene = at_second ? comparison_.scene() : scene();
+  const PointedView pointed{pointed_scene, areas_of(pointed_scene, session_.settings.view, at_second ? second : first)};
   if (session_.camera) move_by_hand(*session_.camera, pointed);
   const UiFacts facts{*open_.panel,     pointed,
                       progress(),       clock_,
@@ -226,7 +217,7 @@ void Viewer::draw(int width, int height, double seconds) {
 void Viewer::move_by_hand(Camera& camera, const PointedView& pointed) {
   const Camera seen = orbit(camera, turned_);
   Camera moved = seen;
-  move_camera(moved, session_.settings.view.turning, pointed.area, diameter_of(scene().seen()),
+  move_camera(moved, session_.settings.view.turning, pointed.areas.view, diameter_of(scene().seen()),
               [&](const Vec3d& from, const Vec3d& along) -> std::optional<Vec3d> {
                 const std::optional<ProbeResult> met = pointed.scene.probe(from, along);
                 return met ? std::optional(met->position) : std::nullopt;

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "app/viewer/panel/ui.hpp"
-#include "app/viewer/scene/captions.hpp"
 #include "app/viewer/scene/framing.hpp"
 #include "app/viewer/scene/scene.hpp"
+#include "app/viewer/scene/scene_painter.hpp"
 #include "app/viewer/scene/scene_view.hpp"
 #include "app/viewer/scene/worker.hpp"
 #include "app/viewer/window/camera_control.hpp"
@@ -220,7 +220,7 @@ class Viewer {
   std::unique_ptr<Context> context_;
   Window* window_ = nullptr;  ///< the context, where it is one
   std::optional<ImGuiLayer> imgui_;
-  std::optional<Captions> captions_;
+  std::optional<ScenePainter> painter_;
   std::optional<Framebuffer> frame_;
   OpenScene open_;
   std::optional<Opening> opening_;
@@ -231,7 +231,7 @@ class Viewer {
   RecentFiles recent_;
   UiRequests requests_;
   Framing framing_;
-  FreeArea area_;
+  FreeArea area_;  ///< of the view
   FrameClock clock_;
   DrawDemand demand_;
   bool quit_ = false, spare_ = false;

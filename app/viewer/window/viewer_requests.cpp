@@ -29,7 +29,7 @@ std::vector<std::string> Viewer::reasons_to_stay() const {
 void Viewer::leave_scene() {
   if (const std::string lost = saving_.drop(); !lost.empty()) show_error(lost);
   open_.reset();
-  captions_->forget();
+  painter_->forget();
   event_log_.forget();
   framing_.forget();
 }

@@ -15,9 +15,9 @@ namespace {
 constexpr std::string_view sample_prefix = "sample:";
 
 constexpr const char* shared_knobs[] = {
-    "compare", "compare_knobs", "camera",      "cameras",  "turning", "orbit",     "ruler",     "notes",
-    "play",    "loop",          "play_speed",  "begin_at", "fps",     "width",     "height",    "samples",
-    "panel",   "panel_side",    "panel_width", "tab",      "theme",   "text_size", "background"};
+    "compare", "compare_knobs", "camera",      "cameras", "turning", "orbit",     "ruler",     "notes",  "play",
+    "loop",    "play_speed",    "begin_at",    "fps",     "width",   "height",    "samples",   "layout", "crosshair",
+    "panel",   "panel_side",    "panel_width", "tab",     "theme",   "text_size", "background"};
 
 template <class Take>
 void split(std::string_view text, char separator, const Take& take) {

@@ -21,9 +21,11 @@ struct MaterialSettings {
   int layer = -1;          ///< of a segmentation whose segments overlap, from 0; -1: all, later segments over earlier
 };
 
-enum class PlaneAxis { none, x, y, z };  ///< that a plane of the viewer cuts across; none: there is no plane
+/// That a plane of the viewer cuts across. none: there is no plane; plane: in the first of `clip_planes` (a slice).
+enum class PlaneAxis { none, x, y, z, plane };
 enum class ParticleColour { energy, size };
 enum class SliceField { volume, material, distance, size };
+enum class ViewLayout { single, slices, x, y, z };  ///< the view; beside three slices; one slice alone
 enum class Turning { turntable, trackball };
 enum class PanelSide { left, right };
 enum class PanelTab { data, knobs, look, timings, result };
@@ -51,10 +53,13 @@ struct ViewSettings {
   PlaneAxis clip = PlaneAxis::none;   ///< nothing is drawn before the plane
   double clip_at = 0.5;               ///< its position in the bounding box
   bool clip_back = false;             ///< nothing is drawn behind it instead
+  std::string clip_planes;            ///< nx ny nz x y z;...: further ones, in any direction
   PlaneAxis slice = PlaneAxis::none;  ///< a plane of the volume
   double slice_at = 0.5;
   SliceField slice_field = SliceField::volume;
-  std::string slice_range;                     ///< LO:HI of a volume's values; empty: nearly all of them
+  std::string slice_range;  ///< LO:HI of a volume's values; empty: nearly all of them
+  ViewLayout layout = ViewLayout::single;
+  std::string crosshair = "0.5 0.5 0.5";       ///< shares of the volume, along its axes: where its slices meet
   double light_azimuth = 0, light_height = 0;  ///< degrees, from the light beside the camera
   double ambient = 0.3;                        ///< share of the light that comes from everywhere
   Turning turning = Turning::turntable;        ///< how dragging rotates the camera

@@ -190,7 +190,7 @@ TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
   View view;
   view.width = view.height = 120;
   view.camera = camera;
-  view.clip = ClipPlane{{0, 1, 0}, camera.target.y};  // the half towards us is gone
+  view.clip = ClipPlanes({{0, 1, 0}, camera.target.y});  // the half towards us is gone
   const Framebuffer frame(120, 120);
   frame.bind();
   scene_->draw(view);

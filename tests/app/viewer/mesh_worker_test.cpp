@@ -30,6 +30,7 @@ struct MeshWorkerRun {
   bool brought_back = false;
   std::string failure, written;
   SliceFilled slice;
+  std::shared_ptr<const ViewedVolume> volume;
   std::unique_ptr<MeshWorker> worker;
 
   explicit MeshWorkerRun(
@@ -59,6 +60,7 @@ struct MeshWorkerRun {
   void take(MeshEvent& event) {
     if (const auto* read = std::get_if<VolumeRead>(&event)) {
       note('V');
+      volume = read->volume;
       frame = read->frame;
       corners = read->corners;
     }
@@ -334,7 +336,7 @@ TEST(MeshWorker, InLockstepNothingIsToldWithoutATurn) {
 TEST(MeshWorker, SlicesAreFilledWhileItWorksAndAfterChanges) {
   MeshWorkerRun run(true);
   run.settle([&] { return run.iterations == 2; });
-  run.worker->ask_slice({1, 2, 0.5, MeshField::material});
+  run.worker->ask_slice({1, slice_plane(run.volume->input, 2, 0.5), MeshField::material});
   while (run.worker->slice_comes()) {  // without a turn
     std::optional<MeshEvent> event = run.worker->wait(run.stop);
     if (event) run.take(*event);
@@ -350,7 +352,7 @@ TEST(MeshWorker, SlicesAreFilledWhileItWorksAndAfterChanges) {
   EXPECT_EQ(run.order.find('S', run.order.find('S') + 1), std::string::npos);
   run.rerun("tighten", "0.8");
   EXPECT_NE(run.order.find('S'), std::string::npos) << run.order;
-  run.worker->ask_slice({2, 0, 0.5, MeshField::size});
+  run.worker->ask_slice({2, slice_plane(run.volume->input, 0, 0.5), MeshField::size});
   run.settle();
   EXPECT_EQ(run.slice.number, 2);
 }

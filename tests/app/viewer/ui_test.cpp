@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/viewer/panel/frame_clock.hpp"
+#include "app/viewer/scene/scene_painter.hpp"
 #include "tests/app/imgui_frames.hpp"
 #include "tests/app/viewer/still_scene.hpp"
 
@@ -32,21 +33,22 @@ class UiTest : public ImGuiFrames {
   }
 
   void draw() override {
-    const UiFacts facts{panel_,
-                        {scene_, ui_.free_area(session_.settings.view, width, height)},
-                        scene_.progress(),
-                        clock_,
-                        "renderer",
-                        recent_,
-                        false,
-                        false,
-                        false,
-                        "",
-                        "",
-                        width,
-                        height,
-                        Camera(),
-                        std::exchange(keys_, {})};
+    const UiFacts facts{
+        panel_,
+        {scene_, areas_of(scene_, session_.settings.view, ui_.free_area(session_.settings.view, width, height))},
+        scene_.progress(),
+        clock_,
+        "renderer",
+        recent_,
+        false,
+        false,
+        false,
+        "",
+        "",
+        width,
+        height,
+        Camera(),
+        std::exchange(keys_, {})};
     const UiRequests requests = ui_.draw(session_, scene_, facts);
     cancelled_ = cancelled_ || requests.cancel;
   }

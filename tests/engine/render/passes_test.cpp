@@ -330,7 +330,7 @@ TEST_F(Pass, ASliceLiesWhereItIsPutAndIsNotCut) {
   std::copy_n(red_and_nothing, 8, image.pixels.begin());
   pass.set_image(image, false);
   pass.set_frame({-0.5, 0, -0.5}, {1, 0, 0}, {0, 0, 1});
-  view.clip = ClipPlane{{1, 0, 0}, 0.9};
+  view.clip = ClipPlanes({{1, 0, 0}, 0.9});
   const Image drawn = picture(view, [&] { pass.draw(view); });
   EXPECT_NEAR(covered(drawn), 0.125, 0.01);
   EXPECT_EQ(at(drawn, 40, 50), (Pixel{255, 0, 0}));

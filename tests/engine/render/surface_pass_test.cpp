@@ -219,11 +219,15 @@ TEST_F(Render, ClipPlaneCutsHalfAway) {
     return sides;
   };
   const auto whole = covered();
-  view.clip = ClipPlane{{2, 0, 0}, 2 * view.camera.target.x};  // a normal need not be a unit vector
+  view.clip = ClipPlanes({{2, 0, 0}, 2 * view.camera.target.x});  // a normal need not be a unit vector
   const auto half = covered();
   EXPECT_NEAR(whole[0], whole[1], 0.02 * whole[0]);
   EXPECT_LT(half[0], 0.01 * whole[0]);
   EXPECT_NEAR(half[1], whole[1], 0.01 * whole[1]);
+  view.clip.add({{0, 0, 1}, view.camera.target.z});
+  const auto quarter = covered();
+  EXPECT_LT(quarter[0], 0.01 * whole[0]);
+  EXPECT_NEAR(quarter[1], 0.5 * whole[1], 0.02 * whole[1]);
 }
 
 }  // namespace
