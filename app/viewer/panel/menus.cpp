@@ -49,6 +49,7 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"r, R", "release dye at the point under the cursor; R: another dye"},
                                    {"n", "note at the point under the cursor"},
                                    {"1 to 9", "camera that was kept"},
+                                   {"k", "keyframes"},
                                    {"e", "edges of triangles"},
                                    {"p", "panels"},
                                    {"t", "dark or light"},
@@ -150,6 +151,7 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
     asks_record_ = true;
+  if (ImGui::MenuItem("Edit a recording ...")) ask_recording();
   if (ImGui::MenuItem(!facts.film.empty() ? "End the video" : "Video of every frame ...", "ctrl m",
                       !facts.film.empty()))
     switch_film(facts, requests);
@@ -166,6 +168,7 @@ void Ui::view_menu(Session& session, UiRequests& requests) {
     if (ImGui::MenuItem(v.name, std::string(1, v.key).c_str())) requests.look_from = v.view;
   if (session.camera) ImGui::MenuItem("Orthographic", "o", &session.camera->orthographic);
   cameras_menu(session);
+  if (ImGui::MenuItem("Keyframes", "k", keyframes_.is_open())) keyframes_.toggle();
   bool ball = view.turning == Turning::trackball;
   if (ImGui::MenuItem("Trackball", "b", &ball)) view.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
@@ -221,6 +224,14 @@ bool Ui::close_topmost() {
   return true;
 }
 
+/// The window of the keyframes has its own changes.
+void Ui::take_back(bool again, UiRequests& requests) {
+  if (keyframes_.has_keys())
+    again ? keyframes_.redo() : keyframes_.undo();
+  else
+    (again ? requests.redo : requests.undo) = true;
+}
+
 void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests) {
   for (const KeyPress& pressed : facts.keys) switch (pressed.key) {
       case 27:
@@ -232,8 +243,8 @@ void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests)
       case 'P': asks_shot_ = true; break;
       case 'R': asks_record_ = true; break;
       case 'M': switch_film(facts, requests); break;
-      case 'Z': (pressed.shift ? requests.redo : requests.undo) = true; break;
-      case 'Y': requests.redo = true; break;
+      case 'Z': take_back(pressed.shift, requests); break;
+      case 'Y': take_back(true, requests); break;
       case 'Q': requests.quit = true; break;
       default: break;
     }
@@ -262,6 +273,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
         if (session.camera) session.camera->orthographic = !session.camera->orthographic;
         break;
       case 'b': view.turning = other(view.turning); break;
+      case 'k': keyframes_.toggle(); break;
       case 'e': view.edges = !view.edges; break;
       case 'p': view.panel = !view.panel; break;
       case 't': view.theme = other(view.theme); break;

@@ -316,6 +316,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     if (!played && session.settings.view.play && scene.halted()) requests.resume = true;
     if (session.camera) probe_window(scene, facts.camera, area);
   }
+  keyframes_window(session, facts, area, requests);
   welcome_card(session, facts, area, requests);
   error_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, requests);
