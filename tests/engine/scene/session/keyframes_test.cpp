@@ -130,10 +130,11 @@ TEST(Keyframes, AddingWhereOneIsChangesIt) {
 TEST(Keyframes, WhatIsAddedAtAnyTimeIsSeenThere) {
   Keyframes list = list_at_front();
   for (int k = 0; k < 60; ++k) {
-    const double time = std::fmod(k * 2.7, 10);
+    const double time = (k * 27 % 100) / 10.0;
     Session now = list.state_at(time);
     now.camera = seen_from({std::cos(double(k)) * 5, std::sin(double(k)) * 5, 0.1 * k});
     if (k % 3 == 0) now.settings.flow.ttl = 1 + k % 7;
+    SCOPED_TRACE(time);
     list.add(time, now);
     expect_seen(list.state_at(time), now);
   }
