@@ -60,7 +60,7 @@ bool icon_button(const char* name, Icon icon, const std::string& help, bool lit)
   const ImGuiCol back = ImGui::IsItemActive() ? ImGuiCol_ButtonActive : ImGuiCol_ButtonHovered;
   if (ImGui::IsItemHovered()) list.AddRectFilled(low, high, ImGui::GetColorU32(back), ImGui::GetStyle().FrameRounding);
   icon(list, ImVec2(0.5f * (low.x + high.x), 0.5f * (low.y + high.y)), 0.27f * size,
-       ImGui::GetColorU32(lit ? ImGuiCol_CheckMark : ImGuiCol_Text));
+       ImGui::GetColorU32(lit && !ImGui::IsItemHovered() ? ImGuiCol_CheckMark : ImGuiCol_Text));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help.c_str());
   ImGui::SameLine(0, 0);
   return pressed;

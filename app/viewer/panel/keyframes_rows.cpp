@@ -23,12 +23,12 @@ std::string opened_text(const SessionInput& input) {
   return line;
 }
 
-/// "camera, edges = true"
+/// "camera, there at 2.00 s, edges = true"
 std::string change_text(const SessionEvent& event) {
   std::string line;
   const auto add = [&](const std::string& part) { line += (line.empty() ? "" : ", ") + part; };
   if (event.input) add(opened_text(*event.input));
-  if (event.camera) add("camera");
+  if (event.camera) add(event.over > 0 ? fmt::format("camera, there at {:.2f} s", event.time + event.over) : "camera");
   for (const auto& [name, value] : event.knobs) add(fmt::format("{} = {}", name, value.empty() ? "(empty)" : value));
   if (event.screenshot) add("screenshot " + event.screenshot->file.filename().string());
   return line;
@@ -78,7 +78,11 @@ bool KeyframesWindow::select_row(int row, Session& session) {
                      ImGuiSelectableFlags_AllowDoubleClick;
   const bool pressed = ImGui::Selectable("##row", selected_ == row, flags, ImVec2(0, high));
   if (pressed) selected_ = row;
-  if (selected_ == row && std::exchange(scrolls_, false)) ImGui::SetScrollHereY();
+  if (selected_ == row && scrolls_ > 0) {
+    const float top = ImGui::GetWindowPos().y + high, bottom = ImGui::GetWindowPos().y + ImGui::GetWindowHeight();
+    if (ImGui::GetItemRectMin().y < top || ImGui::GetItemRectMax().y > bottom) ImGui::SetScrollHereY();
+    --scrolls_;
+  }
   if (pressed && ImGui::IsMouseDoubleClicked(0)) go_to_selected(session);
   ImGui::SameLine();
   return pressed;
@@ -89,7 +93,10 @@ void KeyframesWindow::beginning_row(Session& session) {
   ImGui::TableNextColumn();
   select_row(Keyframes::beginning, session);
   ImGui::AlignTextToFramePadding();
-  ImGui::Text("%.2f s", 0.0);
+  const char* const time = "0.00 s";  // in the middle, as in the fields below it
+  const float free = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(time).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(0.0f, 0.5f * free));
+  ImGui::TextUnformatted(time);
   ImGui::TableNextColumn();
   ImGui::TableNextColumn();
   ImGui::AlignTextToFramePadding();
@@ -122,7 +129,7 @@ void KeyframesWindow::event_row(int row, Session& session) {
   }
   if (edited) {
     selected_ = list_.replace(row, std::move(changed));
-    scrolls_ = true;
+    scrolls_ = frames_to_settle;
   }
 }
 
@@ -130,10 +137,11 @@ void KeyframesWindow::rows(Session& session) {
   if (!list_.begun()) return ImGui::TextWrapped("%s", hint);
   const int events = int(list_.events().size());
   if (selected_ && *selected_ >= events) selected_.reset();
-  const std::size_t lines = has_event() ? std::min<std::size_t>(detail_lines(event()), 4) : 0;
-  const float below = float(lines) * ImGui::GetFrameHeightWithSpacing() + (lines > 0 ? ImGui::GetFontSize() : 0);
+  const float free = ImGui::GetContentRegionAvail().y, line = ImGui::GetFrameHeightWithSpacing();
+  const std::size_t lines = has_event() ? detail_lines(event()) : 0;
+  const float below = lines == 0 ? 0 : std::min(float(lines) * line + ImGui::GetStyle().ItemSpacing.y, 0.45f * free);
   const auto flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersOuterH;
-  const float high = std::max(3 * ImGui::GetFrameHeight(), ImGui::GetContentRegionAvail().y - below);
+  const float high = std::max(3 * ImGui::GetFrameHeight(), free - below);
   if (!ImGui::BeginTable("keyframes", 3, flags, ImVec2(0, high))) return;
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 5.5f * ImGui::GetFontSize());
@@ -142,7 +150,8 @@ void KeyframesWindow::rows(Session& session) {
   ImGui::TableHeadersRow();
   ImGuiListClipper clipper;
   clipper.Begin(events + 1);
-  if (scrolls_ && selected_) clipper.ForceDisplayRangeByIndices(*selected_ + 1, *selected_ + 2);
+  if (std::exchange(seen_, selected_) != selected_) scrolls_ = frames_to_settle;
+  if (scrolls_ > 0 && selected_) clipper.ForceDisplayRangeByIndices(*selected_ + 1, *selected_ + 2);
   const long version = list_.version();
   while (clipper.Step())
     for (int k = clipper.DisplayStart; k < clipper.DisplayEnd && list_.version() == version; ++k) {

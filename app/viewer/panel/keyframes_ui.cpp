@@ -12,6 +12,12 @@ void Ui::ask_recording() {
   };
 }
 
+void Ui::save_keyframes() {
+  if (!keyframes_.can_save()) return show_note("there are no keyframes to save");
+  ask_save("save keyframes", {".json"}, keyframes_.file().empty() ? "keyframes.json" : keyframes_.file(),
+           &UiRequests::save_keyframes);
+}
+
 void Ui::keyframes_window(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests) {
   const KeyframesWindow::Wish wish =
       keyframes_.draw(session, area, {facts.keyframes_time, facts.films_keyframes, facts.recording});
@@ -19,9 +25,7 @@ void Ui::keyframes_window(Session& session, const UiFacts& facts, const FreeArea
   requests.stop_keyframes = wish.stop;
   requests.take_recording = wish.take_recording;
   if (wish.open) ask_recording();
-  if (wish.save)
-    ask_save("save keyframes", {".json"}, keyframes_.file().empty() ? "keyframes.json" : keyframes_.file(),
-             &UiRequests::save_keyframes);
+  if (wish.save) save_keyframes();
   if (wish.film)
     ask_save("save video of the keyframes", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, "keyframes.mp4",
              &UiRequests::film_keyframes);

@@ -14,7 +14,10 @@
 namespace nacre {
 namespace {
 
+/// In the same line as the last one, if there is room.
 bool button(const char* name, bool possible, const char* help) {
+  const float wide = ImGui::CalcTextSize(name).x + 2 * ImGui::GetStyle().FramePadding.x;
+  if (ImGui::GetContentRegionAvail().x < wide) ImGui::NewLine();
   ImGui::BeginDisabled(!possible);
   const bool pressed = ImGui::Button(name);
   ImGui::EndDisabled();
@@ -26,7 +29,7 @@ bool button(const char* name, bool possible, const char* help) {
 }  // namespace
 
 void KeyframesWindow::edit(Session recording, const std::string& file, Session& session) {
-  list_.open(std::move(recording));
+  list_.open(std::move(recording), !file.empty());
   file_ = file;
   selected_.reset();
   told_.clear();
@@ -74,7 +77,7 @@ void KeyframesWindow::add(double time, Session& session) {
     return;
   }
   selected_ = row;
-  scrolls_ = true;
+  scrolls_ = frames_to_settle;
   playhead_ = *row == Keyframes::beginning ? 0 : time;
 }
 
@@ -103,7 +106,7 @@ void KeyframesWindow::menus(Session& session, const Facts& facts, Wish& wish) {
     if (ImGui::MenuItem("Open ...")) wish.open = true;
     if (ImGui::MenuItem("End the recording and edit it", nullptr, false, facts.recording)) wish.take_recording = true;
     ImGui::Separator();
-    if (ImGui::MenuItem("Save ...", nullptr, false, something || list_.duration() > 0)) wish.save = true;
+    if (ImGui::MenuItem("Save ...", "ctrl s", false, can_save())) wish.save = true;
     if (ImGui::MenuItem("Video ...", nullptr, false, something)) wish.film = true;
     ImGui::EndMenu();
   }
@@ -129,14 +132,16 @@ void KeyframesWindow::buttons(Session& session) {
   if (button("Update", selected_.has_value(), "the selected keyframe becomes what you see")) update(session);
   if (button("Go to", selected_.has_value(), "see the selected keyframe (or double-click it)")) go_to_selected(session);
   if (button("Delete", has_event(), "remove the selected keyframe (delete)")) remove_selected();
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(told_.c_str()).x) ImGui::NewLine();
   ImGui::TextDisabled("%s", told_.c_str());
 }
 
 /// Buttons of a player, the time, and the axis.
 void KeyframesWindow::player(Session& session, const Facts& facts, Wish& wish) {
   if (facts.time) playhead_ = std::min(*facts.time, std::max(list_.duration(), playhead_));
+  const bool narrow = ImGui::GetContentRegionAvail().x < 28 * ImGui::GetFontSize();  // the axis has its own line
   const float top = ImGui::GetCursorPosY(), middle = 0.5f * (KeyframeTrack::height() - ImGui::GetFrameHeight());
-  ImGui::SetCursorPosY(top + middle);
+  if (!narrow) ImGui::SetCursorPosY(top + middle);
   if (icon_button("begin", begin_icon, "to the beginning")) wish.stop = true, go_to(0, session);
   if (facts.time) {
     if (icon_button("stop", stop_icon, "stop", true)) wish.stop = true;
@@ -147,15 +152,17 @@ void KeyframesWindow::player(Session& session, const Facts& facts, Wish& wish) {
   ImGui::AlignTextToFramePadding();
   const float before = ImGui::GetCursorPosX();
   text(fmt::format("{:.2f} s", playhead_));
-  ImGui::SameLine();
-  ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), before + 4.5f * ImGui::GetFontSize()));
-  ImGui::SetCursorPosY(top);
+  if (!narrow) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), before + 4.5f * ImGui::GetFontSize()));
+    ImGui::SetCursorPosY(top);
+  }
   const KeyframeTrack::Wish pulled = track_.draw(list_, selected_, playhead_);
   if (pulled.scrub && (*pulled.scrub != playhead_ || facts.time)) {
     wish.stop = facts.time.has_value();
     go_to(*pulled.scrub, session);
   }
-  if (pulled.select) selected_ = pulled.select, scrolls_ = true;
+  if (pulled.select) selected_ = pulled.select;
   if (pulled.go) go_to_selected(session);
   if (pulled.move && has_event()) {
     SessionEvent moved = event();

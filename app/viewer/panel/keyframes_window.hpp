@@ -33,10 +33,12 @@ class KeyframesWindow {
 
   void toggle() { open_ = !open_; }
   bool is_open() const { return open_; }
-  /// Shows this recording, with its beginning; `file`: its name, may be empty.
+  /// Shows this recording, with its beginning; `file`: its name; empty: it is in none.
   void edit(Session recording, const std::string& file, Session& session);
   void add_screenshot(const Screenshot& picture) { selected_ = list_.add_screenshot(playhead_, picture); }
   void note_saved(const std::string& file);
+  /// Is there anything to play?
+  bool can_save() const { return list_.duration() > 0 || !list_.events().empty(); }
 
   const Keyframes& list() const { return list_; }
   const std::string& file() const { return file_; }
@@ -71,8 +73,10 @@ class KeyframesWindow {
   bool open_ = false, focused_ = false, asks_thin_ = false;
   double playhead_ = 0;
   std::optional<int> selected_;
-  bool scrolls_ = false;  ///< to the selected row
-  ImGuiID held_ = 0;      ///< the field that is being changed
+  static constexpr int frames_to_settle = 3;  ///< what is below the list changes its height
+  std::optional<int> seen_;                   ///< the row that was selected in the last frame
+  int scrolls_ = 0;                           ///< to the selected row, for so many frames
+  ImGuiID held_ = 0;                          ///< the field that is being changed
   double held_value_ = 0;
   double tolerance_ = 0.5;                  ///< percent
   std::pair<long, double> thinned_{-1, 0};  ///< version and tolerance for which it is known

@@ -238,7 +238,12 @@ void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests)
         if (!close_topmost()) requests.cancel = true;
         break;
       case 'O': ask_open(); break;
-      case 'S': ask_save("save session", {".json"}, "session.json", &UiRequests::save_session); break;
+      case 'S':
+        if (keyframes_.has_keys())
+          save_keyframes();
+        else
+          ask_save("save session", {".json"}, "session.json", &UiRequests::save_session);
+        break;
       case 'E': ask_result(scene); break;
       case 'P': asks_shot_ = true; break;
       case 'R': asks_record_ = true; break;

@@ -114,6 +114,7 @@ class Ui {
   void cameras_menu(Session& session);
   // In keyframes_ui.cpp.
   void ask_recording();
+  void save_keyframes();
   void keyframes_window(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests);
   bool close_topmost();
   void ask_open();

@@ -70,6 +70,7 @@ void Viewer::film_keyframes(const std::filesystem::path& file) {
   time_.set_fps(recording.settings.fps);
   session_ = ui_.keyframes().list().start();
   turned_ = 0;
+  frame_.reset();  // with as many samples as frames that wait have
   begin_playing(SessionPlayer(recording));
   open();
   told_ = session_;
@@ -98,7 +99,7 @@ void Viewer::follow_keyframes(bool shown) {
 }
 
 std::optional<double> Viewer::keyframes_time() const {
-  if (!list_play_ || opening_) return {};
+  if (!list_play_ || opening_ || !player_->plays()) return {};
   return time_.seconds() - played_since_;
 }
 

@@ -152,9 +152,9 @@ void Keyframes::begin(const Session& now) {
   if (!loses) note_saved();  // a beginning alone is nothing to lose
 }
 
-void Keyframes::open(Session recording) {
+void Keyframes::open(Session recording, bool saved) {
   take({std::move(recording), true, 0});
-  note_saved();
+  if (saved) note_saved();
 }
 
 std::optional<int> Keyframes::add(double time, const Session& now) {

@@ -31,8 +31,8 @@ class Keyframes {
 
   /// A list that begins with this state, without events. Its pictures and videos have no panel.
   void begin(const Session& now);
-  /// A recording to be edited.
-  void open(Session recording);
+  /// A recording to be edited. `saved`: it is in a file.
+  void open(Session recording, bool saved);
 
   /// The list takes over how `now` differs from its own state at `time`, and is like it from then on. A camera arrives
   /// at `time`; it leaves when the last one has arrived, at most `spacing` before. A keyframe at that time is changed;

@@ -268,7 +268,7 @@ TEST(Keyframes, EachEditCanBeUndone) {
   list.update(0, showing(top_view)), note();
   list.remove(1), note();
   list.set_duration(9), note();
-  list.open(showing(top_view)), note();
+  list.open(showing(top_view), true), note();
   for (std::size_t k = texts.size() - 1; k-- > 0;) {
     EXPECT_TRUE(list.can_undo());
     list.undo();
@@ -290,15 +290,17 @@ TEST(Keyframes, KnowWhetherTheyAreSaved) {
   EXPECT_TRUE(list.unsaved());
   list.undo();
   EXPECT_FALSE(list.unsaved());
-  list.open(showing(front_view));
+  list.open(showing(front_view), true);
   EXPECT_FALSE(list.unsaved());
+  list.open(showing(front_view), false);
+  EXPECT_TRUE(list.unsaved());
 }
 
 TEST(Keyframes, GoThroughAFile) {
   Keyframes list = three_views();
   list.add_screenshot(3, {"/pictures/a.png", 2, false, true});
   Keyframes again;
-  again.open(parse_session(text_of(list)));
+  again.open(parse_session(text_of(list)), true);
   EXPECT_EQ(text_of(again), text_of(list));
   for (double time = 0; time < 5; time += 0.5) expect_seen(again.state_at(time), list.state_at(time));
 }
@@ -313,7 +315,7 @@ TEST(Keyframes, KeepKnobsOfTheWindowThatARecordingHas) {
   recording.events.push_back(event);
   recording.duration = 2;
   Keyframes list;
-  list.open(recording);
+  list.open(recording, true);
   EXPECT_EQ(text_of(list), session_text(recording));
   Session now = list.state_at(1);
   now.settings.view.tab = PanelTab::data;
@@ -331,7 +333,7 @@ TEST(Keyframes, HoldTheToursAsTheyAre) {
   for (const char* name : {"flow_demo", "mesh_demo", "moving_demo"}) {
     const Session tour = read_session(test::source_file(std::string("assets/") + name + ".json"));
     Keyframes list;
-    list.open(tour);
+    list.open(tour, true);
     EXPECT_EQ(text_of(list), session_text(tour)) << name;
     list.replace(0, [&] {
       SessionEvent later = list.events()[0];
