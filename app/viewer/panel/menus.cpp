@@ -55,6 +55,7 @@ constexpr const char* keys[][2] = {{"left drag", "turn"},
                                    {"l", "three slices of the volume beside the view, or the view alone"},
                                    {"n", "note at the point under the cursor"},
                                    {"1 to 9", "camera that was kept"},
+                                   {"k", "keyframes"},
                                    {"e", "edges of triangles"},
                                    {"p", "panels"},
                                    {"t", "dark or light"},
@@ -154,6 +155,7 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
     asks_record_ = true;
+  if (ImGui::MenuItem("Edit a recording ...")) ask_recording();
   if (ImGui::MenuItem(!facts.film.empty() ? "End the video" : "Video of every frame ...", "ctrl m",
                       !facts.film.empty()))
     switch_film(facts, requests);
@@ -201,6 +203,7 @@ void Ui::view_menu(Session& session, Scene& scene, UiRequests& requests) {
   if (session.camera) ImGui::MenuItem("Orthographic", "o", &session.camera->orthographic);
   cameras_menu(session);
   compare_menu(session);
+  if (ImGui::MenuItem("Keyframes", "k", keyframes_.is_open())) keyframes_.toggle();
   bool ball = view.turning == Turning::trackball;
   if (ImGui::MenuItem("Trackball", "b", &ball)) view.turning = ball ? Turning::trackball : Turning::turntable;
   ImGui::Separator();
@@ -258,19 +261,32 @@ bool Ui::close_topmost() {
   return true;
 }
 
+/// The window of the keyframes has its own changes.
+void Ui::take_back(bool again, UiRequests& requests) {
+  if (keyframes_.has_keys())
+    again ? keyframes_.redo() : keyframes_.undo();
+  else
+    (again ? requests.redo : requests.undo) = true;
+}
+
 void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests) {
   for (const KeyPress& pressed : facts.keys) switch (pressed.key) {
       case 27:
         if (!close_topmost()) requests.cancel = true;
         break;
       case 'O': ask_open(); break;
-      case 'S': ask_save("save session", {".json"}, "session.json", &UiRequests::save_session); break;
+      case 'S':
+        if (keyframes_.has_keys())
+          save_keyframes();
+        else
+          ask_save("save session", {".json"}, "session.json", &UiRequests::save_session);
+        break;
       case 'E': ask_result(scene); break;
       case 'P': asks_shot_ = true; break;
       case 'R': asks_record_ = true; break;
       case 'M': switch_film(facts, requests); break;
-      case 'Z': (pressed.shift ? requests.redo : requests.undo) = true; break;
-      case 'Y': requests.redo = true; break;
+      case 'Z': take_back(pressed.shift, requests); break;
+      case 'Y': take_back(true, requests); break;
       case 'Q': requests.quit = true; break;
       default: break;
     }
@@ -299,6 +315,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
         if (session.camera) session.camera->orthographic = !session.camera->orthographic;
         break;
       case 'b': view.turning = other(view.turning); break;
+      case 'k': keyframes_.toggle(); break;
       case 'e': view.edges = !view.edges; break;
       case 'p': view.panel = !view.panel; break;
       case 't': view.theme = other(view.theme); break;

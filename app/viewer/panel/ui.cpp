@@ -328,6 +328,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     slice_mouse_.draw(view, *slices, pointed.areas);
   else
     slice_mouse_.forget();
+  keyframes_window(session, facts, area, requests);
   welcome_card(session, facts, area, requests);
   error_window(area);
   if (std::exchange(asks_record_, false)) switch_recording(facts, requests);

@@ -10,6 +10,7 @@
 #include "app/viewer/panel/clip_panel.hpp"
 #include "app/viewer/panel/file_dialog.hpp"
 #include "app/viewer/panel/frame_clock.hpp"
+#include "app/viewer/panel/keyframes_window.hpp"
 #include "app/viewer/panel/knob_presets.hpp"
 #include "app/viewer/panel/scene_panel.hpp"
 #include "app/viewer/panel/slice_mouse.hpp"
@@ -40,9 +41,11 @@ struct UiFacts {
   std::string film;        ///< how long the video is to which every frame goes; empty: none
   std::string saving;      ///< a file that is being written; empty: none
   int width = 0, height = 0;
-  Camera camera;               ///< of what is seen
-  std::vector<KeyPress> keys;  ///< since the last frame
-  bool opening = false;        ///< something is being read, and will be shown when it can be
+  Camera camera;                              ///< of what is seen
+  std::vector<KeyPress> keys;                 ///< since the last frame
+  bool opening = false;                       ///< something is being read, and will be shown when it can be
+  std::optional<double> keyframes_time = {};  ///< of the list of keyframes, where it is being played
+  bool films_keyframes = false;
 };
 
 /// What the user wants of the program.
@@ -55,6 +58,10 @@ struct UiRequests {
   std::optional<std::filesystem::path> load_session, save_session, save_result, save_recording, film;
   std::optional<Screenshot> screenshot;
   std::string tour;  ///< text of a session to be played; empty: none
+  // Of the list of keyframes.
+  std::optional<double> play_keyframes;  ///< from this time
+  bool stop_keyframes = false, take_recording = false;
+  std::optional<std::filesystem::path> edit_recording, save_keyframes, film_keyframes;
 };
 
 class Ui {
@@ -79,6 +86,9 @@ class Ui {
   bool animates() const;
   bool asks_quit() const { return !quit_reasons_.empty(); }
 
+  KeyframesWindow& keyframes() { return keyframes_; }
+  const KeyframesWindow& keyframes() const { return keyframes_; }
+
   /// A card for newcomers over the picture, until something is opened.
   void welcome() { welcome_.show(); }
 
@@ -87,6 +97,7 @@ class Ui {
       std::function<void(const std::vector<std::filesystem::path>& files, Session& session, UiRequests& requests)>;
 
   void use_keys(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void take_back(bool again, UiRequests& requests);
   void use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests);
   void menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
@@ -112,6 +123,10 @@ class Ui {
   void marks_menu(Session& session);
   void cameras_menu(Session& session);
   void compare_menu(Session& session);
+  // In keyframes_ui.cpp.
+  void ask_recording();
+  void save_keyframes();
+  void keyframes_window(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests);
   bool close_topmost();
   void ask_open();
   void ask_result(Scene& scene);
@@ -126,6 +141,7 @@ class Ui {
   KnobPresets presets_;
   ClipPanel clip_;
   SliceMouse slice_mouse_;
+  KeyframesWindow keyframes_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;
   bool help_ = false, about_ = false, asks_shot_ = false, asks_record_ = false;

@@ -95,7 +95,8 @@ void Viewer::frame() {
   const auto [width, height] = size();
   if (width <= 0 || height <= 0) return rest(now(), shortest_frame);  // minimised
   const double time = time_.seconds();
-  std::vector<Screenshot> pictures = player_->advance(time - played_since_, session_);
+  std::vector<Screenshot> pictures = std::exchange(late_pictures_, {});
+  for (Screenshot& each : player_->advance(time - played_since_, session_)) pictures.push_back(std::move(each));
   if (!dropped_.empty()) may_differ_ = true, open_dropped();
   const bool changed = take_changes();
   leave_lost_device();
@@ -116,6 +117,8 @@ void Viewer::frame() {
   }
   const double end = now();
   if (advanced && draws) add_to_video();
+  follow_keyframes(advanced);
+  if (!advanced) late_pictures_ = std::exchange(pictures, {});
   if (requests_.screenshot) pictures.push_back(*requests_.screenshot);
   for (const Screenshot& picture : pictures) attempt([&] { take_picture(picture); });
   const bool moved = session_.camera != told_.camera;  // by hand, or fitted, in this frame
@@ -147,7 +150,8 @@ DrawDemand::Shown Viewer::what_is_shown(int width, int height) const {
 bool Viewer::needs_frame(double time, const DrawDemand::Shown& shown, bool changed) {
   if (!draws_on_demand()) return true;
   if (window_->is_minimised()) return false;
-  const bool touched = std::exchange(redraw_, false) || changed || window_->touched() || session_.settings.orbit != 0;
+  const bool touched =
+      std::exchange(redraw_, false) || changed || window_->touched() || session_.settings.orbit != 0 || list_play_;
   return demand_.due(time, shown, touched, ui_.animates());
 }
 
@@ -208,7 +212,8 @@ void Viewer::draw(int width, int height, double seconds) {
                       recording_.on(),  film_.from_menu() ? film_.length() : "",
                       saving_.name(),   width,
                       height,           orbit(session_.camera.value_or(Camera()), turned_),
-                      imgui_->chords(), opening_.has_value()};
+                      imgui_->chords(), opening_.has_value(),
+                      keyframes_time(), list_play_ && list_play_->films};
   requests_ = ui_.draw(session_, scene(), facts);
   imgui_->end();
   if (window_) frame_->show_in_window();

@@ -112,7 +112,7 @@ class Viewer {
   /// How long the loop waits for the user if nothing has to be drawn, seconds; then it handles events of compute.
   double patience() const {
     if (!draws_on_demand()) return 0;
-    if (opening_) return shortest_frame;
+    if (opening_ || list_play_) return shortest_frame;
     return !all_settled() && !scene().halted() ? shortest_frame : 0.1;
   }
 
@@ -166,13 +166,27 @@ class Viewer {
   void tell_saved();
   void obey_recording(const UiRequests& requests);
 
+  // The list of keyframes, played and filmed; in keyframes_play.cpp.
+  struct ListPlay {
+    bool films;
+    Settings window;  ///< when it began
+  };
+  void obey_keyframes(const UiRequests& requests);
+  void edit_recording(Session recording, const std::string& name);
+  void play_keyframes(double from);
+  void film_keyframes(const std::filesystem::path& file);
+  void stop_keyframes();
+  /// Once a frame: `shown`: what the list says of this frame has been drawn.
+  void follow_keyframes(bool shown);
+  std::optional<double> keyframes_time() const;
+
   /// A session or a recording.
   void save(const std::filesystem::path& file, const std::string& text);
 
-  /// A recording's events, from now on.
+  /// A recording's events, from now on; those that have been played before it came here are over.
   void begin_playing(SessionPlayer player) {
     player_.emplace(std::move(player));
-    played_since_ = time_.seconds();
+    played_since_ = time_.seconds() - std::max(0.0, player_->time());
     scripted_ = player_->plays();
   }
 
@@ -214,9 +228,10 @@ class Viewer {
   Film film_;
   Saving saving_;
   SessionClock time_;
-  double started_, last_ = 0;  ///< on the machine's clock
-  double turned_ = 0;          ///< degrees, of a camera that orbits
-  double played_since_ = 0;    ///< on the session's clock
+  double started_, last_ = 0;              ///< on the machine's clock
+  double turned_ = 0;                      ///< degrees, of a camera that orbits
+  double played_since_ = 0;                ///< on the session's clock
+  std::vector<Screenshot> late_pictures_;  ///< of a frame that still waits for compute
   std::unique_ptr<Context> context_;
   Window* window_ = nullptr;  ///< the context, where it is one
   std::optional<ImGuiLayer> imgui_;
@@ -224,6 +239,7 @@ class Viewer {
   std::optional<Framebuffer> frame_;
   OpenScene open_;
   std::optional<Opening> opening_;
+  std::optional<ListPlay> list_play_;
   LeftScenes left_;
   Comparison comparison_;
   Ui ui_;

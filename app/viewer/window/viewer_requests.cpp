@@ -21,6 +21,7 @@ std::vector<std::string> Viewer::reasons_to_stay() const {
   if (!progress.stage.empty()) reasons.push_back(fmt::format("The computation ({}) has not finished.", progress.stage));
   if (film_.from_menu()) reasons.push_back("A video is being recorded.");
   if (recording_.on() && !recording_.has_file()) reasons.push_back("Your actions are being recorded.");
+  if (ui_.keyframes().list().unsaved()) reasons.push_back("The list of keyframes has not been saved.");
   if (unsaved_ && !recording_.has_file())
     reasons.push_back("You have changed parameters and saved neither session nor result.");
   return reasons;
@@ -143,6 +144,7 @@ void Viewer::obey(const UiRequests& requests) {
   if (requests.save_result)
     attempt([&] { saving_.begin(scene(), *requests.save_result, options_.origin(session_, "out")); });
   obey_recording(requests);
+  obey_keyframes(requests);
 }
 
 void Viewer::tell_saved() {
@@ -190,6 +192,7 @@ void Viewer::save(const std::filesystem::path& file, const std::string& text) {
 /// `file`: where it comes from; empty: from the program itself.
 void Viewer::play(Session loaded, const std::filesystem::path& file) {
   options_.check(loaded);
+  stop_keyframes();
   SessionPlayer player(loaded);
   loaded.events.clear();
   loaded.duration = 0;

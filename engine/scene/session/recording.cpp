@@ -55,6 +55,11 @@ Camera between(const Camera& from, const Camera& to, double share) {
   return camera;
 }
 
+double eased(double share) {
+  if (share <= 0) return 0;
+  return share >= 1 ? 1 : share * share * (3 - 2 * share);
+}
+
 SessionPlayer::SessionPlayer(Session recording) : recording_(std::move(recording)) {}
 
 std::vector<Screenshot> SessionPlayer::advance(double time, Session& now) {
@@ -80,8 +85,7 @@ void SessionPlayer::move_camera(double time, Session& now) {
   if (glide_ && now.camera != glide_->last) glide_.reset();  // somebody else has it
   if (!glide_) return;
   const double share = (time - glide_->begin) / glide_->over;
-  const double eased = share >= 1 ? 1 : share * share * (3 - 2 * share);  // starts and ends at rest
-  now.camera = glide_->last = between(glide_->from, glide_->to, eased);
+  now.camera = glide_->last = between(glide_->from, glide_->to, eased(share));
   if (share >= 1) glide_.reset();
 }
 

@@ -22,6 +22,9 @@ class SessionPlayer {
   /// Is there an event to play?
   bool plays() const { return !recording_.events.empty(); }
 
+  /// Of the last call; none: below 0.
+  double time() const { return time_; }
+
   /// Was there something to play, and has it been brought to its duration? So the last frame is the first at or after
   /// it.
   bool ended() const;
@@ -42,6 +45,9 @@ class SessionPlayer {
 
 /// Between two cameras, 0 <= share <= 1: about the target, at even speed of angle and logarithm of distance.
 Camera between(const Camera& from, const Camera& to, double share);
+
+/// The share of its way that a camera has made after a share of its time: it starts and ends at rest.
+double eased(double share);
 
 /// Writes down what changes. Times are those of the frames of a clock with `fps` frames a second: the first frame at or
 /// after what happened. All that happens within one such frame is one event, so that a recording of a replay is the

@@ -19,7 +19,6 @@ using nlohmann::json;
 using std::filesystem::path;
 
 constexpr const char* format_name = "session 1";
-constexpr double longest_session = 1e6;  // seconds
 
 path beside(const path& folder, const path& file) { return file.is_absolute() ? file : folder / file; }
 

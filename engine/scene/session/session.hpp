@@ -31,6 +31,8 @@ struct Screenshot {
   bool operator==(const Screenshot&) const = default;
 };
 
+inline constexpr double longest_session = 1e6;  ///< seconds
+
 /// What is different from a time on.
 struct SessionEvent {
   double time = 0;  ///< seconds since the beginning: the first frame at or after it shows the change

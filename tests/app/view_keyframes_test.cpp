@@ -1,0 +1,32 @@
+// Nacre: a list of keyframes, made by a user in a window.
+#include "tests/app/view_program.hpp"
+
+namespace nacre::test {
+namespace {
+
+using ViewKeyframes = ViewTest;
+
+/// A camera on its way and a knob at the end; the window films the list as the command films its file.
+TEST_F(ViewKeyframes, AreMadePlayedSavedAndFilmedInAWindow) {
+  const Outcome window =
+      run("/bin/bash", {source_file("tests/app/view_keyframes.sh"), program_path, (folder / "").string()});
+  if (window.status == 77) GTEST_SKIP() << window.err;
+  ASSERT_EQ(window.status, 0) << window.err;
+  const nlohmann::json list = read_json(folder / "list.json");
+  ASSERT_EQ(list.at("events").size(), 2u);
+  EXPECT_EQ(list.at("events")[0].at("time"), 0);
+  EXPECT_EQ(list.at("events")[0].at("over"), 2);
+  EXPECT_NE(list.at("events")[0].at("camera"), list.at("camera"));
+  EXPECT_EQ(list.at("events")[1].at("time"), 4);
+  EXPECT_EQ(list.at("events")[1].at("knobs"), (nlohmann::json{{"edges", true}}));
+  EXPECT_EQ(list.at("duration"), 4);
+
+  const std::string again = (folder / "again.mp4").string();
+  const Outcome played =
+      nacre({"view", "--offscreen", "--quiet", "--script", (folder / "list.json").string(), "--record", again});
+  ASSERT_EQ(played.status, 0) << played.err;
+  EXPECT_EQ(read_all(folder / "list.mp4"), read_all(again)) << "the same frames";
+}
+
+}  // namespace
+}  // namespace nacre::test
