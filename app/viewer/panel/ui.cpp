@@ -319,7 +319,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     if (!played && view.play && scene.halted()) requests.resume = true;
     if (session.camera && view_areas(view.layout, slices, area).has_view) {
       const FreeArea seen = view_areas(view.layout, slices, area).view;
-      if (facts.film.empty()) clip_.draw_handle(view, scene.corners(), {facts.camera, seen});
+      if (!facts.filmed) clip_.draw_handle(view, scene.corners(), {facts.camera, seen});
       probe_window(scene, facts.camera, seen);
     }
   }

@@ -35,6 +35,7 @@ struct UiFacts {
   Camera camera;               ///< of what is seen
   std::vector<KeyPress> keys;  ///< since the last frame
   std::string opening;         ///< what is being read, and will be shown when it can be; empty: nothing
+  bool filmed = false;         ///< every frame goes to a video
 };
 
 /// What the user wants of the program.

@@ -208,7 +208,8 @@ void Viewer::draw(int width, int height, double seconds) {
                       recording_.on(),  film_.from_menu() ? film_.length() : "",
                       saving_.name(),   width,
                       height,           orbit(session_.camera.value_or(Camera()), turned_),
-                      imgui_->chords(), opening_ ? input_name(opening_->session) : ""};
+                      imgui_->chords(), opening_ ? input_name(opening_->session) : "",
+                      film_.on()};
   requests_ = ui_.draw(session_, scene(), facts);
   imgui_->end();
   if (window_) frame_->show_in_window();
