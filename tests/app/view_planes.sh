@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Nacre: a user at the window under Xvfb: a clip plane is added, pushed and turned by its handle; the crosshair is moved
-# in a slice. Usage: view_planes.sh PROGRAM RECORDING REPORT CAMERA; 77: tools are missing. RECORDING does not exist yet.
-# CAMERA looks at the middle of the scene: a new plane's handle is then in the middle of what panels leave free.
+# in a slice. Usage: view_planes.sh PROGRAM RECORDING REPORT CAMERA; 77: tools are missing. There is no RECORDING
+# yet. CAMERA looks at the middle of the scene: a new plane's handle is then in the middle of what panels leave.
 set -euo pipefail
 source "$(dirname "$0")/window.sh"
 on_display 1000x700 xdotool

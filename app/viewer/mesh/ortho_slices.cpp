@@ -12,7 +12,7 @@ namespace nacre {
 void OrthoSlices::make_image(int k, const OrthoSlice& slice) {
   Shown& shown = shown_[std::size_t(k)];
   const ViewedVolume& volume = *content_.volume;
-  Made wanted{&volume, slice.layer, content_.materials, content_.range, content_.palette, {}};
+  Made wanted{content_.volume, slice.layer, content_.materials, content_.range, content_.palette, {}};
   if (shown.image == wanted) return;
   shown.image = std::move(wanted);
   ++images_made_;
@@ -27,7 +27,7 @@ void OrthoSlices::make_image(int k, const OrthoSlice& slice) {
 
 void OrthoSlices::make_outline(int k, const OrthoSlice& slice) {
   Shown& shown = shown_[std::size_t(k)];
-  Made wanted{content_.mesh.get(), slice.layer, false, {}, {}, content_.drawn};
+  Made wanted{content_.mesh, slice.layer, false, {}, {}, content_.drawn};
   if (shown.outline == wanted) return;
   shown.outline = std::move(wanted);
   ++outlines_made_;
@@ -42,7 +42,7 @@ void OrthoSlices::make_outline(int k, const OrthoSlice& slice) {
 void OrthoSlices::draw_lines(const View& view, const Vec3d& origin, const std::vector<Segment>& lines,
                              const std::array<float, 3>& colour, bool through) const {
   lines_.draw(view, place_grid(origin, 1), Buffer::of<Segment>(lines),
-              {{colour[0], colour[1], colour[2], 1}, 1.5f, through});
+              {{colour[0], colour[1], colour[2], 1}, through ? 1.0f : 1.5f, through});
 }
 
 /// Each line lies where one of the other slices cuts this one, and has its colour.

@@ -52,7 +52,7 @@ class OrthoSlices : public SliceViews {
   };
   /// What something was made for.
   struct Made {
-    const void* from = nullptr;  ///< a volume or a mesh
+    std::shared_ptr<const void> from;  ///< a volume or a mesh
     int layer = -1;
     bool materials = false;
     std::array<double, 2> range{};

@@ -43,9 +43,13 @@ void SliceMouse::use(int k, ViewSettings& view, SliceViews& slices, const FreeAr
   if (hovered && ImGui::IsMouseDoubleClicked(0)) {
     const ViewLayout alone = ViewLayout(int(ViewLayout::x) + k);
     view.layout = view.layout == alone ? ViewLayout::slices : alone;
-  } else if (ImGui::IsItemActive()) {
-    view.crosshair = slices.crosshair_at(k, point_under_mouse(camera, area));
+    view.crosshair = before_;
+    drags_ = false;
+  } else if (ImGui::IsItemActivated()) {
+    before_ = view.crosshair;
+    drags_ = true;
   }
+  if (drags_ && ImGui::IsItemActive()) view.crosshair = slices.crosshair_at(k, point_under_mouse(camera, area));
   if (!hovered) return;
   double& turned = turned_[std::size_t(k)];
   turned += double(io.MouseWheel);
@@ -62,17 +66,17 @@ void SliceMouse::use(int k, ViewSettings& view, SliceViews& slices, const FreeAr
 
 void SliceMouse::draw(ViewSettings& view, SliceViews& slices, const ViewAreas& areas) {
   under_.reset();
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   for (int k = 0; k < 3; ++k) {
     const FreeArea& area = areas.slices[std::size_t(k)];
     if (area.width <= 0 || area.height <= 0) continue;
     ImGui::SetNextWindowPos(ImVec2(float(area.x), float(area.y)));
     ImGui::SetNextWindowSize(ImVec2(float(area.width), float(area.height)));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
     const bool shown = ImGui::Begin(fmt::format("slice {}", k).c_str(), nullptr, bare);
+    ImGui::PopStyleVar();
     if (shown) use(k, view, slices, area);
     ImGui::End();
   }
-  ImGui::PopStyleVar();
 }
 
 }  // namespace nacre

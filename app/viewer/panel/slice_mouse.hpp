@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 #include "app/viewer/scene/layout.hpp"
 #include "app/viewer/scene/slice_views.hpp"
@@ -25,6 +26,8 @@ class SliceMouse {
 
   std::optional<Vec3d> under_;
   std::array<double, 3> turned_{};  ///< of the wheel, less than a voxel
+  bool drags_ = false;              ///< the crosshair
+  std::string before_;              ///< the crosshair, before a click that may be the first of two
 };
 
 }  // namespace nacre

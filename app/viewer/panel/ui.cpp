@@ -320,7 +320,7 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     transport_.draw(session, scene.transport(), {area.x, area.y + area.height, area.width, TransportBar::height()});
     if (!played && view.play && scene.halted()) requests.resume = true;
     if (session.camera && pointed.areas.has_view) {
-      if (facts.film.empty()) clip_.draw_handle(view, pointed.scene.corners(), {facts.camera, pointed.areas.view});
+      if (!facts.filmed) clip_.draw_handle(view, pointed.scene.corners(), {facts.camera, pointed.areas.view});
       probe_window(pointed, facts.camera);
     }
   }

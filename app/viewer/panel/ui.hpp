@@ -44,6 +44,7 @@ struct UiFacts {
   Camera camera;                              ///< of what is seen
   std::vector<KeyPress> keys;                 ///< since the last frame
   bool opening = false;                       ///< something is being read, and will be shown when it can be
+  bool filmed = false;                        ///< every frame goes to a video
   std::optional<double> keyframes_time = {};  ///< of the list of keyframes, where it is being played
   bool films_keyframes = false;
 };

@@ -205,15 +205,25 @@ void Viewer::draw(int width, int height, double seconds) {
   Scene& pointed_scene = at_second ? comparison_.scene() : scene();
   const PointedView pointed{pointed_scene, areas_of(pointed_scene, session_.settings.view, at_second ? second : first)};
   if (session_.camera) move_by_hand(*session_.camera, pointed);
-  const UiFacts facts{*open_.panel,     pointed,
-                      progress(),       clock_,
-                      result_.renderer, recent_.files(),
-                      undo_.can_undo(), undo_.can_redo(),
-                      recording_.on(),  film_.from_menu() ? film_.length() : "",
-                      saving_.name(),   width,
-                      height,           orbit(session_.camera.value_or(Camera()), turned_),
-                      imgui_->chords(), opening_.has_value(),
-                      keyframes_time(), list_play_ && list_play_->films};
+  const UiFacts facts{*open_.panel,
+                      pointed,
+                      progress(),
+                      clock_,
+                      result_.renderer,
+                      recent_.files(),
+                      undo_.can_undo(),
+                      undo_.can_redo(),
+                      recording_.on(),
+                      film_.from_menu() ? film_.length() : "",
+                      saving_.name(),
+                      width,
+                      height,
+                      orbit(session_.camera.value_or(Camera()), turned_),
+                      imgui_->chords(),
+                      opening_.has_value(),
+                      film_.on(),
+                      keyframes_time(),
+                      list_play_ && list_play_->films};
   requests_ = ui_.draw(session_, scene(), facts);
   imgui_->end();
   if (window_) frame_->show_in_window();

@@ -197,6 +197,9 @@ TEST_F(FlowInView, WhatIsCutAwayIsNotProbed) {
   const auto probed = scene_->probe(camera.target - Vec3d(0, 50, 0), {0, 1, 0});
   ASSERT_TRUE(probed);
   EXPECT_GT(probed->position.y, camera.target.y);
+  view.clip.add({{0, -1, 0}, -camera.target.y - 1e-3});  // and nearly all of the other
+  scene_->draw(view);
+  EXPECT_FALSE(scene_->probe(camera.target - Vec3d(0, 50, 0), {0, 1, 0}));
 }
 
 TEST_F(FlowInView, ThesisOctreesAreDrawnToo) {

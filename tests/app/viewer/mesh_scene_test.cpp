@@ -233,6 +233,42 @@ TEST_F(MeshInView, AProbeTellsTheProbabilityOfWhatIsThere) {
   EXPECT_EQ(line(*right, "volume"), "") << "of which file?";
 }
 
+TEST_F(MeshInView, SlicesAndOutlinesAreMadeWhereTheyHaveChanged) {
+  open(true);
+  ASSERT_TRUE(settles());
+  EXPECT_EQ(scene_->slices(), nullptr) << "nobody wants them";
+  change([](Settings& s) { s.view.layout = ViewLayout::slices; });
+  auto* slices = dynamic_cast<OrthoSlices*>(scene_->slices());
+  ASSERT_TRUE(slices);
+  const auto draw_all = [&] {
+    for (int k = 0; k < 3; ++k) {
+      View view;
+      view.width = view.height = 120;
+      view.camera = scene_->slices()->camera(k, 1);
+      const Framebuffer frame(120, 120);
+      frame.bind();
+      frame.clear({1, 1, 1, 1});
+      scene_->slices()->draw(k, view);
+    }
+    return std::array{slices->images_made(), slices->outlines_made()};
+  };
+  EXPECT_EQ(draw_all(), (std::array{3, 3}));
+  EXPECT_EQ(draw_all(), (std::array{3, 3})) << "nothing has changed";
+  change([&](Settings& s) { s.view.crosshair = slices->crosshair_after(1, 2); });
+  EXPECT_EQ(draw_all(), (std::array{4, 4})) << "one slice moves";
+  change([](Settings& s) { s.view.hidden = "1"; });
+  EXPECT_EQ(draw_all(), (std::array{4, 7})) << "outlines of what is hidden go";
+  change([](Settings& s) { s.view.material_colors = "2:#ff0000"; });
+  EXPECT_EQ(draw_all(), (std::array{7, 7}));
+  change([](Settings& s) { s.view.edges = true; });
+  EXPECT_EQ(draw_all(), (std::array{7, 7}));
+  const Vec3d middle = (scene_->corners().front() + scene_->corners().back()) * 0.5;
+  change([&](Settings& s) { s.view.crosshair = slices->crosshair_at(2, middle + Vec3d(4, 0, 0)); });
+  const std::optional<ProbeResult> probed = scene_->slices()->probe(2, middle + Vec3d(4, 0, 100), Vec3d(0, 0, -1));
+  ASSERT_TRUE(probed);
+  EXPECT_EQ(line(*probed, "material"), "2");
+}
+
 TEST_F(MeshInView, WhatIsSeenIsTheVolumeUntilThereAreParticles) {
   open(false, 200);
   while (scene_->corners().empty()) scene_->advance(0);

@@ -251,6 +251,7 @@ TEST_F(SliceMouseTest, ADoubleClickShowsASliceAloneAndBack) {
   frame();
   twice(600, 450);
   EXPECT_EQ(view_.layout, ViewLayout::x);
+  EXPECT_EQ(view_.crosshair, "0.5 0.5 0.5") << "the first click has not moved it for good";
   frame();
   frame();
   frame();

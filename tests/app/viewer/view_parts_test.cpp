@@ -63,6 +63,13 @@ TEST(Undo, OneStepForAllThatASliderDoes) {
   EXPECT_EQ(frames.ttl(), 4);
 }
 
+TEST(Undo, LeavesTheCrosshairWhereItIs) {
+  Frames frames(with_ttl(4));
+  frames.now.settings.view.crosshair = "0.1 0.2 0.3";
+  frames.next();
+  EXPECT_FALSE(frames.undo.can_undo());
+}
+
 TEST(Undo, ASliderThatIsBackWhereItWasIsNoChange) {
   Frames frames(with_ttl(4));
   for (const int ttl : {5, 6, 4}) frames.ttl() = ttl, frames.next(true);
