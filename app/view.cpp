@@ -266,7 +266,6 @@ void run_view(const ViewOptions& options, const KnobOptions& knobs) {
   viewer.frames = by_steps ? std::max(1, settings.flow.steps) : options.frames;
   viewer.picture = !options.image.empty();
   const std::unique_ptr<FrameSink> record = make_record(options, settings.fps);
-  if (record) record->describe(view_origin(viewer.session, "video", backend));
   viewer.video = record.get();
   viewer.out = options.out;
   if (!options.save_recording.empty())

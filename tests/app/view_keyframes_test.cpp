@@ -25,7 +25,12 @@ TEST_F(ViewKeyframes, AreMadePlayedSavedAndFilmedInAWindow) {
   const Outcome played =
       nacre({"view", "--offscreen", "--quiet", "--script", (folder / "list.json").string(), "--record", again});
   ASSERT_EQ(played.status, 0) << played.err;
-  EXPECT_EQ(read_all(folder / "list.mp4"), read_all(again)) << "the same frames";
+  const auto frames = [](const std::string& video) {  // without the line that says how it was made
+    return run("/usr/bin/env", {"ffmpeg", "-loglevel", "error", "-i", video, "-f", "framemd5", "-"}).out;
+  };
+  const std::string filmed = frames((folder / "list.mp4").string());
+  EXPECT_TRUE(contains(filmed, "MD5")) << filmed;
+  EXPECT_EQ(filmed, frames(again));
 }
 
 }  // namespace

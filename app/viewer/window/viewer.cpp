@@ -22,6 +22,7 @@ Viewer::Viewer(const ViewerOptions& options)
   if (recording_.has_file()) recording_.begin(session_, time_.fps(), 0);
   make_graphics();
   open();
+  if (options_.video) options_.video->describe(options_.origin(session_, "video"));
   if (options_.welcome) ui_.welcome();
   told_ = session_;
 }
