@@ -214,7 +214,7 @@ KeyframesWindow::Wish KeyframesWindow::draw(Session& session, const FreeArea& ar
     rows(session);
     details();
     const bool types = ImGui::GetIO().WantTextInput;
-    if (focused_ && !types && has_event() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete)))
+    if (focused_ && !types && has_event() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete), false))
       remove_selected();
   }
   ImGui::End();

@@ -76,6 +76,7 @@ class KeyframesWindow {
   static constexpr int frames_to_settle = 3;  ///< what is below the list changes its height
   std::optional<int> seen_;                   ///< the row that was selected in the last frame
   int scrolls_ = 0;                           ///< to the selected row, for so many frames
+  float below_ = 0;                           ///< pixels that the list leaves for the details
   ImGuiID held_ = 0;                          ///< the field that is being changed
   double held_value_ = 0;
   double tolerance_ = 0.5;                  ///< percent
