@@ -71,6 +71,7 @@ class KeyframesWindow {
   KeyframeTrack track_;
   std::string file_, told_;
   bool open_ = false, focused_ = false, asks_thin_ = false;
+  bool went_ = false;  ///< to a time, in this frame: playing would lead away from it
   double playhead_ = 0;
   std::optional<int> selected_;
   static constexpr int frames_to_settle = 3;  ///< what is below the list changes its height

@@ -199,6 +199,9 @@ TEST_F(KeyframesWindowTest, AListIsPlayedFromTheRedLine) {
   frame();
   press_play();  // is a stop now
   EXPECT_TRUE(stopped_);
+  stopped_ = false;
+  click_button("Go to");
+  EXPECT_TRUE(stopped_) << "playing would lead away from it";
 }
 
 TEST_F(KeyframesWindowTest, ARecordingIsEdited) {
