@@ -54,6 +54,7 @@ for focus in no-focus focus; do
 done
 ffmpeg -v error -y "${views[@]}" -filter_complex \
   "[0][1][2]hstack=3[above];[3][4][5]hstack=3[below];[above][below]vstack,format=gray" "$pictures/close-ups.png"
-# docs/pictures/welcome.png is a screenshot of the window that `nacre view` opens at 960x640.
+# docs/pictures/welcome.png is a screenshot of the window that `nacre view` opens at 960x640, and keyframes.png of one at
+# 900x720 without panels, in which somebody has made a list.
 "$nacre" view --offscreen --script mesh_demo.json --size 360x202 --record "$frames/tour.mp4"
 gif -i "$frames/tour.mp4" "fps=8," 96 tour.gif

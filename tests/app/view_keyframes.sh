@@ -3,7 +3,7 @@
 # view_keyframes.sh PROGRAM FOLDER; writes FOLDER/list.json, list.mp4 and done.json; 77: tools are missing.
 set -euo pipefail
 source "$(dirname "$0")/window.sh"
-on_display 800x600 xdotool ffmpeg
+on_display 1200x800 xdotool ffmpeg
 program=$1
 cd "$2"
 
@@ -13,34 +13,33 @@ does() {
 }
 click() { does mousemove "$1" "$2" click 1; }
 drag() {
-  does mousemove 400 150 mousedown 1
-  does mousemove 480 170
+  does mousemove 800 250 mousedown 1
+  does mousemove 880 270
   does mouseup 1
 }
 
-# The window of the keyframes is at the bottom of the picture, 700 pixels wide.
+# The window of the keyframes is at the bottom of the picture, which is beside the panel.
 make_list() {
-  does mousemove 400 150 key k
-  click 90 385 # add here: the beginning
+  rm -f list.json
+  does mousemove 800 150 key k
+  click 477 519 # add here: the beginning
+  does mousemove 800 150 key e
+  click 550 519 # add after: edges at 2 s
   drag
-  click 160 385                     # add after: 2 s
-  does mousemove 400 150 key e      # edges
-  click 160 385                     # add after: 4 s
-  click 400 470                     # a row: the window has the keys
+  click 550 519 # add after: a camera at 4 s
   does key ctrl+s
   does key ctrl+a type list.json
   does key Return
 }
-# Three lines have what the list has to hold: a camera that takes 2 s, and edges at 4 s.
-made() { [[ -s list.json ]] && grep -q '"over": 2.0' list.json && grep -q '"time": 4.0' list.json; }
+made() { [[ -s list.json ]] && grep -q '"over": 2.0' list.json && grep -q '"duration": 4.0' list.json; }
 play() {
-  click 70 421 # to the beginning
-  click 94 421 # play
+  click 460 555 # to the beginning
+  click 484 555 # play
 }
 played() { grep -c '"eye"' done.json | awk '{ exit !($1 > 6) }'; } # the camera has moved through many places
 film() {
-  click 72 358  # the menu "List"
-  click 80 460  # video
+  click 461 491 # the menu "List"
+  click 480 592 # video
   does key ctrl+a type list.mp4
   does key Return
 }
@@ -56,16 +55,14 @@ comes() {
   done
 }
 
-open_window "$program" --sample sphere --detail 24 --resolution 64 --steps 4 --fps 5 --size 800x600 --set panel=false \
-  --quiet --save-recording done.json
+words=(--sample sphere --detail 24 --resolution 64 --steps 4 --fps 5 --size 1200x800 --quiet
+  --save-recording done.json)
 for pace in 0.4 1 3; do # more slowly at each attempt, where much else runs
+  open_window "$program" "${words[@]}"
   make_list
   if comes made 10; then break; fi
   does key Escape
   quit_window
-  [[ $pace != 3 ]] || exit 1
-  open_window "$program" --sample sphere --detail 24 --resolution 64 --steps 4 --fps 5 --size 800x600 --set panel=false \
-    --quiet --save-recording done.json
 done
 for pace in 0.4 1 3; do
   play

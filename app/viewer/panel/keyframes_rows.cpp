@@ -139,9 +139,9 @@ void KeyframesWindow::rows(Session& session) {
   if (selected_ && *selected_ >= events) selected_.reset();
   const float free = ImGui::GetContentRegionAvail().y, line = ImGui::GetFrameHeightWithSpacing();
   const std::size_t lines = has_event() ? detail_lines(event()) : 0;
-  const float below = lines == 0 ? 0 : std::min(float(lines) * line + ImGui::GetStyle().ItemSpacing.y, 0.45f * free);
+  below_ = lines == 0 ? 0 : std::min(float(lines) * line + ImGui::GetStyle().ItemSpacing.y, 0.45f * free);
   const auto flags = ImGuiTableFlags_RowBg | ImGuiTableFlags_ScrollY | ImGuiTableFlags_BordersOuterH;
-  const float high = std::max(3 * ImGui::GetFrameHeight(), free - below);
+  const float high = std::max(3 * ImGui::GetFrameHeight(), free - below_);
   if (!ImGui::BeginTable("keyframes", 3, flags, ImVec2(0, high))) return;
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("time", ImGuiTableColumnFlags_WidthFixed, 5.5f * ImGui::GetFontSize());
@@ -164,7 +164,7 @@ void KeyframesWindow::rows(Session& session) {
 
 /// What the selected keyframe changes: knobs have their widgets, and each can be left out.
 void KeyframesWindow::details() {
-  if (!has_event() || detail_lines(event()) == 0) return;
+  if (!has_event() || below_ == 0) return;
   SessionEvent changed = event();
   if (ImGui::BeginChild("details")) {
     Settings settings;

@@ -55,6 +55,7 @@ void KeyframesWindow::redo() {
 /// The session becomes what the list says; the window stays as it is.
 void KeyframesWindow::go_to(double time, Session& session) {
   playhead_ = time;
+  went_ = true;
   if (!list_.begun()) return;
   const Session state = list_.state_at(time);
   const Settings window = session.settings;
@@ -142,7 +143,7 @@ void KeyframesWindow::player(Session& session, const Facts& facts, Wish& wish) {
   const bool narrow = ImGui::GetContentRegionAvail().x < 28 * ImGui::GetFontSize();  // the axis has its own line
   const float top = ImGui::GetCursorPosY(), middle = 0.5f * (KeyframeTrack::height() - ImGui::GetFrameHeight());
   if (!narrow) ImGui::SetCursorPosY(top + middle);
-  if (icon_button("begin", begin_icon, "to the beginning")) wish.stop = true, go_to(0, session);
+  if (icon_button("begin", begin_icon, "to the beginning")) go_to(0, session);
   if (facts.time) {
     if (icon_button("stop", stop_icon, "stop", true)) wish.stop = true;
   } else if (icon_button("play", play_icon, "play from the red line", !list_.events().empty()) &&
@@ -158,10 +159,7 @@ void KeyframesWindow::player(Session& session, const Facts& facts, Wish& wish) {
     ImGui::SetCursorPosY(top);
   }
   const KeyframeTrack::Wish pulled = track_.draw(list_, selected_, playhead_);
-  if (pulled.scrub && (*pulled.scrub != playhead_ || facts.time)) {
-    wish.stop = facts.time.has_value();
-    go_to(*pulled.scrub, session);
-  }
+  if (pulled.scrub && (*pulled.scrub != playhead_ || facts.time)) go_to(*pulled.scrub, session);
   if (pulled.select) selected_ = pulled.select;
   if (pulled.go) go_to_selected(session);
   if (pulled.move && has_event()) {
@@ -197,7 +195,7 @@ void KeyframesWindow::thin_popup() {
 
 KeyframesWindow::Wish KeyframesWindow::draw(Session& session, const FreeArea& area, const Facts& facts) {
   Wish wish;
-  focused_ = false;
+  focused_ = went_ = false;
   if (!open_ || facts.filming) return wish;
   const float font = ImGui::GetFontSize(), wide = std::min(50 * font, 0.96f * float(area.width));
   ImGui::SetNextWindowSize(ImVec2(wide, std::min(19 * font, 0.6f * float(area.height))), ImGuiCond_FirstUseEver);
@@ -214,10 +212,11 @@ KeyframesWindow::Wish KeyframesWindow::draw(Session& session, const FreeArea& ar
     rows(session);
     details();
     const bool types = ImGui::GetIO().WantTextInput;
-    if (focused_ && !types && has_event() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete)))
+    if (focused_ && !types && has_event() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete), false))
       remove_selected();
   }
   ImGui::End();
+  if (went_ && facts.time) wish.stop = true;
   return wish;
 }
 

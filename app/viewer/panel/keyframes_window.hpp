@@ -71,11 +71,13 @@ class KeyframesWindow {
   KeyframeTrack track_;
   std::string file_, told_;
   bool open_ = false, focused_ = false, asks_thin_ = false;
+  bool went_ = false;  ///< to a time, in this frame: playing would lead away from it
   double playhead_ = 0;
   std::optional<int> selected_;
   static constexpr int frames_to_settle = 3;  ///< what is below the list changes its height
   std::optional<int> seen_;                   ///< the row that was selected in the last frame
   int scrolls_ = 0;                           ///< to the selected row, for so many frames
+  float below_ = 0;                           ///< pixels that the list leaves for the details
   ImGuiID held_ = 0;                          ///< the field that is being changed
   double held_value_ = 0;
   double tolerance_ = 0.5;                  ///< percent

@@ -28,6 +28,8 @@ class Framing {
 
   /// Is there anything to fit?
   bool ready() const { return ready_; }
+  /// The session's camera stays as it is, even if it was fitted.
+  void hold() { fitted_.reset(); }
   /// Another scene is opened.
   void forget() { ready_ = false; }
 

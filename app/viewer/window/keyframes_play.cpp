@@ -73,6 +73,7 @@ void Viewer::film_keyframes(const std::filesystem::path& file) {
   frame_.reset();  // with as many samples as frames that wait have
   begin_playing(SessionPlayer(recording));
   open();
+  framing_.hold();
   told_ = session_;
 }
 

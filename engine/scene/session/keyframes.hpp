@@ -36,13 +36,15 @@ class Keyframes {
 
   /// The list takes over how `now` differs from its own state at `time`, and is like it from then on. A camera arrives
   /// at `time`; it leaves when the last one has arrived, at most `spacing` before. A keyframe at that time is changed;
-  /// a camera that is under way stops over. Returns the row; none where nothing differs. The first call begins the list.
+  /// a camera that is under way stops over. Returns the row; none where nothing differs. The first call begins the
+  /// list.
   std::optional<int> add(double time, const Session& now);
   int add_screenshot(double time, const Screenshot& picture);
   /// The keyframe becomes what takes the state before it to `now`; its time stays. False where nothing would be left of
   /// it, and where it opens another input than is shown.
   bool update(int row, const Session& now);
-  /// Another event in its place. Returns its row, which is another if its time is. An event that does nothing is removed.
+  /// Another event in its place. Returns its row, which is another if its time is. An event that does nothing is
+  /// removed.
   int replace(int row, SessionEvent event);
   /// A copy after it. Returns its row.
   int duplicate(int row);

@@ -170,6 +170,20 @@ TEST_F(KeyframesWindowTest, ASelectedOneIsSeen) {
   EXPECT_EQ(session_.camera, front_view);
 }
 
+TEST_F(KeyframesWindowTest, ItsContentFits) {
+  make_two();
+  EXPECT_EQ(its().ScrollMax.y, 0);
+  click(content().x + 18 * line(), row_y(1));
+  for (int k = 0; k < 4; ++k) frame();
+  EXPECT_EQ(its().ScrollMax.y, 0) << "with the knobs of the selected one";
+  for (int k = 0; k < 4; ++k) {
+    session_.settings.view.edges = !session_.settings.view.edges;
+    click_button("Add after");
+    for (int f = 0; f < 4; ++f) frame();
+    EXPECT_EQ(its().ScrollMax.y, 0) << k << " " << its().ContentSize.y << " " << its().ScrollbarY;
+  }
+}
+
 TEST_F(KeyframesWindowTest, AListIsPlayedFromTheRedLine) {
   const float high = line() + 2 * style().FramePadding.y;
   const auto press_play = [&] { click(content().x + 1.9f * high, track_top() + 0.5f * KeyframeTrack::height()); };
@@ -185,6 +199,9 @@ TEST_F(KeyframesWindowTest, AListIsPlayedFromTheRedLine) {
   frame();
   press_play();  // is a stop now
   EXPECT_TRUE(stopped_);
+  stopped_ = false;
+  click_button("Go to");
+  EXPECT_TRUE(stopped_) << "playing would lead away from it";
 }
 
 TEST_F(KeyframesWindowTest, ARecordingIsEdited) {

@@ -212,6 +212,29 @@ TEST_F(UiTest, ItAsksBeforeItQuits) {
   EXPECT_FALSE(cancelled_);
 }
 
+TEST_F(UiTest, TheKeyframesTakeBackTheirOwnChanges) {
+  type("k");
+  for (int k = 0; k < 2; ++k) frame();
+  ASSERT_TRUE(shows("###keyframes"));
+  ui_.keyframes().edit(session_, "a.json", session_);
+  ui_.keyframes().add_screenshot({"/a.png", 1, false, false});
+  const KeyframesWindow& keyframes = ui_.keyframes();
+  ASSERT_TRUE(keyframes.has_keys());
+  keys_ = {{'Z', true, false}};
+  frame();
+  EXPECT_TRUE(keyframes.list().events().empty());
+  keys_ = {{'Y', true, false}};
+  frame();
+  EXPECT_EQ(keyframes.list().events().size(), 1u);
+  click(600, 30);  // on the picture
+  keys_ = {{'Z', true, false}};
+  frame();
+  EXPECT_EQ(keyframes.list().events().size(), 1u) << "that was a knob";
+  type("k");
+  frame();
+  EXPECT_FALSE(shows("###keyframes"));
+}
+
 TEST_F(UiTest, LettersAfterAFieldAreNoShortcutsUntilTheMouseIsOverTheView) {
   session_.settings.view.tab = PanelTab::knobs;
   for (int k = 0; k < 3; ++k) frame();
