@@ -64,6 +64,7 @@ class ImageTexture {
   explicit ImageTexture(const Image& image);
 
   void bind(int unit) const { glBindTextureUnit(GLuint(unit), name_.id()); }
+  GLuint id() const { return name_.id(); }
   int width() const { return width_; }
   int height() const { return height_; }
   /// Replaces the pixels by those of an image of the same size.

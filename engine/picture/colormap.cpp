@@ -88,7 +88,8 @@ std::vector<Color> walk(const Spline& spline, bool closed) {
     const float s = along.back() * float(i) / float(steps);
     const auto after = std::upper_bound(along.begin() + 1, along.end() - 1, s) - along.begin();
     const float width = along[after] - along[after - 1];
-    table.push_back(srgb_of_oklab(mix(curve[after - 1], curve[after], width > 0 ? (s - along[after - 1]) / width : 0.f)));
+    table.push_back(
+        srgb_of_oklab(mix(curve[after - 1], curve[after], width > 0 ? (s - along[after - 1]) / width : 0.f)));
   }
   return table;
 }

@@ -4,10 +4,10 @@
 namespace nacre::test {
 namespace {
 
-using ViewKeyframes = ViewTest;
+using LongViewKeyframes = ViewTest;
 
 /// A knob, and a camera on its way; the window films the list, without its panels, as the command films its file.
-TEST_F(ViewKeyframes, AreMadePlayedSavedAndFilmedInAWindow) {
+TEST_F(LongViewKeyframes, AreMadePlayedSavedAndFilmedInAWindow) {
   const Outcome window =
       run("/bin/bash", {source_file("tests/app/view_keyframes.sh"), program_path, (folder / "").string()});
   if (window.status == 77) GTEST_SKIP() << window.err;

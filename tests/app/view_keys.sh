@@ -8,7 +8,7 @@ program=$1 recording=$2 report=$3 picture=$4
 
 open_window "$program" --sample sphere --detail 24 --resolution 64 --size 640x480 --quiet \
   --save-recording "$recording" --report "$report" --image "$picture"
-xdotool mousemove 540 240
+xdotool mousemove 480 240
 press() {
   xdotool "$@"
   sleep 0.4

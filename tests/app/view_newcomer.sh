@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Nacre: a newcomer at the window under Xvfb: opens a flow, changes ttl, films it; opens labels, gets a mesh, exports it.
-# Usage: view_newcomer.sh PROGRAM FLOW LABELS FOLDER; writes FOLDER/video.mp4, mesh.ply, done.json; 77: tools are missing.
+# Usage: view_newcomer.sh PROGRAM FLOW LABELS FOLDER; writes FOLDER/flow.mp4, labels-mesh.vtp, done.json; 77: tools are missing.
 # Each `does` is one action of the user; their number is printed.
 set -euo pipefail
 source "$(dirname "$0")/window.sh"
@@ -57,28 +57,28 @@ set_ttl() {
 }
 begin_film() {
   does key ctrl+m
-  does key Return # video.mp4
+  does key Return # flow.mp4
 }
 end_film() { does key ctrl+m; }
 export_mesh() {
   does key ctrl+e
-  xdotool key ctrl+a
-  does type mesh.ply
-  does key Return
+  does key Return # labels-mesh.vtp
 }
 
 flow_shown() { titled "^${flow##*/}: "; }
 ttl_set() { grep -q '"ttl": 6' done.json; }
 filming() { titled '^film - '; }
-filmed() { [[ -s video.mp4 ]] && ! filming; }
+filmed() { [[ -s flow.mp4 ]] && ! filming; }
 labels_shown() { titled "${labels##*/} - Nacre$"; }
 meshed() { titled "^${labels##*/} - Nacre$"; }
-exported() { [[ -s mesh.ply ]]; }
+exported() { [[ -s labels-mesh.vtp ]]; }
 
 open_window "$program" --size 800x600 --set steps=8 --resolution 64 --set max_size=2 --quiet --save-recording done.json
 xdotool mousemove 600 300
 gets "the flow" flow_shown open_file "$flow"
+before=$actions
 gets "ttl" ttl_set set_ttl
+for_ttl=$((actions - before))
 gets "the film" filming begin_film
 sleep 2
 gets "the video" filmed end_film
@@ -87,4 +87,4 @@ until_true "the mesh" meshed
 gets "the file" exported export_mesh
 actions=$((actions + 1))
 quit_window
-echo "$actions actions"
+echo "$((actions - for_ttl)) actions, and $for_ttl for a knob"

@@ -36,6 +36,7 @@ class ViewTest : public testing::Test {
   TemporaryFolder folder;
 };
 
+using LongUserAtTheWindow = ViewTest;
 using UserAtTheWindow = ViewTest;  ///< who acts at their own pace: little else runs beside these tests
 
 }  // namespace nacre::test

@@ -117,6 +117,11 @@ bool FlowScene::has_legend() const {
   return settings_.legend && (results_.data.array.empty() ? settings_.color : results_.data.color) != "none";
 }
 
+std::optional<LegendRange> FlowScene::legend_range() const {
+  if (!has_legend() || results_.data.array.empty()) return {};
+  return LegendRange{results_.colours.range.low, results_.colours.range.high, results_.colours.scale.log};
+}
+
 FlowCaption FlowScene::caption() const {
   FlowCaption caption;
   if (has_legend() && !results_.data.array.empty()) caption.map = &colormap(settings_.colormap);

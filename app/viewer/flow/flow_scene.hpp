@@ -48,6 +48,7 @@ class FlowScene : public Scene {
   const std::vector<Vec3d>& corners() const override { return results_.corners; }
   std::uint64_t seen_version() const override { return surfaces_; }
   bool has_legend() const override;
+  std::optional<LegendRange> legend_range() const override;
   bool is_flow() const override { return true; }
   bool complete() const override { return shown_ != nullptr; }
   bool settled() const override;

@@ -116,41 +116,48 @@ void Ui::ask_save(const std::string& title, std::vector<std::string> extensions,
   };
 }
 
-void Ui::ask_result(Scene& scene) {
+/// A name for a file beside others: "head-mesh.vtp", of the first input or the sample.
+static std::string export_name(const Session& session, const std::string& ending) {
+  const std::string& sample = session.sample;
+  return (!sample.empty() || session.inputs.empty() ? sample : session.inputs.front().stem().string()) + ending;
+}
+
+void Ui::ask_result(const Session& session, Scene& scene) {
   const std::vector<std::string> formats = scene.result_formats();
   if (scene.complete() && !formats.empty())
-    ask_save("save result", formats, "result" + formats.front(), &UiRequests::save_result);
+    ask_save("save result", formats, export_name(session, (scene.is_flow() ? "-flow" : "-mesh") + formats.front()),
+             &UiRequests::save_result);
 }
 
 /// The first time it begins, the second it ends and asks for a name.
-void Ui::switch_recording(const UiFacts& facts, UiRequests& requests) {
+void Ui::switch_recording(const Session& session, const UiFacts& facts, UiRequests& requests) {
   if (facts.recording)
-    ask_save("save recording", {".json"}, "recording.json", &UiRequests::save_recording);
+    ask_save("save recording", {".json"}, export_name(session, "-recording.json"), &UiRequests::save_recording);
   else
     requests.record = true;
 }
 
-void Ui::switch_film(const UiFacts& facts, UiRequests& requests) {
+void Ui::switch_film(const Session& session, const UiFacts& facts, UiRequests& requests) {
   if (!facts.film.empty())
     requests.end_film = true;
   else
-    ask_save("save video", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, "video.mp4", &UiRequests::film);
+    ask_save("save video", {".mp4", ".mkv", ".mov", ".webm", ".gif"}, export_name(session, ".mp4"), &UiRequests::film);
 }
 
 void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests) {
   if (!ImGui::BeginMenu("File")) return;
   if (ImGui::MenuItem("Open ...", "ctrl o")) ask_open();
   if (ImGui::BeginMenu("Open recent", !facts.recent.empty())) {
-    for (const fs::path& file : facts.recent)
-      if (ImGui::MenuItem(file.string().c_str())) open_files({file}, session, requests);
+    for (const RecentFile& recent : facts.recent)
+      if (ImGui::MenuItem(recent.file.string().c_str())) open_files({recent.file}, session, requests);
     ImGui::EndMenu();
   }
   sample_menu("Samples of flow", samples(), session);
   sample_menu("Samples of volumes", phantoms(), session);
   ImGui::Separator();
   if (ImGui::MenuItem("Save session ...", "ctrl s"))
-    ask_save("save session", {".json"}, "session.json", &UiRequests::save_session);
-  if (ImGui::MenuItem("Save result ...", "ctrl e", false, scene.complete())) ask_result(scene);
+    ask_save("save session", {".json"}, export_name(session, "-session.json"), &UiRequests::save_session);
+  if (ImGui::MenuItem("Save result ...", "ctrl e", false, scene.complete())) ask_result(session, scene);
   ImGui::Separator();
   if (ImGui::MenuItem("Screenshot ...", "ctrl p")) asks_shot_ = true;
   if (ImGui::MenuItem(facts.recording ? "End the recording ..." : "Record what I do", "ctrl r", facts.recording))
@@ -158,7 +165,7 @@ void Ui::file_menu(Session& session, Scene& scene, const UiFacts& facts, UiReque
   if (ImGui::MenuItem("Edit a recording ...")) ask_recording();
   if (ImGui::MenuItem(!facts.film.empty() ? "End the video" : "Video of every frame ...", "ctrl m",
                       !facts.film.empty()))
-    switch_film(facts, requests);
+    switch_film(session, facts, requests);
   ImGui::Separator();
   if (ImGui::MenuItem("Quit", "ctrl q")) requests.quit = true;
   ImGui::EndMenu();
@@ -269,7 +276,7 @@ void Ui::take_back(bool again, UiRequests& requests) {
     (again ? requests.redo : requests.undo) = true;
 }
 
-void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests) {
+void Ui::use_shortcuts(const Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests) {
   for (const KeyPress& pressed : facts.keys) switch (pressed.key) {
       case 27:
         if (!close_topmost()) requests.cancel = true;
@@ -279,12 +286,12 @@ void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests)
         if (keyframes_.has_keys())
           save_keyframes();
         else
-          ask_save("save session", {".json"}, "session.json", &UiRequests::save_session);
+          ask_save("save session", {".json"}, export_name(session, "-session.json"), &UiRequests::save_session);
         break;
-      case 'E': ask_result(scene); break;
+      case 'E': ask_result(session, scene); break;
       case 'P': asks_shot_ = true; break;
       case 'R': asks_record_ = true; break;
-      case 'M': switch_film(facts, requests); break;
+      case 'M': switch_film(session, facts, requests); break;
       case 'Z': take_back(pressed.shift, requests); break;
       case 'Y': take_back(true, requests); break;
       case 'Q': requests.quit = true; break;
@@ -294,11 +301,11 @@ void Ui::use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests)
 
 void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests) {
   const ImGuiIO& io = ImGui::GetIO();
-  use_shortcuts(scene, facts, requests);
+  use_shortcuts(session, scene, facts, requests);
   // Who has typed in a field may go on after it has lost the keys: that is no shortcut.
   if (io.WantTextInput)
     typed_ = true;
-  else if (ImGui::IsMousePosValid() && !io.WantCaptureMouse)
+  else if (ImGui::IsMousePosValid() && (!io.WantCaptureMouse || legend_mouse_.is_hovered()))
     typed_ = false;
   if (io.WantTextInput || dialog_.is_open() || typed_) return;
   ViewSettings& view = session.settings.view;
@@ -340,7 +347,7 @@ void Ui::use_keys(Session& session, Scene& scene, const UiFacts& facts, UiReques
   }
 }
 
-void Ui::screenshot_window(const UiFacts& facts) {
+void Ui::screenshot_window(const Session& session, const UiFacts& facts) {
   if (std::exchange(asks_shot_, false)) ImGui::OpenPopup("screenshot");
   if (!ImGui::BeginPopup("screenshot")) return;
   ImGui::SliderInt("scale", &shot_.scale, 1, 4, "%dx", ImGuiSliderFlags_AlwaysClamp);
@@ -350,7 +357,7 @@ void Ui::screenshot_window(const UiFacts& facts) {
   ImGui::Text("%d x %d pixels", facts.width * scale, facts.height * scale);
   if (ImGui::Button("save ...")) {
     ImGui::CloseCurrentPopup();
-    dialog_.open(FileDialog::Mode::save, "save screenshot", {".png"}, "nacre.png");
+    dialog_.open(FileDialog::Mode::save, "save screenshot", {".png"}, export_name(session, ".png"));
     then_ = [this](const std::vector<fs::path>& files, Session&, UiRequests& requests) {
       shot_.file = files.front();
       requests.screenshot = shot_;

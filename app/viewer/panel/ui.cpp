@@ -322,6 +322,8 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
     if (session.camera && pointed.areas.has_view) {
       if (!facts.filmed) clip_.draw_handle(view, pointed.scene.corners(), {facts.camera, pointed.areas.view});
       probe_window(pointed, facts.camera);
+      if (const std::optional<LegendRange> range = pointed.scene.legend_range())
+        legend_mouse_.draw(session.settings, *range, pointed.areas.view);
     }
   }
   if (SliceViews* const slices = pointed.scene.slices())
@@ -331,10 +333,10 @@ UiRequests Ui::draw(Session& session, Scene& scene, const UiFacts& facts) {
   keyframes_window(session, facts, area, requests);
   welcome_card(session, facts, area, requests);
   error_window(area);
-  if (std::exchange(asks_record_, false)) switch_recording(facts, requests);
+  if (std::exchange(asks_record_, false)) switch_recording(session, facts, requests);
   help_windows(facts, area);
   quit_window(requests);
-  screenshot_window(facts);
+  screenshot_window(session, facts);
   note_window(session);
   if (const auto files = dialog_.draw()) then_(*files, session, requests);
   return requests;

@@ -12,6 +12,7 @@
 #include "app/viewer/panel/frame_clock.hpp"
 #include "app/viewer/panel/keyframes_window.hpp"
 #include "app/viewer/panel/knob_presets.hpp"
+#include "app/viewer/panel/legend_mouse.hpp"
 #include "app/viewer/panel/scene_panel.hpp"
 #include "app/viewer/panel/slice_mouse.hpp"
 #include "app/viewer/panel/transport_bar.hpp"
@@ -35,7 +36,7 @@ struct UiFacts {
   SceneProgress progress;  ///< of what is computed, or read
   const FrameClock& clock;
   std::string renderer;
-  const std::vector<std::filesystem::path>& recent;
+  const std::vector<RecentFile>& recent;
   bool can_undo = false, can_redo = false;
   bool recording = false;  ///< of what the user does
   std::string film;        ///< how long the video is to which every frame goes; empty: none
@@ -99,7 +100,7 @@ class Ui {
 
   void use_keys(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void take_back(bool again, UiRequests& requests);
-  void use_shortcuts(Scene& scene, const UiFacts& facts, UiRequests& requests);
+  void use_shortcuts(const Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void menus(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void file_menu(Session& session, Scene& scene, const UiFacts& facts, UiRequests& requests);
   void view_menu(Session& session, Scene& scene, UiRequests& requests);
@@ -108,7 +109,7 @@ class Ui {
   void tabs(Session& session, Scene& scene, const UiFacts& facts);
   void knob_tab(Session& session);
   void status(const ViewSettings& view, Scene& scene, const UiFacts& facts, UiRequests& requests);
-  void screenshot_window(const UiFacts& facts);
+  void screenshot_window(const Session& session, const UiFacts& facts);
   void probe_window(const PointedView& pointed, const Camera& camera);
   void error_window(const FreeArea& area);
   void quit_window(UiRequests& requests);
@@ -130,9 +131,9 @@ class Ui {
   void keyframes_window(Session& session, const UiFacts& facts, const FreeArea& area, UiRequests& requests);
   bool close_topmost();
   void ask_open();
-  void ask_result(Scene& scene);
-  void switch_film(const UiFacts& facts, UiRequests& requests);
-  void switch_recording(const UiFacts& facts, UiRequests& requests);
+  void ask_result(const Session& session, Scene& scene);
+  void switch_film(const Session& session, const UiFacts& facts, UiRequests& requests);
+  void switch_recording(const Session& session, const UiFacts& facts, UiRequests& requests);
   void ask_save(const std::string& title, std::vector<std::string> extensions, const std::string& name,
                 std::optional<std::filesystem::path> UiRequests::*wish);
 
@@ -142,6 +143,7 @@ class Ui {
   KnobPresets presets_;
   ClipPanel clip_;
   SliceMouse slice_mouse_;
+  LegendMouse legend_mouse_;
   KeyframesWindow keyframes_;
   Then then_;  ///< what happens to the dialog's files
   Screenshot shot_;

@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/tours.hpp"
@@ -28,6 +29,37 @@ void offer(const std::vector<Sample>& all, WelcomeCard::Wish& wish, float wide) 
   }
 }
 
+/// Pictures in a row, with the names below them.
+void offer_recent(const std::vector<RecentFile>& recent, WelcomeCard::Wish& wish) {
+  const std::size_t count = std::min(most_recent, recent.size());
+  const float wide = ImGui::GetContentRegionAvail().x / float(most_recent) - ImGui::GetStyle().ItemSpacing.x;
+  const ImVec2 size(wide, 0.75f * wide), corner = ImGui::GetCursorScreenPos();
+  for (std::size_t k = 0; k < count; ++k) {
+    const RecentFile& each = recent[k];
+    const std::string name = each.file.filename().string();
+    ImGui::PushID(int(k));
+    ImGui::SetCursorScreenPos(ImVec2(corner.x + float(k) * (wide + ImGui::GetStyle().ItemSpacing.x), corner.y));
+    ImGui::BeginGroup();
+    if (ImGui::InvisibleButton("open", ImVec2(wide, size.y + 1.3f * ImGui::GetFontSize()))) wish.file = each.file;
+    const ImVec2 low = ImGui::GetItemRectMin(), high(low.x + size.x, low.y + size.y);
+    ImDrawList& lines = *ImGui::GetWindowDrawList();
+    if (each.picture)
+      lines.AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t(each.picture)), low, high);
+    else
+      lines.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    const bool hovered = ImGui::IsItemHovered();
+    lines.AddRect(low, high, ImGui::GetColorU32(hovered ? ImGuiCol_ButtonHovered : ImGuiCol_Border), 0, 0,
+                  hovered ? 2.0f : 1.0f);
+    lines.PushClipRect(ImVec2(low.x, high.y), ImVec2(high.x, high.y + 1.4f * ImGui::GetFontSize()), true);
+    lines.AddText(ImVec2(low.x, high.y + 0.15f * ImGui::GetFontSize()), ImGui::GetColorU32(ImGuiCol_Text),
+                  name.c_str());
+    lines.PopClipRect();
+    ImGui::EndGroup();
+    if (hovered) ImGui::SetTooltip("%s", each.file.string().c_str());
+    ImGui::PopID();
+  }
+}
+
 /// A tour, with what it shows beside its name.
 void tour(const char* name, const char* help, const char* text, WelcomeCard::Wish& wish) {
   if (ImGui::Button(name)) wish.tour = text;
@@ -37,7 +69,7 @@ void tour(const char* name, const char* help, const char* text, WelcomeCard::Wis
 
 }  // namespace
 
-WelcomeCard::Wish WelcomeCard::draw(const FreeArea& area, const std::vector<std::filesystem::path>& recent) {
+WelcomeCard::Wish WelcomeCard::draw(const FreeArea& area, const std::vector<RecentFile>& recent) {
   Wish wish;
   if (!shown_) return wish;
   const float font = ImGui::GetFontSize(), wide = std::min(32 * font, 0.95f * float(area.width));
@@ -57,12 +89,7 @@ WelcomeCard::Wish WelcomeCard::draw(const FreeArea& area, const std::vector<std:
     ImGui::TextDisabled("ctrl o");
     if (!recent.empty()) {
       heading("opened last");
-      for (std::size_t k = 0; k < std::min(most_recent, recent.size()); ++k) {
-        ImGui::PushID(int(k));
-        if (ImGui::Selectable(recent[k].filename().string().c_str())) wish.file = recent[k];
-        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", recent[k].string().c_str());
-        ImGui::PopID();
-      }
+      offer_recent(recent, wish);
     }
     heading("or replay a tour");
     tour("flow around a train", "a flow, from near and from far (11 s)", flow_tour, wish);

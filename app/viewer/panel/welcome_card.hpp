@@ -10,6 +10,12 @@
 
 namespace nacre {
 
+/// A file that was opened before, and the OpenGL texture with a small picture of it; 0: there is none.
+struct RecentFile {
+  std::filesystem::path file;
+  unsigned picture = 0;
+};
+
 class WelcomeCard {
  public:
   /// What was clicked on.
@@ -25,7 +31,7 @@ class WelcomeCard {
   bool is_shown() const { return shown_; }
 
   /// With Dear ImGui, over the middle of `area`, while it is shown. Every choice hides it.
-  Wish draw(const FreeArea& area, const std::vector<std::filesystem::path>& recent);
+  Wish draw(const FreeArea& area, const std::vector<RecentFile>& recent);
 
  private:
   bool shown_ = false;

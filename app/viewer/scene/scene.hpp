@@ -27,6 +27,12 @@ struct ProbeResult {
   std::vector<std::string> lines;
 };
 
+/// The values at the ends of a colour legend.
+struct LegendRange {
+  double low = 0, high = 1;
+  bool log = false;
+};
+
 /// Where the work stands.
 struct SceneProgress {
   std::string stage;     ///< "embedding"; empty: nothing long is going on
@@ -97,6 +103,8 @@ class Scene {
   virtual const std::vector<Vec3d>& seen() const { return corners(); }
   virtual std::uint64_t seen_version() const = 0;
   virtual bool has_legend() const = 0;  ///< a colour legend lies over the picture, or soon will
+  /// The legend of the colours that the knob `color_range` is for; none: there is no such legend.
+  virtual std::optional<LegendRange> legend_range() const { return {}; }
   virtual bool complete() const = 0;    ///< shows what it is for: the texture; particles or triangles
   virtual bool settled() const = 0;     ///< nothing more will come unless something is changed (a mesh that is done)
   /// Slices of its volume, for the layout; null: it has none (yet).

@@ -34,18 +34,32 @@ void Comparison::close() {
   failure_.clear();
 }
 
-void Comparison::follow(const Session& first, const SceneOptions& options) {
+namespace {
+
+/// The settings of the second scene, which begins at the time that the first one shows.
+Settings begun_beside(const Scene& first, const Settings& of_first, Settings wanted) {
+  const Transport at = first.transport();
+  if (at.kind == Transport::Kind::time && at.shown >= 0 && wanted.flow.steps == of_first.flow.steps)
+    wanted.begin_at = begin_at_of(at.shown, std::max(1, wanted.flow.steps));
+  return wanted;
+}
+
+}  // namespace
+
+void Comparison::follow(const Session& first, const Scene& first_scene, const SceneOptions& options) {
   if (!compares(first)) return close();
-  Session wanted = compared_session(first);
+  const Session wanted = compared_session(first);
+  Session begun = wanted;
+  begun.settings = begun_beside(first_scene, first.settings, wanted.settings);
   if (!on() || static_cast<const SessionInput&>(wanted) != session_) {
-    OpenScene opened = open_scene(wanted, options);
+    OpenScene opened = open_scene(begun, options);
     close();
     open_ = std::move(opened);
     painter_.emplace();
   } else if (const ChangedKnobs changed = changed_knobs(session_, wanted); !changed.empty()) {
-    scene().set_settings(wanted.settings, changed);
+    scene().set_settings(begun.settings, changed);
   }
-  session_ = std::move(wanted);
+  session_ = wanted;
   headings_ = {nacre::first_heading(first), second_heading(first)};
 }
 

@@ -44,6 +44,7 @@ bool Viewer::take_opened() {
   if (next.corners().empty()) return false;  // nothing to see yet
   Opening opened = std::move(*opening_);
   opening_.reset();
+  keep_thumbnail();
   if (scene().lost_device().empty()) left_.keep(std::move(open_), told_);
   leave_scene();
   open_ = std::move(opened.open);

@@ -16,13 +16,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t max_files = 10;
 
+}  // namespace
+
 fs::path state_folder() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state == '/') return fs::path(state) / "nacre";
   const char* home = std::getenv("HOME");
   return home && *home == '/' ? fs::path(home) / ".local/state/nacre" : fs::path();
 }
-
-}  // namespace
 
 RecentFiles::RecentFiles() : RecentFiles(state_folder().empty() ? fs::path() : state_folder() / "recent") {}
 

@@ -6,6 +6,9 @@
 
 namespace nacre {
 
+/// The folder of what the viewer keeps between runs; empty: the user has none.
+std::filesystem::path state_folder();
+
 /// One path per line in $XDG_STATE_HOME/nacre/recent (~/.local/state/nacre/recent); the latest first, at most ten.
 class RecentFiles {
  public:

@@ -69,6 +69,7 @@ void Viewer::make_graphics() {
 void Viewer::drop_graphics() {
   opening_.reset();
   left_.clear();
+  thumbnails_.drop_textures();
   comparison_.close();
   open_.reset();  // before the context that all of it lives in
   frame_.reset();
@@ -206,12 +207,13 @@ void Viewer::draw(int width, int height, double seconds) {
   Scene& pointed_scene = at_second ? comparison_.scene() : scene();
   const PointedView pointed{pointed_scene, areas_of(pointed_scene, session_.settings.view, at_second ? second : first)};
   if (session_.camera) move_by_hand(*session_.camera, pointed);
+  const std::vector<RecentFile> recent = recent_files();
   const UiFacts facts{*open_.panel,
                       pointed,
                       progress(),
                       clock_,
                       result_.renderer,
-                      recent_.files(),
+                      recent,
                       undo_.can_undo(),
                       undo_.can_redo(),
                       recording_.on(),
@@ -283,6 +285,7 @@ void Viewer::finish() {
   if (!options_.out.empty() && !result_.interrupted)
     scene().write_result(options_.out, options_.origin(session_, "out"));
   result_.shown = shown_session();
+  keep_thumbnail();
   scene().finish();
   if (comparison_.on()) comparison_.scene().finish();
   const SceneTotals totals = scene().totals();

@@ -22,6 +22,7 @@
 #include "app/viewer/window/recent_files.hpp"
 #include "app/viewer/window/saving.hpp"
 #include "app/viewer/window/session_clock.hpp"
+#include "app/viewer/window/thumbnails.hpp"
 #include "app/viewer/window/undo.hpp"
 #include "app/viewer/window/viewer.hpp"
 #include "compute/device/error.hpp"
@@ -69,6 +70,9 @@ class Viewer {
   void open();
   SceneOptions scene_options() const;
   void note_recent();
+  /// A small picture of a scene that is left, for the list of recent files.
+  void keep_thumbnail();
+  std::vector<RecentFile> recent_files();
 
   /// The scene that was shown goes, and all that belongs to it.
   void leave_scene();
@@ -112,7 +116,7 @@ class Viewer {
   /// How long the loop waits for the user if nothing has to be drawn, seconds; then it handles events of compute.
   double patience() const {
     if (!draws_on_demand()) return 0;
-    if (opening_ || list_play_) return shortest_frame;
+    if (opening_ || list_play_ || (scripted_ && !player_->ended())) return shortest_frame;
     return !all_settled() && !scene().halted() ? shortest_frame : 0.1;
   }
 
@@ -245,6 +249,7 @@ class Viewer {
   Ui ui_;
   Undo undo_;
   RecentFiles recent_;
+  Thumbnails thumbnails_;
   UiRequests requests_;
   Framing framing_;
   FreeArea area_;  ///< of the view

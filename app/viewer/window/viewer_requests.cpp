@@ -45,7 +45,7 @@ void Viewer::open() {
 }
 
 void Viewer::follow_comparison() {
-  attempt([&] { comparison_.follow(session_, scene_options()); });
+  attempt([&] { comparison_.follow(session_, scene(), scene_options()); });
   if (!comparison_.on()) scene().keep_together({});
 }
 
@@ -80,6 +80,23 @@ SceneOptions Viewer::scene_options() const {
 void Viewer::note_recent() {
   for (const auto& file : session_.inputs)
     if (window_) recent_.add(file);
+}
+
+void Viewer::keep_thumbnail() {
+  if (!window_ || told_.inputs.size() != 1 || !scene().complete() || !scene().lost_device().empty()) return;
+  Framebuffer small(Thumbnails::width, Thumbnails::height, 4);
+  const View view = scene_view(told_, scene().corners(), turned_, small.width(), small.height());
+  small.bind();
+  small.clear(background_of(told_.settings));
+  scene().draw(view);
+  thumbnails_.keep(told_.inputs.front(), small.read());
+  thumbnails_.keep_only(recent_.files());
+}
+
+std::vector<RecentFile> Viewer::recent_files() {
+  std::vector<RecentFile> all;
+  for (const std::filesystem::path& file : recent_.files()) all.push_back({file, thumbnails_.texture(file)});
+  return all;
 }
 
 void Viewer::leave_lost_device() {

@@ -70,7 +70,7 @@ class UiTest : public ImGuiFrames {
   StillScene scene_{{-1, -1, -1}, {1, 1, 1}};
   EmptyPanel panel_;
   FrameClock clock_;
-  std::vector<std::filesystem::path> recent_;
+  std::vector<RecentFile> recent_;
   Session session_;
   Ui ui_;
   std::vector<KeyPress> keys_;

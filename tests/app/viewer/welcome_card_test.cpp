@@ -32,7 +32,7 @@ class WelcomeCardTest : public ImGuiFrames {
       }
   }
 
-  std::vector<std::filesystem::path> recent_{"/data/wing.vtp"};
+  std::vector<RecentFile> recent_{{"/data/wing.vtp", 0}};
   WelcomeCard card_;
   WelcomeCard::Wish wish_;
 };
@@ -42,7 +42,7 @@ TEST_F(WelcomeCardTest, EveryChoiceHidesIt) {
   EXPECT_TRUE(wish_.open);
   EXPECT_FALSE(card_.is_shown());
   click_until([&] { return wish_.file.has_value(); });
-  EXPECT_EQ(wish_.file, recent_[0]);
+  EXPECT_EQ(wish_.file, recent_[0].file);
   click_until([&] { return !wish_.sample.empty(); });
   EXPECT_NE(wish_.sample, "");
 }

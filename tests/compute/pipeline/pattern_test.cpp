@@ -59,7 +59,9 @@ class Patterns : public ::testing::Test {
   const std::unique_ptr<FlowPipeline> pipeline_ = make_flow_pipeline(*device_);
 };
 
-TEST_F(Patterns, RunAlongTheVectors) {
+using LongPatterns = Patterns;
+
+TEST_F(LongPatterns, RunAlongTheVectors) {
   const Legibility stripes = seen(form(FlowTexture::stripes, 1)), spots = seen(form(FlowTexture::spots, 1));
   std::printf("within 15 degrees: stripes %.2f, spots %.2f\n", stripes.within, spots.within);
   EXPECT_GE(stripes.within, 0.75);
