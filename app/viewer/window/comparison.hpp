@@ -20,8 +20,8 @@ class Comparison {
   Scene& scene() const { return *open_.scene; }
 
   /// Opens, changes or closes the second scene as the first session asks for now, while an OpenGL context is current.
-  /// What begins there begins at the time that the first scene shows. Throws Error where it cannot; then the scene stays
-  /// as it was.
+  /// What begins there begins at the time that the first scene shows. Throws Error where it cannot; then the scene
+  /// stays as it was.
   void follow(const Session& first, const Scene& first_scene, const SceneOptions& options);
   void close();
 
