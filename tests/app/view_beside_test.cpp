@@ -6,7 +6,7 @@
 namespace nacre::test {
 namespace {
 
-TEST_F(UserAtTheWindow, WhatCannotBeOpenedLeavesAllAsItWas) {
+TEST_F(LongUserAtTheWindow, WhatCannotBeOpenedLeavesAllAsItWas) {
   const fs::path whole = folder / "whole.vtp", damaged = folder / "damaged.vtp", done = folder / "done.json";
   write_surface(whole, make_sample("torus", 24).load(0));
   fs::copy_file(whole, damaged);

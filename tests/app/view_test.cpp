@@ -130,7 +130,7 @@ TEST_F(View, AnotherDevicesPictureIsTheSameAndItsCopiesAreCounted) {
 }
 
 /// The texture of the second embedding, which is larger, has no memory: nothing is written to that of the first.
-TEST_F(View, AWindowOutlivesATextureWithoutMemory) {
+TEST_F(LongUserAtTheWindow, AWindowOutlivesATextureWithoutMemory) {
   std::ofstream(folder / "larger.json") << R"({"sample": "sphere", "detail": 24, "knobs": {"resolution": 48},
     "events": [{"time": 3, "knobs": {"resolution": 160}}]})";
   const fs::path json = folder / "view.json";
@@ -223,7 +223,7 @@ TEST_F(UserAtTheWindow, KeysAndMouseInTheWindow) {
   EXPECT_TRUE(read_json(report).at("view").at("driver_messages").empty());
 }
 
-TEST_F(UserAtTheWindow, AClipPlaneIsDraggedAndTheCrosshairMoved) {
+TEST_F(LongUserAtTheWindow, AClipPlaneIsDraggedAndTheCrosshairMoved) {
   const fs::path recording = folder / "done.json", report = folder / "planes.json", camera = folder / "camera.json";
   std::ofstream(camera) << R"({"eye": [23.5, -150, 23.5], "target": [23.5, 23.5, 23.5], "up": [0, 0, 1], "height": 60,
                                "orthographic": true})";
@@ -284,7 +284,7 @@ Image panel_in_window(const std::string& fault, const fs::path& png, const Argum
   return panel;
 }
 
-TEST_F(UserAtTheWindow, OnADenserScreenPanelsAndLettersGrow) {
+TEST_F(LongUserAtTheWindow, OnADenserScreenPanelsAndLettersGrow) {
   const Image small = panel_in_window("none", folder / "small.png", {});
   if (small.pixels.empty()) GTEST_SKIP() << "no Xvfb here";
   const Image moved = panel_in_window("other-screen@10", folder / "moved.png", {});
@@ -294,7 +294,7 @@ TEST_F(UserAtTheWindow, OnADenserScreenPanelsAndLettersGrow) {
   EXPECT_FALSE(panel_in_window("other-screen", folder / "last.png", {}).pixels.empty());  // to and fro, every frame
 }
 
-TEST_F(UserAtTheWindow, AnySizeAndScreenOfTheWindow) {
+TEST_F(LongUserAtTheWindow, AnySizeAndScreenOfTheWindow) {
   const fs::path recording = folder / "done.json", report = folder / "screens.json";
   const Outcome outcome =
       run("/bin/bash", {source_file("tests/app/view_screens.sh"), program_path, recording.string(), report.string()});

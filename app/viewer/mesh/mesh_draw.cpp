@@ -7,6 +7,7 @@
 
 #include "app/viewer/mesh/mesh_scene.hpp"
 #include "app/viewer/scene/layout.hpp"
+#include "app/viewer/scene/scene_view.hpp"
 #include "compute/particles/energy.hpp"
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/legend.hpp"
@@ -250,7 +251,9 @@ void MeshScene::draw_particles(const View& view) const {
     particle_pass_.draw(view, voxels_, position, direction, std::size_t(first), std::size_t(count), style);
   };
   const std::int64_t points = counts.points, curves = counts.curves;
-  draw(points + curves, counts.surfaces, {0.44f, false, by_energy, range(ideal)});
+  // A hand on the mouse shall not wait for more discs than there are pixels; pictures have all of them.
+  const std::size_t every = lockstep_ ? 1 : particle_share(view, std::size_t(counts.surfaces), diameter_of(seen()));
+  draw(points + curves, counts.surfaces, {0.44f, false, by_energy, range(ideal), every});
   draw(points, curves, {0.3f, true, by_energy, range(ideal * row_energy / hexagonal_energy)});
   draw(0, points, {0.45f, true, by_energy, by_energy ? std::array{-1.0f, 1.0f} : range(0)});  // these have no energy
   particle_positions_->drawn();

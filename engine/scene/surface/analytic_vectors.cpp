@@ -26,7 +26,7 @@ Box bounding_box(const PreparedSurface& surface) {
 }
 
 /// One normal per point: the area-weighted mean over its corners, zero on points without triangle.
-std::vector<Vec3d> point_normals(const PreparedSurface& surface) {
+std::vector<Vec3d> normals_of_points(const PreparedSurface& surface) {
   std::vector<Vec3d> normals(surface.points.size());
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
     const Triangle& t = surface.triangles[i];
@@ -63,7 +63,7 @@ std::vector<Vec3f> analytic_vectors(const std::string& name, const PreparedSurfa
   const Box box = bounding_box(surface);
   const Vec3d centre = box.centre(), size = box.high - box.low;
   const double half = 0.5 * std::max({size.x, size.y, size.z});
-  const std::vector<Vec3d> normals = point_normals(surface);
+  const std::vector<Vec3d> normals = normals_of_points(surface);
 
   std::vector<Vec3f> vectors(surface.points.size());
   double radius = 0;

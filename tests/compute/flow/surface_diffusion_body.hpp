@@ -211,8 +211,8 @@ void TheLimitIsStableAndMoreIsNot(Executor<Backend>& exec) {
   }
 }
 
-NACRE_DEVICE_TEST(SurfaceDiffusion, HarmonicsDecayInSecondOrder)
-NACRE_DEVICE_TEST(SurfaceDiffusion, AlongVectorsToo)
+NACRE_DEVICE_TEST(LongSurfaceDiffusion, HarmonicsDecayInSecondOrder)
+NACRE_DEVICE_TEST(LongSurfaceDiffusion, AlongVectorsToo)
 NACRE_DEVICE_TEST(SurfaceDiffusion, TheLimitIsStableAndMoreIsNot)
 
 }  // namespace nacre::test

@@ -252,6 +252,25 @@ TEST_F(Pass, ParticlesAreDiscsOnTheirSurface) {
   EXPECT_NEAR(covered(both), 2 * disc, 0.2 * disc);
   EXPECT_NE(at(both, 25, 50), at(both, 75, 50));  // energies 0 and 1
   EXPECT_EQ(covered(draw(0, 0, true)), 0);
+  ParticleStyle half;
+  half.size = 0.2f;
+  half.face_camera = true;
+  half.every = 2;
+  const Image one = picture(view, [&] { pass.draw(view, world, position, heading, 0, 2, half); });
+  EXPECT_NEAR(covered(one), 2 * disc, 0.2 * disc) << "half as many, of twice the area";
+  EXPECT_NE(at(one, 25, 50), at(one, 75, 50)) << "the second one is left out";
+}
+
+TEST_F(Pass, FewerParticlesAreDrawnThanThereArePixels) {
+  View view = front();
+  view.width = 900;
+  view.height = 700;
+  view.camera.height = 2;
+  EXPECT_EQ(particle_share(view, 100'000, 2), 1u);
+  EXPECT_EQ(particle_share(view, 1'600'000, 2), 7u);
+  view.camera.height = 0.2;  // few of them are seen
+  EXPECT_EQ(particle_share(view, 1'600'000, 2), 1u);
+  EXPECT_EQ(particle_share(view, 0, 0), 1u);
 }
 
 /// An arrow from the middle of the picture to the right, on a surface that faces us.
