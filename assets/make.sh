@@ -19,7 +19,6 @@ gif -framerate 20 -i "$frames/flow/frame_%04d.png" "" 64 flow.gif
 
 "$nacre" flow --sample train --steps 60 --image train.png
 "$nacre" mesh --sample torso --cut-away --image torso.png
-"$nacre" view --offscreen --panel --sample train --detail 96 --resolution 512 --steps 8 --size 1200x700 --image window.png
 "$nacre" view --offscreen --sample torso --panel --set tab=result --set clip=y --set clip_at=0.48 --size 1200x760 \
   --image viewer.png
 pictures=../docs/pictures
