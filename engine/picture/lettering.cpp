@@ -41,6 +41,11 @@ Ink ink_for(const Image& image, int x, int y, int width, int height) {
   return count == 0 || sum > 0.6f * float(count) ? dark_ink : light_ink;
 }
 
+Ink ink_on(const Rgba& paper) {
+  const bool dark = paper.a > 0 && paper.r + paper.g + paper.b < 384;
+  return dark ? Ink{{255, 255, 255, 255}, {0, 0, 0, 190}} : Ink{{20, 20, 24, 255}, {255, 255, 255, 210}};
+}
+
 void draw_lettering(Image& image, int x, int y, std::string_view text, float pixels, const Ink& ink) {
   constexpr int directions = 12;
   for (const float radius : {pixels / 6, pixels / 12})

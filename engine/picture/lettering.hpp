@@ -20,6 +20,9 @@ inline float lettering_size(const Image& image) { return lettering_size(image.wi
 /// Dark ink where the part of the image is light, light ink where it is dark.
 Ink ink_for(const Image& image, int x, int y, int width, int height);
 
+/// The same for a transparent sheet over a background; dark ink where that is transparent.
+Ink ink_on(const Rgba& paper);
+
 /// `draw_text` with a halo.
 void draw_lettering(Image& image, int x, int y, std::string_view text, float pixels, const Ink& ink);
 

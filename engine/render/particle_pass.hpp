@@ -16,7 +16,7 @@ struct ParticleStyle {
   bool face_camera = false;          ///< particles of curves and points have no normal
   bool by_energy = true;             ///< colour by energy, else by h
   std::array<float, 2> range{0, 1};  ///< of the colour map
-  std::size_t every = 1;             ///< only each so-manieth is drawn, with so many times the area
+  std::size_t every = 1;             ///< n: only every n-th is drawn, with n times the area
 };
 
 /// ParticleStyle::every for `count` particles on surfaces of that diameter (world): more than a third as many as pixels

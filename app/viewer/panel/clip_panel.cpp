@@ -29,11 +29,8 @@ Grip grip(const char* name, const std::array<double, 2>& at, float radius) {
   ImGui::SetNextWindowSize(ImVec2(2 * radius, 2 * radius));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-  const auto bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing |
-                    ImGuiWindowFlags_NoBringToFrontOnFocus;
   Grip grip{};
-  if (ImGui::Begin(name, nullptr, bare)) {
+  if (ImGui::Begin(name, nullptr, bare_window)) {
     ImGui::InvisibleButton("grip", ImVec2(2 * radius, 2 * radius));
     grip = {ImGui::IsItemHovered(), ImGui::IsItemActive(), ImGui::IsItemActivated()};
     if (grip.hovered || grip.active) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/viewer/panel/imgui_text.hpp"
 #include "app/viewer/panel/knob_widgets.hpp"
 #include "engine/picture/legend.hpp"
 
@@ -52,13 +53,10 @@ void LegendMouse::draw(Settings& settings, const LegendRange& range, const FreeA
   const FreeArea bar = legend_area(area);
   hovered_ = false;
   if (bar.width <= 0 || bar.height <= 0) return;
-  constexpr auto bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoScrollWithMouse |
-                        ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
   ImGui::SetNextWindowPos(ImVec2(float(bar.x), float(bar.y)));
   ImGui::SetNextWindowSize(ImVec2(float(bar.width), float(bar.height)));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-  const bool drawn = ImGui::Begin("legend", nullptr, bare);
+  const bool drawn = ImGui::Begin("legend", nullptr, bare_window | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
   if (drawn) {
     ImGui::InvisibleButton("bar", ImVec2(float(bar.width), float(bar.height)));

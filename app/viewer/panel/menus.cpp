@@ -101,6 +101,12 @@ void sample_menu(const char* title, const std::vector<Sample>& all, Session& ses
   ImGui::EndMenu();
 }
 
+/// A name for a file beside others: "head-mesh.vtp", of the first input or the sample.
+std::string export_name(const Session& session, const std::string& ending) {
+  const std::string& sample = session.sample;
+  return (!sample.empty() || session.inputs.empty() ? sample : session.inputs.front().stem().string()) + ending;
+}
+
 }  // namespace
 
 void Ui::ask_open() {
@@ -114,12 +120,6 @@ void Ui::ask_save(const std::string& title, std::vector<std::string> extensions,
   then_ = [wish](const std::vector<fs::path>& files, Session&, UiRequests& requests) {
     requests.*wish = files.front();
   };
-}
-
-/// A name for a file beside others: "head-mesh.vtp", of the first input or the sample.
-static std::string export_name(const Session& session, const std::string& ending) {
-  const std::string& sample = session.sample;
-  return (!sample.empty() || session.inputs.empty() ? sample : session.inputs.front().stem().string()) + ending;
 }
 
 void Ui::ask_result(const Session& session, Scene& scene) {

@@ -12,10 +12,6 @@
 namespace nacre {
 namespace {
 
-constexpr auto bare = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoScrollWithMouse |
-                      ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoBringToFrontOnFocus;
-
 /// Where a plane through the camera's target that faces it is under the mouse.
 Vec3d point_under_mouse(const Camera& camera, const FreeArea& area) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -72,7 +68,8 @@ void SliceMouse::draw(ViewSettings& view, SliceViews& slices, const ViewAreas& a
     ImGui::SetNextWindowPos(ImVec2(float(area.x), float(area.y)));
     ImGui::SetNextWindowSize(ImVec2(float(area.width), float(area.height)));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-    const bool shown = ImGui::Begin(fmt::format("slice {}", k).c_str(), nullptr, bare);
+    const bool shown =
+        ImGui::Begin(fmt::format("slice {}", k).c_str(), nullptr, bare_window | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleVar();
     if (shown) use(k, view, slices, area);
     ImGui::End();

@@ -9,15 +9,6 @@
 #include "engine/picture/text.hpp"
 
 namespace nacre {
-
-Rgba paper_of(const std::string& background) {
-  const bool colour = background.size() == 7 && background[0] == '#' &&
-                      background.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-  if (!colour) return {255, 255, 255, 0};
-  const int rgb = std::stoi(background.substr(1), nullptr, 16);
-  return {std::uint8_t(rgb >> 16), std::uint8_t(rgb >> 8), std::uint8_t(rgb), 255};
-}
-
 namespace {
 
 /// One line in the left upper corner, as far as it fits.
@@ -32,6 +23,14 @@ Image heading_sheet(int width, int height, const std::string& line, const Rgba& 
 }
 
 }  // namespace
+
+Rgba paper_of(const std::string& background) {
+  const bool colour = background.size() == 7 && background[0] == '#' &&
+                      background.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+  if (!colour) return {255, 255, 255, 0};
+  const int rgb = std::stoi(background.substr(1), nullptr, 16);
+  return {std::uint8_t(rgb >> 16), std::uint8_t(rgb >> 8), std::uint8_t(rgb), 255};
+}
 
 void Captions::draw(Scene& scene, const View& view, const Settings& settings, const std::string& heading) {
   draw_scene(scene, view);

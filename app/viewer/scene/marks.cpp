@@ -47,9 +47,7 @@ void put_text(Image& image, const std::array<double, 2>& at, const std::string& 
   const int width = text_width(text, pixels), height = text_cap_height(pixels);
   const int x = std::clamp(int(at[0] + 0.5 * pixels), 0, std::max(0, image.width - width));
   const int y = std::clamp(int(at[1]) - height / 2, 0, std::max(0, image.height - height));
-  const bool dark = paper.a > 0 && paper.r + paper.g + paper.b < 384;
-  const Ink ink = dark ? Ink{{255, 255, 255, 255}, {0, 0, 0, 190}} : Ink{{20, 20, 24, 255}, {255, 255, 255, 210}};
-  draw_lettering(image, x, y, text, pixels, ink);
+  draw_lettering(image, x, y, text, pixels, ink_on(paper));
 }
 
 }  // namespace

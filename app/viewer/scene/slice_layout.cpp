@@ -23,8 +23,7 @@ Image caption_sheet(const SliceCaption& caption, int width, int height, const Rg
   const float pixels = lettering_size(width, height);
   if (pixels <= 0) return sheet;
   const int capitals = text_cap_height(pixels), edge = 2 * line + capitals / 2;
-  const bool dark = paper.a > 0 && paper.r + paper.g + paper.b < 384;
-  const Ink letters = dark ? Ink{{255, 255, 255, 255}, {0, 0, 0, 190}} : Ink{{20, 20, 24, 255}, {255, 255, 255, 210}};
+  const Ink letters = ink_on(paper);
   const auto write = [&](int x, int y, const std::string& text) { draw_lettering(sheet, x, y, text, pixels, letters); };
   const auto middle = [&](const std::string& text) { return (width - text_width(text, pixels)) / 2; };
   write(edge, (height - capitals) / 2, caption.left);

@@ -10,6 +10,17 @@
 #include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
+namespace {
+
+/// The settings of the second scene, which begins at the time that the first one shows.
+Settings begun_beside(const Scene& first, const Settings& of_first, Settings wanted) {
+  const Transport at = first.transport();
+  if (at.kind == Transport::Kind::time && at.shown >= 0 && wanted.flow.steps == of_first.flow.steps)
+    wanted.begin_at = begin_at_of(at.shown, std::max(1, wanted.flow.steps));
+  return wanted;
+}
+
+}  // namespace
 
 std::array<FreeArea, 2> halves(const FreeArea& area) {
   constexpr int gap = 2;  // pixels
@@ -33,18 +44,6 @@ void Comparison::close() {
   painter_.reset();
   failure_.clear();
 }
-
-namespace {
-
-/// The settings of the second scene, which begins at the time that the first one shows.
-Settings begun_beside(const Scene& first, const Settings& of_first, Settings wanted) {
-  const Transport at = first.transport();
-  if (at.kind == Transport::Kind::time && at.shown >= 0 && wanted.flow.steps == of_first.flow.steps)
-    wanted.begin_at = begin_at_of(at.shown, std::max(1, wanted.flow.steps));
-  return wanted;
-}
-
-}  // namespace
 
 void Comparison::follow(const Session& first, const Scene& first_scene, const SceneOptions& options) {
   if (!compares(first)) return close();

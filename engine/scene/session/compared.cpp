@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "compute/device/error.hpp"
+#include "engine/scene/session/window_knobs.hpp"
 #include "engine/scene/settings/knobs.hpp"
 
 namespace nacre {
@@ -14,10 +15,10 @@ namespace {
 
 constexpr std::string_view sample_prefix = "sample:";
 
-constexpr const char* shared_knobs[] = {
-    "compare", "compare_knobs", "camera",      "cameras", "turning", "orbit",     "ruler",     "notes",  "play",
-    "loop",    "play_speed",    "begin_at",    "fps",     "width",   "height",    "samples",   "layout", "crosshair",
-    "panel",   "panel_side",    "panel_width", "tab",     "theme",   "text_size", "background"};
+/// Beside those of the window.
+constexpr const char* shared_knobs[] = {"compare", "compare_knobs", "camera",    "orbit",    "ruler",
+                                        "notes",   "play",          "loop",      "begin_at", "samples",
+                                        "layout",  "crosshair",     "background"};
 
 template <class Take>
 void split(std::string_view text, char separator, const Take& take) {
@@ -57,7 +58,8 @@ std::string heading(const Session& session, const SessionInput& input, Settings 
 }  // namespace
 
 bool can_differ(const std::string& knob) {
-  return std::find(std::begin(shared_knobs), std::end(shared_knobs), knob) == std::end(shared_knobs);
+  return !is_window_knob(knob) &&
+         std::find(std::begin(shared_knobs), std::end(shared_knobs), knob) == std::end(shared_knobs);
 }
 
 SessionInput compared_input(const Session& session) {

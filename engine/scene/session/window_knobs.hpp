@@ -1,4 +1,5 @@
-// Nacre: the knobs that belong to the window and the person at it. No keyframe holds them.
+// Nacre: the knobs that belong to the window and the person at it. No keyframe holds them, and two views
+// that are compared share them.
 #pragma once
 
 #include <optional>
