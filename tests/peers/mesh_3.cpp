@@ -74,12 +74,12 @@ std::vector<Polyline> junction_curves(const LabelImage& image, const Surface& su
   std::vector<Polyline> lines;
   const auto walk = [&](std::uint32_t from) {
     while (!next[from].empty()) {
-      Polyline line{place(from)};
+      Polyline line{position(from)};
       for (std::uint32_t at = from;;) {
         const std::uint32_t to = *next[at].begin();
         next[at].erase(to);
         next[to].erase(at);
-        line.push_back(place(to));
+        line.push_back(position(to));
         at = to;
         if (ends.count(at) || at == from) break;
       }

@@ -33,9 +33,14 @@ broken() {
   failed=1
 }
 
-# built TARGET: builds a program that runs a peer; fails where the build knows no such target.
+# built TARGET: builds a program that runs a peer; fails where the build knows no such target. The script ends where it
+# does not compile.
 built() {
-  ninja -C "$build" -t query "$1" >/dev/null 2>&1 && cmake --build "$build" --target "$1" -j1 >"$out/build.log" 2>&1
+  ninja -C "$build" -t query "$1" >/dev/null 2>&1 || return
+  cmake --build "$build" --target "$1" -j1 >"$out/build.log" 2>&1 && return
+  grep -m 3 error "$out/build.log" >&2
+  echo "run.sh: $1 does not compile" >&2
+  exit 1
 }
 
 # sample NAME DETAIL: writes a phantom once.
