@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 
+#include "api/arrays_read.hpp"
 #include "api/support.hpp"
 #include "engine/io/flow_values.hpp"
 #include "engine/picture/png.hpp"
@@ -39,13 +40,14 @@ void check_surface(const SurfaceFlow& surface) {
 
 /// With `geometry`, points, triangles and all arrays; else only what differs between the steps of a surface that stands
 /// still.
-Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const std::string& color) {
+Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const std::string& color, ArraysRead& read) {
   Surface surface;
   if (geometry) {
     std::vector<std::array<double, 3>> moved;
     if (flow.positions) {
       moved = flow.points;
       flow.positions(step, {moved.front().data(), 3 * moved.size()});
+      read.add("positions", step, moved.data(), moved.size() * sizeof(moved[0]));
     }
     surface.points.reserve(flow.points.size());
     for (const auto& p : flow.positions ? moved : flow.points) surface.points.push_back(vec(p));
@@ -56,11 +58,13 @@ Surface step_of(const SurfaceFlow& flow, std::size_t step, bool geometry, const 
   if (flow.vectors) {
     PointArray& array = surface.arrays.emplace_back(PointArray{flow.vector_name, 3, std::vector<float>(3 * n)});
     flow.vectors(step, array.values);
+    read.add("vectors", step, array.values.data(), array.values.size() * sizeof(float));
   }
   for (const std::string& name : flow.scalar_names) {
     if (!geometry && name != color) continue;
     PointArray& array = surface.arrays.emplace_back(PointArray{name, 1, std::vector<float>(n)});
     flow.scalars(name, step, array.values);
+    if (name == color) read.add("scalars " + name, step, array.values.data(), array.values.size() * sizeof(float));
   }
   return surface;
 }
@@ -87,6 +91,7 @@ struct Flow::State {
   bool embedded = false, started = false;
   int resolution = 0;  ///< of the embedding
   std::string color;   ///< whose numbers a step has to load
+  ArraysRead arrays;
   mutable std::mutex mutex;
 
   Settings& settings() { return session.settings; }
@@ -98,10 +103,14 @@ struct Flow::State {
     series.name = surface.name;
     series.times = surface.times;
     series.moves = bool(surface.positions);
+    if (!surface.positions)
+      arrays.add("points", 0, surface.points.data(), surface.points.size() * sizeof(surface.points[0]));
+    arrays.add("triangles", 0, surface.triangles.data(), surface.triangles.size() * sizeof(surface.triangles[0]));
+    arrays.add("times", 0, surface.times.data(), surface.times.size() * sizeof(double));
     const auto shared = std::make_shared<SurfaceFlow>(std::move(surface));
     const auto first = std::make_shared<bool>(true);
     series.load = [this, shared, first](std::size_t step) {
-      const Surface loaded = step_of(*shared, step, *first || shared->positions, color);
+      const Surface loaded = step_of(*shared, step, *first || shared->positions, color, arrays);
       *first = false;
       return loaded;
     };
@@ -179,7 +188,11 @@ struct Flow::State {
     }
     check_picture_settings(view.settings);
     Image image = FlowPainter(*pipeline, *input, view, span.frame_time).paint(std::max(0, done - 1));
-    return {image.width, image.height, std::move(image.pixels)};
+    return {image.width, image.height, std::move(image.pixels), origin(view, "image")};
+  }
+
+  std::string origin(const Session& of, const std::string& output) const {
+    return library_origin(of, "flow", device->backend(), arrays, output, {"frame=" + std::to_string(done)});
   }
 };
 
@@ -296,7 +309,8 @@ void Flow::save(const std::filesystem::path& file) const {
     const Caller caller(state_->mutex, state_->options.threads);
     state_->prepare();
     if (file.extension() != ".vtp") throw Error("cannot write " + file.string(), "", "values are written as .vtp");
-    write_flow_values(state_->pipeline->flow(), file, state_->pipeline->flow().time());
+    write_flow_values(state_->pipeline->flow(), file, state_->pipeline->flow().time(),
+                      state_->origin(state_->session, "out"));
   });
 }
 
@@ -322,7 +336,7 @@ void save(const std::filesystem::path& file, const FlowPicture& picture) {
     image.width = picture.width;
     image.height = picture.height;
     image.pixels = picture.pixels;
-    write_png(file, image);
+    write_png(file, image, picture.origin);
   });
 }
 

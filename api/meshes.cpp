@@ -148,10 +148,10 @@ void save(const std::filesystem::path& file, const Mesh& mesh) {
   library_call([&] {
     const MaterialTable table(mesh);
     SurfaceMesh surface = surface_of(mesh);
-    if (mesh.midsides.empty()) return write_surface_mesh(file, surface, table.labels, table.names);
+    if (mesh.midsides.empty()) return write_surface_mesh(file, surface, table.labels, table.names, mesh.origin);
     SecondOrder second;
     second.triangles = take_nodes(surface.points, second.nodes, mesh.triangles, mesh.midsides);
-    write_surface_mesh(file, surface, table.labels, table.names, "", &second);
+    write_surface_mesh(file, surface, table.labels, table.names, mesh.origin, &second);
   });
 }
 
@@ -167,11 +167,12 @@ void save(const std::filesystem::path& file, const Mesh& mesh, const Tetrahedra&
       std::vector<Vec3d> own;
       take_nodes(surface.points, own, mesh.triangles, mesh.midsides);
     }
-    if (tetrahedra.midsides.empty()) return write_tetrahedral_mesh(file, cells, surface, table.labels, table.names);
+    if (tetrahedra.midsides.empty())
+      return write_tetrahedral_mesh(file, cells, surface, table.labels, table.names, mesh.origin);
     SecondOrder second;
     second.cells = take_nodes(cells.points, second.nodes, cells.cells, tetrahedra.midsides);
     name_nodes_of_triangles(second, surface, cells);
-    write_tetrahedral_mesh(file, cells, surface, table.labels, table.names, "", &second);
+    write_tetrahedral_mesh(file, cells, surface, table.labels, table.names, mesh.origin, &second);
   });
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "api/arrays_read.hpp"
 #include "api/meshes.hpp"
 #include "api/support.hpp"
 #include "compute/pipeline/mesh_rerun.hpp"
@@ -87,6 +88,7 @@ struct Meshing::State {
   std::unique_ptr<MeshPipeline> pipeline;
   MeshInput input;
   MeshVolume volume;  ///< its voxels' materials, which the mesh is compared with; no values
+  ArraysRead arrays;
   MeshResult result;
   MeshParameters used;  ///< those that the stages up to `stage` were computed with
   double used_max_cell = 0;
@@ -115,7 +117,11 @@ struct Meshing::State {
 
   void load(std::span<const VolumeView> views) {
     std::vector<Volume> volumes;
-    for (const VolumeView& view : views) volumes.push_back(volume_of(view));
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      volumes.push_back(volume_of(views[k]));
+      std::visit([&](const auto& voxels) { arrays.add("volume", k, voxels.data(), voxels.size() * sizeof(voxels[0])); },
+                 volumes.back().values);
+    }
     if (volumes.empty()) throw Error("no volume is given");
     const auto warn = [this](const std::string& sentence) { tell(options, sentence); };
     volume = make_materials(volumes, false, settings().materials, input, warn);
@@ -145,6 +151,7 @@ struct Meshing::State {
     std::optional<SecondOrder> second;
     if (order == 2) second = mesh_nodes(result.mesh, nullptr, *pipeline, options.stop);
     mesh = public_mesh(result.mesh, second ? &*second : nullptr, input);
+    mesh.origin = library_origin(session, "mesh", device->backend(), arrays, "out");
     mesh_order = order;
   }
 

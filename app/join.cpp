@@ -23,14 +23,22 @@ void run_join(const JoinOptions& options, const KnobOptions& knob_options) {
   with_usage_errors([&] { check_video_name(options.video); });
   check_output(options.common.report, "--report", "");
   limit_threads(options.common.threads);
+  Origin origin;
+  origin.version = version;
+  origin.command = "join";
+  origin.backend = "cpu";
+  origin.frames = {read_frames(options.folder)};
+  origin.knobs["fps"] = std::to_string(settings.fps);
+  add_beside(origin, {{"video", options.video}});
   StageTimers timers;
   {
     StageTimers::Scope scope(timers, "write");
-    make_video_of_folder(options.folder, options.video, settings.fps, &interrupt_flag());
+    make_video_of_folder(options.folder, options.video, settings.fps, origin_of_output(origin, "video"),
+                         &interrupt_flag());
   }
   if (!options.common.report.empty())
     write_report(options.common, report_frame("join", *make_cpu_device(options.common.threads), timers, 0),
-                 {options.video});
+                 {options.video}, origin);
   print_outputs({options.video});
 }
 

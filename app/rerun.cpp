@@ -36,7 +36,8 @@ bool is_harmless(const Origin& origin) {
   static const std::regex extension("(\\.[a-z0-9]+)?");
   const auto fits = [](const std::string& text, const std::regex& form) { return std::regex_match(text, form); };
   const bool of_view = origin.command == "view" && origin.output == "image";
-  return (origin.command == "flow" || origin.command == "mesh" || of_view) && fits(origin.output, output) &&
+  return (origin.command == "flow" || origin.command == "mesh" || origin.command == "join" || of_view) &&
+         fits(origin.output, output) &&
          std::all_of(origin.options.begin(), origin.options.end(),
                      [&](const auto& each) { return fits(each, option); }) &&
          std::all_of(origin.beside.begin(), origin.beside.end(), [&](const auto& each) {
@@ -53,6 +54,9 @@ Origin require_origin(const fs::path& file) {
     throw Error(file.string() + " does not say how it was made",
                 "it is not of Nacre, or its format has no place for that",
                 "give the report of that run: nacre rerun REPORT.json --out FILE");
+  if (!origin->arrays.empty())
+    throw Error(file.string() + " cannot be made again", "the library made it of arrays in memory",
+                "its version, its knobs and the SHA-256 of the arrays are in the file");
   if (origin->interrupted)
     throw Error(file.string() + " cannot be made again", "Ctrl-C ended its run, and it does not say when");
   const bool in_window = origin->command == "view" && (origin->output != "image" || origin->options.empty());
@@ -72,10 +76,12 @@ Arguments arguments_for(const Origin& of_run, const std::string& output, const f
   Arguments arguments = {origin.command};
   for (const OriginFile& input : origin.inputs)
     arguments.push_back((input.file.starts_with('-') ? "./" : "") + input.file);
+  for (const OriginFile& folder : origin.frames)
+    arguments.push_back((folder.file.starts_with('-') ? "./" : "") + folder.file);
   if (!origin.sample.empty()) arguments.push_back("--sample=" + origin.sample);
   if (origin.detail != 0) arguments.push_back("--detail=" + std::to_string(origin.detail));
   for (const auto& [name, value] : origin.knobs) arguments.push_back("--set=" + name + "=" + value);
-  arguments.push_back("--device=" + origin.backend);
+  if (origin.command != "join") arguments.push_back("--device=" + origin.backend);
   arguments.insert(arguments.end(), origin.options.begin(), origin.options.end());
   if (origin.camera) {
     const fs::path session = scratch / "camera.json";
@@ -166,7 +172,8 @@ void run_rerun(const RerunOptions& options, const std::function<void(const Argum
 void add_rerun_command(CLI::App& program, std::function<void()>& run, std::function<void(const Arguments&)> execute) {
   CLI::App* command = program.add_subcommand("rerun", "make a result again from what it says of itself, and compare");
   auto options = std::make_shared<RerunOptions>();
-  command->add_option("FILE", options->file, "a picture, video, mesh, values or report of nacre flow, mesh or view")
+  command
+      ->add_option("FILE", options->file, "a picture, video, mesh, values or report of nacre flow, mesh, join or view")
       ->required();
   command->add_option("--out", options->out, "write it to this file instead of comparing it with FILE");
   command->add_option("--threads", options->threads, "worker threads, at most one per processor (0: all)")

@@ -24,11 +24,12 @@
 
 namespace nacre {
 namespace fs = std::filesystem;
+
+std::string frame_name(long number) { return fmt::format("frame_{:04}.png", number); }
+
 namespace {
 
 using Arguments = std::vector<std::string>;
-
-std::string frame_name(long number) { return fmt::format("frame_{:04}.png", number); }
 
 /// The number in the name of a frame; -1: it is not such a name.
 long frame_number(const std::string& name) {
@@ -241,8 +242,10 @@ std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps, const std::
   return std::make_unique<Video>(file, fps, stop);
 }
 
-void make_video_of_folder(const fs::path& folder, const fs::path& file, int fps, const std::atomic<bool>* stop) {
+void make_video_of_folder(const fs::path& folder, const fs::path& file, int fps, const std::string& origin,
+                          const std::atomic<bool>* stop) {
   const std::unique_ptr<FrameSink> video = make_video(file, fps, stop);
+  video->describe(origin);
   const int frames = count_frames(folder);
   for (int number = 0; number < frames; ++number) video->add(read_png(folder / frame_name(number)));
   video->finish();

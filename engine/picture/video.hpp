@@ -55,6 +55,9 @@ std::unique_ptr<FrameSink> make_frame_folder(const std::filesystem::path& folder
                                              std::function<void(const std::string&)> say = {},
                                              std::optional<FrameRange> part = {});
 
+/// "frame_0012.png".
+std::string frame_name(long number);
+
 /// How many frames a folder holds, frame_0000.png first. Throws Error if there are none or one is missing.
 int count_frames(const std::filesystem::path& folder);
 
@@ -68,8 +71,9 @@ void check_video_name(const std::filesystem::path& file);
 std::unique_ptr<FrameSink> make_video(const std::filesystem::path& file, int fps,
                                       const std::atomic<bool>* stop = nullptr);
 
-/// A video of all frames of `folder`, otherwise as `make_video`. Throws Error if one is missing or cannot be read.
+/// A video of all frames of `folder`, otherwise as `make_video`; `origin` as in FrameSink::describe. Throws Error if a
+/// frame is missing or cannot be read.
 void make_video_of_folder(const std::filesystem::path& folder, const std::filesystem::path& file, int fps,
-                          const std::atomic<bool>* stop = nullptr);
+                          const std::string& origin, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace nacre

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "compute/device/error.hpp"
+#include "engine/picture/video.hpp"
 #include "engine/scene/session/camera_json.hpp"
 #include "engine/scene/settings/knobs.hpp"
 #include "engine/system/extension.hpp"
@@ -76,6 +77,8 @@ Origin parse_origin(const json& from) {
   origin.backend = from.at("backend").get<std::string>();
   origin.inputs = files_of(from, "inputs");
   origin.others = files_of(from, "others");
+  origin.arrays = files_of(from, "arrays");
+  origin.frames = files_of(from, "frames");
   origin.sample = from.value("sample", "");
   origin.detail = from.value("detail", 0);
   origin.knobs = from.at("knobs").get<std::map<std::string, std::string>>();
@@ -168,11 +171,26 @@ Origin origin_of(const Session& session, const std::string& command, const std::
   return origin;
 }
 
+OriginFile read_frames(const fs::path& folder) {
+  OriginFile all{folder.string(), 0, {}};
+  Sha256 hash;
+  const int frames = count_frames(folder);
+  for (int number = 0; number < frames; ++number) {
+    const OriginFile frame = read_origin_file(folder / frame_name(number));
+    all.bytes += frame.bytes;
+    hash.add(frame.sha256.data(), frame.sha256.size());
+  }
+  all.sha256 = hash.finish();
+  return all;
+}
+
 json origin_json(const Origin& origin) {
   json to = {{"Nacre origin", format_number}, {"version", origin.version}, {"command", origin.command},
              {"backend", origin.backend},     {"knobs", origin.knobs},     {"output", origin.output}};
   if (!origin.inputs.empty()) to["inputs"] = files_json(origin.inputs);
   if (!origin.others.empty()) to["others"] = files_json(origin.others);
+  if (!origin.arrays.empty()) to["arrays"] = files_json(origin.arrays);
+  if (!origin.frames.empty()) to["frames"] = files_json(origin.frames);
   if (!origin.sample.empty()) to["sample"] = origin.sample;
   if (origin.detail != 0) to["detail"] = origin.detail;
   if (origin.camera) to["camera"] = camera_json(*origin.camera);
@@ -205,6 +223,9 @@ std::optional<Origin> find_origin(const fs::path& file) {
 }
 
 Session session_of(const Origin& origin) {
+  if (!origin.arrays.empty())
+    throw Error("the data of this result are in no file", "the library made it of arrays in memory",
+                "its knobs are in the file: save the arrays, and give them with these knobs");
   Session session;
   for (const OriginFile& input : origin.inputs) session.inputs.emplace_back(input.file);
   session.sample = origin.sample;
@@ -230,6 +251,10 @@ Session open_session(const fs::path& file) {
 }
 
 void check_inputs(const Origin& origin, const fs::path& result) {
+  for (const OriginFile& folder : origin.frames)
+    if (read_frames(folder.file) != folder)
+      throw Error("cannot make " + result.string() + " again", "the frames in " + folder.file + " have changed since",
+                  "restore the frames that it was made from");
   for (const auto* files : {&origin.inputs, &origin.others})
     for (const OriginFile& each : *files) {
       std::error_code code;

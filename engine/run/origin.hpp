@@ -29,6 +29,9 @@ struct Origin {
   std::string backend;           ///< "cpu" or "cuda"
   std::vector<OriginFile> inputs;
   std::vector<OriginFile> others;            ///< that the inputs or the knobs name
+  std::vector<OriginFile> arrays;            ///< instead of inputs: in memory of a user of the library, by their names
+  std::vector<OriginFile> frames;            ///< of `join`: the folder; the sum of its frames' bytes, and the
+                                             ///< SHA-256 of their hexadecimal SHA-256, joined in order
   std::string sample;                        ///< instead of inputs
   int detail = 0;                            ///< of the sample
   std::map<std::string, std::string> knobs;  ///< those that are not at their defaults, and the seed
@@ -44,6 +47,9 @@ struct Origin {
 Origin origin_of(const Session& session, const std::string& command, const std::string& backend,
                  const std::vector<std::filesystem::path>& others);
 
+/// The entry of Origin::frames for a folder of frames. Throws Error if one is missing or cannot be read.
+OriginFile read_frames(const std::filesystem::path& folder);
+
 /// One line of ASCII: JSON that begins with {"Nacre origin": and has no two hyphens in a row, so that it can be a
 /// comment of any format.
 std::string origin_text(const Origin& origin);
@@ -53,7 +59,7 @@ nlohmann::json origin_json(const Origin& origin);
 /// version of Nacre that this one does not understand.
 std::optional<Origin> find_origin(const std::filesystem::path& file);
 
-/// The session that a result shows: inputs, knobs and camera.
+/// The session that a result shows: inputs, knobs and camera. Throws Error if it was made of arrays in memory.
 Session session_of(const Origin& origin);
 
 /// A session file, or a result of Nacre that says how it was made, such as a picture. Throws Error as `read_session`.

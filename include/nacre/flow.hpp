@@ -41,6 +41,7 @@ struct SurfaceFlow {
 struct FlowPicture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> pixels;
+  std::string origin;  ///< how it came about, a line that `save` writes into the file; may be empty
 };
 
 /// The view of a picture, world coordinates. `height` is the visible height at the target.
@@ -90,7 +91,7 @@ class NACRE_API Flow {
   FlowCells cells() const;
   /// Shown values at points of the surface, 0..1; `points` in world coordinates.
   std::vector<float> sample(std::span<const std::array<double, 3>> points);
-  /// Writes `cells` as .vtp, one point per surface cell.
+  /// Writes `cells` as .vtp, one point per surface cell, and how they came about.
   void save(const std::filesystem::path& file) const;
 
   /// Version, device, knobs, input and timings, as JSON: what the program writes as its report.

@@ -70,6 +70,8 @@ struct Mesh {
   std::vector<Material> materials;                      ///< entry 0 is the outside
   std::vector<std::array<std::uint32_t, 3>> midsides;   ///< knob `element_order` 2: per triangle, the points on its
                                                         ///< edges 01 12 20, which come behind all corners; else empty
+  std::string
+      origin;  ///< how it came about, a line that `save` writes where the format has a place for it; may be empty
 };
 
 /// The insides of the materials. The facets between them are exactly the triangles of the mesh that was filled.

@@ -65,6 +65,7 @@ class Frame:
     def __init__(self, flow: Flow, index: int) -> None:
         self._flow = flow
         self._image: NDArray[np.uint8] | None = None
+        self._origin = ""  # how the image came about
         self._changes = flow._changes
         self.index = index  #: from 0
         self.time = flow._native.time()  #: of the data
@@ -79,7 +80,7 @@ class Frame:
         """(height, width, 4): RGBA, row 0 at the top, as the knobs say."""
         if self._image is None or self._changes != self._flow._changes:
             self._changes = self._flow._changes
-            self._image = self._present().picture(None, None)
+            self._image, self._origin = self._present().picture(None, None)
         return self._image
 
     @property
@@ -103,13 +104,13 @@ class Frame:
             Width and height in pixels.
         """
         pixels = None if size is None else (int(size[0]), int(size[1]))
-        return self._present().picture(_camera(camera), pixels)
+        return self._present().picture(_camera(camera), pixels)[0]
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Write the picture (.png) or the values (.vtp)."""
         path = os.fspath(file)
         if os.path.splitext(path)[1].lower() == ".png":
-            _core.save_picture(path, self.image)
+            _core.save_picture(path, self.image, self._origin)
         else:
             self._present().save(path)
 

@@ -110,7 +110,8 @@ class Tetrahedra:
             midsides = np.empty((0, 6), np.int64)
         border = m.points[: m._corners]  # the mesh may be of another order
         _core.save_cells(
-            os.fspath(file), border, m.triangles, m._sides, m._materials, self.points, corners, self._material, midsides
+            os.fspath(file), border, m.triangles, m._sides, m._materials, self.points, corners, self._material, midsides,
+            m._origin,
         )
 
     def to_pyvista(self) -> Any:
@@ -142,6 +143,7 @@ class Mesh:
         self._data = data
         self._materials: list[tuple[int, str]] = data["materials"]
         self._sides: NDArray[np.uint16] = data["sides"]
+        self._origin: str = data.get("origin", "")
         self.points: NDArray[np.float64] = data["points"]  #: (n, 3), points on edges last
         #: (k, 3); counter-clockwise as seen from the side of `materials[:, 0]`
         self.triangles: NDArray[np.int64] = data["triangles"]
@@ -219,7 +221,7 @@ class Mesh:
             self.tetrahedra().save(path)
         else:
             midsides = np.empty((0, 3), np.int64) if self.midsides is None else self.midsides
-            _core.save_mesh(path, self.points, self.triangles, self._sides, self._materials, midsides)
+            _core.save_mesh(path, self.points, self.triangles, self._sides, self._materials, midsides, self._origin)
 
     def surface(self, label: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Points and triangles of the closed surface of one material, with normals that point out of it."""
@@ -259,7 +261,7 @@ class Mesh:
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Mesh:
         """Arrays of its own; the run is the same."""
-        twin = Mesh(self._run, {key: value.copy() for key, value in self._data.items()})
+        twin = Mesh(self._run, {key: copy.copy(value) for key, value in self._data.items()})
         twin._changes, twin._kept = self._changes, self._kept
         return twin
 

@@ -99,7 +99,7 @@ def save_tetrahedra(
     straight = np.empty((0, 6), np.int64)
     material = material.astype(np.uint16)
     _core.save_cells(
-        os.fspath(file), border, number[triangles], sides, materials, positions, number[corners], material, straight
+        os.fspath(file), border, number[triangles], sides, materials, positions, number[corners], material, straight, ""
     )
 
 

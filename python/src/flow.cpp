@@ -41,11 +41,13 @@ PictureOptions picture_options(nb::handle camera, nb::handle size) {
   return options;
 }
 
-nb::object image_of(FlowPicture picture) {
+/// The pixels, and how they came about.
+nb::tuple image_of(FlowPicture picture) {
   const std::size_t height = std::size_t(picture.height), width = std::size_t(picture.width);
   auto* kept = new std::vector<std::uint8_t>(std::move(picture.pixels));
   const nb::capsule owner(kept, [](void* p) noexcept { delete static_cast<std::vector<std::uint8_t>*>(p); });
-  return nb::cast(nb::ndarray<nb::numpy, std::uint8_t>(kept->data(), {height, width, std::size_t(4)}, owner));
+  const nb::ndarray<nb::numpy, std::uint8_t> image(kept->data(), {height, width, std::size_t(4)}, owner);
+  return nb::make_tuple(image, picture.origin);
 }
 
 nb::dict cells_dict(FlowCells cells) {
@@ -132,9 +134,10 @@ void bind_flow(nb::module_& module) {
 
   module.def("save_picture",
              [](const std::string& file,
-                const nb::ndarray<const std::uint8_t, nb::shape<-1, -1, 4>, nb::c_contig, nb::device::cpu>& image) {
+                const nb::ndarray<const std::uint8_t, nb::shape<-1, -1, 4>, nb::c_contig, nb::device::cpu>& image,
+                const std::string& origin) {
                FlowPicture picture{int(image.shape(1)), int(image.shape(0)),
-                                   std::vector<std::uint8_t>(image.data(), image.data() + image.size())};
+                                   std::vector<std::uint8_t>(image.data(), image.data() + image.size()), origin};
                nb::gil_scoped_release release;
                save(file, picture);
              });

@@ -57,6 +57,7 @@ nb::dict mesh_dict(const Mesh& mesh) {
   result["sides"] = rows(mesh.sides);
   result["materials"] = material_list(mesh);
   result["midsides"] = corner_rows(mesh.midsides);
+  result["origin"] = mesh.origin;
   return result;
 }
 
@@ -162,9 +163,11 @@ void bind_meshing(nb::module_& module) {
 
   module.def("save_mesh",
              [](const std::string& file, const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
-                const Rows<std::uint16_t, 2>& sides, const nb::list& materials, const Rows<std::int64_t, 3>& midsides) {
+                const Rows<std::uint16_t, 2>& sides, const nb::list& materials, const Rows<std::int64_t, 3>& midsides,
+                const std::string& origin) {
                Mesh mesh = mesh_of(points, triangles, sides, pairs_of(materials));
                mesh.midsides = to_corners<3>(midsides);
+               mesh.origin = origin;
                nb::gil_scoped_release release;
                save(file, mesh);
              });
@@ -172,8 +175,9 @@ void bind_meshing(nb::module_& module) {
              [](const std::string& file, const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
                 const Rows<std::uint16_t, 2>& sides, const nb::list& materials, const Rows<double, 3>& cell_points,
                 const Rows<std::int64_t, 4>& cells, const Column<std::uint16_t>& material,
-                const Rows<std::int64_t, 6>& midsides) {
-               const Mesh mesh = mesh_of(points, triangles, sides, pairs_of(materials));
+                const Rows<std::int64_t, 6>& midsides, const std::string& origin) {
+               Mesh mesh = mesh_of(points, triangles, sides, pairs_of(materials));
+               mesh.origin = origin;
                Tetrahedra filled{to_rows<3>(cell_points), to_corners<4>(cells),
                                  std::vector<std::uint16_t>(material.data(), material.data() + material.shape(0)),
                                  to_corners<6>(midsides)};

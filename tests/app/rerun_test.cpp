@@ -162,5 +162,21 @@ TEST_F(Rerun, VideoHasItsOriginAsComment) {
   }
 }
 
+TEST_F(Rerun, VideoOfFramesThatWereJoined) {
+  if (find_program("ffmpeg").empty()) GTEST_SKIP() << "no ffmpeg";
+  ASSERT_EQ(nacre(small_flow + Arguments{"--size", "96x72", "--frames", path("frames")}).status, 0);
+  ASSERT_EQ(nacre({"join", path("frames"), "--video", path("a.mkv"), "--fps", "7", "--report", path("a.json")}).status,
+            0);
+  EXPECT_TRUE(contains(of_origin("a.mkv"), "\"command\":\"join\"")) << of_origin("a.mkv");
+  for (const char* name : {"a.mkv", "a.json"}) {
+    const Outcome run = nacre({"rerun", path(name), "--quiet"});
+    EXPECT_EQ(run.status, 0) << name << "\n" << run.err;
+  }
+  fs::copy_file(path("frames/frame_0000.png"), path("frames/frame_0001.png"), fs::copy_options::overwrite_existing);
+  expect_failure(nacre({"rerun", path("a.mkv"), "--quiet"}), 1, {"a.mkv", "have changed"});
+  fs::remove(path("frames/frame_0000.png"));
+  expect_failure(nacre({"rerun", path("a.mkv"), "--quiet"}), 1, {"frame_0000.png"});
+}
+
 }  // namespace
 }  // namespace nacre::test

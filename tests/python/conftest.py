@@ -11,7 +11,7 @@ import nacre
 
 
 def result_bytes(path):
-    """A result without the line that says how the program made it: the module's have none."""
+    """A result without the line that says how it was made: the program names files there, the module arrays."""
     content = path.read_bytes()
     origin = rb'\{"Nacre origin":[^\n]*'
     for line in (rb"<!-- " + origin + rb" -->\n", rb"(?:comment|#) " + origin + rb"\n",

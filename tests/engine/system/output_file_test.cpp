@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <csignal>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -167,6 +168,26 @@ TEST(OutputFile, UnfinishedFilesCanBeRemoved) {
   remove_unfinished_files();
   EXPECT_EQ(folder.entries(), 1u);
   EXPECT_TRUE(std::filesystem::exists(folder / "kept.txt"));
+}
+
+/// Files of somebody else that have the names that would be taken next are neither used nor removed.
+TEST(OutputFile, TakenNamesArePassedOver) {
+  const TemporaryFolder folder;
+  std::string name;
+  {
+    const OutputFile probe(folder / "probe.txt");
+    name = std::filesystem::directory_iterator(folder.path())->path().filename().string();
+  }
+  const std::size_t number_at = name.rfind('-') + 1;
+  const int number = std::stoi(name.substr(number_at));
+  for (int k = 1; k <= 3; ++k)
+    std::ofstream(folder / (name.substr(0, number_at) + std::to_string(number + k) + ".txt")) << "foreign";
+  OutputFile lost(folder / "lost.txt");
+  EXPECT_EQ(folder.entries(), 4u);
+  remove_unfinished_files();
+  EXPECT_EQ(folder.entries(), 3u);
+  for (int k = 1; k <= 3; ++k)
+    EXPECT_EQ(read_all(folder / (name.substr(0, number_at) + std::to_string(number + k) + ".txt")), "foreign");
 }
 
 TEST(OutputFileDeathTest, LeavingRemovesWhatOthersAreWriting) {
