@@ -134,4 +134,13 @@ NACRE_HD_INLINE void relaxed_store(std::uint32_t* to, std::uint32_t value) {
 #endif
 }
 
+/// Reads what another thread may be writing by `relaxed_store`: its value before or after.
+NACRE_HD_INLINE std::uint32_t relaxed_load(const std::uint32_t* from) {
+#if defined(__CUDA_ARCH__)
+  return *reinterpret_cast<const volatile unsigned*>(from);
+#else
+  return __atomic_load_n(from, __ATOMIC_RELAXED);
+#endif
+}
+
 }  // namespace nacre

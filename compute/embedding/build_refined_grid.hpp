@@ -242,7 +242,7 @@ struct ExtendSurface {
       at = texture.entry(around.corner + cell);  // a block of few cells
     }
     if (at == none) return false;
-    value = texel[at];
+    value = relaxed_load(texel + at);  // a team of the block beside may be extending it
     return (value & RefinedGridView::extended) == 0;
   }
 };

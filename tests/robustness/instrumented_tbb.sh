@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Nacre: builds oneTBB with the thread sanitizer, from Debian's source. Usage: instrumented_tbb.sh FOLDER
+# The sanitizer does not see what threads hand to each other within a library that is compiled without it, and would
+# take most parallel loops for races. FOLDER/prefix/lib gets the library; LD_LIBRARY_PATH makes programs use it. The
+# sources and lists of apt stay as they are. Status 77: Debian's source cannot be had.
+set -euo pipefail
+folder=$1
+[[ ! -e $folder/prefix/lib/libtbb.so ]] || exit 0
+mkdir -p "$folder"/{lists/partial,cache/archives/partial,source}
+folder=$(cd "$folder" && pwd)
+
+apt-get indextargets --format 'deb-src $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Identifier: Packages' 2>/dev/null |
+  sort -u >"$folder/sources.list"
+apt=(apt-get -q -o "Dir::Etc::SourceList=$folder/sources.list" -o Dir::Etc::SourceParts=/dev/null
+  -o "Dir::State::Lists=$folder/lists" -o "Dir::Cache=$folder/cache" -o APT::Sandbox::User="$(id -un)")
+version=$(dpkg-query -W -f '${source:Version}' libtbb-dev)
+(cd "$folder/source" && "${apt[@]}" update && "${apt[@]}" source --download-only "onetbb=$version") >"$folder/apt.log" 2>&1 ||
+  { tail -n 3 "$folder/apt.log" >&2; echo "the source of onetbb $version cannot be had" >&2; exit 77; }
+tar -xf "$folder"/source/onetbb_*.orig.tar.* -C "$folder/source" --strip-components 1
+cmake -S "$folder/source" -B "$folder/build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_INSTALL_PREFIX="$folder/prefix" \
+  -DCMAKE_INSTALL_LIBDIR=lib -DTBB_SANITIZE=thread -DTBB_TEST=OFF -DTBB_STRICT=OFF -DTBBMALLOC_BUILD=OFF >"$folder/build.log"
+cmake --build "$folder/build" --parallel "$(nproc)" --target install >>"$folder/build.log" 2>&1 ||
+  { tail -n 5 "$folder/build.log" >&2; exit 1; }
