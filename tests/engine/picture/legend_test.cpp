@@ -85,9 +85,8 @@ TEST(Legend, StaysInItsRoom) {
       const Image blank = plain_image(width, height, white);
       Image image = blank;
       draw_legend(image, colormap("sea"), min, max, "W");
-      const int left = int(room.left * width),
-                top = int(room.top * height) - 1,  // letters reach a row higher, by rounding
-          bottom = int(std::ceil(room.bottom * height));
+      const int bottom = int(std::ceil(room.bottom * height)), left = int(room.left * width);
+      const int top = int(room.top * height) - 1;  // letters reach a row higher where rounding differs
       EXPECT_EQ(changed_pixels(blank, image, 0, 0, left, height), 0) << width << " x " << height << ": " << max;
       EXPECT_EQ(changed_pixels(blank, image, 0, 0, width, top), 0) << width << " x " << height << ": " << max;
       EXPECT_EQ(changed_pixels(blank, image, 0, bottom, width, height), 0) << width << " x " << height;
