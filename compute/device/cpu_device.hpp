@@ -1,13 +1,12 @@
 // Nacre: the CPU as a device.
 #pragma once
 
-#include <oneapi/tbb/task_arena.h>
-
 #include <atomic>
 #include <map>
 #include <mutex>
 
 #include "compute/device/device.hpp"
+#include "compute/device/worker_arena.hpp"
 
 namespace nacre {
 
@@ -30,7 +29,7 @@ class CpuDevice final : public Device {
   std::size_t peak_bytes() const override;
 
   bool remote() const { return remote_; }
-  tbb::task_arena& workers() { return workers_; }
+  tbb::task_arena& workers() { return workers_.get(); }
 
   /// While one lives, a remote device's memory is open to its kernels.
   class Access {
@@ -51,7 +50,7 @@ class CpuDevice final : public Device {
 
   int threads_;
   bool remote_;
-  tbb::task_arena workers_;
+  WorkerArena workers_;
   std::mutex mutex_;
   int open_ = 0;
   std::map<void*, std::size_t> blocks_;

@@ -11,7 +11,6 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <bit>
@@ -23,6 +22,7 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "compute/device/worker_arena.hpp"
 #include "compute/meshing/delaunay_order.hpp"
 
 namespace nacre {
@@ -229,7 +229,8 @@ Delaunay::~Delaunay() = default;
 
 DelaunayCells Delaunay::cells(std::span<const Vec3d> points, const std::atomic<bool>* stop) {
   check_delaunay_points(points);
-  tbb::task_arena arena(threads_ > 0 ? threads_ : tbb::this_task_arena::max_concurrency());
+  WorkerArena workers(threads_ > 0 ? threads_ : tbb::this_task_arena::max_concurrency());
+  tbb::task_arena& arena = workers.get();
   return arena.execute([&] {
     std::unique_ptr<Held> held = held_ ? std::move(held_) : std::make_unique<Held>();  // lost where this throws
     held->triangulate(points, may_thread && arena.max_concurrency() > 1, stop);
