@@ -48,7 +48,7 @@ MeshVolume read_input(const MeshOptions& options, const Session& session, StageT
   StageTimers::Scope scope(timers, "read");
   const auto say_warning = [&](const std::string& warning) { warn(options.common, warning); };
   const auto read = [&] {
-    return read_mesh_volumes(session, session.settings.materials, &interrupt_flag(), say_warning);
+    return read_mesh_volumes(session, session.settings.materials, &interrupt_flag(), say_warning, true);
   };
   const bool sample = !session.sample.empty();
   const std::vector<Volume> volumes = sample ? with_usage_errors(read) : read();

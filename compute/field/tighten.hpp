@@ -32,16 +32,17 @@ struct StartTightening {
 
   NACRE_HD void operator()(std::int64_t i) const {
     const Int3 v = voxels(i);
-    const MaterialBricksView& field = slopes.field;
-    const std::uint16_t* at = field.voxel_material + field.voxel_number(v.x, v.y, v.z);
-    const std::uint32_t mine = field.brick_material[i / brick_voxels + 2], own = *at;
-    const Int3 n = field.voxels();
-    const std::int64_t stride[3] = {1, n.x, std::int64_t(n.x) * n.y};
+    const std::uint32_t brick = std::uint32_t(i / brick_voxels) + 2;
+    const BlockVoxels material(slopes.field, voxels.brick_block[brick]);
+    const std::uint32_t mine = slopes.field.brick_material[brick], own = material(v);
+    const Int3 n = slopes.field.voxels();
     float all = 0, part = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
         if (slopes.reach <= 0 || v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
-        const std::uint32_t other = at[side * stride[axis]];
+        Int3 beside = v;
+        beside[axis] += side;
+        const std::uint32_t other = material(beside);
         if (other == own) continue;
         const float share = slopes.share_beyond(v, axis, side);
         all += share;
@@ -111,8 +112,7 @@ struct SmoothBrick {
   /// Numbers of the 27 bricks of the same material around; false where none of them has changed.
   NACRE_HD bool find_neighbours(Team& team, std::uint32_t brick, std::uint32_t* around) const {
     const std::uint32_t block = brick_block[brick];
-    const Int3 n = source.blocks;
-    const Int3 b{int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)};
+    const Int3 n = source.blocks, b = source.block(block);
     team.each(27, [&](int k) {
       const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       around[k] = is_within(c, n) ? source.brick(source.block_number(c.x, c.y, c.z), source.brick_material[brick])
@@ -155,13 +155,13 @@ struct HoldVoxels {
     bool any = false;
     for (std::uint32_t k = first; k < last; ++k) any = any || smoothed[k];
     if (!any) return;
-    const Int3 n = smooth.blocks;
-    const Int3 low = Int3(int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)) * Int3(block_size);
+    const Int3 low = smooth.block(block) * Int3(block_size);
+    const std::uint16_t* material = smooth.materials_in(block);
     std::uint64_t count = 0;
     for (int position = 0; position < brick_voxels; ++position) {
+      if (material[position] != own) continue;
       const Int3 v =
           low + Int3(position % block_size, position / block_size % block_size, position / (block_size * block_size));
-      if (smooth.voxel_material[smooth.voxel_number(v.x, v.y, v.z)] != own) continue;
       count += hold(v, position, brick, first, last) ? 1 : 0;
     }
     if (count > 0) atomic_add(held, count);
@@ -194,11 +194,7 @@ struct HoldVoxels {
     for (int corner = 0; corner < 8; ++corner) {
       const Int3 low = v - Int3(corner & 1, corner >> 1 & 1, corner >> 2);
       if (low.x < 0 || low.y < 0 || low.z < 0 || low.x + 1 >= n.x || low.y + 1 >= n.y || low.z + 1 >= n.z) return false;
-      bool full = true;
-      for (int k = 0; k < 8 && full; ++k)
-        full =
-            smooth.voxel_material[smooth.voxel_number(low.x + (k & 1), low.y + (k >> 1 & 1), low.z + (k >> 2))] == own;
-      if (full) return false;
+      if (smooth.each_material(low, low + Int3(2), [&](std::uint16_t m) { return m == own; })) return false;
     }
     return true;
   }
