@@ -73,10 +73,11 @@ void check_interrupt(bool kept) {
 }
 
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
-                   const MeshVolume& volume, MeshPipeline& pipeline, Progress& bar) {
+                   const MeshVolume& volume, const InputWatch& watch, MeshPipeline& pipeline, Progress& bar) {
   MeshResult result;
   if (wants_cells(options) && pipeline.parameters.triangles == "auto") pipeline.parameters.triangles = "delaunay";
   pipeline.load(volume);
+  watch.check();  // large volumes are read here
   pipeline.build_fields();
   bar.clear();
   const FieldRemarks said = remarks_on_fields(pipeline.info(), settings.mesh);
@@ -143,7 +144,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   pipeline->parameters = session.settings.mesh;
   show_progress(*pipeline, bar);
 
-  const MeshResult result = compute(options, session.settings, input, volume, *pipeline, bar);
+  const MeshResult result = compute(options, session.settings, input, volume, watch, *pipeline, bar);
   origin.interrupted = result.interrupted;
   bar.update("write", 0.99);
   const std::vector<std::string> outputs =

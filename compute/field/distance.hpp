@@ -154,6 +154,7 @@ struct FindInterfacePoints {
   TilesView tiles;
   const std::uint64_t* cell;
   std::uint32_t* nearest;
+  std::uint32_t* known;
   InterfacePoint* point;
 
   NACRE_HD void operator()(std::int64_t i) const {
@@ -189,15 +190,26 @@ struct FindInterfacePoints {
     result.position = {found.p.x, found.p.y, found.p.z, 0};
     result.normal = {found.direction.x, found.direction.y, found.direction.z, curvature};
     result.surface = surface;
-    nearest[tiles.slot(c)] = std::uint32_t(i);
+    const std::int64_t slot = tiles.slot(c);
+    nearest[slot] = std::uint32_t(i);
+    relaxed_store(known + slot / Lattice::tile_cells, 1);
   }
+};
+
+struct CopyPosition {
+  const InterfacePoint* point;
+  Float4* position;
+  NACRE_HD void operator()(std::int64_t i) const { position[i] = point[i].position; }
 };
 
 /// One round of jump flooding (Rong & Tan 2006): look `jump` cells away, a power of two, for a closer point.
 struct JumpFlood {
   DistanceFieldView from;
+  const Float4* position;  ///< of the interface points, without all else
   int jump;
   std::uint32_t* to;
+  const std::uint32_t* known;  ///< per tile: whether a cell knows a point
+  std::uint32_t* known_now;
 
   static constexpr std::size_t scratch_bytes() { return 27 * sizeof(std::uint32_t); }
 
@@ -206,44 +218,92 @@ struct JumpFlood {
     const Int3 at = from.lattice().tile_at(from.tiles.tile[s]);
     const int stride = jump < Lattice::tile ? 1 : jump / Lattice::tile;
     team.each(27, [&](int k) {
-      around[k] = from.tiles.beside(at, Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1) * Int3(stride));
+      const std::uint32_t tile = from.tiles.beside(at, Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1) * Int3(stride));
+      around[k] = tile != none && known[tile] ? tile : none;
     });
-    from.tiles.each_in_tile(team, s,
-                            [&](const Int3& c, int k) { to[s * Lattice::tile_cells + k] = closest(around, c, k); });
+    bool any = false;
+    for (int k = 0; k < 27; ++k) any = any || around[k] != none;
+    if (!any) return;  // none here either, then and now
+    const Int3 low = at * Int3(n);
+    team.each(n * n, [&](int k) { search_row(around, s, low + Int3(0, k % n, k / n)); });
   }
 
  private:
+  static constexpr int n = Lattice::tile;
+
   /// Along one axis: the three places that are looked at, and in which of the tiles around they are.
   struct Places {
     int tile[3], place[3];
     NACRE_HD Places(int place_in_tile, int jump) {
       for (int k = 0; k < 3; ++k) {
-        const int p = place_in_tile + (jump < Lattice::tile ? (k - 1) * jump : (k - 1) * Lattice::tile);
-        tile[k] = p < 0 ? 0 : p < Lattice::tile ? 1 : 2;
-        place[k] = p & (Lattice::tile - 1);
+        const int p = place_in_tile + (k - 1) * (jump < n ? jump : n);
+        tile[k] = p < 0 ? 0 : p < n ? 1 : 2;
+        place[k] = p & (n - 1);
       }
     }
   };
 
-  NACRE_HD std::uint32_t closest(const std::uint32_t* around, const Int3& c, int k) const {
-    constexpr int n = Lattice::tile;
-    const Places x(k % n, jump), y(k / n % n, jump), z(k / (n * n), jump);
-    const Vec3f p = from.lattice().centre(c);
-    std::uint32_t best = none;
-    float least = from.reach * from.reach;
-    for (int c3 = 0; c3 < 3; ++c3)
-      for (int b = 0; b < 3; ++b)
-        for (int a = 0; a < 3; ++a) {
-          const std::uint32_t s = around[(z.tile[c3] * 3 + y.tile[b]) * 3 + x.tile[a]];
-          if (s == none) continue;
-          const std::uint32_t q =
-              from.nearest[std::int64_t(s) * Lattice::tile_cells + Lattice::place(x.place[a], y.place[b], z.place[c3])];
-          if (q == none || q == best) continue;
-          const Vec3f r = from.position(q) - p;
-          const float d = dot(r, r);
-          if (d < least || (d == least && q < best)) least = d, best = q;
-        }
-    return best;
+  /// A row of cells, and what each one has found so far.
+  struct Row {
+    float x[n], y, z;
+    std::uint32_t best[n];
+    float least[n];
+
+    /// Looks at the points `q`, one for each cell. Nothing branches on them, so that a CPU does all cells at once.
+    NACRE_HD_INLINE void look_at(const std::uint32_t* q, const Float4* position) {
+#if !defined(__CUDACC__)
+#pragma omp simd
+#endif
+      for (int k = 0; k < n; ++k) {
+        const std::uint32_t known = q[k] == none ? 0 : q[k];
+        const float rx = position[known].x - x[k], ry = position[known].y - y, rz = position[known].z - z;
+        const float square = rx * rx + ry * ry + rz * rz, d = q[k] == none ? 3e38f : square;
+        const bool nearer = (d < least[k]) | ((d == least[k]) & (q[k] < best[k]));
+        least[k] = nearer ? d : least[k];
+        best[k] = nearer ? q[k] : best[k];
+      }
+    }
+  };
+
+  /// The cells from `first` on, along x, of stored tile `s`.
+  NACRE_HD void search_row(const std::uint32_t* around, std::int64_t s, const Int3& first) const {
+    const Lattice& lattice = from.lattice();
+    if (!lattice.holds(first)) return;
+    const int local_y = first.y % n, local_z = first.z % n, shift = jump < n ? jump : n;
+    const Places y(local_y, jump), z(local_z, jump);
+    Row row;
+    row.y = lattice.centre(first).y, row.z = lattice.centre(first).z;
+    for (int k = 0; k < n; ++k) {
+      row.x[k] = lattice.centre(first + Int3(k, 0, 0)).x;
+      row.best[k] = none;
+      row.least[k] = from.reach * from.reach;
+    }
+    for (int c = 0; c < 3; ++c)
+      for (int b = 0; b < 3; ++b) {
+        std::uint32_t q[3 * n];  // what is known along x, in this tile and the two beside it
+        if (!read_rows(around + (z.tile[c] * 3 + y.tile[b]) * 3, Lattice::place(0, y.place[b], z.place[c]), q))
+          continue;
+        for (int a = 0; a < 3; ++a) row.look_at(q + n + (a - 1) * shift, position);
+      }
+    std::uint32_t* result = to + s * Lattice::tile_cells + Lattice::place(0, local_y, local_z);
+    const int end = lattice.cells.x - first.x < n ? lattice.cells.x - first.x : n;
+    bool any = false;
+    for (int k = 0; k < end; ++k) {
+      result[k] = row.best[k];
+      any = any || row.best[k] != none;
+    }
+    if (any) relaxed_store(known_now + s, 1);
+  }
+
+  /// The rows at one place of three tiles; false where none of these knows a point.
+  NACRE_HD bool read_rows(const std::uint32_t* tiles, int place, std::uint32_t* q) const {
+    bool any = false;
+    for (int a = 0; a < 3; ++a) {
+      const std::uint32_t* row = from.nearest + std::int64_t(tiles[a]) * Lattice::tile_cells + place;
+      for (int k = 0; k < n; ++k) q[a * n + k] = tiles[a] == none ? none : row[k];
+      any = any || tiles[a] != none;
+    }
+    return any;
   }
 };
 
@@ -265,7 +325,7 @@ namespace detail {
 /// Finds the points, numbered as their cells are in the lattice, and notes them there. `other` is room per slot.
 template <class Backend>
 void find_interface_points(Executor<Backend>& exec, const MaterialBricks& b, DistanceField& d,
-                           const Array<std::uint32_t>& other) {
+                           const Array<std::uint32_t>& other, const Array<std::uint32_t>& known) {
   Arena& arena = exec.arena();
   const TilesView tiles = d.tiles.view();
   const std::int64_t n = d.tiles.slots();
@@ -278,7 +338,8 @@ void find_interface_points(Executor<Backend>& exec, const MaterialBricks& b, Dis
   exec.for_each(n, ListBoundaryCells{tiles, other.data(), n, points, cell.data()});
   exec.sort(cell.data(), points);
   d.nearest.fill_bytes(0xff);  // `none`
-  exec.for_each(points, FindInterfacePoints{boundary, tiles, cell.data(), d.nearest.data(), d.point.data()});
+  exec.for_each(points,
+                FindInterfacePoints{boundary, tiles, cell.data(), d.nearest.data(), known.data(), d.point.data()});
 }
 
 }  // namespace detail
@@ -295,16 +356,23 @@ DistanceField distance_field(Executor<Backend>& exec, const MaterialBricks& b, f
   d.nearest = arena.permanent<std::uint32_t>(d.tiles.slots());
   Arena::Scope scope(arena);
   Array<std::uint32_t> other = arena.temporary<std::uint32_t>(d.tiles.slots());
-  detail::find_interface_points(exec, b, d, other);
+  Array<std::uint32_t> known[2] = {arena.temporary<std::uint32_t>(d.tiles.count()),
+                                   arena.temporary<std::uint32_t>(d.tiles.count())};
+  for (Array<std::uint32_t>& each : known) each.fill_bytes(0);
+  detail::find_interface_points(exec, b, d, other, known[0]);
+  Array<Float4> position = arena.temporary<Float4>(d.point.size());
+  exec.for_each(std::int64_t(d.point.size()), detail::CopyPosition{d.point.data(), position.data()});
   int jump = 1;
   while (2 * jump * std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z}) < reach) jump *= 2;
-  other.fill_bytes(0xff);  // where the lattice does not hold a tile's cells
+  other.fill_bytes(0xff);  // `none`, where nothing is known and where the lattice does not hold a tile's cells
   std::uint32_t *from = d.nearest.data(), *to = other.data();
   const auto flood = [&](int distance) {
     DistanceFieldView view = d.view();
     view.nearest = from;
-    exec.for_each_team(d.tiles.count(), detail::JumpFlood{view, distance, to});
+    exec.for_each_team(d.tiles.count(),
+                       detail::JumpFlood{view, position.data(), distance, to, known[0].data(), known[1].data()});
     std::swap(from, to);
+    std::swap(known[0], known[1]);
   };
   for (; jump >= 1; jump /= 2) flood(jump);
   flood(1);

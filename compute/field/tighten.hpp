@@ -6,6 +6,7 @@
 
 #include "compute/field/build_material_bricks.hpp"
 #include "compute/field/slopes.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre {
 
@@ -85,30 +86,30 @@ struct SmoothBrick {
     float* to = smooth + std::size_t(brick) * brick_voxels;
     for (int g = 0; g < Gaussians; ++g) {
       const float* tap = taps[g].tap;
-      team.each(wide * wide, [&](int line) {
-        const float* from = halo + line * wide;
-        float sum[block_size] = {};
-        for (int k = 0; k <= 2 * Reach; ++k)
-          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * from[x + k];
-        for (int x = 0; x < block_size; ++x) rows[line * block_size + x] = sum[x];
-      });
+      team.each(wide * wide,
+                [&](int line) { store_eight(rows + line * block_size, weighted(tap, halo + line * wide, 1)); });
       team.each(wide * block_size, [&](int line) {  // (y, z) of the result in a wide stack of slabs
         const int y = line % block_size, z = line / block_size;
-        float sum[block_size] = {};
-        for (int k = 0; k <= 2 * Reach; ++k)
-          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * rows[(z * wide + y + k) * block_size + x];
-        for (int x = 0; x < block_size; ++x) slabs[line * block_size + x] = sum[x];
+        store_eight(slabs + line * block_size, weighted(tap, rows + (z * wide + y) * block_size, block_size));
       });
       team.each(block_size * block_size, [&](int line) {
-        float sum[block_size] = {};
-        for (int k = 0; k <= 2 * Reach; ++k)
-          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * slabs[(line + k * block_size) * block_size + x];
-        for (int x = 0; x < block_size; ++x) to[line * block_size + x] += share[g] * sum[x];
+        const Eight sum = weighted(tap, slabs + line * block_size, block_size * block_size);
+        float* at = to + line * block_size;
+        store_eight(at, load_eight(at) + sum * share[g]);
       });
     }
   }
 
  private:
+  static_assert(block_size == 8);
+
+  /// The sum of the eight values `stride` apart from each other, times the taps.
+  NACRE_HD_INLINE static Eight weighted(const float* tap, const float* from, int stride) {
+    Eight sum = eight(0);
+    for (int k = 0; k <= 2 * Reach; ++k) sum = sum + load_eight(from + k * stride) * tap[k];
+    return sum;
+  }
+
   /// Numbers of the 27 bricks of the same material around; false where none of them has changed.
   NACRE_HD bool find_neighbours(Team& team, std::uint32_t brick, std::uint32_t* around) const {
     const std::uint32_t block = brick_block[brick];

@@ -14,11 +14,18 @@ namespace nacre {
 namespace {
 
 /// Of the embedding, for a closest-point cell's area of a boundary: its own cells and those around it.
-constexpr double cells_on_area = 14, bytes_of_cell = 18;
+constexpr double cells_on_area = 18, bytes_of_cell = 18;
 /// Of cells of the lattice that a boundary runs through, on both of its sides, for the area of one.
 constexpr double boundary_cells = 1.7;
 /// Delaunay's cells, triangles, their neighbours and what repair and improvement keep beside them.
-constexpr double host_bytes_of_particle = 1500;
+constexpr double host_bytes_of_particle = 1250;
+
+double largest_size(const MeshParameters& parameters) { return std::max(parameters.min_size, parameters.max_size); }
+
+/// Half-way between the sizes, but never far from the smallest one: bodies are as thin as that somewhere.
+double usual_size(const MeshParameters& parameters) {
+  return std::min(0.5 * (parameters.min_size + largest_size(parameters)), 1.5 * parameters.min_size);
+}
 
 std::string one_decimal(double x) {
   char text[32];
@@ -36,9 +43,9 @@ double MemoryEstimate::peak() const { return fields + std::max(building, particl
 MemoryEstimate estimate_memory(const VolumeFacts& facts, const MeshParameters& parameters) {
   const double brick = brick_voxels * sizeof(float), tile = Lattice::tile_cells * sizeof(float);
   const double points = boundary_cells * facts.area / (facts.spacing * facts.spacing);
-  const double size = std::max(parameters.min_size, parameters.max_size);
-  const double cells_per_voxel = std::min(1.5 / size, double(parameters.subcells));
-  const double particles = particles_on(facts.area, size);
+  const double cells_per_voxel = std::min(1.5 / (0.9 * largest_size(parameters)), double(parameters.subcells));
+  const double particles =
+      parameters.particles > 0 ? parameters.particles : particles_on(facts.area, usual_size(parameters));
   const bool tightens = parameters.tighten > 0;
   MemoryEstimate estimate;
   estimate.fields =
@@ -50,11 +57,12 @@ MemoryEstimate estimate_memory(const VolumeFacts& facts, const MeshParameters& p
   return estimate;
 }
 
-double size_that_fits(const VolumeFacts& facts, const MeshParameters& parameters, double free) {
-  MeshParameters larger = parameters;
-  for (double size = std::max(parameters.min_size, parameters.max_size); size < 64; size *= 1.05) {
-    larger.max_size = size;
-    if (estimate_memory(facts, larger).peak() <= free) return std::ceil(size * 10) / 10;
+double factor_that_fits(const VolumeFacts& facts, const MeshParameters& parameters, double free) {
+  for (double factor = 1; factor < 20; factor *= 1.02) {
+    MeshParameters larger = parameters;
+    larger.min_size *= factor;
+    larger.max_size *= factor;
+    if (estimate_memory(facts, larger).peak() <= free) return factor;
   }
   return 0;
 }
@@ -70,13 +78,14 @@ double require_memory(const VolumeFacts& facts, const MeshParameters& parameters
     estimate.triangulation = 0;
   }
   if (estimate.peak() > free) {
-    const double size = size_that_fits(facts, parameters, free);
+    const double factor = factor_that_fits(facts, parameters, free);
     const double voxels = std::sqrt(estimate.peak() / std::max(free, 1.0));  // memory goes with the area
     throw Error("not enough memory for the mesh of this volume",
                 "it takes about " + gigabytes(estimate.peak()) + ", " + gigabytes(free) + " are free",
-                device.too_small(size > 0 ? "raise `max_size`: " + one_decimal(size) + " fits"
-                                          : "crop the volume, or resample it: voxels " + one_decimal(voxels) +
-                                                " times as large fit"));
+                device.too_small(factor > 0 ? "raise `min_size` to " + one_decimal(parameters.min_size * factor) +
+                                                  " and `max_size` to " + one_decimal(largest_size(parameters) * factor)
+                                            : "crop the volume, or resample it to voxels " + one_decimal(voxels) +
+                                                  " times as large"));
   }
   return before + estimate.peak();
 }

@@ -24,12 +24,12 @@ struct MemoryEstimate {
   double peak() const;
 };
 
-/// By what each element takes; `triangulation` by what was measured. Particles are counted as if all of the boundaries
-/// had the largest size: where things are thin there are more.
+/// By what each element takes; `triangulation` by what was measured. The sizes of particles are those that the
+/// parameters ask for: where much is thinner than `min_size` there are more.
 MemoryEstimate estimate_memory(const VolumeFacts& facts, const MeshParameters& parameters);
 
-/// The smallest size (voxels) that `free` bytes are enough for; 0 where the fields alone take more.
-double size_that_fits(const VolumeFacts& facts, const MeshParameters& parameters, double free);
+/// By how much `min_size` and `max_size` must be larger for `free` bytes to be enough; 0 where that would not help.
+double factor_that_fits(const VolumeFacts& facts, const MeshParameters& parameters, double free);
 
 /// What the run will take at its peak, with what was taken before: by the process on the CPU, else by the device, of
 /// whose memory `room` is free and `taken` in use. Throws Error where there is not so much.

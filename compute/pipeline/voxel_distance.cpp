@@ -264,6 +264,7 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
     if (stop && *stop) return;
     const Part& part = parts[i];
     spread[i] = from_triangles(voxels, trees[part.material], part.material, voxel, part.begin, part.begin + part_size);
+    if (i % 8 == 0) volume.material.let_go(0, volume.material.size());  // of a mapped file: what was looked at piles up
   });
   check_stop(stop);
   std::vector<Spread> triangles(materials);

@@ -7,12 +7,21 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
+#include <string_view>
 
 #include "compute/device/error.hpp"
 
 namespace nacre {
 namespace {
+
+/// A file that was shortened has no bytes where they were mapped.
+extern "C" void end_without_file(int) {
+  constexpr std::string_view line = "nacre: a volume's file became shorter while it was read; start again\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, line.data(), line.size());
+  ::_exit(1);
+}
 
 std::size_t bytes_of_page() { return std::size_t(::sysconf(_SC_PAGESIZE)); }
 
@@ -28,6 +37,7 @@ MappedFile::MappedFile(const std::filesystem::path& path, std::size_t offset, st
   ::close(file);
   if (at == MAP_FAILED) throw Error(path.string() + " cannot be mapped", std::strerror(why), "copy it to a local disk");
   base_ = static_cast<std::byte*>(at);
+  std::signal(SIGBUS, end_without_file);
 }
 
 MappedFile::~MappedFile() { ::munmap(base_, std::max<std::size_t>(length_, 1)); }

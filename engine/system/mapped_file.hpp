@@ -8,7 +8,8 @@
 
 namespace nacre {
 
-/// Bytes of a file that must not change as long as this lives.
+/// Bytes of a file that must not change as long as this lives. One that becomes shorter ends the program, with status 1
+/// and one line.
 class MappedFile : public HeldBytes {
  public:
   /// `bytes` of it from `offset` on. Throws Error where that cannot be.

@@ -67,7 +67,7 @@ def balls_and_shells(dims):
 
 CASES = {
     "organs": ((512, 512, 1024), organs, "--min-size 2 --max-size 3"),
-    "shells": ((1100, 1100, 2048), shells, "--min-size 1 --max-size 3"),
+    "shells": ((1100, 1100, 2048), shells, "--min-size 3 --max-size 5"),
     "balls": ((2048, 2048, 2000), balls_and_shells, "--min-size 2 --max-size 3"),
     "small": ((96, 80, 150), organs, "--min-size 1 --max-size 2"),
 }
@@ -119,19 +119,19 @@ def run(program, volume, options, folder):
         child.returncode = os.waitstatus_to_exitcode(status)
     seconds = time.time() - begun
     if child.returncode != 0:
-        return None, seconds, usage.ru_maxrss / 2**20
+        return None, seconds, usage.ru_maxrss * 1024 / 1e9
     with open(report, encoding="utf-8") as text:
-        return json.load(text), seconds, usage.ru_maxrss / 2**20
+        return json.load(text), seconds, usage.ru_maxrss * 1024 / 1e9
 
 
 def show(case, dims, report, seconds, memory):
     """One row of a table."""
-    head = f"{case} {'x'.join(map(str, dims))}: {seconds:.1f} s, peak {memory:.2f} GiB"
+    head = f"{case} {'x'.join(map(str, dims))}: {seconds:.1f} s, peak {memory:.2f} GB"
     if report is None:
         print(head, "- failed", flush=True)
         return
     stages = {stage["name"]: stage["seconds"] for stage in report["stages"]}
-    print(head, f"- {report['mesh']['triangles']} triangles, sound: {report['mesh']['topology']['sound']}")
+    print(head, f"- {report['mesh']['triangles']} triangles, sound: {report['mesh']['sound']}")
     print("  ", ", ".join(f"{name} {value:.1f}" for name, value in stages.items()), flush=True)
 
 
@@ -145,6 +145,8 @@ def main():
     options.add_argument("--options", help="of nacre mesh, instead of the case's own")
     chosen = options.parse_args()
     failed = False
+    if unknown := set(chosen.cases) - set(CASES):
+        options.error(f"no case {', '.join(sorted(unknown))}")
     with tempfile.TemporaryDirectory(dir=chosen.folder) as folder:
         for case in chosen.cases:
             dims, shapes, own = CASES[case]
