@@ -48,7 +48,7 @@ MeshVolume read_input(const MeshOptions& options, const Session& session, StageT
   StageTimers::Scope scope(timers, "read");
   const auto say_warning = [&](const std::string& warning) { warn(options.common, warning); };
   const auto read = [&] {
-    return read_mesh_volumes(session, session.settings.materials, &interrupt_flag(), say_warning);
+    return read_mesh_volumes(session, session.settings.materials, &interrupt_flag(), say_warning, true);
   };
   const bool sample = !session.sample.empty();
   const std::vector<Volume> volumes = sample ? with_usage_errors(read) : read();
@@ -73,10 +73,11 @@ void check_interrupt(bool kept) {
 }
 
 MeshResult compute(const MeshOptions& options, const Settings& settings, const MeshInput& input,
-                   const MeshVolume& volume, MeshPipeline& pipeline, Progress& bar) {
+                   const MeshVolume& volume, const InputWatch& watch, MeshPipeline& pipeline, Progress& bar) {
   MeshResult result;
   if (wants_cells(options) && pipeline.parameters.triangles == "auto") pipeline.parameters.triangles = "delaunay";
   pipeline.load(volume);
+  watch.check();  // large volumes are read here
   pipeline.build_fields();
   bar.clear();
   const FieldRemarks said = remarks_on_fields(pipeline.info(), settings.mesh);
@@ -143,7 +144,7 @@ void run_mesh(const MeshOptions& options, const KnobOptions& knob_options) {
   pipeline->parameters = session.settings.mesh;
   show_progress(*pipeline, bar);
 
-  const MeshResult result = compute(options, session.settings, input, volume, *pipeline, bar);
+  const MeshResult result = compute(options, session.settings, input, volume, watch, *pipeline, bar);
   origin.interrupted = result.interrupted;
   bar.update("write", 0.99);
   const std::vector<std::string> outputs =

@@ -90,6 +90,8 @@ class Arena {
 
   std::size_t mark() const { return head_; }       ///< where the head is now
   void rewind(std::size_t mark) { head_ = mark; }  ///< drops every permanent array made after `mark`
+  /// Lets others have the memory of what was dropped. It comes back when it is used again.
+  void give_back() { device_.give_back(block_, head_, tail_); }
   std::size_t free_bytes() const { return tail_ - head_; }
   /// As far as the device has memory for it now: for estimates that are made before the work.
   std::size_t room_bytes() const { return device_.obtainable_bytes(block_, head_, tail_); }

@@ -91,6 +91,13 @@ void CpuDevice::deallocate(void* block, std::size_t bytes) noexcept {
   munmap(block, std::max<std::size_t>(bytes, 1));
 }
 
+void CpuDevice::give_back(void* block, std::size_t from, std::size_t to) {
+  constexpr std::size_t page = std::size_t(2) << 20;  // a huge one
+  const auto begin = reinterpret_cast<std::uintptr_t>(block);
+  const std::uintptr_t first = (begin + from + page - 1) / page * page, last = (begin + to) / page * page;
+  if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_DONTNEED);
+}
+
 void CpuDevice::copy_to_device(void* to, const void* host, std::size_t bytes) {
   Recording::forbid("a copy to the device");
   Access access(*this);

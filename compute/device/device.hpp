@@ -35,6 +35,7 @@ class Device {
   virtual std::string backend() const = 0;  ///< "cpu" or "cuda"
   virtual std::string name() const = 0;     ///< the processor, for the report
   virtual int threads() const = 0;          ///< worker threads (1 for CUDA)
+  virtual bool shares_host_memory() const { return false; }
   /// What the user should know about it before work begins, as a sentence; empty where there is nothing to say.
   virtual std::string remark() const { return {}; }
 
@@ -46,6 +47,8 @@ class Device {
   virtual void release(void* block, std::size_t bytes) noexcept { deallocate(block, bytes); }
   /// Bytes `from` to `to` of a reserved block will be used. Throws Error where there is no memory left.
   virtual void commit(void* /*block*/, std::size_t /*from*/, std::size_t /*to*/) {}
+  /// What bytes `from` to `to` of a reserved block hold is not needed any more: others may have the memory.
+  virtual void give_back(void* /*block*/, std::size_t /*from*/, std::size_t /*to*/) {}
   /// How much of bytes `from` to `to` of a reserved block there is memory for now: others may have taken it meanwhile.
   virtual std::size_t obtainable_bytes(const void* /*block*/, std::size_t from, std::size_t to) const {
     return to - from;

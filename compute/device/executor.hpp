@@ -125,6 +125,15 @@ NACRE_HD_INLINE std::uint32_t atomic_add(std::uint32_t* to, std::uint32_t value)
 #endif
 }
 
+/// Sets bits.
+NACRE_HD_INLINE void atomic_or(std::uint64_t* to, std::uint64_t bits) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(bits));
+#else
+  __atomic_fetch_or(to, bits, __ATOMIC_RELAXED);
+#endif
+}
+
 /// Writes a flag that several threads may write at once with the same value.
 NACRE_HD_INLINE void relaxed_store(std::uint32_t* to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)

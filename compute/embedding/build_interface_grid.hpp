@@ -23,16 +23,18 @@ struct InterfaceGrid {
   int crowded_points = 0;  ///< of the points, those where more than four materials meet
   int crowded_cells = 0;   ///< coarse cells with more junctions than could be distinguished
   std::int64_t bricks = 0;
+  Array<CoarseWord> word;
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
   Array<EmbeddedCell> cell;
   float size_unit = 1;
 
   InterfaceGridView view() const {
-    return {coarse, cells_per_voxel, brick_start.data(), brick_interface.data(), cell.data(), size_unit};
+    return {coarse, cells_per_voxel, word.data(), brick_start.data(), brick_interface.data(), cell.data(), size_unit};
   }
   std::int64_t cells() const { return bricks * 64; }
   std::int64_t bytes() const {
-    return std::int64_t(brick_start.bytes() + brick_interface.bytes() + brick_coarse.bytes() + cell.bytes());
+    return std::int64_t(word.bytes() + brick_start.bytes() + brick_interface.bytes() + brick_coarse.bytes() +
+                        cell.bytes());
   }
 };
 
@@ -100,21 +102,27 @@ struct UniqueBricks {
   }
 };
 
-/// First brick of each coarse cell, by bisection in the bricks' sorted cells.
-struct FirstBrick {
+/// Whether a brick is the first of its coarse cell.
+struct FirstOfCoarse {
   const std::uint32_t* brick_coarse;
-  std::uint32_t bricks;
+  std::uint32_t* first;
+  NACRE_HD void operator()(std::int64_t i) const {
+    first[i] = i == 0 || brick_coarse[i] != brick_coarse[i - 1] ? 1 : 0;
+  }
+};
+
+/// Notes the first brick of each coarse cell that has some.
+struct StartCoarse {
+  const std::uint32_t* brick_coarse;
+  const std::uint32_t* number;  ///< how many coarse cells have bricks before this one
   std::uint32_t* start;
-  NACRE_HD void operator()(std::int64_t c) const {
-    std::uint32_t low = 0, high = bricks;
-    while (low < high) {
-      const std::uint32_t middle = low + (high - low) / 2;
-      if (std::int64_t(brick_coarse[middle]) < c)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    start[c] = low;
+  CoarseWord* word;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t c = brick_coarse[i];
+    if (i > 0 && c == brick_coarse[i - 1]) return;
+    start[number[i]] = std::uint32_t(i);
+    atomic_or(&word[c >> 6].mask, std::uint64_t(1) << (c & 63));
+    if (i == 0 || brick_coarse[i - 1] >> 6 != c >> 6) word[c >> 6].first = number[i];
   }
 };
 
@@ -222,6 +230,24 @@ struct BorrowClosestPoint {
   }
 };
 
+/// How the bricks of a coarse cell are found.
+template <class Backend>
+void index_coarse_cells(Executor<Backend>& exec, InterfaceGrid& grid) {
+  Arena& arena = exec.arena();
+  const std::int64_t coarse = std::int64_t(grid.coarse.x) * grid.coarse.y * grid.coarse.z;
+  grid.word = arena.permanent<CoarseWord>((coarse + 63) / 64);
+  grid.word.fill_bytes(0);
+  Arena::Scope scope(arena);
+  Array<std::uint32_t> number = arena.temporary<std::uint32_t>(grid.bricks);
+  exec.for_each(grid.bricks, FirstOfCoarse{grid.brick_coarse.data(), number.data()});
+  const std::uint32_t used = exec.exclusive_scan(number.data(), number.data(), grid.bricks);
+  grid.brick_start = arena.permanent<std::uint32_t>(used + 1);
+  exec.for_each(grid.bricks,
+                StartCoarse{grid.brick_coarse.data(), number.data(), grid.brick_start.data(), grid.word.data()});
+  const std::uint32_t end[] = {std::uint32_t(grid.bricks)};
+  part_of(arena, grid.brick_start, used, 1).upload(end);
+}
+
 }  // namespace detail
 
 /// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where
@@ -236,8 +262,6 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   for (int axis = 0; axis < 3; ++axis)
     grid.coarse[axis] =
         int(std::ceil(double(n[axis]) / b.cells_per_unit[axis] * cells_per_voxel / InterfaceGridView::sub));
-  const std::int64_t coarse = std::int64_t(grid.coarse.x) * grid.coarse.y * grid.coarse.z;
-  grid.brick_start = arena.permanent<std::uint32_t>(coarse + 1);
   std::uint64_t total = 0;
   Array<std::uint64_t> keys;
   Arena::Scope scope(arena);
@@ -268,8 +292,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   grid.brick_coarse = arena.permanent<std::uint32_t>(grid.bricks);
   exec.for_each(
       total, detail::UniqueBricks{keys.data(), number.data(), grid.brick_interface.data(), grid.brick_coarse.data()});
-  exec.for_each(coarse + 1,
-                detail::FirstBrick{grid.brick_coarse.data(), std::uint32_t(grid.bricks), grid.brick_start.data()});
+  detail::index_coarse_cells(exec, grid);
   grid.cell = arena.permanent<EmbeddedCell>(grid.cells());
   grid.size_unit = 1.1f * size.largest / 65535;  // beside the interface it may be larger
   Array<std::uint8_t> found = arena.temporary<std::uint8_t>(grid.cells());

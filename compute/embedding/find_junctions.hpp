@@ -8,6 +8,7 @@
 #include "compute/device/executor.hpp"
 #include "compute/field/interface.hpp"
 #include "compute/field/sizing.hpp"
+#include "compute/math/bits.hpp"
 
 namespace nacre {
 
@@ -103,12 +104,8 @@ struct SearchCoarseCell {
     const Int3 low = max(voxel(Vec3f(b * Int3(4)) / cells_per_voxel), Int3(0));
     const Int3 high = min(voxel(Vec3f((b + Int3(1)) * Int3(4)) / cells_per_voxel) + Int3(1), n - Int3(1));
     if (low.x > high.x || low.y > high.y || low.z > high.z) return false;
-    const std::uint16_t own = field.voxel_material[field.voxel_number(low.x, low.y, low.z)];
-    for (int z = low.z; z <= high.z; ++z)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x)
-          if (field.voxel_material[field.voxel_number(x, y, z)] != own) return true;
-    return false;
+    const std::uint16_t own = field.material(low);
+    return !field.each_material(low, high + Int3(1), [&](std::uint16_t m) { return m == own; });
   }
 
   NACRE_HD void search(const Vec3f& p, const Int3& local, CellJunctions& result) const {
@@ -185,21 +182,19 @@ struct SearchCoarseCell {
   }
 
   NACRE_HD void collect(const Int3& low, int width, std::uint32_t* material, int& count, bool& complete) const {
-    for (int z = low.z; z < low.z + width; ++z)
-      for (int y = low.y; y < low.y + width; ++y)
-        for (int x = low.x; x < low.x + width; ++x) {
-          const std::uint32_t m = field.voxel_material[field.voxel_number(x, y, z)];
-          int position = 0;
-          while (position < count && material[position] < m) ++position;
-          if (position < count && material[position] == m) continue;
-          if (count == most) {
-            complete = false;
-            continue;
-          }
-          for (int j = count; j > position; --j) material[j] = material[j - 1];
-          material[position] = m;
-          ++count;
-        }
+    field.each_material(low, low + Int3(width), [&](std::uint32_t m) {
+      int position = 0;
+      while (position < count && material[position] < m) ++position;
+      if (position < count && material[position] == m) return true;
+      if (count == most) {
+        complete = false;
+        return true;
+      }
+      for (int j = count; j > position; --j) material[j] = material[j - 1];
+      material[position] = m;
+      ++count;
+      return true;
+    });
   }
 };
 
@@ -207,25 +202,79 @@ struct SearchCoarseCell {
 /// alike where rounding decides.
 struct SearchJunctions {
   SearchCoarseCell search;
-  std::uint32_t* count;    // when it counts
-  std::uint32_t* crowded;  // 1 where something was left out
+  const std::uint32_t* cell;  ///< those that are searched
+  std::uint32_t* count;       // when it counts
+  std::uint32_t* crowded;     // 1 where something was left out
   const std::uint32_t* start = nullptr;
   FoundJunction* found = nullptr;
   std::uint64_t* packed = nullptr;
 
-  NACRE_HD void operator()(std::int64_t c) const {
+  NACRE_HD void operator()(std::int64_t i) const {
     CellJunctions junctions;
-    if (found && start[c] == start[c + 1]) return;
-    search(c, junctions);
+    if (found && start[i] == start[i + 1]) return;
+    search(cell[i], junctions);
     if (!found) {
-      count[c] = std::uint32_t(junctions.count);
-      crowded[c] = junctions.complete ? 0 : 1;
+      count[i] = std::uint32_t(junctions.count);
+      crowded[i] = junctions.complete ? 0 : 1;
       return;
     }
     for (int k = 0; k < junctions.count; ++k) {
-      found[start[c] + k] = {junctions.junction[k], std::uint32_t(c), junctions.window[k]};
-      packed[start[c] + k] = junctions.junction[k].packed;
+      found[start[i] + k] = {junctions.junction[k], cell[i], junctions.window[k]};
+      packed[start[i] + k] = junctions.junction[k].packed;
     }
+  }
+};
+
+/// Marks the coarse cells around which there can be voxels of more than one material: those near blocks with a list.
+struct MarkCoarseCells {
+  MaterialBricksView field;
+  const std::uint32_t* listed;
+  Int3 coarse;
+  float cells_per_voxel;
+  std::uint64_t* marked;  ///< a bit per coarse cell
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Int3 block = field.block(listed[i]);
+    Int3 low, high;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float per_voxel = cells_per_voxel / (4 * field.cells_per_unit[axis]);
+      low[axis] = int(max(std::floor((float(block[axis] * block_size) - 2) * per_voxel), 0.0f));
+      high[axis] = int((float((block[axis] + 1) * block_size) + 2) * per_voxel);
+    }
+    high = min(high, coarse - Int3(1));
+    for (int z = low.z; z <= high.z; ++z)
+      for (int y = low.y; y <= high.y; ++y) {
+        const std::int64_t row = (std::int64_t(z) * coarse.y + y) * coarse.x;
+        mark(row + low.x, row + high.x);
+      }
+  }
+
+ private:
+  /// Cells `first` to `last`, both included.
+  NACRE_HD void mark(std::int64_t first, std::int64_t last) const {
+    constexpr std::uint64_t all = ~std::uint64_t(0);
+    for (std::int64_t w = first >> 6; w <= last >> 6; ++w) {
+      const std::uint64_t from = w == first >> 6 ? all << (first & 63) : all;
+      const std::uint64_t to = w == last >> 6 ? all >> (63 - (last & 63)) : all;
+      atomic_or(marked + w, from & to);
+    }
+  }
+};
+
+struct CountMarked {
+  const std::uint64_t* marked;
+  std::uint32_t* count;
+  NACRE_HD void operator()(std::int64_t w) const { count[w] = std::uint32_t(count_bits(marked[w])); }
+};
+
+struct ListMarked {
+  const std::uint64_t* marked;
+  const std::uint32_t* start;
+  std::uint32_t* cell;
+  NACRE_HD void operator()(std::int64_t w) const {
+    std::uint32_t* to = cell + start[w];
+    for (int k = 0; k < 64; ++k)
+      if (marked[w] >> k & 1) *to++ = std::uint32_t(w * 64 + k);
   }
 };
 
@@ -269,29 +318,52 @@ struct FindJunctionPoints {
 
 }  // namespace detail
 
+namespace detail {
+
+/// The coarse cells that are worth searching, ascending. Temporary memory.
+template <class Backend>
+Array<std::uint32_t> cells_to_search(Executor<Backend>& exec, const MaterialBricks& b, const Int3& coarse,
+                                     float cells_per_voxel) {
+  Arena& arena = exec.arena();
+  const std::int64_t words = (std::int64_t(coarse.x) * coarse.y * coarse.z + 63) / 64;
+  Array<std::uint64_t> marked = arena.temporary<std::uint64_t>(words);
+  Array<std::uint32_t> start = arena.temporary<std::uint32_t>(words);
+  marked.fill_bytes(0);
+  exec.for_each(std::int64_t(b.listed.size()),
+                MarkCoarseCells{b.view(), b.listed.data(), coarse, cells_per_voxel, marked.data()});
+  exec.for_each(words, CountMarked{marked.data(), start.data()});
+  const std::uint32_t cells = exec.exclusive_scan(start.data(), start.data(), words);
+  Array<std::uint32_t> cell = arena.temporary<std::uint32_t>(cells);
+  exec.for_each(words, ListMarked{marked.data(), start.data(), cell.data()});
+  return cell;
+}
+
+}  // namespace detail
+
 /// Searches the cells along the interfaces. Temporary memory.
 template <class Backend>
 JunctionSearch find_junctions(Executor<Backend>& exec, const MaterialBricks& b, const Int3& coarse,
                               float cells_per_voxel) {
   Arena& arena = exec.arena();
-  const std::int64_t cells = std::int64_t(coarse.x) * coarse.y * coarse.z;
-  if (cells >= std::int64_t(1) << 32)
+  if (std::int64_t(coarse.x) * coarse.y * coarse.z >= std::int64_t(1) << 32)
     throw Error("embedding too large", "more than 2^32 coarse cells", "lower `mesh_subcells`");
   const detail::SearchCoarseCell search{b.view(), coarse, cells_per_voxel};
+  const Array<std::uint32_t> cell = detail::cells_to_search(exec, b, coarse, cells_per_voxel);
+  const auto cells = std::int64_t(cell.size());
   JunctionSearch result;
   Array<std::uint32_t> start = arena.temporary<std::uint32_t>(cells + 1);
   start.fill_bytes(0);
   {
     Arena::Scope scope(arena);
     Array<std::uint32_t> crowded = arena.temporary<std::uint32_t>(cells);
-    exec.for_each(cells, detail::SearchJunctions{search, start.data(), crowded.data()});
+    exec.for_each(cells, detail::SearchJunctions{search, cell.data(), start.data(), crowded.data()});
     result.crowded_cells = int(exec.exclusive_scan(crowded.data(), crowded.data(), cells));
   }
   result.count = exec.exclusive_scan(start.data(), start.data(), cells + 1);
   result.found = arena.temporary<FoundJunction>(result.count);
   Array<std::uint64_t> packed = arena.temporary<std::uint64_t>(result.count);
-  exec.for_each(cells,
-                detail::SearchJunctions{search, nullptr, nullptr, start.data(), result.found.data(), packed.data()});
+  exec.for_each(cells, detail::SearchJunctions{search, cell.data(), nullptr, nullptr, start.data(), result.found.data(),
+                                               packed.data()});
   exec.sort(packed.data(), result.count);
   Array<std::uint32_t> number = arena.temporary<std::uint32_t>(result.count);
   exec.for_each(result.count, detail::FirstOfJunction{packed.data(), number.data()});

@@ -3,6 +3,7 @@
 
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/field/interface.hpp"
+#include "compute/math/bits.hpp"
 
 namespace nacre {
 
@@ -64,13 +65,25 @@ NACRE_HD_INLINE Row row(const EmbeddedCell& a, const EmbeddedCell& b, const Embe
 }
 #endif
 
+/// Of 64 coarse cells, x fastest, those that have bricks, and which of all that have some the first of them is.
+struct CoarseWord {
+  std::uint64_t mask = 0;
+  std::uint32_t first = 0;
+};
+
+/// The bricks of a coarse cell: `first` to before `last`.
+struct BrickRange {
+  std::uint32_t first = 0, last = 0;
+};
+
 /// A coarse grid over the volume whose cells list bricks of 4^3 cells, one per interface nearby. Lengths are in cells,
 /// `cells_per_voxel` to a voxel; cell (i, j, k) has its centre at (i, j, k) + 0.5.
 struct InterfaceGridView {
   static constexpr int sub = 4;
   Int3 coarse{};  ///< extent of the coarse grid
   float cells_per_voxel = 2;
-  const std::uint32_t* brick_start = nullptr;      ///< per coarse cell, x fastest, and one more
+  const CoarseWord* word = nullptr;                ///< per 64 coarse cells, x fastest
+  const std::uint32_t* brick_start = nullptr;      ///< per coarse cell that has bricks, and one more
   const std::uint32_t* brick_interface = nullptr;  ///< ascending within a coarse cell
   /// Closest points. The margin is by how much the interface's materials lead over all others there; negative beyond
   /// the rim of the interface.
@@ -80,6 +93,14 @@ struct InterfaceGridView {
   NACRE_HD Int3 dims() const { return coarse * Int3(sub); }
   NACRE_HD std::int64_t coarse_number(const Int3& c) const {
     return (std::int64_t(c.z) * coarse.y + c.y) * coarse.x + c.x;
+  }
+  NACRE_HD_INLINE BrickRange bricks(const Int3& c) const {
+    const std::int64_t n = coarse_number(c);
+    const CoarseWord w = word[n >> 6];
+    const std::uint64_t bit = std::uint64_t(1) << (n & 63);
+    if (!(w.mask & bit)) return {};
+    const std::uint32_t* start = brick_start + w.first + count_bits(w.mask & (bit - 1));
+    return {start[0], start[1]};
   }
   /// Direction and h (voxels) of cell `i`.
   NACRE_HD Float4 direction(std::int64_t i) const {
@@ -101,8 +122,8 @@ struct InterfaceBricks {
   NACRE_HD Int3 dims() const { return grid.dims(); }
   NACRE_HD bool inside(const Int3& cell) const { return is_within(cell, dims()); }
   NACRE_HD std::uint32_t brick(int bx, int by, int bz) const {
-    const std::int64_t c = grid.coarse_number({bx, by, bz});
-    for (std::uint32_t k = grid.brick_start[c]; k < grid.brick_start[c + 1]; ++k)
+    const BrickRange range = grid.bricks({bx, by, bz});
+    for (std::uint32_t k = range.first; k < range.last; ++k)
       if (grid.brick_interface[k] == interface) return k;
     return none;
   }

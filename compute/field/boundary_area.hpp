@@ -35,11 +35,14 @@ struct FacesOfRow {
 
 }  // namespace detail
 
+/// What boundaries of all directions have of it: their faces of voxels are one and a half times their area.
+inline constexpr double usual_over_least_area = 1.1 * 1.7320508 / 1.5;
+
 /// A bound for the area of all boundaries, in squares of the smallest spacing, from below: a plane has at most sqrt(3)
 /// times its area in faces of voxels; what smoothing takes off single voxels and the like is a tenth more.
 template <class Backend>
 double least_boundary_area(Executor<Backend>& exec, const MaterialBricks& b) {
-  const VoxelEdges edges{b.view()};
+  const VoxelEdges edges(b);
   const detail::FaceCount faces =
       exec.reduce(edges.rows(), detail::FaceCount{}, detail::FacesOfRow{edges}, detail::AddFaceCounts{});
   const Vec3d spacing{1 / double(b.cells_per_unit.x), 1 / double(b.cells_per_unit.y), 1 / double(b.cells_per_unit.z)};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compute/device/executor.hpp"
+#include "compute/field/block_scan.hpp"
 #include "compute/field/distance_ridges.hpp"
 #include "compute/field/material_bricks.hpp"
 
@@ -24,18 +25,26 @@ struct MaterialBricks {
   Array<std::uint32_t> block_start;
   Array<std::uint16_t> brick_material;
   Array<std::uint32_t> brick_block;
+  Array<std::uint32_t> block_content;
+  Array<std::uint32_t> listed;  ///< the blocks with a list, ascending: per brick of voxels
   Array<std::uint16_t> voxel_material;
   Array<float> value;
 
   MaterialBricksView view() const {
-    return {blocks,       cells_per_unit,       kernel, block_start.data(), brick_material.data(),
-            value.data(), voxel_material.data()};
+    return {blocks,
+            cells_per_unit,
+            kernel,
+            block_start.data(),
+            brick_material.data(),
+            value.data(),
+            block_content.data(),
+            voxel_material.data()};
   }
   std::int64_t block_count() const { return std::int64_t(blocks.x) * blocks.y * blocks.z; }
   std::int64_t voxel_count() const { return block_count() * brick_voxels; }
   std::int64_t bytes() const {
-    return std::int64_t(block_start.bytes() + brick_material.bytes() + brick_block.bytes() + voxel_material.bytes() +
-                        value.bytes());
+    return std::int64_t(block_start.bytes() + brick_material.bytes() + brick_block.bytes() + block_content.bytes() +
+                        listed.bytes() + voxel_material.bytes() + value.bytes());
   }
 };
 
@@ -43,6 +52,12 @@ struct MaterialBricks {
 inline constexpr int max_block_materials = 64;
 
 namespace detail {
+
+/// `count` elements of an array from `first` on.
+template <class T>
+Array<T> part_of(Arena& arena, const Array<T>& array, std::size_t first, std::size_t count) {
+  return {arena.device(), array.data() + first, count};
+}
 
 /// Position of an element of the padded volume in the file's; outside of it material 0 begins.
 struct PaddedVolume {
@@ -58,81 +73,67 @@ struct PaddedVolume {
   }
 };
 
-struct PadMaterials {
-  PaddedVolume volume;
-  const std::uint16_t* from;
-  std::uint16_t* to;
-  NACRE_HD void operator()(std::int64_t i) const {
-    const Int3 v = volume.voxel(i);
-    to[i] = volume.inside(v) ? from[volume.number(v)] : 0;
-  }
-};
-
-/// The materials within 4 voxels of a block, ascending; calls visit(material) if there are two or more. Returns how
-/// many there are.
+/// The materials within 4 voxels of a block with a list, ascending, as visit(material). Returns how many there are.
 struct BlockMaterials {
-  Int3 blocks;
-  const std::uint16_t* voxel_material;
+  MaterialBricksView field;
 
   template <class Visit>
   NACRE_HD int operator()(std::int64_t block, const Visit& visit) const {
-    const int reach = 4;
-    const Int3 n = blocks * Int3(block_size);
-    const Int3 b{int(block % blocks.x), int(block / blocks.x % blocks.y), int(block / blocks.x / blocks.y)};
-    std::uint16_t found[max_block_materials];
-    int count = 0;
-    int last = -1;
-    for (int z = at_least(b.z * block_size - reach); z < at_most((b.z + 1) * block_size + reach, n.z); ++z)
-      for (int y = at_least(b.y * block_size - reach); y < at_most((b.y + 1) * block_size + reach, n.y); ++y) {
-        const std::uint16_t* line = voxel_material + (std::int64_t(z) * n.y + y) * n.x;
-        for (int x = at_least(b.x * block_size - reach); x < at_most((b.x + 1) * block_size + reach, n.x); ++x) {
-          if (line[x] == last) continue;
-          last = line[x];
-          int position = 0;
-          while (position < count && found[position] < last) ++position;
-          if (position < count && found[position] == last) continue;
-          if (count == max_block_materials) return max_block_materials + 1;
-          for (int k = count; k > position; --k) found[k] = found[k - 1];
-          found[position] = std::uint16_t(last);
-          ++count;
-        }
-      }
-    if (count > 1)
-      for (int k = 0; k < count; ++k) visit(found[k]);
+    constexpr int reach = 4;
+    const Int3 low = field.block(block) * Int3(block_size);
+    std::uint16_t found[max_block_materials] = {};
+    int count = 0, last = -1;
+    const bool all = field.each_material(max(low - Int3(reach), Int3(0)),
+                                         min(low + Int3(block_size + reach), field.voxels()), [&](std::uint16_t m) {
+                                           if (m == last) return true;
+                                           last = m;
+                                           int position = 0;
+                                           while (position < count && found[position] < m) ++position;
+                                           if (position < count && found[position] == m) return true;
+                                           if (count == max_block_materials) return false;
+                                           for (int k = count; k > position; --k) found[k] = found[k - 1];
+                                           found[position] = m;
+                                           ++count;
+                                           return true;
+                                         });
+    if (!all) return max_block_materials + 1;
+    for (int k = 0; k < count; ++k) visit(found[k]);
     return count;
   }
-
- private:
-  NACRE_HD static int at_least(int v) { return v < 0 ? 0 : v; }
-  NACRE_HD static int at_most(int v, int n) { return v < n ? v : n; }
 };
 
 struct CountBlockMaterials {
   BlockMaterials materials;
-  std::uint32_t* count;
+  const std::uint32_t* listed;
+  std::uint32_t* count;  ///< per block
   std::uint32_t* crowded;
   NACRE_HD void operator()(std::int64_t i) const {
-    const int n = materials(i, [](std::uint16_t) {});
+    const int n = materials(listed[i], [](std::uint16_t) {});
     if (n > max_block_materials) relaxed_store(crowded, 1);
-    count[i] = n > 1 ? std::uint32_t(n) : 0;
+    count[listed[i]] = std::uint32_t(n);
   }
 };
 
 struct ListBlockMaterials {
   BlockMaterials materials;
-  std::uint32_t* start;  ///< in: brick numbers without the constant ones
+  const std::uint32_t* listed;
+  const std::uint32_t* start;
   std::uint16_t* brick_material;
   std::uint32_t* brick_block;
   NACRE_HD void operator()(std::int64_t i) const {
-    const std::uint32_t first = start[i] + 2;
-    std::uint32_t at = first;
-    materials(i, [&](std::uint16_t m) {
+    std::uint32_t at = start[listed[i]];
+    materials(listed[i], [&](std::uint16_t m) {
       brick_material[at] = m;
-      brick_block[at] = std::uint32_t(i);
+      brick_block[at] = listed[i];
       ++at;
     });
-    start[i] = first;
   }
+};
+
+/// The two constant bricks come before all others.
+struct LeaveConstantBricks {
+  std::uint32_t* start;
+  NACRE_HD void operator()(std::int64_t i) const { start[i] += 2; }
 };
 
 struct FillConstantBricks {
@@ -199,62 +200,68 @@ struct FillScalar {
   }
 };
 
-struct NumberBricks {
-  std::int64_t blocks;
-  ListBlockMaterials list;
-  NACRE_HD void operator()(std::int64_t i) const {
-    if (i < blocks)
-      list(i);
-    else
-      list.start[blocks] += 2;
-  }
-};
-
-}  // namespace detail
-
-/// Lays out the bricks: blocks, lists of materials, voxels' materials; `value` is not filled yet. `material`: per voxel
-/// of the file. `kernel` and `spacing` (per axis, in units of the smallest) are kept. Throws Error where more than
-/// max_block_materials lie within 4 voxels of one block.
+/// Puts what of the volume lies near boundaries on the device, slab by slab.
 template <class Backend>
-MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const Vec3d& spacing, CubicKernel kernel,
-                              std::span<const std::uint16_t> material) {
+void take_voxels(Executor<Backend>& exec, MaterialBricks& b, const MaterialArray& material, int layers) {
   Arena& arena = exec.arena();
-  MaterialBricks b;
-  b.dims = dims;
-  for (int axis = 0; axis < 3; ++axis) b.blocks[axis] = (dims[axis] + 2 * volume_padding + block_size - 1) / block_size;
-  b.cells_per_unit = Vec3f(float(1 / spacing.x), float(1 / spacing.y), float(1 / spacing.z));
-  b.kernel = kernel;
   const std::int64_t blocks = b.block_count();
-  if (b.voxel_count() >= std::int64_t(1) << 40) throw Error("volume too large", "more than 2^40 voxels", "crop it");
-  b.voxel_material = arena.permanent<std::uint16_t>(b.voxel_count());
   b.block_start = arena.permanent<std::uint32_t>(blocks + 1);
-  Arena::Scope scope(arena);
-  {
-    Arena::Scope upload(arena);
-    Array<std::uint16_t> from = arena.temporary<std::uint16_t>(material.size());
-    from.upload(material);
-    exec.for_each(b.voxel_count(),
-                  detail::PadMaterials{{dims, b.blocks * Int3(block_size)}, from.data(), b.voxel_material.data()});
+  b.block_content = arena.permanent<std::uint32_t>(blocks);
+  b.voxel_material = arena.permanent<std::uint16_t>(0);
+  std::vector<std::uint32_t> listed;
+  BlockScan scan(b.dims, material, layers);
+  for (BlockSlab slab; scan.next(slab); exec.check_stop()) {
+    part_of(arena, b.block_content, std::size_t(slab.first), slab.content.size()).upload(slab.content);
+    const std::size_t before = b.voxel_material.size();
+    arena.resize_last(b.voxel_material, before + slab.voxels.size());
+    part_of(arena, b.voxel_material, before, slab.voxels.size()).upload(slab.voxels);
+    listed.insert(listed.end(), slab.listed.begin(), slab.listed.end());
   }
-  const detail::BlockMaterials materials{b.blocks, b.voxel_material.data()};
+  b.listed = arena.permanent_copy<std::uint32_t>(listed);
+}
+
+/// Finds which materials have bricks in which blocks.
+template <class Backend>
+void list_materials(Executor<Backend>& exec, MaterialBricks& b) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  const std::int64_t blocks = b.block_count(), listed = std::int64_t(b.listed.size());
+  const BlockMaterials materials{b.view()};
   Array<std::uint32_t> crowded = arena.temporary<std::uint32_t>(1);
   crowded.fill_bytes(0);
   b.block_start.fill_bytes(0);
-  exec.for_each(blocks, detail::CountBlockMaterials{materials, b.block_start.data(), crowded.data()});
+  exec.for_each(listed, CountBlockMaterials{materials, b.listed.data(), b.block_start.data(), crowded.data()});
   if (crowded.download()[0])
     throw Error(
         "too many materials in one place", "more than " + std::to_string(max_block_materials) + " within a few voxels",
         "merge some with `merge`, drop speckle with `min_component`, or name the ones to keep with `materials`");
-  const std::uint32_t total = exec.exclusive_scan(b.block_start.data(), b.block_start.data(), blocks + 1);
-  b.bricks = total + 2;
+  b.bricks = std::int64_t(exec.exclusive_scan(b.block_start.data(), b.block_start.data(), blocks + 1)) + 2;
+  exec.for_each(blocks + 1, LeaveConstantBricks{b.block_start.data()});
   b.brick_material = arena.permanent<std::uint16_t>(b.bricks);
   b.brick_block = arena.permanent<std::uint32_t>(b.bricks);
   b.brick_material.fill_bytes(0xff);
   b.brick_block.fill_bytes(0);
-  exec.for_each(
-      blocks + 1,
-      detail::NumberBricks{blocks, {materials, b.block_start.data(), b.brick_material.data(), b.brick_block.data()}});
-  b.value = arena.permanent<float>(std::size_t(b.bricks) * brick_voxels);
+  exec.for_each(listed, ListBlockMaterials{materials, b.listed.data(), b.block_start.data(), b.brick_material.data(),
+                                           b.brick_block.data()});
+}
+
+}  // namespace detail
+
+/// Lays out the bricks: blocks, lists of materials, voxels' materials; `value` is not filled yet. `material`: per voxel
+/// of the file, read once, `layers` of blocks at a time (0: by itself). `kernel` and `spacing` (per axis, in units of
+/// the smallest) are kept. Throws Error where more than max_block_materials lie within 4 voxels of one block.
+template <class Backend>
+MaterialBricks lay_out_bricks(Executor<Backend>& exec, const Int3& dims, const Vec3d& spacing, CubicKernel kernel,
+                              const MaterialArray& material, int layers = 0) {
+  MaterialBricks b;
+  b.dims = dims;
+  b.blocks = BlockScan::blocks_of(dims);
+  b.cells_per_unit = Vec3f(float(1 / spacing.x), float(1 / spacing.y), float(1 / spacing.z));
+  b.kernel = kernel;
+  if (b.voxel_count() >= std::int64_t(1) << 40) throw Error("volume too large", "more than 2^40 voxels", "crop it");
+  detail::take_voxels(exec, b, material, layers);
+  detail::list_materials(exec, b);
+  b.value = exec.arena().template permanent<float>(std::size_t(b.bricks) * brick_voxels);
   return b;
 }
 

@@ -7,8 +7,8 @@
 
 #include "compute/device/executor.hpp"
 #include "compute/device/team.hpp"
-#include "compute/field/build_material_bricks.hpp"
 #include "compute/field/interface.hpp"
+#include "compute/field/lattice.hpp"
 
 namespace nacre {
 
@@ -19,64 +19,34 @@ struct InterfacePoint {
   Junction surface;
 };
 
-/// The cells that distances and sizes are known on: as large as the voxels, or larger where particles will be far
-/// apart.
-struct Lattice {
-  Int3 cells{};
-  Vec3f spacing{1, 1, 1};  ///< voxels
-
-  NACRE_HD std::int64_t count() const { return std::int64_t(cells.x) * cells.y * cells.z; }
-  NACRE_HD std::int64_t number(int x, int y, int z) const { return (std::int64_t(z) * cells.y + y) * cells.x + x; }
-  NACRE_HD Int3 cell(std::int64_t i) const {
-    return {int(i % cells.x), int(i / cells.x % cells.y), int(i / cells.x / cells.y)};
-  }
-  NACRE_HD Vec3f centre(const Int3& c) const { return Vec3f(c.x + 0.5f, c.y + 0.5f, c.z + 0.5f) * spacing; }
-  NACRE_HD bool holds(const Int3& c) const { return is_within(c, cells); }
-  bool operator==(const Lattice&) const = default;
-
-  /// Tiles of 8^3 cells, for work that much of the lattice does without.
-  static constexpr int tile = 8;
-  NACRE_HD Int3 tiles() const {
-    return {(cells.x + tile - 1) / tile, (cells.y + tile - 1) / tile, (cells.z + tile - 1) / tile};
-  }
-  NACRE_HD std::int64_t tile_count() const { return std::int64_t(tiles().x) * tiles().y * tiles().z; }
-  NACRE_HD Int3 tile_at(std::int64_t t) const {
-    const Int3 n = tiles();
-    return {int(t % n.x), int(t / n.x % n.y), int(t / n.x / n.y)};
-  }
-  /// body(cell, number of the cell) for the cells of tile `t`, shared out among the team.
-  template <class Body>
-  NACRE_HD void each_in_tile(Team& team, std::int64_t t, const Body& body) const {
-    const Int3 low = tile_at(t) * Int3(tile);
-    team.each(tile * tile * tile, [&](int k) {
-      const Int3 c = low + Int3(k % tile, k / tile % tile, k / (tile * tile));
-      if (holds(c)) body(c, number(c.x, c.y, c.z));
-    });
-  }
-};
-
 /// For each cell of a lattice within `reach` voxels of an interface: which interface point is the closest to its
 /// centre.
 struct DistanceFieldView {
-  Lattice lattice;
-  const std::uint32_t* nearest = nullptr;  ///< per cell: number of an interface point, or `none`
+  TilesView tiles;
+  const std::uint32_t* nearest = nullptr;  ///< per slot of the tiles: number of an interface point, or `none`
   const InterfacePoint* point = nullptr;
   float reach = 0;
 
+  NACRE_HD const Lattice& lattice() const { return tiles.lattice; }
   NACRE_HD Vec3f position(std::uint32_t q) const {
     return {point[q].position.x, point[q].position.y, point[q].position.z};
+  }
+  /// What a cell knows.
+  NACRE_HD std::uint32_t at(const Int3& cell) const {
+    const std::int64_t slot = tiles.slot(cell);
+    return slot < 0 ? none : nearest[slot];
   }
 
   /// The closest of the points that the eight cells around `p` know (outside of the lattice: the cells nearest to it);
   /// `none` where they know none.
   NACRE_HD std::uint32_t closest(const Vec3f& p, float& distance) const {
-    const Int3 first{int(std::floor(p.x / lattice.spacing.x - 0.5f)), int(std::floor(p.y / lattice.spacing.y - 0.5f)),
-                     int(std::floor(p.z / lattice.spacing.z - 0.5f))};
+    const Lattice& l = lattice();
+    const Int3 first{int(std::floor(p.x / l.spacing.x - 0.5f)), int(std::floor(p.y / l.spacing.y - 0.5f)),
+                     int(std::floor(p.z / l.spacing.z - 0.5f))};
     std::uint32_t best = none;
     float least = 3e38f;
     for (int k = 0; k < 8; ++k) {
-      const Int3 c = max(Int3(0), min(first + Int3(k & 1, k >> 1 & 1, k >> 2), lattice.cells - Int3(1)));
-      const std::uint32_t q = nearest[lattice.number(c.x, c.y, c.z)];
+      const std::uint32_t q = at(max(Int3(0), min(first + Int3(k & 1, k >> 1 & 1, k >> 2), l.cells - Int3(1))));
       if (q == none || q == best) continue;
       const Vec3f r = position(q) - p;
       if (dot(r, r) < least) least = dot(r, r), best = q;
@@ -93,8 +63,8 @@ struct BoundaryVoxel {
   MaterialBricksView field;
   Lattice lattice;
 
-  NACRE_HD bool operator()(std::int64_t i, Int3& voxel) const {
-    const Int3 c = lattice.cell(i), n = field.voxels();
+  NACRE_HD bool operator()(const Int3& c, Int3& voxel) const {
+    const Int3 n = field.voxels();
     Int3 low, high;
     for (int axis = 0; axis < 3; ++axis) {
       const float scale = lattice.spacing[axis] * field.cells_per_unit[axis];
@@ -108,33 +78,53 @@ struct BoundaryVoxel {
     // here.
     const std::int64_t block = field.block_number(low.x / block_size, low.y / block_size, low.z / block_size);
     const bool small = high.x - low.x <= 4 && high.y - low.y <= 4 && high.z - low.z <= 4;
-    if (small && field.block_start[block] == field.block_start[block + 1]) return false;
+    if (small && !field.is_listed(block)) return false;
     int best = 1 << 30;
     for (int z = low.z; z < high.z; ++z)
       for (int y = low.y; y < high.y; ++y)
         for (int x = low.x; x < high.x; ++x) {
           const int away =
               abs1(2 * x + 1 - low.x - high.x) + abs1(2 * y + 1 - low.y - high.y) + abs1(2 * z + 1 - low.z - high.z);
-          if (away < best && on_boundary(x, y, z)) best = away, voxel = {x, y, z};
+          if (away < best && on_boundary({x, y, z})) best = away, voxel = {x, y, z};
         }
     return best < 1 << 30;
   }
 
  private:
   NACRE_HD static int abs1(int v) { return v < 0 ? -v : v; }
-  NACRE_HD bool on_boundary(int x, int y, int z) const {
-    const std::uint16_t* at = field.voxel_material + field.voxel_number(x, y, z);
-    const std::int64_t row = std::int64_t(field.blocks.x) * block_size, slab = row * field.blocks.y * block_size;
-    return at[-1] != *at || at[1] != *at || at[-row] != *at || at[row] != *at || at[-slab] != *at || at[slab] != *at;
+  NACRE_HD bool on_boundary(const Int3& v) const {
+    const std::int64_t block = field.block_number(v.x / block_size, v.y / block_size, v.z / block_size);
+    if (!field.is_listed(block)) return false;
+    const BlockVoxels material(field, block);
+    const std::uint16_t own = material(v);
+    return material(v - Int3(1, 0, 0)) != own || material(v + Int3(1, 0, 0)) != own ||
+           material(v - Int3(0, 1, 0)) != own || material(v + Int3(0, 1, 0)) != own ||
+           material(v - Int3(0, 0, 1)) != own || material(v + Int3(0, 0, 1)) != own;
   }
 };
 
 struct CountBoundaryCells {
   BoundaryVoxel boundary;
-  std::uint32_t* count;
+  TilesView tiles;
+  std::uint32_t* count;  ///< per slot
   NACRE_HD void operator()(std::int64_t i) const {
+    const Int3 c = tiles.cell(i);
     Int3 voxel;
-    count[i] = boundary(i, voxel) ? 1 : 0;
+    count[i] = tiles.lattice.holds(c) && boundary(c, voxel) ? 1 : 0;
+  }
+};
+
+/// The numbers of the boundary cells in the lattice.
+struct ListBoundaryCells {
+  TilesView tiles;
+  const std::uint32_t* start;  ///< per slot
+  std::int64_t slots;
+  std::uint32_t count;
+  std::uint64_t* cell;
+  NACRE_HD void operator()(std::int64_t i) const {
+    if (start[i] == (i + 1 < slots ? start[i + 1] : count)) return;
+    const Int3 c = tiles.cell(i);
+    cell[start[i]] = std::uint64_t(tiles.lattice.number(c.x, c.y, c.z));
   }
 };
 
@@ -161,21 +151,23 @@ NACRE_HD inline float largest_curvature(const FieldCurvature& a, const FieldCurv
 /// Projects a voxel of each boundary cell onto the nearest interface of its material.
 struct FindInterfacePoints {
   BoundaryVoxel boundary;
-  const std::uint32_t* start;
+  TilesView tiles;
+  const std::uint64_t* cell;
   std::uint32_t* nearest;
+  std::uint32_t* known;
   InterfacePoint* point;
 
   NACRE_HD void operator()(std::int64_t i) const {
-    nearest[i] = none;
+    const Int3 c = tiles.lattice.cell(std::int64_t(cell[i]));
     Int3 v;
-    if (!boundary(i, v)) return;
+    boundary(c, v);
     const MaterialBricksView& field = boundary.field;
     const Vec3f u = field.cells_per_unit, p{(v.x + 0.5f) / u.x, (v.y + 0.5f) / u.y, (v.z + 0.5f) / u.z};
-    InterfacePoint& result = point[start[i]];
+    InterfacePoint& result = point[i];
     result.position = {0, 0, 0, -1};
     if (!field.inside(p, 3)) return;
     const std::int64_t block = field.block_at(p);
-    const std::uint32_t own = field.voxel_material[field.voxel_number(v.x, v.y, v.z)];
+    const std::uint32_t own = field.material(v);
     const CubicStencil stencil(field, p);
     const FieldSample mine = stencil.sample(field, own);
     std::uint32_t other = none;
@@ -198,71 +190,120 @@ struct FindInterfacePoints {
     result.position = {found.p.x, found.p.y, found.p.z, 0};
     result.normal = {found.direction.x, found.direction.y, found.direction.z, curvature};
     result.surface = surface;
-    nearest[i] = start[i];
+    const std::int64_t slot = tiles.slot(c);
+    nearest[slot] = std::uint32_t(i);
+    relaxed_store(known + slot / Lattice::tile_cells, 1);
   }
 };
 
-/// Tiles that can be within reach of an interface: those with a block that lists materials not farther away than
-/// `margin`.
-struct MarkNearTiles {
-  MaterialBricksView field;
-  Lattice lattice;
-  float margin;  ///< voxels
-  std::uint8_t* near;
-
-  NACRE_HD void operator()(std::int64_t t) const {
-    const Int3 tile = lattice.tile_at(t);
-    Int3 low, high;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float wide = Lattice::tile * lattice.spacing[axis], per_block = field.cells_per_unit[axis] / block_size;
-      low[axis] = int(max((float(tile[axis]) * wide - margin) * per_block, 0.0f));
-      high[axis] = int((float(tile[axis] + 1) * wide + margin) * per_block);
-    }
-    high = min(high, field.blocks - Int3(1));
-    near[t] = 0;
-    for (int z = low.z; z <= high.z; ++z)
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) {
-          const std::int64_t k = field.block_number(x, y, z);
-          if (field.block_start[k] != field.block_start[k + 1]) near[t] = 1;
-        }
-  }
+struct CopyPosition {
+  const InterfacePoint* point;
+  Float4* position;
+  NACRE_HD void operator()(std::int64_t i) const { position[i] = point[i].position; }
 };
 
-/// One round of jump flooding (Rong & Tan 2006): look `jump` cells away for a closer point.
+/// One round of jump flooding (Rong & Tan 2006): look `jump` cells away, a power of two, for a closer point.
 struct JumpFlood {
-  const std::uint8_t* near;  ///< per tile; the others keep what they have
   DistanceFieldView from;
+  const Float4* position;  ///< of the interface points, without all else
   int jump;
   std::uint32_t* to;
+  const std::uint32_t* known;  ///< per tile: whether a cell knows a point
+  std::uint32_t* known_now;
 
-  static constexpr std::size_t scratch_bytes() { return 0; }
+  static constexpr std::size_t scratch_bytes() { return 27 * sizeof(std::uint32_t); }
 
-  NACRE_HD void operator()(Team& team, std::int64_t t) const {
-    if (!near[t]) return;
-    from.lattice.each_in_tile(team, t, [&](const Int3& v, std::int64_t i) { to[i] = closest(v); });
+  NACRE_HD void operator()(Team& team, std::int64_t s) const {
+    auto* around = reinterpret_cast<std::uint32_t*>(team.scratch());
+    const Int3 at = from.lattice().tile_at(from.tiles.tile[s]);
+    const int stride = jump < Lattice::tile ? 1 : jump / Lattice::tile;
+    team.each(27, [&](int k) {
+      const std::uint32_t tile = from.tiles.beside(at, Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1) * Int3(stride));
+      around[k] = tile != none && known[tile] ? tile : none;
+    });
+    bool any = false;
+    for (int k = 0; k < 27; ++k) any = any || around[k] != none;
+    if (!any) return;  // none here either, then and now
+    const Int3 low = at * Int3(n);
+    team.each(n * n, [&](int k) { search_row(around, s, low + Int3(0, k % n, k / n)); });
   }
 
  private:
-  NACRE_HD std::uint32_t closest(const Int3& v) const {
-    const Lattice& lattice = from.lattice;
-    const Vec3f p = lattice.centre(v);
-    std::uint32_t best = none;
-    float least = from.reach * from.reach;
-    for (int z = v.z - jump; z <= v.z + jump; z += jump)
-      for (int y = v.y - jump; y <= v.y + jump; y += jump) {
-        if (unsigned(y) >= unsigned(lattice.cells.y) || unsigned(z) >= unsigned(lattice.cells.z)) continue;
-        const std::uint32_t* row = from.nearest + lattice.number(0, y, z);
-        for (int x = v.x - jump; x <= v.x + jump; x += jump) {
-          if (unsigned(x) >= unsigned(lattice.cells.x)) continue;
-          const std::uint32_t q = row[x];
-          if (q == none || q == best) continue;
-          const Vec3f r = from.position(q) - p;
-          const float d = dot(r, r);
-          if (d < least || (d == least && q < best)) least = d, best = q;
-        }
+  static constexpr int n = Lattice::tile;
+
+  /// Along one axis: the three places that are looked at, and in which of the tiles around they are.
+  struct Places {
+    int tile[3], place[3];
+    NACRE_HD Places(int place_in_tile, int jump) {
+      for (int k = 0; k < 3; ++k) {
+        const int p = place_in_tile + (k - 1) * (jump < n ? jump : n);
+        tile[k] = p < 0 ? 0 : p < n ? 1 : 2;
+        place[k] = p & (n - 1);
       }
-    return best;
+    }
+  };
+
+  /// A row of cells, and what each one has found so far.
+  struct Row {
+    float x[n], y, z;
+    std::uint32_t best[n];
+    float least[n];
+
+    /// Looks at the points `q`, one for each cell. Nothing branches on them, so that a CPU does all cells at once.
+    NACRE_HD_INLINE void look_at(const std::uint32_t* q, const Float4* position) {
+#if !defined(__CUDACC__)
+#pragma omp simd
+#endif
+      for (int k = 0; k < n; ++k) {
+        const std::uint32_t known = q[k] == none ? 0 : q[k];
+        const float rx = position[known].x - x[k], ry = position[known].y - y, rz = position[known].z - z;
+        const float square = rx * rx + ry * ry + rz * rz, d = q[k] == none ? 3e38f : square;
+        const bool nearer = (d < least[k]) | ((d == least[k]) & (q[k] < best[k]));
+        least[k] = nearer ? d : least[k];
+        best[k] = nearer ? q[k] : best[k];
+      }
+    }
+  };
+
+  /// The cells from `first` on, along x, of stored tile `s`.
+  NACRE_HD void search_row(const std::uint32_t* around, std::int64_t s, const Int3& first) const {
+    const Lattice& lattice = from.lattice();
+    if (!lattice.holds(first)) return;
+    const int local_y = first.y % n, local_z = first.z % n, shift = jump < n ? jump : n;
+    const Places y(local_y, jump), z(local_z, jump);
+    Row row;
+    row.y = lattice.centre(first).y, row.z = lattice.centre(first).z;
+    for (int k = 0; k < n; ++k) {
+      row.x[k] = lattice.centre(first + Int3(k, 0, 0)).x;
+      row.best[k] = none;
+      row.least[k] = from.reach * from.reach;
+    }
+    for (int c = 0; c < 3; ++c)
+      for (int b = 0; b < 3; ++b) {
+        std::uint32_t q[3 * n];  // what is known along x, in this tile and the two beside it
+        if (!read_rows(around + (z.tile[c] * 3 + y.tile[b]) * 3, Lattice::place(0, y.place[b], z.place[c]), q))
+          continue;
+        for (int a = 0; a < 3; ++a) row.look_at(q + n + (a - 1) * shift, position);
+      }
+    std::uint32_t* result = to + s * Lattice::tile_cells + Lattice::place(0, local_y, local_z);
+    const int end = lattice.cells.x - first.x < n ? lattice.cells.x - first.x : n;
+    bool any = false;
+    for (int k = 0; k < end; ++k) {
+      result[k] = row.best[k];
+      any = any || row.best[k] != none;
+    }
+    if (any) relaxed_store(known_now + s, 1);
+  }
+
+  /// The rows at one place of three tiles; false where none of these knows a point.
+  NACRE_HD bool read_rows(const std::uint32_t* tiles, int place, std::uint32_t* q) const {
+    bool any = false;
+    for (int a = 0; a < 3; ++a) {
+      const std::uint32_t* row = from.nearest + std::int64_t(tiles[a]) * Lattice::tile_cells + place;
+      for (int k = 0; k < n; ++k) q[a * n + k] = tiles[a] == none ? none : row[k];
+      any = any || tiles[a] != none;
+    }
+    return any;
   }
 };
 
@@ -270,24 +311,38 @@ struct JumpFlood {
 
 /// Interface points and which of them is the closest to each cell of a lattice, in permanent memory.
 struct DistanceField {
-  Lattice lattice;
-  Array<std::uint32_t> nearest;
-  Array<InterfacePoint> point;
+  LatticeTiles tiles;
+  Array<std::uint32_t> nearest;  ///< per slot of the tiles
+  Array<InterfacePoint> point;   ///< in the order of their cells
   float reach = 0;
-  DistanceFieldView view() const { return {lattice, nearest.data(), point.data(), reach}; }
-  std::int64_t bytes() const { return std::int64_t(nearest.bytes() + point.bytes()); }
+  const Lattice& lattice() const { return tiles.lattice; }
+  DistanceFieldView view() const { return {tiles.view(), nearest.data(), point.data(), reach}; }
+  std::int64_t bytes() const { return tiles.bytes() + std::int64_t(nearest.bytes() + point.bytes()); }
 };
 
-/// The lattice of about `spacing` voxels over a volume, never finer than its voxels.
-inline Lattice lattice_over(const MaterialBricks& b, float spacing) {
-  Lattice lattice;
-  for (int axis = 0; axis < 3; ++axis) {
-    lattice.spacing[axis] = std::max(spacing, 1 / b.cells_per_unit[axis]);
-    const double extent = double(b.blocks[axis] * block_size) / b.cells_per_unit[axis];
-    lattice.cells[axis] = std::max(2, int(std::ceil(extent / lattice.spacing[axis] - 1e-3)));  // for interpolation
-  }
-  return lattice;
+namespace detail {
+
+/// Finds the points, numbered as their cells are in the lattice, and notes them there. `other` is room per slot.
+template <class Backend>
+void find_interface_points(Executor<Backend>& exec, const MaterialBricks& b, DistanceField& d,
+                           const Array<std::uint32_t>& other, const Array<std::uint32_t>& known) {
+  Arena& arena = exec.arena();
+  const TilesView tiles = d.tiles.view();
+  const std::int64_t n = d.tiles.slots();
+  const BoundaryVoxel boundary{b.view(), tiles.lattice};
+  exec.for_each(n, CountBoundaryCells{boundary, tiles, other.data()});
+  const std::uint32_t points = exec.exclusive_scan(other.data(), other.data(), n);
+  d.point = arena.permanent<InterfacePoint>(std::max<std::uint32_t>(points, 1));
+  Arena::Scope scope(arena);
+  Array<std::uint64_t> cell = arena.temporary<std::uint64_t>(points);
+  exec.for_each(n, ListBoundaryCells{tiles, other.data(), n, points, cell.data()});
+  exec.sort(cell.data(), points);
+  d.nearest.fill_bytes(0xff);  // `none`
+  exec.for_each(points,
+                FindInterfacePoints{boundary, tiles, cell.data(), d.nearest.data(), known.data(), d.point.data()});
 }
+
+}  // namespace detail
 
 /// Points of all interfaces, at least one per boundary cell of `lattice_over`, flooded out to `reach` voxels. The
 /// points are exact; the distances are those to the nearest of them.
@@ -295,31 +350,29 @@ template <class Backend>
 DistanceField distance_field(Executor<Backend>& exec, const MaterialBricks& b, float spacing, float reach) {
   Arena& arena = exec.arena();
   DistanceField d;
-  d.lattice = lattice_over(b, spacing);
+  const Lattice lattice = lattice_over(b, spacing);
+  d.tiles = tiles_near(exec, b, lattice, reach);
   d.reach = reach;
-  const std::int64_t n = d.lattice.count();
-  d.nearest = arena.permanent<std::uint32_t>(n);
+  d.nearest = arena.permanent<std::uint32_t>(d.tiles.slots());
   Arena::Scope scope(arena);
-  Array<std::uint32_t> other = arena.temporary<std::uint32_t>(n);
-  const detail::BoundaryVoxel boundary{b.view(), d.lattice};
-  exec.for_each(n, detail::CountBoundaryCells{boundary, other.data()});
-  const std::uint32_t points = exec.exclusive_scan(other.data(), other.data(), n);
-  d.point = arena.permanent<InterfacePoint>(std::max<std::uint32_t>(points, 1));
-  exec.for_each(n, detail::FindInterfacePoints{boundary, other.data(), d.nearest.data(), d.point.data()});
+  Array<std::uint32_t> other = arena.temporary<std::uint32_t>(d.tiles.slots());
+  Array<std::uint32_t> known[2] = {arena.temporary<std::uint32_t>(d.tiles.count()),
+                                   arena.temporary<std::uint32_t>(d.tiles.count())};
+  for (Array<std::uint32_t>& each : known) each.fill_bytes(0);
+  detail::find_interface_points(exec, b, d, other, known[0]);
+  Array<Float4> position = arena.temporary<Float4>(d.point.size());
+  exec.for_each(std::int64_t(d.point.size()), detail::CopyPosition{d.point.data(), position.data()});
   int jump = 1;
-  while (2 * jump * std::min({d.lattice.spacing.x, d.lattice.spacing.y, d.lattice.spacing.z}) < reach) jump *= 2;
-  // A list says what is within 4 voxels of its block, and an interface point lies up to 2.5 from its boundary voxel.
-  const float margin = std::max(reach + 3.5f - 4, 0.0f);
-  const std::int64_t tiles = d.lattice.tile_count();
-  Array<std::uint8_t> near = arena.temporary<std::uint8_t>(tiles);
-  exec.for_each(tiles, detail::MarkNearTiles{b.view(), d.lattice, margin, near.data()});
-  other.fill_bytes(0xff);  // `none`, as in the first
+  while (2 * jump * std::min({lattice.spacing.x, lattice.spacing.y, lattice.spacing.z}) < reach) jump *= 2;
+  other.fill_bytes(0xff);  // `none`, where nothing is known and where the lattice does not hold a tile's cells
   std::uint32_t *from = d.nearest.data(), *to = other.data();
   const auto flood = [&](int distance) {
     DistanceFieldView view = d.view();
     view.nearest = from;
-    exec.for_each_team(tiles, detail::JumpFlood{near.data(), view, distance, to});
+    exec.for_each_team(d.tiles.count(),
+                       detail::JumpFlood{view, position.data(), distance, to, known[0].data(), known[1].data()});
     std::swap(from, to);
+    std::swap(known[0], known[1]);
   };
   for (; jump >= 1; jump /= 2) flood(jump);
   flood(1);

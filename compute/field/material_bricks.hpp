@@ -37,14 +37,54 @@ struct MaterialBricksView {
   const std::uint32_t* block_start = nullptr;     ///< per block, and one more: where its bricks begin
   const std::uint16_t* brick_material = nullptr;  ///< ascending within a block
   const float* value = nullptr;                   ///< brick_voxels per brick, x fastest
-  const std::uint16_t* voxel_material = nullptr;  ///< per voxel of all blocks, x fastest
+  /// Per block: `one_material` and the material of all that is within 4 voxels of it; of a block with a list the number
+  /// of its brick of voxels.
+  const std::uint32_t* block_content = nullptr;
+  const std::uint16_t* voxel_material = nullptr;  ///< materials, brick_voxels per brick of voxels, x fastest
+  static constexpr std::uint32_t one_material = 1u << 31;
 
   NACRE_HD Int3 voxels() const { return blocks * Int3(block_size); }
   NACRE_HD std::int64_t block_number(int x, int y, int z) const {
     return (std::int64_t(z) * blocks.y + y) * blocks.x + x;
   }
-  NACRE_HD std::int64_t voxel_number(int x, int y, int z) const {
-    return (std::int64_t(z) * blocks.y * block_size + y) * blocks.x * block_size + x;
+  NACRE_HD Int3 block(std::int64_t number) const {
+    return {int(number % blocks.x), int(number / blocks.x % blocks.y), int(number / blocks.x / blocks.y)};
+  }
+  NACRE_HD bool is_listed(std::int64_t block) const { return block_start[block] != block_start[block + 1]; }
+  /// Of the voxels of a block with a list.
+  NACRE_HD const std::uint16_t* materials_in(std::int64_t block) const {
+    return voxel_material + std::size_t(brick_voxels) * block_content[block];
+  }
+
+  /// Of a voxel of the padded volume.
+  NACRE_HD std::uint16_t material(const Int3& v) const {
+    const auto x = unsigned(v.x), y = unsigned(v.y), z = unsigned(v.z);
+    constexpr unsigned n = block_size;
+    const std::uint32_t content = block_content[block_number(int(x / n), int(y / n), int(z / n))];
+    if (content & one_material) return std::uint16_t(content);
+    return voxel_material[std::size_t(brick_voxels) * content + (z % n * n + y % n) * n + x % n];
+  }
+
+  /// visit(material) for the voxels from `low` to before `high`, x fastest, until it returns false; once for several
+  /// in one row of a block that is of one material. Returns whether all were visited.
+  template <class Visit>
+  NACRE_HD bool each_material(const Int3& low, const Int3& high, const Visit& visit) const {
+    for (int z = low.z; z < high.z; ++z)
+      for (int y = low.y; y < high.y; ++y)
+        for (int x = low.x; x < high.x;) {
+          const int bx = x / block_size, ahead = (bx + 1) * block_size, end = ahead < high.x ? ahead : high.x;
+          const std::uint32_t content = block_content[block_number(bx, y / block_size, z / block_size)];
+          if (content & one_material) {
+            if (!visit(std::uint16_t(content))) return false;
+          } else {
+            const std::uint16_t* row = voxel_material + std::size_t(brick_voxels) * content +
+                                       (z % block_size * block_size + y % block_size) * block_size - bx * block_size;
+            for (int k = x; k < end; ++k)
+              if (!visit(row[k])) return false;
+          }
+          x = end;
+        }
+    return true;
   }
 
   /// The brick that holds `material` in a block.
@@ -53,8 +93,7 @@ struct MaterialBricksView {
     for (std::uint32_t k = first; k < last; ++k)
       if (brick_material[k] == material) return k;
     if (first != last) return 0;
-    const int bx = int(block % blocks.x), by = int(block / blocks.x % blocks.y), bz = int(block / blocks.x / blocks.y);
-    return voxel_material[voxel_number(bx * block_size, by * block_size, bz * block_size)] == material ? 1 : 0;
+    return std::uint16_t(block_content[block]) == material ? 1 : 0;
   }
 
   /// The block of a point that is inside of the volume.
@@ -202,8 +241,7 @@ NACRE_HD inline std::uint32_t material_at(const MaterialBricksView& field, const
   if (!field.inside(p, 2)) return 0;
   const std::int64_t block = field.block_at(p);
   const std::uint32_t first = field.block_start[block], last = field.block_start[block + 1];
-  const Vec3f u = p * field.cells_per_unit;
-  if (first == last) return field.voxel_material[field.voxel_number(int(u.x), int(u.y), int(u.z))];
+  if (first == last) return std::uint16_t(field.block_content[block]);
   const CubicStencil stencil(field, p);
   std::uint32_t best = field.brick_material[first];
   float most = stencil.value(field, best);
@@ -213,5 +251,24 @@ NACRE_HD inline std::uint32_t material_at(const MaterialBricksView& field, const
   }
   return best;
 }
+
+/// The materials of a block with a list, and of what is around it.
+class BlockVoxels {
+ public:
+  NACRE_HD BlockVoxels(const MaterialBricksView& field, std::int64_t block)
+      : field_(field), low_(field.block(block) * Int3(block_size)), own_(field.materials_in(block)) {}
+
+  NACRE_HD std::uint16_t operator()(const Int3& v) const {
+    const Int3 at = v - low_;
+    if (unsigned(at.x | at.y | at.z) < unsigned(block_size))
+      return own_[(at.z * block_size + at.y) * block_size + at.x];
+    return field_.material(v);
+  }
+
+ private:
+  const MaterialBricksView& field_;
+  Int3 low_;
+  const std::uint16_t* own_;
+};
 
 }  // namespace nacre

@@ -46,13 +46,20 @@ inline SizingRule widest_rule(SizingRule rule, const std::vector<SizeBound>& bou
   return rule;
 }
 
-/// h at a point, trilinear between the centres of a lattice.
+/// h at a point, trilinear between the centres of a lattice; `far` in cells that are not stored.
 struct SizingFieldView {
-  Lattice lattice;
-  const float* h = nullptr;
+  TilesView tiles;
+  const float* h = nullptr;  ///< per slot
+  float far = 0;
+
+  NACRE_HD float at(const Int3& cell) const {
+    const std::int64_t slot = tiles.slot(cell);
+    return slot < 0 ? far : h[slot];
+  }
 
   NACRE_HD_INLINE float operator()(const Vec3f& p) const {
-    int first[3];
+    const Lattice& lattice = tiles.lattice;
+    Int3 first;
     float f[3];
     for (int axis = 0; axis < 3; ++axis) {
       const float u = p[axis] / lattice.spacing[axis] - 0.5f, most = float(lattice.cells[axis]) - 1.001f;
@@ -60,12 +67,24 @@ struct SizingFieldView {
       first[axis] = int(limited);
       f[axis] = limited - float(first[axis]);
     }
-    const std::int64_t row = lattice.cells.x, slab = row * lattice.cells.y;
-    const float* at = h + first[2] * slab + first[1] * row + first[0];
+    float corner[8];
+    corners(first, corner);
     const auto line = [&](const float* a) { return a[0] + (a[1] - a[0]) * f[0]; };
-    const float low = line(at) + (line(at + row) - line(at)) * f[1];
-    const float high = line(at + slab) + (line(at + slab + row) - line(at + slab)) * f[1];
+    const float low = line(corner) + (line(corner + 2) - line(corner)) * f[1];
+    const float high = line(corner + 4) + (line(corner + 6) - line(corner + 4)) * f[1];
     return low + (high - low) * f[2];
+  }
+
+ private:
+  /// Of the 2^3 cells from `first` on, x fastest.
+  NACRE_HD_INLINE void corners(const Int3& first, float* corner) const {
+    constexpr int n = Lattice::tile;
+    if (first.x % n + 1 == n || first.y % n + 1 == n || first.z % n + 1 == n) {
+      for (int k = 0; k < 8; ++k) corner[k] = at(first + Int3(k & 1, k >> 1 & 1, k >> 2));
+      return;
+    }
+    const std::int64_t slot = tiles.slot(first);
+    for (int k = 0; k < 8; ++k) corner[k] = slot < 0 ? far : h[slot + Lattice::place(k & 1, k >> 1 & 1, k >> 2)];
   }
 };
 
@@ -144,6 +163,7 @@ struct SizeAtInterface {
 /// h at a voxel: that of its closest interface point plus delta times the distance. Beside the interface no more than
 /// is the largest there: the distance of a voxel's centre must not make small triangles larger.
 struct SpreadSize {
+  TilesView tiles;  ///< of h
   DistanceFieldView distance;
   SizingRule rule;  ///< the widest
   LargestSize largest;
@@ -151,13 +171,14 @@ struct SpreadSize {
   const float* at_point;
   float* h;
   NACRE_HD void operator()(std::int64_t i) const {
-    const std::uint32_t q = distance.nearest[i];
+    const Int3 c = tiles.cell(i);
+    const std::uint32_t q = tiles.lattice.holds(c) ? distance.at(c) : none;
     if (q == none) {
       h[i] = rule.max_size;
       return;
     }
     const Float4 at = distance.point[q].position;
-    const float away = length(Vec3f(at.x, at.y, at.z) - distance.lattice.centre(distance.lattice.cell(i)));
+    const float away = length(Vec3f(at.x, at.y, at.z) - tiles.lattice.centre(c));
     h[i] = min(away < beside ? largest(distance.point[q]) : rule.max_size, at_point[q] + rule.delta * away);
   }
 };
@@ -165,56 +186,68 @@ struct SpreadSize {
 /// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis. Looks at
 /// tiles that have changed, or one beside them has: elsewhere `from` and `to` are alike.
 struct LimitSlope {
-  Lattice lattice;
+  TilesView tiles;
   float delta;
   const float* from;
   float* to;
-  const std::uint32_t* had_changed;  ///< per tile
+  const std::uint32_t* had_changed;  ///< per stored tile
   std::uint32_t* changed;
   std::uint32_t* any;
 
   static constexpr float least_change = 1e-3f;
-  static constexpr std::size_t scratch_bytes() { return 0; }
+  static constexpr std::size_t scratch_bytes() { return 6 * sizeof(std::uint32_t); }
 
-  NACRE_HD void operator()(Team& team, std::int64_t t) const {
-    if (team.first()) changed[t] = 0;
+  NACRE_HD void operator()(Team& team, std::int64_t s) const {
+    auto* beside = reinterpret_cast<std::uint32_t*>(team.scratch());
+    const Int3 at = tiles.lattice.tile_at(tiles.tile[s]);
+    team.each(6, [&](int k) {
+      Int3 step{};
+      step[k / 2] = k % 2 ? 1 : -1;
+      beside[k] = tiles.beside(at, step);
+    });
+    if (team.first()) changed[s] = 0;
     team.wait();
-    if (!needed(t)) return;
-    lattice.each_in_tile(team, t, [&](const Int3& v, std::int64_t i) {
-      const float limited = limit(v, i);
-      to[i] = limited;
-      if (limited == from[i]) return;
-      relaxed_store(changed + t, 1);
+    if (!needed(beside, s)) return;
+    const std::int64_t first = s * Lattice::tile_cells;
+    tiles.each_in_tile(team, s, [&](const Int3&, int k) {
+      const float limited = limit(beside, first, k);
+      to[first + k] = limited;
+      if (limited == from[first + k]) return;
+      relaxed_store(changed + s, 1);
       relaxed_store(any, 1);
     });
   }
 
  private:
-  NACRE_HD bool needed(std::int64_t t) const {
-    if (had_changed[t]) return true;
-    const Int3 at = lattice.tile_at(t), n = lattice.tiles();
-    const std::int64_t stride[3] = {1, n.x, std::int64_t(n.x) * n.y};
-    for (int axis = 0; axis < 3; ++axis)
-      if ((at[axis] > 0 && had_changed[t - stride[axis]]) || (at[axis] + 1 < n[axis] && had_changed[t + stride[axis]]))
-        return true;
+  NACRE_HD bool needed(const std::uint32_t* beside, std::int64_t s) const {
+    if (had_changed[s]) return true;
+    for (int k = 0; k < 6; ++k)
+      if (beside[k] != none && had_changed[beside[k]]) return true;
     return false;
   }
 
-  NACRE_HD float limit(const Int3& v, std::int64_t i) const {
-    const std::int64_t stride[3] = {1, lattice.cells.x, std::int64_t(lattice.cells.x) * lattice.cells.y};
+  /// Of the neighbour on side `k` of the cell at this place; more than any size where none is stored: it has the
+  /// largest of all sizes, or is not there.
+  NACRE_HD float neighbour(const std::uint32_t* beside, std::int64_t first, int place, int k) const {
+    constexpr int n = Lattice::tile, stride[3] = {1, n, n * n};
+    const int axis = k / 2, step = stride[axis], local = place / step % n;
+    if (k % 2 ? local + 1 < n : local > 0) return from[first + place + (k % 2 ? step : -step)];
+    if (beside[k] == none) return 3e38f;
+    return from[std::int64_t(beside[k]) * Lattice::tile_cells + place + (k % 2 ? -(n - 1) * step : (n - 1) * step)];
+  }
+
+  NACRE_HD float limit(const std::uint32_t* beside, std::int64_t first, int place) const {
     float low[3], step[3];
     int count = 0;
-    const float own = from[i];
+    const float own = from[first + place];
     for (int axis = 0; axis < 3; ++axis) {
-      float a = 3e38f;
-      if (v[axis] > 0) a = from[i - stride[axis]];
-      if (v[axis] + 1 < lattice.cells[axis]) a = min(a, from[i + stride[axis]]);
+      const float a = min(neighbour(beside, first, place, 2 * axis), neighbour(beside, first, place, 2 * axis + 1));
       if (a >= own) continue;
       int position = count++;
       for (; position > 0 && low[position - 1] > a; --position)
         low[position] = low[position - 1], step[position] = step[position - 1];
       low[position] = a;
-      step[position] = lattice.spacing[axis];
+      step[position] = tiles.lattice.spacing[axis];
     }
     float best = own;
     // sum over the used axes of ((x - low) / step)^2 = delta^2; more axes as long as x lies above their values.
@@ -233,10 +266,35 @@ struct LimitSlope {
   }
 };
 
+/// Whether cells that are not stored would become smaller: a stored one beside them is smaller than all of them by more
+/// than one step of the slope, in the worst case along all three axes.
+struct SpillsOver {
+  TilesView tiles;
+  const float* h;
+  float limit;
+
+  NACRE_HD std::uint64_t operator()(std::int64_t i) const {
+    if (!(h[i] < limit)) return 0;
+    const Int3 c = tiles.cell(i);
+    for (int k = 0; k < 6; ++k) {
+      Int3 next = c;
+      next[k / 2] += k % 2 ? 1 : -1;
+      if (tiles.lattice.holds(c) && tiles.lattice.holds(next) && tiles.slot(next) < 0) return 1;
+    }
+    return 0;
+  }
+};
+
 struct CountSmaller {
   const float* value;
   float limit;
   NACRE_HD std::uint64_t operator()(std::int64_t i) const { return value[i] < limit ? 1 : 0; }
+};
+
+struct CopySize {
+  const float* from;
+  float* to;
+  NACRE_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
 };
 
 struct SizeRange {
@@ -257,12 +315,63 @@ struct JoinSizeRanges {
 }  // namespace detail
 
 struct SizingField {
-  Lattice lattice;
-  Array<float> h;
+  LatticeTiles tiles;
+  Array<float> h;                   ///< per slot of the tiles
+  float far = 0;                    ///< in all other cells
   float smallest = 0, largest = 0;  ///< on the interfaces
   float small = 1;                  ///< all but a tenth of the interface points have this size or more
-  SizingFieldView view() const { return {lattice, h.data()}; }
+  const Lattice& lattice() const { return tiles.lattice; }
+  SizingFieldView view() const { return {tiles.view(), h.data(), far}; }
+  std::int64_t bytes() const { return std::int64_t(h.bytes()); }
 };
+
+namespace detail {
+
+/// What is small among the sizes of the points: see SizingField.
+template <class Backend>
+void describe_sizes(Executor<Backend>& exec, SizingField& field, const Array<float>& at_point) {
+  const auto points = std::int64_t(at_point.size());
+  const SizeRange range = exec.reduce(points, SizeRange{}, SizeRangeAt{at_point.data()}, JoinSizeRanges{});
+  field.smallest = range.low;
+  field.largest = range.high;
+  float low = SizingRule::smallest, high = field.far;
+  for (int k = 0; k < 10; ++k) {
+    const float middle = 0.5f * (low + high);
+    const std::uint64_t smaller = exec.reduce(points, std::uint64_t(0), CountSmaller{at_point.data(), middle}, Add{});
+    (smaller * 10 > std::uint64_t(points) ? high : low) = middle;
+  }
+  field.small = low;
+}
+
+/// Limits the slope of what `spread` writes into h. False where that goes on beyond the tiles that are stored.
+template <class Backend>
+bool limit_slope(Executor<Backend>& exec, SizingField& field, const SpreadSize& spread, float delta) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  const TilesView view = field.tiles.view();
+  const std::int64_t tiles = field.tiles.count();
+  Array<float> other = arena.temporary<float>(field.h.size());
+  Array<std::uint32_t> changed[2] = {arena.temporary<std::uint32_t>(tiles), arena.temporary<std::uint32_t>(tiles)};
+  Array<std::uint32_t> any = arena.temporary<std::uint32_t>(1);
+  changed[0].fill_bytes(1);
+  exec.for_each(field.tiles.slots(), spread);
+  exec.for_each(field.tiles.slots(), CopySize{field.h.data(), other.data()});
+  float *from = field.h.data(), *to = other.data();
+  const Int3& cells = field.lattice().cells;
+  const int most_rounds = cells.x + cells.y + cells.z;
+  for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {
+    any.fill_bytes(0);
+    exec.for_each_team(
+        tiles, LimitSlope{view, delta, from, to, changed[round % 2].data(), changed[1 - round % 2].data(), any.data()});
+    std::swap(from, to);
+    if (any.download()[0] == 0 && from == field.h.data()) break;
+  }
+  const Vec3f& s = field.lattice().spacing;
+  const float limit = field.far - 0.57f * delta * std::min({s.x, s.y, s.z});
+  return exec.reduce(field.tiles.slots(), std::uint64_t(0), SpillsOver{view, field.h.data(), limit}, Add{}) == 0;
+}
+
+}  // namespace detail
 
 /// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball
 /// (with `curvature`: or the smallest radius of curvature), clamped; elsewhere the largest field with slope `delta`. On
@@ -272,11 +381,8 @@ template <class Backend>
 SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance, const SizingRule& rule,
                          const std::vector<SizeBound>& bounds = {}, const SizeWishes* wishes = nullptr) {
   Arena& arena = exec.arena();
-  SizingField field;
-  field.lattice = distance.lattice;
-  const std::int64_t n = field.lattice.count(), points = std::int64_t(distance.point.size());
-  field.h = arena.permanent<float>(n);
   Arena::Scope scope(arena);
+  const std::int64_t points = std::int64_t(distance.point.size());
   const DistanceFieldView view = distance.view();
   Array<float> at_point = arena.temporary<float>(points);
   const SizingRule widest = widest_rule(rule, bounds, wishes);
@@ -290,40 +396,24 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
   }
   const detail::LargestSize largest{rule.max_size, bound.data(), int(bounds.size()), wished};
   const detail::LargestSize widest_of_all{widest.max_size, bound.data(), int(bounds.size()), wished};
-  const Vec3f& s = field.lattice.spacing;
+  const Vec3f& s = distance.lattice().spacing;
+  const float voxel = std::max({s.x, s.y, s.z});
   const float free = widest.reach() + 0.5f, most = std::min(free, distance.reach - 1.5f);
   exec.for_each(points,
-                detail::SizeAtInterface{
-                    {view, most, free, 0.1f * std::max({s.x, s.y, s.z})}, rule, widest_of_all, at_point.data()});
-  const detail::SizeRange range =
-      exec.reduce(points, detail::SizeRange{}, detail::SizeRangeAt{at_point.data()}, detail::JoinSizeRanges{});
-  field.smallest = range.low;
-  field.largest = range.high;
-  float low = SizingRule::smallest, high = widest.max_size;
-  for (int k = 0; k < 10; ++k) {
-    const float middle = 0.5f * (low + high);
-    const std::uint64_t smaller =
-        exec.reduce(points, std::uint64_t(0), detail::CountSmaller{at_point.data(), middle}, Add{});
-    (smaller * 10 > std::uint64_t(points) ? high : low) = middle;
+                detail::SizeAtInterface{{view, most, free, 0.1f * voxel}, rule, widest_of_all, at_point.data()});
+  SizingField field;
+  field.far = widest.max_size;
+  detail::describe_sizes(exec, field, at_point);
+  field.tiles = distance.tiles;
+  const std::size_t mark = arena.mark();
+  for (int rings = 1;; rings *= 2) {
+    field.h = arena.permanent<float>(field.tiles.slots());
+    const detail::SpreadSize spread{field.tiles.view(), view,          widest, largest, 1.5f * voxel,
+                                    at_point.data(),    field.h.data()};
+    if (detail::limit_slope(exec, field, spread, rule.delta)) return field;
+    arena.rewind(mark);
+    field.tiles = tiles_around(exec, distance.tiles, rings);
   }
-  field.small = low;
-  Array<float> other = arena.temporary<float>(n);
-  const std::int64_t tiles = field.lattice.tile_count();
-  Array<std::uint32_t> changed[2] = {arena.temporary<std::uint32_t>(tiles), arena.temporary<std::uint32_t>(tiles)};
-  Array<std::uint32_t> any = arena.temporary<std::uint32_t>(1);
-  changed[0].fill_bytes(1);
-  exec.for_each(
-      n, detail::SpreadSize{view, widest, largest, 1.5f * std::max({s.x, s.y, s.z}), at_point.data(), field.h.data()});
-  float *from = field.h.data(), *to = other.data();
-  const int most_rounds = field.lattice.cells.x + field.lattice.cells.y + field.lattice.cells.z;
-  for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {
-    any.fill_bytes(0);
-    exec.for_each_team(tiles, detail::LimitSlope{field.lattice, rule.delta, from, to, changed[round % 2].data(),
-                                                 changed[1 - round % 2].data(), any.data()});
-    std::swap(from, to);
-    if (any.download()[0] == 0 && from == field.h.data()) break;
-  }
-  return field;
 }
 
 }  // namespace nacre

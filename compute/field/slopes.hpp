@@ -82,7 +82,7 @@ struct LabelSlopes {
     return 0.5f * (slope_at_b - slope_at_a) / length * a.distance * b.distance;
   }
 
-  NACRE_HD std::uint16_t label(const Int3& v) const { return field.voxel_material[field.voxel_number(v.x, v.y, v.z)]; }
+  NACRE_HD std::uint16_t label(const Int3& v) const { return field.material(v); }
   NACRE_HD bool inside(const Int3& v) const { return is_within(v, field.voxels()); }
 
   /// The first voxel along a direction that is not of the tread, and how many steps away it is; 0 where none is within

@@ -6,6 +6,7 @@
 
 #include "compute/field/build_material_bricks.hpp"
 #include "compute/field/slopes.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre {
 
@@ -32,16 +33,17 @@ struct StartTightening {
 
   NACRE_HD void operator()(std::int64_t i) const {
     const Int3 v = voxels(i);
-    const MaterialBricksView& field = slopes.field;
-    const std::uint16_t* at = field.voxel_material + field.voxel_number(v.x, v.y, v.z);
-    const std::uint32_t mine = field.brick_material[i / brick_voxels + 2], own = *at;
-    const Int3 n = field.voxels();
-    const std::int64_t stride[3] = {1, n.x, std::int64_t(n.x) * n.y};
+    const std::uint32_t brick = std::uint32_t(i / brick_voxels) + 2;
+    const BlockVoxels material(slopes.field, voxels.brick_block[brick]);
+    const std::uint32_t mine = slopes.field.brick_material[brick], own = material(v);
+    const Int3 n = slopes.field.voxels();
     float all = 0, part = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
         if (slopes.reach <= 0 || v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
-        const std::uint32_t other = at[side * stride[axis]];
+        Int3 beside = v;
+        beside[axis] += side;
+        const std::uint32_t other = material(beside);
         if (other == own) continue;
         const float share = slopes.share_beyond(v, axis, side);
         all += share;
@@ -84,35 +86,34 @@ struct SmoothBrick {
     float* to = smooth + std::size_t(brick) * brick_voxels;
     for (int g = 0; g < Gaussians; ++g) {
       const float* tap = taps[g].tap;
-      team.each(wide * wide, [&](int line) {
-        const float* from = halo + line * wide;
-        float sum[block_size] = {};
-        for (int k = 0; k <= 2 * Reach; ++k)
-          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * from[x + k];
-        for (int x = 0; x < block_size; ++x) rows[line * block_size + x] = sum[x];
-      });
+      team.each(wide * wide,
+                [&](int line) { store_eight(rows + line * block_size, weighted(tap, halo + line * wide, 1)); });
       team.each(wide * block_size, [&](int line) {  // (y, z) of the result in a wide stack of slabs
         const int y = line % block_size, z = line / block_size;
-        float sum[block_size] = {};
-        for (int k = 0; k <= 2 * Reach; ++k)
-          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * rows[(z * wide + y + k) * block_size + x];
-        for (int x = 0; x < block_size; ++x) slabs[line * block_size + x] = sum[x];
+        store_eight(slabs + line * block_size, weighted(tap, rows + (z * wide + y) * block_size, block_size));
       });
       team.each(block_size * block_size, [&](int line) {
-        float sum[block_size] = {};
-        for (int k = 0; k <= 2 * Reach; ++k)
-          for (int x = 0; x < block_size; ++x) sum[x] += tap[k] * slabs[(line + k * block_size) * block_size + x];
-        for (int x = 0; x < block_size; ++x) to[line * block_size + x] += share[g] * sum[x];
+        const Eight sum = weighted(tap, slabs + line * block_size, block_size * block_size);
+        float* at = to + line * block_size;
+        store_eight(at, load_eight(at) + sum * share[g]);
       });
     }
   }
 
  private:
+  static_assert(block_size == 8);
+
+  /// The sum of the eight values `stride` apart from each other, times the taps.
+  NACRE_HD_INLINE static Eight weighted(const float* tap, const float* from, int stride) {
+    Eight sum = eight(0);
+    for (int k = 0; k <= 2 * Reach; ++k) sum = sum + load_eight(from + k * stride) * tap[k];
+    return sum;
+  }
+
   /// Numbers of the 27 bricks of the same material around; false where none of them has changed.
   NACRE_HD bool find_neighbours(Team& team, std::uint32_t brick, std::uint32_t* around) const {
     const std::uint32_t block = brick_block[brick];
-    const Int3 n = source.blocks;
-    const Int3 b{int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)};
+    const Int3 n = source.blocks, b = source.block(block);
     team.each(27, [&](int k) {
       const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
       around[k] = is_within(c, n) ? source.brick(source.block_number(c.x, c.y, c.z), source.brick_material[brick])
@@ -155,13 +156,13 @@ struct HoldVoxels {
     bool any = false;
     for (std::uint32_t k = first; k < last; ++k) any = any || smoothed[k];
     if (!any) return;
-    const Int3 n = smooth.blocks;
-    const Int3 low = Int3(int(block % n.x), int(block / n.x % n.y), int(block / n.x / n.y)) * Int3(block_size);
+    const Int3 low = smooth.block(block) * Int3(block_size);
+    const std::uint16_t* material = smooth.materials_in(block);
     std::uint64_t count = 0;
     for (int position = 0; position < brick_voxels; ++position) {
+      if (material[position] != own) continue;
       const Int3 v =
           low + Int3(position % block_size, position / block_size % block_size, position / (block_size * block_size));
-      if (smooth.voxel_material[smooth.voxel_number(v.x, v.y, v.z)] != own) continue;
       count += hold(v, position, brick, first, last) ? 1 : 0;
     }
     if (count > 0) atomic_add(held, count);
@@ -194,11 +195,7 @@ struct HoldVoxels {
     for (int corner = 0; corner < 8; ++corner) {
       const Int3 low = v - Int3(corner & 1, corner >> 1 & 1, corner >> 2);
       if (low.x < 0 || low.y < 0 || low.z < 0 || low.x + 1 >= n.x || low.y + 1 >= n.y || low.z + 1 >= n.z) return false;
-      bool full = true;
-      for (int k = 0; k < 8 && full; ++k)
-        full =
-            smooth.voxel_material[smooth.voxel_number(low.x + (k & 1), low.y + (k >> 1 & 1), low.z + (k >> 2))] == own;
-      if (full) return false;
+      if (smooth.each_material(low, low + Int3(2), [&](std::uint16_t m) { return m == own; })) return false;
     }
     return true;
   }

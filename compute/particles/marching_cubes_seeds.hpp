@@ -77,9 +77,7 @@ struct FindCubeVertices {
   }
 
  private:
-  NACRE_HD std::uint32_t material(const Int3& v) const {
-    return field.voxel_material[field.voxel_number(v.x, v.y, v.z)];
-  }
+  NACRE_HD std::uint32_t material(const Int3& v) const { return field.material(v); }
   NACRE_HD Vec3f centre(const Int3& v) const {
     return {(v.x + 0.5f) / field.cells_per_unit.x, (v.y + 0.5f) / field.cells_per_unit.y,
             (v.z + 0.5f) / field.cells_per_unit.z};
@@ -134,7 +132,7 @@ MarchingCubesSeeds marching_cubes(Executor<Backend>& exec, const MaterialBricks&
                                   const Array<Junction>& table) {
   if (table.size() == 0) return {nullptr, 0};
   Arena& arena = exec.arena();
-  const VoxelEdges edges{b.view()};
+  const VoxelEdges edges(b);
   const std::int64_t rows = edges.rows();
   Array<std::uint32_t> start = arena.temporary<std::uint32_t>(rows);
   exec.for_each(rows, detail::CountCubeEdges{edges, start.data()});

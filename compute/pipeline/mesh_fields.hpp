@@ -14,6 +14,7 @@
 #include "compute/particles/projectors.hpp"
 #include "compute/particles/tree_forces.hpp"
 #include "compute/pipeline/field_recipe.hpp"
+#include "compute/pipeline/memory_estimate.hpp"
 #include "compute/pipeline/mesh_choices.hpp"
 #include "compute/pipeline/size_bounds.hpp"
 #include "compute/pipeline/size_wishes.hpp"
@@ -44,7 +45,8 @@ class MeshFields {
   const VolumeFrame& frame() const { return frame_; }
   std::vector<SizeBound> bounds(const MeshParameters& p) const { return size_bounds(p.sizes, described_); }
   const SizeWishes* wishes() const { return wishes_ ? &*wishes_ : nullptr; }  ///< null: the volume has none
-  double least_area() const { return least_area_; }  ///< of all boundaries, squares of the smallest spacing
+  double least_area() const { return least_area_; }     ///< of all boundaries, squares of the smallest spacing
+  VolumeFacts facts(const MeshParameters& parameters);  ///< before the fields are built
   const MaterialBricks& bricks() const { return bricks_; }
   const DistanceField& distance() const { return distance_; }
   const SizingField& size() const { return size_; }
@@ -99,19 +101,19 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
                 {},          {},          volume.labels,  volume.names,  {}};
   wishes_ = volume.sizes ? std::optional(size_wishes(volume)) : std::nullopt;
   size_bounds(parameters.sizes, described_);  // what cannot be read is said before the long work
-  std::vector<std::uint16_t> thinned;
+  MaterialArray thinned;
   if (volume.kind == MeshVolume::Kind::labels && volume.materials() > max_block_materials) {
-    thinned = volume.material;
-    info.thinned_voxels = thin_materials(volume.dims, thinned, max_block_materials);
+    thinned = volume.material.copy();
+    info.thinned_voxels = thin_materials(volume.dims, thinned.own(), max_block_materials);
   }
   bricks_ = lay_out_bricks(exec_, volume.dims, frame_.relative_spacing(), kernel_from_string(parameters.kernel),
-                           thinned.empty() ? std::span(volume.material) : std::span<const std::uint16_t>(thinned));
+                           thinned.empty() ? volume.material : thinned);
   if (bricks_.bricks == 2)
     throw Error("one material only", "every voxel of the volume is of the same material",
                 "choose others with `materials` or `isovalue`");
   if (volume.kind == MeshVolume::Kind::indicators) {
-    fill_indicators(exec_, bricks_, volume.material, volume.values,
-                    indicator_range(volume.dims, volume.material, volume.values));
+    const std::vector<std::uint16_t>& material = volume.material.numbers();
+    fill_indicators(exec_, bricks_, material, volume.values, indicator_range(volume.dims, material, volume.values));
   } else if (volume.kind == MeshVolume::Kind::scalar) {
     const std::vector<float>& values = volume.values.at(0);
     float scale = 0;
@@ -124,6 +126,20 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
   info.blocks = bricks_.blocks;
   mark_[0] = arena.mark();
   kind_ = volume.kind;
+}
+
+template <class Backend>
+VolumeFacts MeshFields<Backend>::facts(const MeshParameters& parameters) {
+  Arena& arena = exec_.arena();
+  const FieldRecipe wanted = recipe(parameters);
+  const std::size_t mark = arena.mark();
+  VolumeFacts facts;
+  facts.lattice_tiles = tiles_near(exec_, bricks_, wanted.lattice, wanted.reach).count();
+  arena.rewind(mark);
+  facts.bricks = bricks_.bricks;
+  facts.area = usual_over_least_area * least_area_;
+  facts.spacing = wanted.lattice.spacing.x;
+  return facts;
 }
 
 template <class Backend>
@@ -182,7 +198,7 @@ template <class Backend>
 void MeshFields<Backend>::describe(MeshInfo& info) {
   info.smallest_size = size_.smallest;
   info.largest_size = size_.largest;
-  info.field_bytes = bricks_.bytes() + distance_.bytes() + std::int64_t(size_.h.bytes());
+  info.field_bytes = bricks_.bytes() + distance_.bytes() + size_.bytes();
   info.embedding_bytes = grid_.bytes();
   info.embedding_cells = grid_.cells();
   info.surfaces = info.curves = 0;

@@ -14,6 +14,7 @@
 #include "compute/device/device.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/field/interface.hpp"
+#include "compute/field/material_array.hpp"
 #include "compute/math/lanes.hpp"
 #include "compute/math/vec.hpp"
 #include "compute/meshing/star_counts.hpp"
@@ -76,7 +77,7 @@ struct MeshVolume {
   Vec3d spacing{1, 1, 1};  ///< > 0, world units
   Vec3d origin{};          ///< world position of voxel (0, 0, 0)'s centre
   std::array<Vec3d, 3> axes{Vec3d(1, 0, 0), Vec3d(0, 1, 0), Vec3d(0, 0, 1)};  ///< unit, orthogonal; may be left-handed
-  std::vector<std::uint16_t> material;     ///< per voxel: 0 is the outside, then 1 .. labels.size() - 1
+  MaterialArray material;                  ///< per voxel: 0 is the outside, then 1 .. labels.size() - 1
   std::vector<std::vector<float>> values;  ///< no NaN; see Kind
   std::vector<float> levels;               ///< ascending
   std::vector<std::int64_t> labels;        ///< per material: its label in the file; [0]: the outside's
@@ -105,6 +106,7 @@ struct DeviationInfo {
 struct MeshInfo {
   Int3 blocks{};          ///< of 8^3 voxels
   int crowded_cells = 0;  ///< of 4^3 cells of the embedding, those where more materials meet than can be distinguished
+  double estimated_peak_bytes = 0;  ///< before the fields are made: of the process on the CPU, else of the device
   std::int64_t field_bytes = 0, embedding_bytes = 0, embedding_cells = 0;
   int surfaces = 0, curves = 0;  ///< interfaces of two materials, junction curves of three
   int points = 0;                ///< junction points of four materials

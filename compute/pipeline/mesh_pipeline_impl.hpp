@@ -30,8 +30,9 @@ class MeshPipelineOf : public MeshPipeline {
     const MeshParameters used = at_quality(parameters);
     if (!fields_.drop_outdated(used)) return false;
     drop_particles();
-    require_room();
+    require_room(used);
     fields_.build(used, tell_, info_);
+    exec_.arena().give_back();
     return true;
   }
 
@@ -56,6 +57,7 @@ class MeshPipelineOf : public MeshPipeline {
       particles_.upload(*relaxed_);
     else
       relaxed_ = particles_.download();
+    exec_.arena().give_back();  // for the triangulation, which is on the host
     const bool stars = triangles_from_string(used.triangles) == TriangleSource::stars;
     const ImprovementRule rule{used.smooth,        used.remesh,           stars, exec_.device().threads(), stop_,
                                used.max_deviation, deviation_detail(used)};
@@ -140,13 +142,16 @@ class MeshPipelineOf : public MeshPipeline {
   /// Refuses sizes that would need more particles than memory before the fields are made, as far as voxels show: a
   /// plane of particles as far apart as `max_size` and `sizes` allow is the least that there can be. The fields are
   /// checked again in `relax`.
-  void require_room() {
+  void require_room(const MeshParameters& used) {
     double h = std::max(parameters.min_size, parameters.max_size);
     for (const SizeBound& bound : fields_.bounds(parameters)) h = std::max(h, double(bound.size));
     if (fields_.wishes()) h = std::max(h, double(fields_.wishes()->most));
     if (parameters.particles == 0)
       require_room_for(fields_.least_area() * 1.1547 / (h * h), 0, exec_.arena().room_bytes(), exec_.device(),
                        parameters, "the boundaries ask for at least ");
+    const VolumeFacts facts = fields_.facts(used);
+    info_.estimated_peak_bytes =
+        require_memory(facts, used, exec_.arena().room_bytes(), exec_.arena().peak_bytes(), exec_.device());
   }
 
   Executor<Backend> exec_;

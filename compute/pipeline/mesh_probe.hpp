@@ -30,15 +30,10 @@ struct PictureMaterialAt {
     material[i] = 0;
     if (!field.inside(p, 2)) return;
     const Vec3f u = p * field.cells_per_unit;
-    const std::int64_t row = field.blocks.x * block_size, slab = row * field.blocks.y * block_size;
-    const std::uint16_t* voxel = field.voxel_material + field.voxel_number(int(u.x), int(u.y), int(u.z));
-    bool whole = true;
-    for (int z = -1; z <= 1; ++z)
-      for (int y = -1; y <= 1; ++y) {
-        const std::uint16_t* line = voxel + z * slab + y * row;
-        whole = whole && line[-1] == *voxel && line[0] == *voxel && line[1] == *voxel;
-      }
-    material[i] = whole ? float(*voxel) : float(nacre::material_at(field, p));
+    const Int3 v{int(u.x), int(u.y), int(u.z)};
+    const std::uint16_t own = field.material(v);
+    const bool whole = field.each_material(v - Int3(1), v + Int3(2), [&](std::uint16_t m) { return m == own; });
+    material[i] = whole ? float(own) : float(nacre::material_at(field, p));
   }
 };
 
@@ -66,7 +61,7 @@ struct DistanceAt {
     distance[i] = INFINITY;
     if (q == none || away > distances.reach) return;
     const Float4 n = distances.point[q].normal;
-    const Vec3f s = distances.lattice.spacing;
+    const Vec3f s = distances.lattice().spacing;
     const float along = dot(p - distances.position(q), Vec3f(n.x, n.y, n.z));
     const float beside = std::sqrt(std::fmax(away * away - along * along, 0.0f)) - std::fmax(s.x, std::fmax(s.y, s.z));
     distance[i] = beside > 0 ? std::sqrt(along * along + beside * beside) : std::fabs(along);

@@ -55,14 +55,21 @@ class Voxels {
   /// before the first among them.
   template <class Visit>
   void each_face(int k, const Visit& visit) const {
-    for (int j = -1; j < dims_.y; ++j)
-      for (int i = -1; i < dims_.x; ++i)
-        for (int axis = 0; axis < 3; ++axis) {
-          const Int3 v(i, j, k);
-          Int3 next = v;
-          ++next[axis];
-          if (at(v) != at(next)) visit(v, axis);
-        }
+    Row here, ahead, above;  // the row itself, the next along y, and the next along z
+    read_row(-1, k, here);
+    for (int j = -1; j < dims_.y; ++j, here.swap(ahead)) {
+      read_row(j + 1, k, ahead);
+      read_row(j, k + 1, above);
+      if (are_alike(here) && here == ahead && here == above) continue;
+      for (int i = -1; i < dims_.x; ++i) {
+        const std::size_t at = std::size_t(i + 1);
+        if (here[at] != here[at + 1]) visit(Int3(i, j, k), 0);
+        if (here[at] != ahead[at]) visit(Int3(i, j, k), 1);
+        if (here[at] != above[at]) visit(Int3(i, j, k), 2);
+      }
+    }
+    const auto layer = std::size_t(dims_.x) * std::size_t(dims_.y), first = std::size_t(std::max(k, 0)) * layer;
+    volume_.material.let_go(first, std::min(first + layer, volume_.material.size()));
   }
 
   Vec3d centre_of_face(const Int3& v, int axis) const {
@@ -86,6 +93,17 @@ class Voxels {
   }
 
  private:
+  /// Materials along x, with one of outside before and behind.
+  using Row = std::vector<std::uint16_t>;
+
+  void read_row(int j, int k, Row& row) const {
+    row.assign(std::size_t(dims_.x) + 2, 0);
+    if (j < 0 || k < 0 || j >= dims_.y || k >= dims_.z) return;
+    const std::size_t first = (std::size_t(k) * std::size_t(dims_.y) + std::size_t(j)) * std::size_t(dims_.x);
+    volume_.material.read(first, std::size_t(dims_.x), row.data() + 1);
+  }
+  static bool are_alike(const Row& row) { return std::equal(row.begin() + 1, row.end(), row.begin()); }
+
   /// How near anything beyond the shell of this radius can be: infinite where there are no voxels.
   double nearest_beyond(const Vec3d& p, const Int3& middle, int r) const {
     double nearest = infinite;
@@ -222,8 +240,7 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   std::vector<VoxelDistance> result(materials);
   const Voxels voxels(volume);
   const double voxel_volume = volume.spacing.x * volume.spacing.y * volume.spacing.z;
-  std::vector<std::int64_t> count(materials, 0);
-  for (const std::uint16_t m : volume.material) ++count[m];
+  const std::vector<std::int64_t> count = volume.material.counts(volume.materials());
   const std::vector<TriangleTree> trees = trees_of(mesh, voxels, materials);
   check_stop(stop);
   const std::vector<Spread> faces = from_faces(voxels, trees, volume.dims.z, stop);
@@ -247,6 +264,7 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
     if (stop && *stop) return;
     const Part& part = parts[i];
     spread[i] = from_triangles(voxels, trees[part.material], part.material, voxel, part.begin, part.begin + part_size);
+    if (i % 8 == 0) volume.material.let_go(0, volume.material.size());  // of a mapped file: what was looked at piles up
   });
   check_stop(stop);
   std::vector<Spread> triangles(materials);

@@ -10,14 +10,14 @@
 namespace nacre {
 
 std::vector<Volume> read_mesh_volumes(const SessionInput& input, const MaterialSettings& settings,
-                                      const std::atomic<bool>* stop, const WarningSink& warn) {
+                                      const std::atomic<bool>* stop, const WarningSink& warn, bool mapped) {
   std::vector<Volume> volumes;
   if (!input.sample.empty()) {
     volumes.push_back(make_phantom(input.sample, input.detail, stop));
     add_label_names(volumes.back(), settings.names);
   }
   for (const auto& file : input.inputs) {
-    volumes.push_back(read_volume(file, {settings.layer, settings.names}));
+    volumes.push_back(read_volume(file, {settings.layer, settings.names, mapped}));
     if (warn)
       for (const std::string& warning : volumes.back().warnings) warn(warning);
     check_stop(stop);

@@ -11,9 +11,10 @@
 namespace nacre {
 
 /// The files or the phantom of `input`, with the layer and the names of labels that `settings` say. Throws Error as
-/// `read_volume` and `make_phantom` do, and Interrupted soon after `*stop` (may be null) is set.
+/// `read_volume` and `make_phantom` do, and Interrupted soon after `*stop` (may be null) is set. With `mapped` large
+/// volumes stay in their files, which then must not change.
 std::vector<Volume> read_mesh_volumes(const SessionInput& input, const MaterialSettings& settings,
-                                      const std::atomic<bool>* stop, const WarningSink& warn = {});
+                                      const std::atomic<bool>* stop, const WarningSink& warn = {}, bool mapped = false);
 
 /// What the knob `size_image` (may be empty) names: any format of volumes, in a frame of its own. Values that are not
 /// finite or not above 0 are no wishes. Throws Error as `read_volume` does.

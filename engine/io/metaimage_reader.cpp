@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "engine/io/file_bytes.hpp"
+#include "engine/io/mapped_values.hpp"
 #include "engine/io/text_cursor.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
@@ -180,19 +181,32 @@ std::size_t stored_size(const MetaImageHeader& header, bool packed, std::size_t 
   return std::size_t(size);
 }
 
+/// Some bytes of a file.
+struct StoredPart {
+  std::size_t from = 0, size = 0;
+};
+
 /// From the offset to the file's end; its last `needed` bytes for the offset -1.
-std::string stored_bytes(const Stored& stored, std::size_t needed, const fs::path& path) {
+StoredPart stored_part(const Stored& stored, std::size_t needed, const fs::path& path) {
   std::error_code code;
   const std::uintmax_t size = fs::file_size(stored.file, code);
   const std::uintmax_t from =
       stored.offset != std::size_t(-1) ? stored.offset : size - std::min<std::uintmax_t>(size, needed);
   if (code || from > size) fail_reading(path, "it ends before its values begin");
-  std::string bytes(std::size_t(size - from), '\0');
+  return {std::size_t(from), std::size_t(size - from)};
+}
+
+void read_part(const Stored& stored, const StoredPart& part, char* to, const fs::path& path) {
   std::ifstream file(stored.file, std::ios::binary);
-  file.seekg(std::streamoff(from));
-  file.read(bytes.data(), std::streamsize(bytes.size()));
-  if (std::size_t(std::max<std::streamsize>(file.gcount(), 0)) != bytes.size())
+  file.seekg(std::streamoff(part.from));
+  file.read(to, std::streamsize(part.size));
+  if (std::size_t(std::max<std::streamsize>(file.gcount(), 0)) != part.size)
     fail_reading(path, "reading stopped before the end of the file");
+}
+
+std::string stored_bytes(const Stored& stored, const StoredPart& part, const fs::path& path) {
+  std::string bytes(part.size, '\0');
+  read_part(stored, part, bytes.data(), path);
   return bytes;
 }
 
@@ -241,38 +255,44 @@ std::vector<T> parse_values(const std::string& text, std::size_t count, const fs
 }
 
 template <class T>
-std::vector<T> read_values(const MetaImageHeader& header, Volume& volume, const fs::path& path) {
+VoxelArray<T> metaimage_values(const MetaImageHeader& header, Volume& volume, Values how, const fs::path& path) {
   const std::size_t count = volume.voxels();
   const bool packed = header.is_true({"CompressedData"}, false);
   const std::size_t needed = count * sizeof(T);
   const Stored stored = find_values(header, path);
-  const std::string bytes = stored_bytes(stored, stored_size(header, packed, needed, stored, path), path);
-  if (!header.is_true({"BinaryData"}, true)) return parse_values<T>(bytes, count, path);
-  check_stored(bytes.size(), needed, packed ? double(largest_gzip_ratio) : 1.0, path);
-  warn_of_rest(volume, !packed && bytes.size() > needed);
+  const StoredPart part = stored_part(stored, stored_size(header, packed, needed, stored, path), path);
+  if (!header.is_true({"BinaryData"}, true)) return parse_values<T>(stored_bytes(stored, part, path), count, path);
+  check_stored(part.size, needed, packed ? double(largest_gzip_ratio) : 1.0, path);
+  warn_of_rest(volume, !packed && part.size > needed);
+  const bool big = header.is_true({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}, false);
+  const bool swapped = sizeof(T) > 1 && big != (std::endian::native == std::endian::big);
+  if (!packed && !swapped && can_map(how, part.from, count, sizeof(T)))
+    return mapped_values<T>(stored.file, part.from, count);
   std::vector<T> values(count);
   if (packed)
-    unpack(bytes, reinterpret_cast<char*>(values.data()), needed, path);
+    unpack(stored_bytes(stored, part, path), reinterpret_cast<char*>(values.data()), needed, path);
   else
-    std::memcpy(values.data(), bytes.data(), needed);
-  const bool big = header.is_true({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"}, false);
-  if (big != (std::endian::native == std::endian::big)) swap_bytes(values);
+    read_part(stored, {part.from, needed}, reinterpret_cast<char*>(values.data()), path);
+  if (swapped) swap_bytes(values);
   return values;
 }
 
-}  // namespace
-
-Volume read_metaimage(const fs::path& path) {
+Volume open_metaimage(const fs::path& path, Values how) {
   const MetaImageHeader header(path);
   Volume volume;
   const std::string_view type = header.text({"ElementType"});
   const bool known = with_element_type(type, [&](auto zero) {
     set_dimensions(volume, header, sizeof(zero), path);
     header.integer("NDims", 0) == 3 ? set_frame<3>(volume, header, path) : set_frame<4>(volume, header, path);
-    volume.values = read_values<decltype(zero)>(header, volume, path);
+    volume.values = metaimage_values<decltype(zero)>(header, volume, how, path);
   });
   if (!known) fail_reading(path, fmt::format("its values are of type '{}'", type), "convert it to integers or floats");
   return volume;
 }
+
+}  // namespace
+
+Volume read_metaimage(const fs::path& path) { return open_metaimage(path, Values::read); }
+Volume map_metaimage(const fs::path& path) { return open_metaimage(path, Values::mapped); }
 
 }  // namespace nacre

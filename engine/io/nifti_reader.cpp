@@ -14,6 +14,7 @@
 #include "engine/io/byte_order.hpp"
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/label_names.hpp"
+#include "engine/io/mapped_values.hpp"
 #include "engine/io/packed_file.hpp"
 #include "engine/io/volume_geometry.hpp"
 #include "engine/io/volume_readers.hpp"
@@ -199,7 +200,7 @@ LabelTable label_table_of(const nifti_image& image) {
 /// value * slope + intercept, if the file has a slope. A slope that is no number counts as none, as in nibabel; an
 /// intercept that is none, with a slope, leaves the values unknown.
 template <class T>
-void set_values(Volume& volume, std::vector<T> values, double slope, double intercept, const fs::path& path) {
+void set_values(Volume& volume, VoxelArray<T> values, double slope, double intercept, const fs::path& path) {
   if (!std::isfinite(slope))
     volume.warnings.push_back(
         fmt::format("Its scl_slope is {}, not a number: the values are taken as they are stored.", slope));
@@ -216,6 +217,20 @@ void set_values(Volume& volume, std::vector<T> values, double slope, double inte
   volume.values = std::move(result);
 }
 
+template <class T>
+VoxelArray<T> nifti_values(Volume& volume, const fs::path& data, std::size_t offset, bool swapped,
+                           const fs::path& path) {
+  PackedFile file(data);
+  file.skip(offset);
+  std::vector<T> values(volume.voxels());
+  const std::size_t needed = values.size() * sizeof(T);
+  if (file.read(values.data(), needed) != needed) fail_reading(path, "it ends before its last voxel");
+  if (swapped) swap_bytes(values);
+  warn_of_rest(volume, file.has_more());
+  if (data.string().ends_with(".gz")) warn_unless_packed(volume, file.packed(), data, "its name");
+  return values;
+}
+
 fs::path image_path(const nifti_image& image, const fs::path& header) {
   std::error_code code;
   if (!image.iname || !fs::is_regular_file(image.iname, code))
@@ -223,9 +238,7 @@ fs::path image_path(const nifti_image& image, const fs::path& header) {
   return image.iname;
 }
 
-}  // namespace
-
-Volume read_nifti(const fs::path& path) {
+Volume open_nifti(const fs::path& path, Values how) {
   const fs::path header = header_path(path);
   const RawHeader raw = raw_header(header);
   check_dimensions(raw, path);
@@ -247,13 +260,17 @@ Volume read_nifti(const fs::path& path) {
     const std::string name = data.string();
     const bool packed = name.size() > 3 && name.ends_with(".gz");
     check_stored(fs::file_size(data, code), needed, packed ? double(largest_gzip_ratio) : 1.0, path);
-    PackedFile file(data);
-    file.skip(std::size_t(std::max<std::int64_t>(image->iname_offset, 0)));
-    std::vector<T> values(volume.voxels());
-    if (file.read(values.data(), needed) != needed) fail_reading(path, "it ends before its last voxel");
-    if (image->byteorder != nifti_short_order()) swap_bytes(values);
-    warn_of_rest(volume, file.has_more());
-    if (packed) warn_unless_packed(volume, file.packed(), data, "its name");
+    const std::size_t offset = std::size_t(std::max<std::int64_t>(image->iname_offset, 0));
+    const bool swapped = sizeof(T) > 1 && image->byteorder != nifti_short_order();
+    VoxelArray<T> values;
+    if (!packed && !swapped && can_map(how, offset, volume.voxels(), sizeof(T)) && !begins_as_gzip(data)) {
+      const std::uintmax_t stored = fs::file_size(data, code);
+      if (stored < offset + needed) fail_reading(path, "it ends before its last voxel");
+      warn_of_rest(volume, stored > offset + needed);
+      values = mapped_values<T>(data, offset, volume.voxels());
+    } else {
+      values = nifti_values<T>(volume, data, offset, swapped, path);
+    }
     if (raw.bits != int(8 * sizeof(T)))
       volume.warnings.push_back(fmt::format("Its header says {} bits per voxel, but its type has {}, which are read.",
                                             raw.bits, 8 * sizeof(T)));
@@ -261,5 +278,10 @@ Volume read_nifti(const fs::path& path) {
   });
   return volume;
 }
+
+}  // namespace
+
+Volume read_nifti(const fs::path& path) { return open_nifti(path, Values::read); }
+Volume map_nifti(const fs::path& path) { return open_nifti(path, Values::mapped); }
 
 }  // namespace nacre

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <teem/nrrd.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "engine/io/build_surface.hpp"
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/label_names.hpp"
+#include "engine/io/mapped_values.hpp"
 #include "engine/io/nrrd_header.hpp"
 #include "engine/io/nrrd_layers.hpp"
 #include "engine/io/volume_geometry.hpp"
@@ -45,8 +47,11 @@ std::string complaint() {
 
 struct NrrdEncoded {
   const NrrdEncoding* encoding = nullptr;
-  bool skips = false;  ///< something before the values
+  bool skips = false;    ///< something before the values
+  bool swapped = false;  ///< bytes of numbers are in the other order
 };
+
+int other_order() { return std::endian::native == std::endian::little ? airEndianBig : airEndianLittle; }
 
 /// Reads the header and, unless `header_only`, the values.
 std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, NrrdEncoded* encoded = nullptr) {
@@ -56,7 +61,8 @@ std::unique_ptr<Nrrd, Delete> load(const fs::path& path, bool header_only, NrrdE
   nrrdStateVerboseIO = 0;
   state->skipData = header_only;
   if (nrrdLoad(nrrd.get(), path.c_str(), state.get()) != 0) fail_reading(path, complaint());
-  if (encoded) *encoded = {state->encoding, state->byteSkip != 0 || state->lineSkip != 0};
+  if (encoded)
+    *encoded = {state->encoding, state->byteSkip != 0 || state->lineSkip != 0, state->endian == other_order()};
   if (state->byteSkip < -1)
     fail_reading(path, fmt::format("its byte skip is {}", state->byteSkip), "correct its header");
   return nrrd;
@@ -209,19 +215,47 @@ std::vector<T> copied_values(const Volume& volume, const T* from, const NrrdInde
   return values;
 }
 
-void set_values(Volume& volume, const Nrrd& nrrd, const NrrdAxes& axes, int layer,
-                const std::vector<Segment>& segments) {
+using HeldNrrd = std::unique_ptr<Nrrd, Delete>;
+
+/// The values as teem has read them.
+class NrrdBytes : public HeldBytes {
+ public:
+  explicit NrrdBytes(HeldNrrd nrrd) : nrrd_(std::move(nrrd)) {}
+  const std::byte* data() const override { return static_cast<const std::byte*>(nrrd_->data); }
+
+ private:
+  HeldNrrd nrrd_;
+};
+
+template <class Use>
+void with_type_of(const Nrrd& nrrd, const Use& use) {
   const bool real = nrrd.type == nrrdTypeFloat || nrrd.type == nrrdTypeDouble;
   const bool is_signed =
       nrrd.type == nrrdTypeChar || nrrd.type == nrrdTypeShort || nrrd.type == nrrdTypeInt || nrrd.type == nrrdTypeLLong;
+  with_number_type(real, is_signed, int(nrrdElementSize(&nrrd)), use);
+}
+
+/// Leaves the values in their file, if they lie there as they are. False where they do not.
+bool map_values(Volume& volume, const Nrrd& header, const NrrdEncoded& encoded, const NrrdStorage& storage,
+                const fs::path& path) {
+  const std::size_t size = nrrdElementSize(&header), offset = storage.files.empty() ? storage.header_bytes : 0;
+  const bool as_it_is = encoded.encoding == nrrdEncodingRaw && !encoded.skips && !(encoded.swapped && size > 1);
+  if (!as_it_is || storage.files.size() > 1 || !can_map(Values::mapped, offset, volume.voxels(), size)) return false;
+  with_type_of(header, [&](auto zero) {
+    const fs::path& file = storage.files.empty() ? path : storage.files[0];
+    volume.values = mapped_values<decltype(zero)>(file, offset, volume.voxels());
+  });
+  return true;
+}
+
+void set_values(Volume& volume, HeldNrrd held, const NrrdAxes& axes, int layer, const std::vector<Segment>& segments) {
+  const Nrrd& nrrd = *held;
   const NrrdIndex index_of(nrrd, axes);
-  with_number_type(real, is_signed, int(nrrdElementSize(&nrrd)), [&](auto zero) {
+  with_type_of(nrrd, [&](auto zero) {
     using T = decltype(zero);
     const T* from = static_cast<const T*>(nrrd.data);
     if (!axes.layers) {
-      std::vector<T> values(volume.voxels());
-      std::memcpy(values.data(), from, values.size() * sizeof(T));
-      volume.values = std::move(values);
+      volume.values = VoxelArray<T>(std::make_shared<NrrdBytes>(std::move(held)), volume.voxels());
     } else if (layer >= 0) {
       volume.values = copied_values(volume, from, index_of, std::size_t(layer));
     } else {
@@ -237,9 +271,7 @@ void set_values(Volume& volume, const Nrrd& nrrd, const NrrdAxes& axes, int laye
   });
 }
 
-}  // namespace
-
-Volume read_nrrd_layer(const fs::path& path, int layer) {
+Volume open_nrrd(const fs::path& path, int layer, Values how) {
   static std::mutex one_at_a_time;  // teem has only one list of messages
   const std::lock_guard lock(one_at_a_time);
   const NrrdStorage storage = look_into_nrrd(path);
@@ -274,11 +306,17 @@ Volume read_nrrd_layer(const fs::path& path, int layer) {
   check_stored(storage.bytes, numbers * bytes_per_voxel, ratio_of(encoded.encoding, bytes_per_voxel), path);
   check_encoding(volume, encoded, storage, numbers * bytes_per_voxel, path);
 
-  const auto nrrd = load(path, false);
+  if (how == Values::mapped && !axes.layers && map_values(volume, *header, encoded, storage, path)) return volume;
+  auto nrrd = load(path, false);
   if (!nrrd->data || nrrdElementNumber(nrrd.get()) != numbers) fail_reading(path, "it changed while it was read");
-  set_values(volume, *nrrd, axes, layer, segments);
+  set_values(volume, std::move(nrrd), axes, layer, segments);
   return volume;
 }
+
+}  // namespace
+
+Volume read_nrrd_layer(const fs::path& path, int layer) { return open_nrrd(path, layer, Values::read); }
+Volume map_nrrd(const fs::path& path) { return open_nrrd(path, all_layers, Values::mapped); }
 
 Volume read_nrrd(const fs::path& path) { return read_nrrd_layer(path, all_layers); }
 

@@ -46,12 +46,12 @@ bool is_hdf_image(const fs::path& path) {
 
 const std::vector<VolumeFormat>& volume_formats() {
   static const std::vector<VolumeFormat> formats = {
-      {"NRRD", {"nrrd", "nhdr"}, false, nullptr, read_nrrd, read_nrrd_layer},
-      {"NIfTI", {"nii", "hdr", "img"}, true, nullptr, read_nifti},
+      {"NRRD", {"nrrd", "nhdr"}, false, nullptr, read_nrrd, read_nrrd_layer, map_nrrd},
+      {"NIfTI", {"nii", "hdr", "img"}, true, nullptr, read_nifti, nullptr, map_nifti},
       {"INR", {"inr"}, true, nullptr, read_inr},
       {"FreeSurfer", {"mgz", "mgh"}, false, nullptr, read_mgh},
       {"VTK image", {"vti"}, false, nullptr, read_vti},
-      {"MetaImage", {"mhd", "mha"}, false, nullptr, read_metaimage},
+      {"MetaImage", {"mhd", "mha"}, false, nullptr, read_metaimage, nullptr, map_metaimage},
       {"DICOM", {"dcm"}, false, dicom_child_available, read_dicom, read_dicom_layer},
       {"SLC", {"slc"}, false, vtk_child_available, read_vtk_volume},
       {"VTK image", {"vtk"}, false, vtk_child_available, read_vtk_volume},
@@ -98,7 +98,8 @@ Volume read_volume(const fs::path& path, const VolumeChoice& choice) {
   if (choice.layer != all_layers && !format->read_layer)
     fail_reading(path, fmt::format("{} files have no layers", format->name), "leave --layer out");
   try {
-    Volume volume = choice.layer == all_layers ? format->read(path) : format->read_layer(path, choice.layer);
+    const auto whole = choice.mapped && format->map ? format->map : format->read;
+    Volume volume = choice.layer == all_layers ? whole(path) : format->read_layer(path, choice.layer);
     volume.name = path.filename().string();
     add_label_names(volume, choice.names);
     return volume;

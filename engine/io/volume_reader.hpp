@@ -17,6 +17,8 @@ struct VolumeFormat {
   bool (*available)() = nullptr;  ///< of a format that a child process reads: whether there is one
   Volume (*read)(const std::filesystem::path& path) = nullptr;
   Volume (*read_layer)(const std::filesystem::path& path, int layer) = nullptr;  ///< if the format has layers
+  /// Leaves values in the file where they lie there as they are; null where a format cannot.
+  Volume (*map)(const std::filesystem::path& path) = nullptr;
 };
 
 /// The layer of a segmentation that means all of them: where they overlap, the later segment counts.
@@ -26,6 +28,9 @@ inline constexpr int all_layers = -1;
 struct VolumeChoice {
   int layer = all_layers;       ///< of a segmentation whose segments overlap, or of another 4-D NRRD; from 0
   std::filesystem::path names;  ///< a file as read_label_names reads it; its names go before those in the volume's file
+  /// Values that lie in the file as they are need not be read at once, if there are many. The file must not change as
+  /// long as the volume lives.
+  bool mapped = false;
 };
 
 /// All of these formats.

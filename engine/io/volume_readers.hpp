@@ -20,6 +20,11 @@ Volume read_vtk_volume(const std::filesystem::path& path);  ///< .slc .vtk .vtkh
 Volume read_dicom(const std::filesystem::path& path);       ///< a folder with one series, or one of its files, or a SEG
 Volume read_dicom_layer(const std::filesystem::path& path, int layer);
 
+/// The same, but values that lie in the file as they are stay there (see mapped_values.hpp).
+Volume map_nrrd(const std::filesystem::path& path);
+Volume map_nifti(const std::filesystem::path& path);
+Volume map_metaimage(const std::filesystem::path& path);
+
 /// Whether a file begins as DICOM does, or one of the first files of a folder.
 bool is_dicom(const std::filesystem::path& path);
 

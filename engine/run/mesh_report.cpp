@@ -245,6 +245,7 @@ void add_mesh_report(json& report, const MeshInput& input, const Settings& setti
   report["input"] = input_json(input);
   report["parameters"] = knob_values(settings);
   report["embedding"] = {{"kind", "interfaces"}, {"cells", info.embedding_cells}, {"bytes", info.embedding_bytes}};
+  report["memory"]["estimated_peak_bytes"] = std::int64_t(info.estimated_peak_bytes);
   report["fields"] = fields_json(input, info);
   report["particles"] = particles_json(info, result.interrupted);
   report["mesh"] = mesh_json(input, result);

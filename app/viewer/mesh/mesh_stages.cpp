@@ -56,7 +56,7 @@ void MeshWorker::choose_materials() {
   }
   pipeline_->load(volume);
   viewed->volumes = volumes_;
-  viewed->material = std::move(volume.material);
+  viewed->material = std::move(volume.material.own());
   viewed_ = std::move(viewed);
   made_mesh_.volume = viewed_;
   made_mesh_.corners = viewed_->corners();

@@ -211,7 +211,7 @@ static Image straight_slice(const ViewedVolume& v, const SlicePlane& plane, std:
 
 /// Linear between the centres of the voxels around `p` (in voxels), as far as there are some.
 template <class T>
-static double between_voxels(const std::vector<T>& values, const Int3& dims, const Vec3d& p) {
+static double between_voxels(const VoxelArray<T>& values, const Int3& dims, const Vec3d& p) {
   std::array<std::size_t, 8> at{};
   Vec3d share;
   std::size_t stride = 1;

@@ -68,8 +68,8 @@ MeshVolume make_materials(const std::vector<Volume>& volumes, bool sample, const
     if (const auto own = colours.find(volume.labels[m]);
         own != colours.end() && volume.kind == MeshVolume::Kind::labels)
       described.colours[m] = own->second;
-  described.voxels.assign(volume.labels.size(), 0);
-  for (const std::uint16_t material : volume.material) ++described.voxels.at(material);
+  const std::vector<std::int64_t> voxels = volume.material.counts(volume.materials());
+  described.voxels.assign(voxels.begin(), voxels.end());
   return volume;
 }
 

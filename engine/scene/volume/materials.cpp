@@ -42,6 +42,13 @@ void check_options(std::span<const Volume> volumes, const MaterialOptions& optio
 /// image's values change from voxel to voxel.
 double share_alike(const Volume& volume, double usual) {
   std::size_t alike = 0, all = 0;
+  if (const ValueCounts* counts = value_counts(volume)) {
+    for (const std::size_t n : counts->repeated) alike += n;
+    const auto bits = std::int64_t(usual) & std::int64_t(counts->repeated.size() - 1);
+    const std::size_t both_usual = counts->repeated[std::size_t(bits)];
+    all = volume.voxels() - volume.voxels() / std::size_t(volume.dims.x) - both_usual;
+    return all > 0 ? double(alike - both_usual) / double(all) : 1;
+  }
   std::visit(
       [&](const auto& values) {
         const std::size_t row = std::size_t(volume.dims.x);
@@ -77,8 +84,7 @@ bool looks_like_labels(const Volume& volume, const Notes& notes) {
 }
 
 void check_inside(const MeshVolume& volume, const std::string& name, const char* advice) {
-  const auto inside = [](std::uint16_t material) { return material != 0; };
-  if (volume.materials() < 2 || std::none_of(volume.material.begin(), volume.material.end(), inside))
+  if (volume.materials() < 2 || volume.material.all_outside())
     throw Error(fmt::format("{} has nothing to mesh", name), "no voxel is inside a material", advice);
 }
 

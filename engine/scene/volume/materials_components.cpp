@@ -107,22 +107,23 @@ void move_values(MeshVolume& volume, std::size_t voxel, std::uint16_t from, std:
 std::size_t give_away(MeshVolume& volume, const std::vector<Part>& parts) {
   const Neighbours neighbours(volume.dims);
   std::vector<bool> changed(volume.voxels(), false);
+  std::vector<std::uint16_t>& material = volume.material.own();
   std::size_t given = 0;
   for (const Part& part : parts) {
-    const std::uint16_t own = volume.material[part[0]];
+    const std::uint16_t own = material[part[0]];
     std::map<std::uint16_t, std::size_t> counts;
     bool waits = false;
     for (const std::size_t voxel : part)
       neighbours.each(voxel, [&](std::size_t other) {
         waits = waits || changed[other];
-        if (volume.material[other] != own) ++counts[volume.material[other]];
+        if (material[other] != own) ++counts[material[other]];
       });
     if (waits || counts.empty()) continue;
     const auto most = std::max_element(counts.begin(), counts.end(),
                                        [](const auto& a, const auto& b) { return a.second < b.second; });
     for (const std::size_t voxel : part) {
       move_values(volume, voxel, own, most->first);
-      volume.material[voxel] = most->first;
+      material[voxel] = most->first;
       changed[voxel] = true;
     }
     ++given;
@@ -133,7 +134,7 @@ std::size_t give_away(MeshVolume& volume, const std::vector<Part>& parts) {
 /// Takes materials without voxels out, but the outside. A scalar volume's levels stay what they are.
 void remove_vanished(MeshVolume& volume, const std::set<std::uint16_t>& before, const Notes& notes) {
   std::vector<bool> there(std::size_t(volume.materials()), false);
-  for (const std::uint16_t material : volume.material) there[material] = true;
+  for (const std::uint16_t material : volume.material.own()) there[material] = true;
   std::vector<std::uint16_t> number(there.size(), 0);
   std::uint16_t next = 1;
   for (std::size_t m = 1; m < there.size(); ++m) {
@@ -150,16 +151,16 @@ void remove_vanished(MeshVolume& volume, const std::set<std::uint16_t>& before, 
   volume.labels.resize(next);
   if (!volume.names.empty()) volume.names.resize(next);
   if (volume.kind == MeshVolume::Kind::indicators) volume.values.resize(next);
-  for (std::uint16_t& material : volume.material) material = number[material];
+  for (std::uint16_t& material : volume.material.own()) material = number[material];
 }
 
 }  // namespace
 
 std::size_t drop_small_components(MeshVolume& volume, std::int64_t fewest, const Notes& notes) {
-  const std::set<std::uint16_t> before(volume.material.begin(), volume.material.end());
+  const std::vector<std::uint16_t> original = volume.material.own();
+  const std::set<std::uint16_t> before(original.begin(), original.end());
   const std::size_t limit = std::size_t(std::min<std::int64_t>(fewest, std::int64_t(volume.voxels()) + 1));
   std::size_t all = 0, voxels = 0;
-  const std::vector<std::uint16_t> original = volume.material;
   // Each round merges parts, so that there are fewer in the next.
   for (std::size_t given = 1; given > 0; all += given) given = give_away(volume, small_parts(volume, limit));
   for (std::size_t i = 0; i < original.size(); ++i) voxels += original[i] != volume.material[i];

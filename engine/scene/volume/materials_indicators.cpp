@@ -56,8 +56,8 @@ Range range_of(std::span<const Volume> volumes, const Notes& notes) {
     note_not_finite(volume, statistics, notes);
     range.min = std::min(range.min, statistics.min);
     range.max = std::max(range.max, statistics.max);
-    range.real = range.real || std::holds_alternative<std::vector<float>>(volume.values) ||
-                 std::holds_alternative<std::vector<double>>(volume.values);
+    range.real = range.real || std::holds_alternative<VoxelArray<float>>(volume.values) ||
+                 std::holds_alternative<VoxelArray<double>>(volume.values);
   }
   if (range.min == range.max)
     throw Error("The indicator volumes have one value only", fmt::format("every voxel is {:.6g}", range.min),
@@ -97,7 +97,7 @@ std::vector<std::uint16_t> largest_of(const MeshVolume& volume) {
 
 void note_losers(const MeshVolume& volume, const Notes& notes) {
   std::vector<bool> wins(volume.labels.size(), false);
-  for (const std::uint16_t material : volume.material) wins[material] = true;
+  for (const std::uint16_t material : volume.material.numbers()) wins[material] = true;
   for (std::size_t m = 1; m < wins.size(); ++m)
     if (!wins[m]) notes.add(fmt::format("{} is nowhere the largest: it has no voxel.", volume.names[m]));
 }

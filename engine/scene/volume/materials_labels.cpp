@@ -36,10 +36,27 @@ void require_label(const std::vector<std::int64_t>& present, std::int64_t label,
               fmt::format("give --isovalue V, for example {:.6g}", otsu_threshold(volume)));
 }
 
+using MaterialOfLabel = std::unordered_map<std::int64_t, std::uint16_t>;
+
+/// Labels of one or two bytes stay where they are.
+template <class T>
+requires(sizeof(T) <= 2) MaterialArray
+    materials_of(const VoxelArray<T>& values, const MaterialOfLabel& of, const std::vector<LabelCount>& counts) {
+  std::vector<std::uint16_t> table(std::size_t(1) << 8 * sizeof(T), 0);
+  std::vector<std::int64_t> voxels;
+  for (const auto& [label, count] : counts) {
+    const std::uint16_t material = of.at(label);
+    table[std::make_unsigned_t<T>(label)] = material;
+    voxels.resize(std::max<std::size_t>(voxels.size(), material + 1u), 0);
+    voxels[material] += std::int64_t(count);
+  }
+  return {values.held(), int(sizeof(T)), values.size(), std::move(table), std::move(voxels)};
+}
+
 /// Material per voxel; what is no number is outside.
 template <class T>
-std::vector<std::uint16_t> materials_of(const std::vector<T>& values,
-                                        const std::unordered_map<std::int64_t, std::uint16_t>& of) {
+requires(sizeof(T) > 2) MaterialArray
+    materials_of(const VoxelArray<T>& values, const MaterialOfLabel& of, const std::vector<LabelCount>&) {
   std::vector<std::uint16_t> result(values.size());
   for (std::size_t i = 0; i < values.size();) {
     const T value = values[i];
@@ -124,12 +141,12 @@ MeshVolume from_labels(const Volume& volume, const MaterialOptions& options, con
   if (plan.labels().size() < 2)
     throw Error(fmt::format("{} has nothing to mesh", volume.name), "no label but the outside is left",
                 fmt::format("choose among {}", list_of(present)));
-  std::unordered_map<std::int64_t, std::uint16_t> of;
+  MaterialOfLabel of;
   for (const std::int64_t label : present) of[label] = plan.material(label);
   MeshVolume result = on_grid_of(volume, MeshVolume::Kind::labels);
   result.labels = plan.labels();
   result.names = names_of(result.labels, volume.label_names);
-  result.material = std::visit([&](const auto& values) { return materials_of(values, of); }, volume.values);
+  result.material = std::visit([&](const auto& values) { return materials_of(values, of, *counts); }, volume.values);
   return result;
 }
 

@@ -49,11 +49,12 @@ MeshVolume from_isovalues(const Volume& volume, const MaterialOptions& options, 
   // As far below the lowest level as the values reach above it, so that the surface around such a hole is not moved.
   const double below = std::min(statistics.min, 2 * levels[0] - statistics.max);
   result.values.push_back(as_floats(volume, statistics, float(below)));
-  result.material.resize(volume.voxels());
   const std::vector<float>& values = result.values[0];
+  std::vector<std::uint16_t> material(values.size());
   for (std::size_t i = 0; i < values.size(); ++i)
-    result.material[i] =
+    material[i] =
         std::uint16_t(std::upper_bound(result.levels.begin(), result.levels.end(), values[i]) - result.levels.begin());
+  result.material = std::move(material);
   for (std::size_t m = 0; m <= levels.size(); ++m) result.labels.push_back(std::int64_t(m));
   return result;
 }
@@ -78,15 +79,16 @@ MeshVolume from_threshold(const Volume& volume, const MaterialOptions& options, 
   const double high = std::min(highest + half, statistics.max + (statistics.max - statistics.min) + 1);
   const float nowhere = float(low - (high - low));
   std::vector<float> inside = as_floats(volume, statistics, nowhere), outside(inside.size());
-  result.material.resize(inside.size());
+  std::vector<std::uint16_t> material(inside.size());
   bool any = false;
   for (std::size_t i = 0; i < inside.size(); ++i) {
     inside[i] = std::min(inside[i] - float(low), float(high) - inside[i]);
     outside[i] = -inside[i];
-    result.material[i] = inside[i] > 0;
+    material[i] = inside[i] > 0;
     any = any || inside[i] > 0;
   }
   if (!any) throw Error(what, "no voxel is inside, " + range_of(statistics), "give another range");
+  result.material = std::move(material);
   result.values = {std::move(outside), std::move(inside)};
   return result;
 }

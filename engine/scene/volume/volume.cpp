@@ -23,7 +23,7 @@ bool is_label(T value) {
 }
 
 template <class T>
-VolumeStatistics statistics_of(const std::vector<T>& values) {
+VolumeStatistics statistics_of(const VoxelArray<T>& values) {
   VolumeStatistics result;
   T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
   bool integral = true, any = false;
@@ -46,7 +46,7 @@ VolumeStatistics statistics_of(const std::vector<T>& values) {
 }
 
 template <class T>
-std::optional<std::vector<LabelCount>> labels_of(const std::vector<T>& values, std::size_t most) {
+std::optional<std::vector<LabelCount>> labels_of(const VoxelArray<T>& values, std::size_t most) {
   std::unordered_map<std::int64_t, std::size_t> counts;
   // Neighbours are mostly equal: look up once per run of equal values.
   for (std::size_t i = 0; i < values.size();) {
@@ -67,6 +67,15 @@ std::optional<std::vector<LabelCount>> labels_of(const std::vector<T>& values, s
   return sorted;
 }
 
+/// The values of one or two bytes that occur, ascending.
+template <class T>
+std::vector<LabelCount> labels_in(const ValueCounts& counts) {
+  std::vector<LabelCount> labels;
+  for (int value = std::numeric_limits<T>::lowest(); value <= std::numeric_limits<T>::max(); ++value)
+    if (const std::size_t n = counts.voxels[std::make_unsigned_t<T>(value)]; n > 0) labels.push_back({value, n});
+  return labels;
+}
+
 }  // namespace
 
 const char* value_type_name(const VolumeValues& values) {
@@ -77,11 +86,33 @@ const char* value_type_name(const VolumeValues& values) {
 }
 
 VolumeStatistics volume_statistics(const Volume& volume) {
-  return std::visit([](const auto& values) { return statistics_of(values); }, volume.values);
+  const ValueCounts* counts = value_counts(volume);
+  return std::visit(
+      [&]<class T>(const VoxelArray<T>& values) -> VolumeStatistics {
+        if constexpr (sizeof(T) <= 2) {
+          const std::vector<LabelCount> labels = labels_in<T>(*counts);
+          if (labels.empty()) return {};
+          return {double(labels.front().first), double(labels.back().first), 0, 0, true};
+        } else {
+          return statistics_of(values);
+        }
+      },
+      volume.values);
 }
 
 std::optional<std::vector<LabelCount>> count_labels(const Volume& volume, std::size_t most) {
-  return std::visit([most](const auto& values) { return labels_of(values, most); }, volume.values);
+  const ValueCounts* counts = value_counts(volume);
+  return std::visit(
+      [&]<class T>(const VoxelArray<T>& values) -> std::optional<std::vector<LabelCount>> {
+        if constexpr (sizeof(T) <= 2) {
+          std::vector<LabelCount> labels = labels_in<T>(*counts);
+          if (labels.size() > most) return {};
+          return labels;
+        } else {
+          return labels_of(values, most);
+        }
+      },
+      volume.values);
 }
 
 }  // namespace nacre

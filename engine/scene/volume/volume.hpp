@@ -12,14 +12,15 @@
 #include <vector>
 
 #include "compute/math/vec.hpp"
+#include "engine/scene/volume/voxel_array.hpp"
 
 namespace nacre {
 
 /// One value per voxel, x fastest, in the type of the file: a byte per voxel stays a byte.
 using VolumeValues =
-    std::variant<std::vector<std::uint8_t>, std::vector<std::int8_t>, std::vector<std::uint16_t>,
-                 std::vector<std::int16_t>, std::vector<std::uint32_t>, std::vector<std::int32_t>,
-                 std::vector<std::uint64_t>, std::vector<std::int64_t>, std::vector<float>, std::vector<double>>;
+    std::variant<VoxelArray<std::uint8_t>, VoxelArray<std::int8_t>, VoxelArray<std::uint16_t>, VoxelArray<std::int16_t>,
+                 VoxelArray<std::uint32_t>, VoxelArray<std::int32_t>, VoxelArray<std::uint64_t>,
+                 VoxelArray<std::int64_t>, VoxelArray<float>, VoxelArray<double>>;
 
 /// What labels are called; those that are not in it have no name.
 using LabelNames = std::map<std::int64_t, std::string>;
@@ -59,6 +60,9 @@ struct VolumeStatistics {
 };
 
 VolumeStatistics volume_statistics(const Volume& volume);
+
+/// How often each value of one or two bytes occurs; null for other types. Counted once.
+const ValueCounts* value_counts(const Volume& volume);
 
 /// A value and how many voxels have it.
 using LabelCount = std::pair<std::int64_t, std::size_t>;

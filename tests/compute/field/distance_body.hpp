@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compute/field/distance.hpp"
+#include "tests/compute/field/all_cells.hpp"
 #include "tests/compute/field/field_cases.hpp"
 
 namespace nacre::test {
@@ -36,10 +37,10 @@ void expect_nearest(Executor<Backend>& exec, const MeshVolume& volume, float spa
   const MaterialBricks b = bricks_of(exec, volume);
   const DistanceField d = distance_field(exec, b, spacing, reach);
   const std::vector<InterfacePoint> points = d.point.download();
-  const std::vector<std::uint32_t> nearest = d.nearest.download();
+  const std::vector<std::uint32_t> nearest = nearest_of_cells(exec, d);
   std::size_t inexact = 0, within = 0;
   for (std::size_t i = 0; i < nearest.size(); i += 3) {
-    const Vec3f p = d.lattice.centre(d.lattice.cell(std::int64_t(i)));
+    const Vec3f p = d.lattice().centre(d.lattice().cell(std::int64_t(i)));
     float least = 1e30f;
     for (const InterfacePoint& q : points)
       if (q.position.w >= 0) {

@@ -75,7 +75,7 @@ InterfaceOffset interface_offset(Executor<Backend>& exec, const MeshVolume& volu
                                  const Junction& interface = {0, 1}, bool as_is = false) {
   const std::size_t mark = exec.arena().mark();
   const Vec3d& spacing = volume.spacing;
-  MaterialBricks b = lay_out_bricks(exec, volume.dims, spacing, CubicKernel::catmull_rom, std::span(volume.material));
+  MaterialBricks b = lay_out_bricks(exec, volume.dims, spacing, CubicKernel::catmull_rom, volume.material);
   InterfaceOffset offset;
   const float slope = as_is ? 0 : distance_slope(volume.dims, Vec3f(spacing), volume.values[0], volume.levels[0]);
   offset.on_ridge = fill_scalar(exec, b, volume.values[0], volume.levels, 1, slope);

@@ -21,13 +21,12 @@ MaterialBricks bricks_of(Executor<Backend>& exec, const MeshVolume& volume, doub
                          CubicKernel kernel = CubicKernel::catmull_rom, TightenResult* result = nullptr,
                          float range = wide_range, double staircase = 32) {
   const Vec3d& s = volume.spacing;
-  MaterialBricks b =
-      lay_out_bricks(exec, volume.dims, s / std::min({s.x, s.y, s.z}), kernel, std::span(volume.material));
+  MaterialBricks b = lay_out_bricks(exec, volume.dims, s / std::min({s.x, s.y, s.z}), kernel, volume.material);
   if (volume.kind == MeshVolume::Kind::labels) {
     const TightenResult r = tighten(exec, b, width, staircase);
     if (result) *result = r;
   } else if (volume.kind == MeshVolume::Kind::indicators) {
-    fill_indicators(exec, b, volume.material, volume.values, range);
+    fill_indicators(exec, b, volume.material.numbers(), volume.values, range);
   } else {
     fill_scalar(exec, b, volume.values[0], volume.levels, 1, 0);
   }
@@ -94,9 +93,9 @@ struct StrayVoxels {
   MaterialBricksView field;
   NACRE_HD std::uint64_t operator()(std::int64_t i) const {
     const Int3 n = field.voxels();
-    const Vec3f v(float(i % n.x) + 0.5f, float(i / n.x % n.y) + 0.5f, float(i / n.x / n.y) + 0.5f);
-    const Vec3f u = field.cells_per_unit, p(v.x / u.x, v.y / u.y, v.z / u.z);
-    return field.inside(p, 2) && material_at(field, p) != field.voxel_material[i] ? 1 : 0;
+    const Int3 voxel(int(i % n.x), int(i / n.x % n.y), int(i / n.x / n.y));
+    const Vec3f v = Vec3f(voxel) + Vec3f(0.5f), u = field.cells_per_unit, p(v.x / u.x, v.y / u.y, v.z / u.z);
+    return field.inside(p, 2) && material_at(field, p) != field.material(voxel) ? 1 : 0;
   }
 };
 

@@ -35,8 +35,9 @@ class HostField {
       }
     }
     start_.push_back(std::uint32_t(brick_material_.size()));
-    material_.assign(std::size_t(count) * brick_voxels, 0);
-    view_ = {blocks, cells_per_unit, kernel, start_.data(), brick_material_.data(), value_.data(), material_.data()};
+    content_.assign(std::size_t(count), MaterialBricksView::one_material);
+    view_ = {blocks,        cells_per_unit,  kernel, start_.data(), brick_material_.data(),
+             value_.data(), content_.data(), nullptr};
   }
   HostField(const HostField&) = delete;
   HostField& operator=(const HostField&) = delete;
@@ -46,8 +47,8 @@ class HostField {
  private:
   static Vec3f reciprocal(const Vec3f& a) { return {1 / a.x, 1 / a.y, 1 / a.z}; }
 
-  std::vector<std::uint32_t> start_;
-  std::vector<std::uint16_t> brick_material_, material_;
+  std::vector<std::uint32_t> start_, content_;
+  std::vector<std::uint16_t> brick_material_;
   std::vector<float> value_;
   MaterialBricksView view_;
 };

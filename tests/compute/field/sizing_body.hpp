@@ -2,6 +2,7 @@
 #pragma once
 
 #include "compute/particles/embedding_seeds.hpp"
+#include "tests/compute/field/all_cells.hpp"
 #include "tests/compute/field/field_cases.hpp"
 
 namespace nacre::test {
@@ -60,8 +61,8 @@ void TheSlopeIsBounded(Executor<Backend>& exec) {
   for (const float delta : {0.2f, 0.5f}) {
     const std::size_t mark = exec.arena().mark();
     const Fields f = fields_of(exec, uneven_volume(), sizing_rule(0.5f, delta, 0.4f, 6));
-    const std::vector<float> h = f.size.h.download();
-    const Lattice& l = f.size.lattice;
+    const std::vector<float> h = sizes_of_cells(exec, f.size);
+    const Lattice& l = f.size.lattice();
     const std::int64_t step[3] = {1, l.cells.x, std::int64_t(l.cells.x) * l.cells.y};
     float least = 1e9f, most = 0;
     for (std::int64_t i = 0; i < l.count(); ++i) {

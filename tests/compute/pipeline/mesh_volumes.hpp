@@ -37,8 +37,8 @@ void for_each_voxel(const Int3& dims, const Visit& visit) {
 /// Labels below `materials`.
 inline MeshVolume label_volume(const Int3& dims, int materials, const PlaceFunction& label) {
   MeshVolume volume = empty_volume(dims, materials, MeshVolume::Kind::labels);
-  volume.material.resize(volume.voxels());
-  for_each_voxel(dims, [&](std::size_t at, const Vec3d& p) { volume.material[at] = std::uint16_t(label(p)); });
+  volume.material.own().resize(volume.voxels());
+  for_each_voxel(dims, [&](std::size_t at, const Vec3d& p) { volume.material.own()[at] = std::uint16_t(label(p)); });
   return volume;
 }
 
@@ -47,11 +47,11 @@ inline MeshVolume scalar_volume(const Int3& dims, const PlaceFunction& value, co
   MeshVolume volume = empty_volume(dims, int(levels.size()) + 1, MeshVolume::Kind::scalar);
   volume.levels = levels;
   volume.values.emplace_back(volume.voxels());
-  volume.material.resize(volume.voxels());
+  volume.material.own().resize(volume.voxels());
   for_each_voxel(dims, [&](std::size_t at, const Vec3d& p) {
     const float v = float(value(p));
     volume.values[0][at] = v;
-    volume.material[at] = std::uint16_t(std::upper_bound(levels.begin(), levels.end(), v) - levels.begin());
+    volume.material.own()[at] = std::uint16_t(std::upper_bound(levels.begin(), levels.end(), v) - levels.begin());
   });
   return volume;
 }
@@ -60,11 +60,11 @@ inline MeshVolume scalar_volume(const Int3& dims, const PlaceFunction& value, co
 inline MeshVolume indicator_volume(const Int3& dims, const std::vector<PlaceFunction>& functions) {
   MeshVolume volume = empty_volume(dims, int(functions.size()), MeshVolume::Kind::indicators);
   volume.values.assign(functions.size(), std::vector<float>(volume.voxels()));
-  volume.material.resize(volume.voxels());
+  volume.material.own().resize(volume.voxels());
   for_each_voxel(dims, [&](std::size_t at, const Vec3d& p) {
     for (std::size_t m = 0; m < functions.size(); ++m) {
       volume.values[m][at] = float(functions[m](p));
-      if (volume.values[m][at] > volume.values[volume.material[at]][at]) volume.material[at] = std::uint16_t(m);
+      if (volume.values[m][at] > volume.values[volume.material[at]][at]) volume.material.own()[at] = std::uint16_t(m);
     }
   });
   return volume;

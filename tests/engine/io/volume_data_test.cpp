@@ -92,7 +92,7 @@ TEST(VolumeData, HeadProbabilitiesFillTheHead) {
   options.materials = {1, 2, 3, 4, 5};
   const MeshVolume without = make_mesh_volume(volumes, options);
   std::size_t outside = 0;
-  for (const std::uint16_t material : without.material) outside += material == 0;
+  for (const std::uint16_t material : without.material.copy()) outside += material == 0;
   EXPECT_GT(outside, voxels[0] + voxels[6] / 2);
 }
 

@@ -17,7 +17,7 @@ std::string raw(const std::string& type, const std::string& fields, const std::s
 template <class T>
 void expect_type(const Volume& volume, const char* name) {
   EXPECT_EQ(values_of(volume), count_up(12));
-  EXPECT_TRUE(std::holds_alternative<std::vector<T>>(volume.values));
+  EXPECT_TRUE(std::holds_alternative<VoxelArray<T>>(volume.values));
   EXPECT_STREQ(value_type_name(volume.values), name);
 }
 

@@ -15,10 +15,10 @@ namespace {
 
 /// Labels of a phantom; of a scalar one 1 inside of the interface.
 std::vector<int> labels_of(const Volume& volume) {
-  if (const auto* labels = std::get_if<std::vector<std::uint8_t>>(&volume.values))
+  if (const auto* labels = std::get_if<VoxelArray<std::uint8_t>>(&volume.values))
     return {labels->begin(), labels->end()};
   std::vector<int> labels;
-  for (const float v : std::get<std::vector<float>>(volume.values)) labels.push_back(v > phantom_isovalue);
+  for (const float v : std::get<VoxelArray<float>>(volume.values)) labels.push_back(v > phantom_isovalue);
   return labels;
 }
 
@@ -135,7 +135,7 @@ TEST(Phantoms, ScalarsAreSmoothAndBetweenZeroAndOne) {
   for (const PhantomInfo& info : phantoms()) {
     if (info.labelled) continue;
     const Volume volume = make_phantom(info.name);
-    const auto& values = std::get<std::vector<float>>(volume.values);
+    const auto& values = std::get<VoxelArray<float>>(volume.values);
     float steepest = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
       ASSERT_TRUE(values[i] >= 0 && values[i] <= 1) << info.name;

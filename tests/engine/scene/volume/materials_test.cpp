@@ -37,7 +37,7 @@ TEST(LabelMaterials, GapsAreClosedAndTheGridKept) {
   const MeshVolume mesh = materials_of(volume);
   EXPECT_EQ(mesh.kind, MeshVolume::Kind::labels);
   EXPECT_EQ(mesh.labels, (Labels{0, 4, 9, 200}));
-  EXPECT_EQ(mesh.material, (Materials{0, 1, 1, 2, 0, 3, 2, 2}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{0, 1, 1, 2, 0, 3, 2, 2}));
   EXPECT_EQ(mesh.dims, eight);
   EXPECT_EQ(mesh.spacing, Vec3d(1, 2, 3));
   EXPECT_EQ(mesh.origin, Vec3d(4, 5, 6));
@@ -50,17 +50,17 @@ TEST(LabelMaterials, NegativeLabelsFloatsAndNoZero) {
   EXPECT_EQ(negative.labels, (Labels{0, -5, 7}));
   const MeshVolume floats = materials_of(volume_of<double>(eight, {1, 1, 1, 1, 2, 2, 2, 2}));
   EXPECT_EQ(floats.labels, (Labels{0, 1, 2}));
-  EXPECT_EQ(floats.material, (Materials{1, 1, 1, 1, 2, 2, 2, 2}));
+  EXPECT_EQ(floats.material.copy(), (Materials{1, 1, 1, 1, 2, 2, 2, 2}));
 }
 
 TEST(LabelMaterials, ChosenMaterials) {
   MaterialOptions options;
   options.materials = {9, 200};
   EXPECT_EQ(materials_of(gaps(), options).labels, (Labels{0, 9, 200}));
-  EXPECT_EQ(materials_of(gaps(), options).material, (Materials{0, 0, 0, 1, 0, 2, 1, 1}));
+  EXPECT_EQ(materials_of(gaps(), options).material.copy(), (Materials{0, 0, 0, 1, 0, 2, 1, 1}));
   options.materials = {0, 4};  // the background as a material of its own
   EXPECT_EQ(materials_of(gaps(), options).labels, (Labels{-1, 0, 4}));
-  EXPECT_EQ(materials_of(gaps(), options).material, (Materials{1, 2, 2, 0, 1, 0, 0, 0}));
+  EXPECT_EQ(materials_of(gaps(), options).material.copy(), (Materials{1, 2, 2, 0, 1, 0, 0, 0}));
   options.materials = {5};
   EXPECT_TRUE(contains(refusal(gaps(), options), "no label 5 (there are 0, 4, 9, 200)")) << refusal(gaps(), options);
 }
@@ -69,9 +69,9 @@ TEST(LabelMaterials, Merging) {
   MaterialOptions options;
   options.merge = {{4, 9}};
   EXPECT_EQ(materials_of(gaps(), options).labels, (Labels{0, 9, 200}));
-  EXPECT_EQ(materials_of(gaps(), options).material, (Materials{0, 1, 1, 1, 0, 2, 1, 1}));
+  EXPECT_EQ(materials_of(gaps(), options).material.copy(), (Materials{0, 1, 1, 1, 0, 2, 1, 1}));
   options.merge = {{4, 9}, {9, 4}};  // all at once: they change positions
-  EXPECT_EQ(materials_of(gaps(), options).material, (Materials{0, 2, 2, 1, 0, 3, 1, 1}));
+  EXPECT_EQ(materials_of(gaps(), options).material.copy(), (Materials{0, 2, 2, 1, 0, 3, 1, 1}));
   options.merge = {{200, 0}};
   EXPECT_EQ(materials_of(gaps(), options).labels, (Labels{0, 4, 9}));
   options.merge = {{4, 9}};
@@ -89,7 +89,7 @@ TEST(LabelMaterials, WhatIsNoNumberIsOutside) {
   options.mode = MaterialOptions::Mode::labels;
   std::vector<std::string> warnings;
   const MeshVolume mesh = materials_of(volume_of<float>(eight, {0, 1, nan, 2, 2, infinity, 0, 1}), options, &warnings);
-  EXPECT_EQ(mesh.material, (Materials{0, 1, 0, 2, 2, 0, 0, 1}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{0, 1, 0, 2, 2, 0, 0, 1}));
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(contains(warnings[0], "2 voxels that are not numbers"));
 }
@@ -115,7 +115,7 @@ TEST(ScalarMaterials, OneAndSeveralLevels) {
   EXPECT_EQ(mesh.kind, MeshVolume::Kind::scalar);
   EXPECT_EQ(mesh.levels, (std::vector<float>{2, 5}));
   EXPECT_EQ(mesh.labels, (Labels{0, 1, 2}));
-  EXPECT_EQ(mesh.material, (Materials{0, 0, 1, 1, 1, 2, 2, 2}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{0, 0, 1, 1, 1, 2, 2, 2}));
   ASSERT_EQ(mesh.values.size(), 1u);
   EXPECT_EQ(mesh.values[0], (std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7}));
 }
@@ -126,7 +126,7 @@ TEST(ScalarMaterials, WhatIsNoNumberIsOutside) {
   std::vector<std::string> warnings;
   const MeshVolume mesh =
       materials_of(volume_of<float>(eight, {0, 1, nan, 1, infinity, -infinity, 1, 0}), options, &warnings);
-  EXPECT_EQ(mesh.material, (Materials{0, 1, 0, 1, 1, 0, 1, 0}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{0, 1, 0, 1, 1, 0, 1, 0}));
   EXPECT_EQ(mesh.values[0], (std::vector<float>{0, 1, 0, 1, 1, 0, 1, 0}));
   EXPECT_EQ(warnings.size(), 2u);
 }
@@ -162,15 +162,15 @@ TEST(ThresholdMaterials, BetweenTwoValues) {
   const MeshVolume mesh = materials_of(volume_of<float>(eight, {0, 1, 2, 3, 4, 5, nan, 2.5f}), options);
   EXPECT_EQ(mesh.kind, MeshVolume::Kind::indicators);
   EXPECT_EQ(mesh.labels, (Labels{0, 1}));
-  EXPECT_EQ(mesh.material, (Materials{0, 0, 1, 1, 1, 0, 0, 1}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{0, 0, 1, 1, 1, 0, 0, 1}));
   EXPECT_EQ(mesh.values[1][2], 0.5f);
   EXPECT_EQ(mesh.values[1][4], 0.25f);
   EXPECT_EQ(mesh.values[0][4], -0.25f);
   options.threshold = {2, 3};  // whole values on the bounds are inside
-  EXPECT_EQ(materials_of(volume_of<std::uint8_t>(eight, {0, 1, 2, 3, 4, 5, 6, 7}), options).material,
+  EXPECT_EQ(materials_of(volume_of<std::uint8_t>(eight, {0, 1, 2, 3, 4, 5, 6, 7}), options).material.copy(),
             (Materials{0, 0, 1, 1, 0, 0, 0, 0}));
   options.threshold = {4, std::numeric_limits<double>::infinity()};
-  EXPECT_EQ(materials_of(volume_of<std::uint8_t>(eight, {0, 1, 2, 3, 4, 5, 6, 7}), options).material,
+  EXPECT_EQ(materials_of(volume_of<std::uint8_t>(eight, {0, 1, 2, 3, 4, 5, 6, 7}), options).material.copy(),
             (Materials{0, 0, 0, 0, 1, 1, 1, 1}));
   for (const auto& [low, high] :
        {std::pair(8.0, 9.0), std::pair(-1.0, 9.0), std::pair(3.0, 2.0), std::pair(std::nan(""), 2.0)}) {
@@ -208,7 +208,7 @@ TEST(IndicatorMaterials, ProbabilitiesLeaveTheRestToTheOutside) {
   EXPECT_EQ(mesh.kind, MeshVolume::Kind::indicators);
   EXPECT_EQ(mesh.labels, (Labels{0, 1, 2}));
   EXPECT_EQ(mesh.names, (std::vector<std::string>{"outside", "a", "b"}));
-  EXPECT_EQ(mesh.material, (Materials{1, 1, 2, 2, 0, 0, 0, 0}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{1, 1, 2, 2, 0, 0, 0, 0}));
   ASSERT_EQ(mesh.values.size(), 3u);
   for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(mesh.values[0][i] + mesh.values[1][i] + mesh.values[2][i], 1, 1e-6);
   EXPECT_FLOAT_EQ(mesh.values[1][1], 200 / 255.0f);
@@ -221,13 +221,13 @@ TEST(IndicatorMaterials, ChosenAndMerged) {
   const MeshVolume chosen = make_mesh_volume(volumes, options);
   EXPECT_EQ(chosen.labels, (Labels{0, 2}));
   EXPECT_EQ(chosen.names[1], "b");
-  EXPECT_EQ(chosen.material, (Materials{0, 0, 0, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(chosen.material.copy(), (Materials{0, 0, 0, 1, 0, 0, 0, 0}));
   options.materials = {};
   options.merge = {{1, 2}};
   const MeshVolume merged = make_mesh_volume(volumes, options);
   EXPECT_EQ(merged.labels, (Labels{0, 2}));
   EXPECT_NEAR(merged.values[1][2], 205 / 255.0f, 1e-6);
-  EXPECT_EQ(merged.material, (Materials{1, 1, 1, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(merged.material.copy(), (Materials{1, 1, 1, 1, 0, 0, 0, 0}));
   options.merge = {{3, 1}};
   EXPECT_TRUE(contains(refusal(volumes, options), "no label 3 (there are 1, 2)"));
 }
@@ -236,12 +236,12 @@ TEST(IndicatorMaterials, FunctionsAreTakenAsTheyAre) {
   const std::vector<Volume> volumes = {volume_of<float>(eight, {3, 1, -1, -3, 3, 1, -1, nan}, "left.nrrd"),
                                        volume_of<float>(eight, {-3, -1, 1, 3, -3, -1, 1, 3}, "right.nrrd")};
   const MeshVolume mesh = make_mesh_volume(volumes, {});
-  EXPECT_EQ(mesh.material, (Materials{1, 1, 2, 2, 1, 1, 2, 2}));
+  EXPECT_EQ(mesh.material.copy(), (Materials{1, 1, 2, 2, 1, 1, 2, 2}));
   EXPECT_EQ(mesh.values[1][0], 3);
   for (std::size_t i = 0; i < 8; ++i) EXPECT_FALSE(std::isnan(mesh.values[1][i]));
   MaterialOptions options;
   options.materials = {2};  // where the other would be is outside
-  EXPECT_EQ(make_mesh_volume(volumes, options).material, (Materials{0, 0, 1, 1, 0, 0, 1, 1}));
+  EXPECT_EQ(make_mesh_volume(volumes, options).material.copy(), (Materials{0, 0, 1, 1, 0, 0, 1, 1}));
 }
 
 TEST(IndicatorMaterials, OtherGridsAreNamed) {
