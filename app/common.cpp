@@ -26,6 +26,8 @@ namespace {
 
 std::atomic<bool> interrupted{false};
 
+std::atomic<bool> interrupts_held{false};
+
 /// How often Ctrl-C was pressed (or its like came), the last signal, and whom the second one wakes.
 std::atomic<int> presses{0}, last_signal{0};
 std::atomic<bool> someone_waits{false};
@@ -34,7 +36,7 @@ sem_t second_press;
 void on_interrupt(int signal) {
   const int before = presses.fetch_add(1);
   last_signal = signal;
-  interrupted = true;
+  if (!interrupts_held) interrupted = true;
   if (before == 1 && someone_waits)
     sem_post(&second_press);
   else if (before > 0)
@@ -153,12 +155,22 @@ bool KnobOptions::given(const std::string& name, const std::vector<std::string>&
 
 const std::atomic<bool>& interrupt_flag() { return interrupted; }
 
+HeldInterrupts::HeldInterrupts() { interrupts_held = true; }
+
+HeldInterrupts::~HeldInterrupts() {
+  interrupts_held = false;
+  if (presses > 0) interrupted = true;
+}
+
+bool HeldInterrupts::asked() { return presses > 0; }
+
 void catch_interrupts() {
   wait_for_second_press();
   struct sigaction action {};
   action.sa_handler = on_interrupt;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGUSR1, &action, nullptr);  // mpirun passes it on, and leaves time to end
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup asked not to hear of it

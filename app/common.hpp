@@ -72,10 +72,21 @@ class KnobOptions {
   std::vector<std::pair<std::string, std::unique_ptr<std::string>>> values_;
 };
 
-/// Set by Ctrl-C (SIGINT, SIGTERM or SIGHUP). A second one removes half-written files and ends the program; a third
-/// ends it at once.
+/// Set by Ctrl-C (SIGINT, SIGTERM, SIGHUP or SIGUSR1). A second one removes half-written files and ends the program; a
+/// third ends it at once.
 const std::atomic<bool>& interrupt_flag();
 void catch_interrupts();
+
+/// While it lives, a first Ctrl-C does not set the flag: whoever has something to finish first looks at `asked`. The
+/// flag follows when it dies. A second Ctrl-C ends the program as ever.
+class HeldInterrupts {
+ public:
+  HeldInterrupts();
+  ~HeldInterrupts();
+  HeldInterrupts(const HeldInterrupts&) = delete;
+  HeldInterrupts& operator=(const HeldInterrupts&) = delete;
+  static bool asked();
+};
 
 /// A line on stderr, unless --quiet.
 void say(const CommonOptions& options, const std::string& line);

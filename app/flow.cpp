@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/checkpoint.hpp"
 #include "app/commands.hpp"
 #include "app/flow_results.hpp"
 #include "app/picture_options.hpp"
@@ -71,6 +72,9 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   check_output(options.tracks_out, "--tracks-out", ".vtp");
   check_output(options.common.report, "--report", "");
   check_output(options.common.save_session, "--save-session", "");
+  check_output(options.checkpoint, "--checkpoint", "");
+  if (!options.checkpoint.empty() && !options.video.empty() && options.frames.empty())
+    throw UsageError("--checkpoint with --video needs --frames: a video goes on from its frames");
   for (const std::string& output :
        {options.image, options.frames, options.video, options.out, options.haemodynamics, options.topology_out,
         options.streamlines_out, options.ftle_out, options.tracks_out, options.common.report})
@@ -138,7 +142,8 @@ struct Films {
   }
 };
 
-Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, Progress& progress) {
+/// `left`: the steps that are made now.
+Films open_films(const FlowOptions& options, const FrameRange& left, bool all, int fps, Progress& progress) {
   Films films;
   films.asked = !options.frames.empty() || !options.video.empty();
   if (!is_first_process()) return films;
@@ -146,7 +151,7 @@ Films open_films(const FlowOptions& options, const FrameRange& steps, int fps, P
     progress.clear();
     say(options.common, line);
   };
-  const std::optional<FrameRange> part = options.chunk.empty() ? std::nullopt : std::optional(steps);
+  const std::optional<FrameRange> part = all ? std::nullopt : std::optional(left);
   if (!options.frames.empty()) films.frames = make_frame_folder(options.frames, tell, part);
   if (!options.video.empty()) films.video = make_video(options.video, fps, &interrupt_flag());
   return films;
@@ -162,9 +167,18 @@ std::unique_ptr<DyeRun> make_dye(FlowPipeline& pipeline, VectorsInTime& input, c
   return dye;
 }
 
+/// The dye where it was after steps that are made already: it is carried there again.
+void catch_up(DyeRun& dye, FlowPipeline& pipeline, const FrameRange& made) {
+  StageTimers::Scope scope(pipeline.timers(), "dye");
+  for (int k = made.first; k < made.last; ++k) {
+    dye.go_to(pipeline.flow().time_of(k + 1));
+    dye.note();
+  }
+}
+
 /// Returns how long each took, seconds.
 std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const FrameRange& steps, DyeRun* dye,
-                               FlowPainter& painter, Films& films, Progress& progress) {
+                               FlowPainter& painter, Films& films, Checkpoint& checkpoint, Progress& progress) {
   std::vector<double> seconds;
   for (int k = steps.first; k < steps.last; ++k) {
     const double before = now();
@@ -182,6 +196,7 @@ std::vector<double> take_steps(FlowPipeline& pipeline, FlowMotion& motion, const
       StageTimers::Scope scope(pipeline.timers(), "write");
       films.add(image);
     }
+    checkpoint.after_step();
     progress.update("step", double(k + 1 - steps.first) / (steps.last - steps.first));
     if (interrupt_flag()) throw Interrupted();
   }
@@ -265,8 +280,11 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   pipeline->ranks = ranks;
   Progress progress(options.common.quiet);
   const FrameRange steps = wanted_steps(options.chunk, remaining_steps(settings));
+  Checkpoint checkpoint(options, ranks);
+  const FrameRange left = checkpoint.steps_left(steps);
   InputWatch watch(session.inputs);
-  Films films = open_films(options, steps, settings.fps, progress);  // complains before what may be long
+  const bool whole_film = options.chunk.empty() && left.first == steps.first;
+  Films films = open_films(options, left, whole_film, settings.fps, progress);  // complains before what may be long
   VectorsInTime input = read_input(options, session, pipeline->timers());
   const bool pattern = settings.flow.texture != FlowTexture::streaks;
   if (!options.chunk.empty() && pattern)
@@ -278,7 +296,9 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   if (ranks && input.moves()) throw Error("a surface that moves needs one process", "", "leave mpirun away");
   const Origin origin = flow_origin(options, session, device->backend());
   for (const OriginFile& each : origin.others) watch.add({each.file});
+  checkpoint.require_same(origin);
   if (films.video) films.video->describe(origin_of_output(origin, "video"));
+  if (films.frames) repeat_frames(options.frames, {steps.first, left.first}, films.video.get());
   std::vector<std::string> first_outputs;
   if (!options.haemodynamics.empty() && is_first_process()) {
     StageTimers::Scope scope(pipeline->timers(), "write");
@@ -295,7 +315,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     painter.show_tracks(flow_tracks(input, {span.first, span.end}, settings.persistence, &interrupt_flag()));
 
   const FlowView view{painter.camera(), settings.width, settings.height};
-  const std::size_t available = first_ones(ranks, device->available_bytes());
+  const std::size_t available = checkpoint.available(first_ones(ranks, device->available_bytes()));
   settings.flow.resolution = choose_resolution(options, view, surface, settings.flow, available);
   pipeline->parameters.resolution = settings.flow.resolution;
   const std::optional<Focus> focus = choose_focus(options, settings, view, surface, input.moves(), available);
@@ -320,10 +340,15 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   pipeline->parameters.first_step = steps.first;
   pipeline->parameters.lead_in = options.lead_in;
   progress.update("warm-up", 0.02);
-  motion.start(vectors);
   const std::unique_ptr<DyeRun> dye = make_dye(*pipeline, input, settings, span.start);
-  if (dye) painter.show_dye(*dye);
-  const std::vector<double> seconds = take_steps(*pipeline, motion, steps, dye.get(), painter, films, progress);
+  checkpoint.start(*pipeline, motion, vectors);
+  if (dye) {
+    catch_up(*dye, *pipeline, {steps.first, left.first});
+    painter.show_dye(*dye);
+  }
+  const std::vector<double> seconds =
+      take_steps(*pipeline, motion, left, dye.get(), painter, films, checkpoint, progress);
+  checkpoint.end_steps();
   watch.check();
   std::vector<std::string> outputs = write_outputs(options, *pipeline, steps, dye.get(), painter, films, origin);
   outputs.insert(outputs.begin(), first_outputs.begin(), first_outputs.end());
@@ -334,6 +359,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     json report = report_frame("flow", *device, pipeline->timers(), pipeline->peak_bytes());
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
+    if (!options.checkpoint.empty()) report["checkpoint"] = checkpoint.report();
     if (ranks) report["processes"] = processes_report(*ranks, *pipeline, report, seconds);
     report.update(lines);
     report.update(map_report);
@@ -343,6 +369,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     if (input.moves()) report["motion"] = {{"groups", input.series().motion->groups}, {"rebuilds", motion.rebuilds()}};
     if (is_first_process()) write_report(options.common, std::move(report), outputs, origin);
   }
+  checkpoint.remove();
   print_outputs(outputs);
 }
 
@@ -373,6 +400,12 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
       ->add_option("--lead-in", options->lead_in,
                    "steps that a part makes from noise before its first, to reach the texture of the whole run")
       ->check(CLI::Range(0, 1000000));
+  command->add_option("--checkpoint", options->checkpoint,
+                      "keep the state of the run in this file: the same command goes on where it was stopped");
+  command
+      ->add_option("--checkpoint-every", options->checkpoint_every,
+                   "minutes from one checkpoint to the next (0: after each step)")
+      ->check(CLI::Range(0.0, 1e6));
   add_common_options(*command, options->common);
   add_save_session(*command, options->common);
   auto knob_options = std::make_shared<KnobOptions>(*command, "flow");

@@ -20,6 +20,8 @@ struct FlowOptions {
   std::string image, frames, video, out, haemodynamics, topology_out, streamlines_out, ftle_out, tracks_out;
   std::string chunk;  ///< I/N: this part of the steps only
   int lead_in = 256;  ///< steps before it
+  std::string checkpoint;
+  double checkpoint_every = 10;  ///< minutes
 };
 
 /// The first shape with the means of the vectors over time.

@@ -93,6 +93,16 @@ std::uint64_t first_ones(Ranks* ranks, std::uint64_t value) {
   return sum;
 }
 
+std::string first_ones(Ranks* ranks, const std::string& text) {
+  if (!ranks) return text;
+  std::vector<Ranks::Bytes> send(static_cast<std::size_t>(ranks->count()));
+  const auto* bytes = reinterpret_cast<const std::byte*>(text.data());
+  if (ranks->first())
+    for (Ranks::Bytes& to : send) to.assign(bytes, bytes + text.size());
+  const Ranks::Bytes got = ranks->exchange(send)[0];
+  return {reinterpret_cast<const char*>(got.data()), got.size()};
+}
+
 void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const std::string& knobs) {
   const PreparedSurface& surface = input.surface();
   std::vector<Vec3f> vectors(surface.points.size());

@@ -33,6 +33,9 @@ CommonOptions options_of_process(const CommonOptions& options);
 /// The first process's number, on all of them.
 std::uint64_t first_ones(Ranks* ranks, std::uint64_t value);
 
+/// The same of a text.
+std::string first_ones(Ranks* ranks, const std::string& text);
+
 /// Throws Error where the processes have read different surfaces or vectors at the time `start`, or were given
 /// different knobs. Collective.
 void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const std::string& knobs);

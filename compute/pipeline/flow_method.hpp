@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
@@ -13,8 +14,11 @@
 #include "compute/flow/filter.hpp"
 #include "compute/flow/streaks.hpp"
 #include "compute/pipeline/carry.hpp"
+#include "compute/pipeline/colour_scene.hpp"
+#include "compute/pipeline/describe_cells.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "compute/pipeline/kept_arrays.hpp"
 #include "compute/pipeline/moved_shape.hpp"
 #include "compute/pipeline/separate_sheets.hpp"
 #include "compute/raycast/build_triangle_boxes.hpp"
@@ -32,16 +36,36 @@ class FlowMethodOn : public FlowMethod {
   FlowMethodOn(Executor<Backend>& exec, const FlowParameters& parameters, Ranks* ranks = nullptr)
       : exec_(exec), parameters_(parameters), ranks_(ranks) {}
 
-  void start(const FlowVectors& vectors) override {
+  void start(const FlowVectors& vectors, const std::function<void()>& between) override {
     make_arrays(vectors);
+    const int begin = std::exchange(step_, first_);
     warm_up();
-    shows_ = first_ == step_;
+    shows_ = step_ == begin;
     show(), ++launched_;
-    for (int k = first_; k < step_; ++k) {
-      shows_ = k + 1 == step_, advance(k);
-      exec_.tell_share(double(k + 1 - first_) / double(step_ - first_));
-    }
+    warm_up_to(begin, between);
+  }
+
+  int next_step() const override { return step_; }
+
+  void save(const PutBytes& put) override {
+    require_started();
     exec_.wait();
+    put_arrays(exec_.device(), ranks_, kept_arrays(), put);
+  }
+
+  /// What is carried and shown follows from the values, as it did when they were new.
+  void go_on(const FlowVectors& vectors, int next, const TakeBytes& take,
+             const std::function<void()>& between) override {
+    make_arrays(vectors);
+    const int begin = std::exchange(step_, next);
+    launched_ += next - first_ + 1;
+    first_ = next;
+    warm_up();
+    take_arrays(exec_.device(), ranks_, kept_arrays(), take);
+    take_up();
+    shows_ = step_ >= begin;
+    --launched_, show(), ++launched_;
+    warm_up_to(begin, between);
   }
 
   /// Waits once, at its end: then the frame is there, for whoever draws it.
@@ -54,6 +78,10 @@ class FlowMethodOn : public FlowMethod {
   }
 
   double time() const override { return time_of(step_); }
+  double time_of(int k) const override {
+    const double share = std::clamp(double(k) / std::max(1, parameters_.steps), 0.0, 1.0);
+    return vectors_.start + (vectors_.end - vectors_.start) * share;
+  }
   const EmbeddingInfo& embedding() const override { return info_; }
 
   void move(const FlowShape& shape) override {
@@ -74,6 +102,10 @@ class FlowMethodOn : public FlowMethod {
   virtual void show() = 0;
   /// Moves on by step `k` of the data; those before 0 are the warm-up.
   virtual void advance(int k) = 0;
+  /// What the next step needs of those before: values and deposits.
+  virtual std::vector<KeptArray> kept_arrays() const = 0;
+  /// What else follows from these arrays, before `show`.
+  virtual void take_up() {}
   /// Embeds the vectors on the device (one per point of the mesh, world units) as displacements of the step's slot.
   virtual void fill_slot(const Array<Vec3f>& vectors, const SpeedScale& scale, int slot) = 0;
 
@@ -175,6 +207,19 @@ class FlowMethodOn : public FlowMethod {
     started_ = true;
   }
 
+  /// The steps of the warm-up that are left.
+  void warm_up_to(int begin, const std::function<void()>& between) {
+    const int whole = begin - first_;
+    while (step_ < begin) {
+      shows_ = step_ + 1 == begin;
+      advance(step_);
+      ++step_;
+      exec_.tell_share(double(step_ - first_) / double(whole));
+      if (between) between();
+    }
+    exec_.wait();
+  }
+
   /// In `resume`, after `begin_flow`: time goes on where `before` is. The slots begin with the next step.
   void go_on_from(const FlowMethodOn& before) {
     step_ = first_ = before.step_;
@@ -236,12 +281,6 @@ class FlowMethodOn : public FlowMethod {
     store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, streaks);
   }
 
-  /// Time of the data at the beginning of step `k`; it stands still before the first step and after the last.
-  double time_of(int k) const {
-    const double share = std::clamp(double(k) / std::max(1, parameters_.steps), 0.0, 1.0);
-    return vectors_.start + (vectors_.end - vectors_.start) * share;
-  }
-
   /// Draws the surface, where it has moved to if it has. `shown`: its texture; null: none.
   template <class Target>
   std::vector<std::uint8_t> draw_target(const Target& target, const float* shown, const RenderOptions& options,
@@ -265,27 +304,8 @@ class FlowMethodOn : public FlowMethod {
     Arena& arena = exec_.arena();
     Arena::Scope scope(arena);
     auto& scene = pixel.scene;
-    const auto linear = [](const std::array<float, 3>& c) { return to_linear({c[0], c[1], c[2]}); };
-    if (!options.scalar.empty()) {
-      Array<float> scalar = arena.template temporary<float>(options.scalar.size());
-      scalar.upload(options.scalar);
-      std::vector<Float4> table;
-      for (const auto& c : options.colours) table.push_back({linear(c).x, linear(c).y, linear(c).z, 1});
-      Array<Float4> colours = arena.template temporary<Float4>(table.size());
-      colours.upload(table);
-      scene.scalar = scalar.data();
-      scene.colours = colours.data();
-      scene.below = linear(options.below.value_or(options.colours.front()));
-      scene.above = linear(options.above.value_or(options.colours.back()));
-      scene.no_number = linear(options.no_number);
-      scene.low = float(options.low);
-      scene.high = options.high > options.low ? float(options.high) : std::nextafter(float(options.low), 1e30f);
-    }
-    scene.background = linear(options.background);
-    scene.background_alpha = options.transparent ? 0.0f : 1.0f;
+    colour_scene(arena, options, scene);
     scene.mesh = shape_.moved() ? shape_.mesh(corners_.data()) : seen_;
-    scene.neutral_backs = options.back_faces == BackFaces::neutral;
-    scene.hidden_backs = options.back_faces == BackFaces::hidden;
     place_camera(pixel, options, dims);
     if (shape_.moved()) {  // perhaps out of the domain
       const Vec3d target = domain_.to_grid(options.camera.target);
@@ -299,49 +319,24 @@ class FlowMethodOn : public FlowMethod {
     return bytes;
   }
 
-  /// Fills in what belongs to a point of the surface; for FlowValues, on the host.
-  class Describe {
-   public:
-    explicit Describe(const FlowMethodOn& flow)
-        : flow_(flow),
-          corners_(flow.corners_.download()),
-          normals_(flow.normals_.download()),
-          mesh_{flow.points_.data(), corners_.data(), normals_.data()},
-          moved_{flow.shape_.points().data(), corners_.data(), flow.shape_.normals().data()},
-          vectors_(flow.shape_.vectors()) {
-      if (!vectors_.empty()) return;
-      vectors_.resize(flow.points_.size());
-      flow.fill_vectors(flow.time(), vectors_);
+  /// For FlowValues; this object must outlive the result.
+  DescribeCells describe_cells() const {
+    std::vector<Vec3f> vectors = shape_.vectors();
+    if (vectors.empty()) {
+      vectors.resize(points_.size());
+      fill_vectors(time(), vectors);
     }
-
-    /// Entry `s`: a cell's centre and the point of triangle `t` closest to it, both in cells of the domain.
-    void operator()(FlowValues& values, std::size_t s, const Vec3d& centre, const Vec3d& surface,
-                    std::uint32_t t) const {
-      const Vec3f w(barycentric(mesh_.corners(t), surface));
-      const Triangle c = corners_[t];
-      const bool moved = flow_.shape_.moved();
-      const Vec3f v = vectors_[c.a] * w.x + vectors_[c.b] * w.y + vectors_[c.c] * w.z;
-      const Vec3f normal = (moved ? moved_ : mesh_).normal(t, w);
-      Vec3d foot = surface, middle = centre;
-      if (moved) {  // the foot goes with the material, and the centre keeps its height over it
-        const Corners now = moved_.corners(t);
-        foot = now.a * double(w.x) + now.b * double(w.y) + now.c * double(w.z);
-        middle = foot + Vec3d(normal) * dot(centre - surface, Vec3d(mesh_.normal(t, w)));
-      }
-      const Vec3d back = flow_.sheets_ && flow_.second_sheet_[t] ? flow_.sheets_.shift : Vec3d();
-      values.centre[s] = flow_.domain_.to_world(middle) - back;
-      values.closest_point[s] = flow_.domain_.to_world(foot) - back;
-      values.normal[s] = normal;
-      values.velocity[s] = v - normal * dot(normal, v);
-    }
-
-   private:
-    const FlowMethodOn& flow_;
-    std::vector<Triangle> corners_;
-    std::vector<Vec3f> normals_;
-    MeshView mesh_, moved_;
-    std::vector<Vec3f> vectors_;
-  };
+    return {domain_,
+            points_,
+            corners_.download(),
+            normals_.download(),
+            vectors,
+            shape_.moved(),
+            shape_.points(),
+            shape_.normals(),
+            sheets_ ? second_sheet_.data() : nullptr,
+            sheets_.shift};
+  }
 
   /// Where the embedded shape has the material that is at `points` (world) now, in cells of the domain.
   std::vector<Vec3d> embedded_positions(std::span<const Vec3d> points) const {

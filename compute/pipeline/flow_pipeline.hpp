@@ -16,6 +16,7 @@
 #include "compute/device/ranks.hpp"
 #include "compute/device/stage_timers.hpp"
 #include "compute/math/vec.hpp"
+#include "compute/pipeline/kept_arrays.hpp"
 #include "compute/raycast/camera.hpp"
 
 namespace nacre {
@@ -176,10 +177,21 @@ struct RenderOptions {
 class FlowMethod {
  public:
   virtual ~FlowMethod() = default;
-  virtual void embed(const FlowMesh& mesh) = 0;        ///< stages embed, refine; FlowPipeline::embed calls it
-  virtual void start(const FlowVectors& vectors) = 0;  ///< noise and warm-up
-  virtual void step() = 0;                             ///< stages velocity, advect, deposit, filter
-  virtual double time() const = 0;                     ///< of the frame that is shown
+  virtual void embed(const FlowMesh& mesh) = 0;  ///< stages embed, refine; FlowPipeline::embed calls it
+  /// Noise and warm-up. `between`: called after each step of the warm-up, when `save` may be.
+  virtual void start(const FlowVectors& vectors, const std::function<void()>& between = {}) = 0;
+  virtual void step() = 0;          ///< stages velocity, advect, deposit, filter
+  virtual double time() const = 0;  ///< of the frame that is shown
+  virtual double time_of(
+      int k) const = 0;               ///< of the data at the beginning of step `k`; it stands still in the warm-up
+  virtual int next_step() const = 0;  ///< below FlowParameters::first_step: of the warm-up
+  /// All that the next steps need of those before, piece by piece; the embedding and the vectors are not in it. On
+  /// several processes the first one's `put` gets everything, the same bytes as on one.
+  virtual void save(const PutBytes& put) = 0;
+  /// Instead of `start`, on the same surface and with the same parameters: goes on before step `next`, where `save`
+  /// gave what `take` gives. All that follows is the same to the byte.
+  virtual void go_on(const FlowVectors& vectors, int next, const TakeBytes& take,
+                     const std::function<void()>& between = {}) = 0;
   /// One value per surface cell (octree of cells: per cell), 0..1, contrast stretched.
   virtual std::vector<float> shown() const = 0;
   /// From the next step on, shown values also go to `memory` of the device, for whoever draws them: one float per value
@@ -225,7 +237,7 @@ class FlowPipeline {
   const FlowMethod& flow() const;
 
   virtual StageTimers& timers() = 0;
-  virtual std::size_t peak_bytes() const = 0;             ///< of the arena
+  virtual std::size_t peak_bytes() const = 0;  ///< of the arena
   /// `stop` is checked between and inside launches; `share` tells how much of `embed` (but of the thesis octree) or of
   /// `start` is done, 0..1.
   virtual void watch(const std::atomic<bool>* stop, std::atomic<float>* share = nullptr) = 0;

@@ -56,6 +56,11 @@ class GridFlow final : public GridMethod<Backend> {
     for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
   }
 
+  std::vector<KeptArray> kept_arrays() const override {
+    const std::size_t n = fine_.surface_cells;
+    return {kept(value_, 0, n), kept(arrived_[launched_ & 1], 0, n)};
+  }
+
   void fill_slot(const Array<Vec3f>& vectors, const SpeedScale& scale, int slot) override {
     exec_.for_each(coarse_.cells,
                    EmbedVelocity{mesh_, coarse_.view(), vectors.data(), scale, 3.5f, slots_[slot].data()});

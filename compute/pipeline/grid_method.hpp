@@ -188,7 +188,7 @@ FlowValues GridMethod<Backend>::values() const {
   grid.brick_code = code.data();
   RefinedGridView texture = fine_.view(grid);
   texture.block_cell = block_cell.data();
-  const typename Base::Describe describe(*this);
+  const DescribeCells describe = this->describe_cells();
   for (std::size_t s = 0; s < n; ++s) {
     const Vec3d centre = Vec3d(texture.texel_cell(position[s])) + Vec3d(0.5);
     const Vec3d surface = centre + Vec3d(seed[s].x, seed[s].y, seed[s].z);

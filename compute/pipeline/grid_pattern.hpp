@@ -30,7 +30,7 @@ class GridPattern final : public GridMethod<Backend> {
     this->end_embedding();
   }
 
-  void start(const FlowVectors& vectors) override {
+  void start(const FlowVectors& vectors, const std::function<void()>&) override {
     make_arrays(vectors);
     this->warm_up();
     weigh();
@@ -66,6 +66,9 @@ class GridPattern final : public GridMethod<Backend> {
     exec_.for_each(band_.outer.size(), ExtendChange{coarse_.view(), band_.outer.data(), 0, TuringReaction::most,
                                                     change_.data(), value_.data()});
   }
+
+  std::vector<KeptArray> kept_arrays() const override { return {kept(value_, 0, std::size_t(coarse_.cells))}; }
+  void take_up() override { weigh(); }
 
   void fill_slot(const Array<Vec3f>&, const SpeedScale&, int) override {}  // it sees no step ahead
 

@@ -89,8 +89,8 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
  private:
   using Base = FlowMethodOn<Backend>;
   using Base::domain_, Base::exec_, Base::first_, Base::info_, Base::mesh_, Base::parameters_, Base::started_;
-  using Base::known_around_, Base::launched_, Base::output_, Base::ranks_, Base::seed_, Base::steady_, Base::triangles_,
-      Base::ttl_;
+  using Base::known_around_, Base::launched_, Base::output_, Base::ranks_, Base::seed_, Base::steady_, Base::step_,
+      Base::triangles_, Base::ttl_;
 
   /// What kernels run on that make values of cells: all, or those that are this process's own.
   View own() const {
@@ -124,6 +124,20 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     }
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
+  }
+
+  /// Of the own cells, which follow each other; deposits in the halo are with their owners.
+  std::vector<KeptArray> kept_arrays() const override {
+    const std::size_t first = share_ ? share_->surface_first() : 0;
+    const std::size_t n = share_ ? share_->surface_count() : octree_.view().surface_cells;
+    std::vector<KeptArray> arrays{kept(value_, first, n)};
+    if constexpr (Band::as_thesis) {
+      arrays.push_back(kept(ahead_, first, n));
+      for (int j = 0; j + 1 < ttl_; ++j) arrays.push_back(kept(sums_[(step_ + j - first_) % ttl_], first, n));
+    } else {
+      arrays.push_back(kept(sums_[1 + (launched_ & 1)], first, n));
+    }
+    return arrays;
   }
 
   static constexpr double longest_lists = 48;  ///< triangles in a brick, above which a tree of them is faster
@@ -381,7 +395,7 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
   const std::vector<float> value = this->download_frame(frame_, n);
   const std::size_t first = share_ ? share_->surface_first() : 0, own = share_ ? share_->surface_count() : n;
   FlowValues values(share_ ? own : std::size_t(info_.surface_cells));
-  const typename Base::Describe describe(*this);
+  const DescribeCells describe = this->describe_cells();
   std::size_t out = 0;
   for (std::size_t s = first; s < first + own; ++s) {
     if (code[s] == ~std::uint64_t(0)) continue;

@@ -61,7 +61,8 @@ class FrameFolder : public FrameSink {
   }
 
   void finish() override {
-    if (count_ == 0) throw Error("there are no frames to write to " + folder_.string());
+    if (count_ == 0 && !(part_ && part_->first == part_->last))
+      throw Error("there are no frames to write to " + folder_.string());
   }
 
  private:
@@ -236,6 +237,16 @@ int count_frames(const fs::path& folder) {
   return int(frames);
 }
 
+void repeat_frames(const fs::path& folder, FrameRange frames, FrameSink* to) {
+  for (int number = frames.first; number < frames.last; ++number) {
+    const fs::path file = folder / frame_name(number);
+    if (!fs::exists(file))
+      throw Error(fmt::format("{} is missing in {}", frame_name(number), folder.string()), "the run has made it before",
+                  "put it back, or begin the run anew without its checkpoint");
+    if (to) to->add(read_png(file));
+  }
+}
+
 void check_video_name(const fs::path& file) { format_of(file); }
 
 std::unique_ptr<FrameSink> make_video(const fs::path& file, int fps, const std::atomic<bool>* stop) {
@@ -246,8 +257,7 @@ void make_video_of_folder(const fs::path& folder, const fs::path& file, int fps,
                           const std::atomic<bool>* stop) {
   const std::unique_ptr<FrameSink> video = make_video(file, fps, stop);
   video->describe(origin);
-  const int frames = count_frames(folder);
-  for (int number = 0; number < frames; ++number) video->add(read_png(folder / frame_name(number)));
+  repeat_frames(folder, {0, count_frames(folder)}, video.get());
   video->finish();
 }
 

@@ -61,6 +61,10 @@ std::string frame_name(long number);
 /// How many frames a folder holds, frame_0000.png first. Throws Error if there are none or one is missing.
 int count_frames(const std::filesystem::path& folder);
 
+/// Gives frames of a folder to `to`; null: only looks whether they are there. Throws Error that names the first one
+/// that is missing or cannot be read.
+void repeat_frames(const std::filesystem::path& folder, FrameRange frames, FrameSink* to);
+
 /// Throws Error if the extension of `file` is not a kind of video that `make_video` makes.
 void check_video_name(const std::filesystem::path& file);
 

@@ -147,6 +147,11 @@ void OutputFile::write(const void* data, std::size_t bytes) {
   if (bytes > 0 && std::fwrite(data, 1, bytes, stream_) != bytes) fail(errno);
 }
 
+void OutputFile::sync() {
+  errno = 0;
+  if (std::fflush(stream_) != 0 || (!direct_ && ::fsync(::fileno(stream_)) != 0)) fail(errno);
+}
+
 void OutputFile::commit() {
   errno = 0;
   const bool lost = std::fflush(stream_) != 0 || std::ferror(stream_) != 0;

@@ -24,6 +24,9 @@ class OutputFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
+  /// What is written is on the disk when this returns, so that also a machine that fails leaves a whole file.
+  void sync();
+
   /// Flushes, closes and renames. Nothing may be written afterwards.
   void commit();
 

@@ -38,7 +38,35 @@ refused() {
   grep '^nacre: ' refused.err | grep -q "$text" || complain "no '$text': $(cat refused.err)"
 }
 
+# resumed NAME OPTIONS...: a run that is stopped in the warm-up and later, each time on another number of processes,
+# ends with the results of one that is not; its checkpoint does not tell how many there were.
+resumed() {
+  local name=$1 p
+  shift
+  local words=(flow --method octree --size 240x180 --quiet "$@")
+  "$program" "${words[@]}" --image "$name.png" --out "$name.vtp" --frames "$name" >/dev/null
+  words+=(--image "$name-r.png" --out "$name-r.vtp" --frames "$name-r" --checkpoint "$name.state")
+  local stops=(2 1 3) # the warm-up has two steps
+  for p in 2 1 3; do
+    local status=0
+    NACRE_FAULTS=stop@${stops[0]} launch "$p" "$program" "${words[@]}" >/dev/null 2>resumed.err || status=$?
+    [[ $status == 130 && -e $name.state ]] || complain "$name on $p processes did not stop: $(cat resumed.err)"
+    stops=("${stops[@]:1}")
+  done
+  launch 2 "$program" "${words[@]}" >/dev/null || complain "$name does not go on"
+  cmp "$name.png" "$name-r.png" && cmp "$name.vtp" "$name-r.vtp" && diff -r "$name" "$name-r" >/dev/null ||
+    complain "$name: a run that was stopped gives other bytes"
+  [[ ! -e $name.state ]] || complain "$name: the checkpoint is still there"
+  for p in 1 3; do # the state itself; what comes before it has the memory that was free, and a checksum ends it
+    NACRE_FAULTS=stop@4 launch "$p" "$program" "${words[@]}" >/dev/null 2>&1 || true
+    tail -c 100000 "$name.state" | head -c -4 >"$name.state-$p"
+    rm "$name.state"
+  done
+  cmp "$name.state-1" "$name.state-3" || complain "$name: a checkpoint depends on the number of processes"
+}
+
 if [[ $what != faults ]]; then
+  resumed stopped --sample train --detail 96 --resolution 160 --steps 5 --warmup 2
   same train "1 2 3 4 7" --sample train --detail 96 --resolution 200 --steps 2
   same vortex "3" --sample delta-wing --detail 200 --resolution 300 --steps 1 --step-cells 12 --streaks 40
   same particles "3" --sample cylinder --detail 140 --resolution 160 --steps 2 --streaks 0 --camera +x
@@ -80,6 +108,27 @@ ended() {
   rest=$(find run -type f -not -name 'frame_*.png')
   [[ -z $rest ]] || complain "left behind after $signal to $whom: $rest"
 }
+# A signal that mpirun passes on: all end after the step, and the checkpoint is there.
+with_checkpoint() {
+  rm -rf run && mkdir run
+  "$mpirun" --oversubscribe --bind-to none -n 2 "$program" "${train[@]}" --steps 100000 --frames run/frames \
+    --checkpoint run/state >run.out 2>run.err &
+  local pid=$! status=0
+  until [[ -e run/frames/frame_0001.png ]]; do
+    kill -0 $pid 2>/dev/null || { complain "the run with a checkpoint failed: $(cat run.err)"; return; }
+    sleep 0.1
+  done
+  kill -USR1 $pid
+  wait $pid || status=$?
+  [[ $status == 130 ]] || complain "status $status after USR1: $(cat run.err)"
+  [[ -e run/state ]] || complain "no checkpoint after USR1"
+  local next
+  next=$(grep -ao '"next_step":[0-9]*' run/state | cut -d: -f2)
+  [[ -e run/frames/frame_$(printf %04d $((next - 1))).png ]] || complain "the checkpoint is ahead of the frames"
+  printf x | dd of=run/state bs=1 seek=300 conv=notrunc 2>/dev/null
+  refused 1 'damaged' 2 "$program" "${train[@]}" --steps 100000 --frames run/frames --checkpoint run/state
+}
+with_checkpoint
 ended KILL one
 ended INT all
 exit $bad

@@ -30,13 +30,26 @@ void FlowMotion::embed(double t) {
   longest_ = Extent(input_.surface().points, input_.surface().triangles).longest_side();
 }
 
-bool FlowMotion::start(const FlowVectors& vectors) {
+bool FlowMotion::start(const FlowVectors& vectors, const std::function<void()>& between) {
   const bool embed_again = input_.moves() && (input_.enter(data_time(vectors.start)) || is_stretched(vectors.start));
   if (embed_again) embed(vectors.start);
   vectors_ = vectors;
-  pipeline_.flow().start(vectors);
+  pipeline_.flow().start(vectors, between);
   show();
   return embed_again;
+}
+
+void FlowMotion::go_on(const FlowVectors& vectors, double base, int rebuilds, int next, const TakeBytes& take,
+                       const std::function<void()>& between) {
+  if (rebuilds > 0) {
+    input_.enter(base);
+    input_.rebase(base);
+    pipeline_.embed(mesh());
+  }
+  rebuilds_ = rebuilds;
+  vectors_ = vectors;
+  pipeline_.flow().go_on(vectors, next, take, between);
+  show();
 }
 
 bool FlowMotion::follow() {

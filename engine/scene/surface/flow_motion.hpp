@@ -26,14 +26,19 @@ class FlowMotion {
   /// Embeds the shape at a time of the data.
   void embed(double t);
   /// Starts the flow, embedding again if that must be at the flow's start; true if it was. Vectors as from
-  /// `flow_vectors`.
-  bool start(const FlowVectors& vectors);
+  /// `flow_vectors`; `between` as for FlowMethod.
+  bool start(const FlowVectors& vectors, const std::function<void()>& between = {});
+  /// Instead of `start`, after `embed` at the same time as then: goes on where another one was that had embedded again
+  /// so often, at last the shape of time `base`; the rest as for FlowMethod.
+  void go_on(const FlowVectors& vectors, double base, int rebuilds, int next, const TakeBytes& take,
+             const std::function<void()>& between);
   /// Before each step: embeds the shape of the coming frame if that must be; true if it did.
   bool follow();
   /// After each step: pictures and values show the shape of the frame.
   void show();
 
   int rebuilds() const { return rebuilds_; }
+  double base() const { return input_.base(); }  ///< of the data: when the embedded shape was the present one
 
  private:
   FlowMesh mesh() const;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 
@@ -99,6 +101,50 @@ TEST_P(FlowDoor, TheBackgroundIsOpaqueUnlessAskedToBeTransparent) {
     const std::vector<std::uint8_t> picture = pipeline_->flow().render(options);
     EXPECT_EQ(picture[3], transparent ? 0 : 255) << "a corner";
     EXPECT_EQ(picture[4 * (8 * 16 + 8) + 3], 255) << "the middle, where the surface is";
+  }
+}
+
+TEST_P(FlowDoor, ARunGoesOnFromAnyStepAsIfItHadNotStopped) {
+  vectors_.end = 1;
+  vectors_.at = [](double t, std::span<Vec3f> out) {
+    std::fill(out.begin(), out.end(), Vec3f(1, float(2 * t - 1), 0));
+  };
+  pipeline_->parameters.steps = 4;
+  std::map<int, std::vector<std::byte>> kept;  // by the step that comes next
+  const auto keep = [&] {
+    std::vector<std::byte>& bytes = kept[pipeline_->flow().next_step()];
+    pipeline_->flow().save(
+        [&](std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); });
+  };
+  std::vector<std::vector<float>> whole;
+  pipeline_->flow().start(vectors_, keep);
+  whole.push_back(pipeline_->flow().shown());
+  for (int k = 0; k < 4; ++k) {
+    pipeline_->flow().step();
+    keep();
+    whole.push_back(pipeline_->flow().shown());
+  }
+  ASSERT_EQ(kept.size(), 8u);
+  EXPECT_EQ(kept.begin()->first, -3) << "after the first step of the warm-up";
+  const std::unique_ptr<Device> device = make_cpu_device(2, true);
+  const std::unique_ptr<FlowPipeline> other = make_flow_pipeline(*device);
+  other->parameters = pipeline_->parameters;
+  other->embed({points_, triangles_, normals_});
+  for (const auto& [next, bytes] : kept) {
+    std::size_t at = 0;
+    other->flow().go_on(vectors_, next, [&, &from = bytes](std::span<std::byte> to) {
+      ASSERT_LE(at + to.size(), from.size());
+      std::copy_n(from.begin() + std::ptrdiff_t(at), to.size(), to.begin());
+      at += to.size();
+    });
+    EXPECT_EQ(at, bytes.size());
+    for (int k = std::max(0, next);; ++k) {
+      EXPECT_EQ(other->flow().shown(), whole[std::size_t(k)]) << "frame " << k << " from " << next;
+      EXPECT_EQ(other->flow().next_step(), k);
+      if (k == 4) break;
+      other->flow().step();
+    }
+    EXPECT_EQ(other->flow().values().value, pipeline_->flow().values().value) << "from " << next;
   }
 }
 
