@@ -309,7 +309,7 @@ void Flow::save(const std::filesystem::path& file) const {
     const Caller caller(state_->mutex, state_->options.threads);
     state_->prepare();
     if (file.extension() != ".vtp") throw Error("cannot write " + file.string(), "", "values are written as .vtp");
-    write_flow_values(state_->pipeline->flow(), file, state_->pipeline->flow().time(),
+    write_flow_values(state_->pipeline->flow().values(), file, state_->pipeline->flow().time(),
                       state_->origin(state_->session, "out"));
   });
 }

@@ -12,7 +12,6 @@
 #include "app/run.hpp"
 #include "compute/device/error.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
-#include "engine/io/flow_values.hpp"
 #include "engine/io/named_files.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/picture/colormap.hpp"
@@ -31,6 +30,7 @@
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/flow_motion.hpp"
+#include "engine/system/extension.hpp"
 
 namespace nacre {
 namespace {
@@ -64,7 +64,7 @@ void check_options(const FlowOptions& options, const Settings& settings) {
                      !options.video.empty());
   if (!options.video.empty()) with_usage_errors([&] { check_video_name(options.video); });
   check_output(options.image, "--image", ".png");
-  check_output(options.out, "--out", ".vtp");
+  check_output(options.out, "--out", lower_extension(options.out) == ".pvtp" ? ".pvtp" : ".vtp");
   check_output(options.haemodynamics, "--haemodynamics", ".vtp");
   check_output(options.topology_out, "--topology-out", ".vtp");
   check_output(options.streamlines_out, "--streamlines-out", ".vtp");
@@ -227,21 +227,13 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
   Image image;
   if (!options.image.empty()) image = painter.paint(std::max(0, steps.last - 1));
   StageTimers::Scope scope(pipeline.timers(), "write");
-  if (!is_first_process()) {
-    if (!options.out.empty()) pipeline.flow().values();
-    return {};
-  }
-  if (!options.image.empty())
+  const bool first = is_first_process();
+  if (first && !options.image.empty())
     write_png(options.image, image, origin_of_output(origin, "image")), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
-  if (!options.out.empty()) {
-    std::function<std::vector<PointArray>(std::span<const Vec3d>)> at;
-    if (dye) at = [dye](std::span<const Vec3d> points) { return dye->at(points); };
-    write_flow_values(pipeline.flow(), options.out, pipeline.flow().time(), origin_of_output(origin, "out"), at);
-    outputs.push_back(options.out);
-  }
-  return outputs;
+  if (!options.out.empty()) write_values(options.out, pipeline.flow(), dye, origin), outputs.push_back(options.out);
+  return first ? outputs : std::vector<std::string>();
 }
 
 double median(std::vector<double> seconds) {
@@ -383,7 +375,8 @@ void add_flow_command(CLI::App& program, std::function<void()>& run) {
   command->add_option("--image", options->image, "write the last frame as PNG");
   command->add_option("--frames", options->frames, "write every frame into a folder");
   command->add_option("--video", options->video, "write a video: .mp4, .mkv, .mov, .webm or .gif");
-  command->add_option("--out", options->out, "write the values as .vtp, one point per surface cell");
+  command->add_option("--out", options->out,
+                      "write the values as .vtp, one point per surface cell; .pvtp: a file for each process");
   command->add_option("--haemodynamics", options->haemodynamics,
                       "write means of wall shear stress over time as .vtp: TAWSS, OSI, RRT on the points");
   command->add_option("--topology-out", options->topology_out,

@@ -225,8 +225,8 @@ class FlowPipeline {
 
   FlowParameters parameters;
   /// The processes that share the flow, each with the whole surface; null: this one alone. Only on the octree of
-  /// bricks, on CPUs, and where the surface does not move. All processes make the same calls; pictures and FlowValues
-  /// are complete on the first, `shown` and `lookup` are those of its own bricks, and there is no `sample_shown`.
+  /// bricks, on CPUs, and where the surface does not move. All processes make the same calls; pictures are
+  /// complete on the first; `values`, `shown` and `lookup` are those of its own bricks, and there is no `sample_shown`.
   Ranks* ranks = nullptr;
 
   virtual void embed(const FlowMesh& mesh) = 0;  ///< chooses the method; the surface and flow before it are gone

@@ -403,7 +403,6 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
     values.value[out] = value[s];
     describe(values, out++, centre, centre + Vec3d(point[s].offset(view.quantum)), point[s].triangle);
   }
-  if (share_) gather_values(*ranks_, values);
   return values;
 }
 

@@ -19,9 +19,6 @@ namespace nacre {
 /// the same on all processes. `mesh`: as for the octree, on the host, in cells. Collective.
 std::vector<std::uint64_t> cut_octree(Ranks& ranks, const MeshView& mesh, std::uint32_t triangles, int levels);
 
-/// Puts the values of all processes one after the other, on the first of them; on the others none are left. Collective.
-void gather_values(Ranks& ranks, FlowValues& values);
-
 namespace detail {
 
 /// Copies the surface cells of bricks into a row, brick after brick, or back.

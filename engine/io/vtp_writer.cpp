@@ -77,7 +77,8 @@ void check_array(const std::filesystem::path& path, const std::string& name, std
 template <class Real>
 void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points, std::span<const Triangle> triangles,
            std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-           const std::string& field_data, std::span<const PointPositions> positions) {
+           const std::string& field_data, std::span<const PointPositions> positions,
+           const std::function<void()>& before_it_appears) {
   for (const PointArray& array : arrays)
     check_array(path, array.name, array.values.size(), array.components, points.size());
   for (const PointPositions& each : positions) check_array(path, each.name, 3 * each.values.size(), 3, points.size());
@@ -93,6 +94,7 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
 
   OutputFile file(path);
   numbers.write(file, xml);
+  if (before_it_appears) before_it_appears();
   file.commit();
 }
 
@@ -100,13 +102,32 @@ void write(const std::filesystem::path& path, std::span<const Vec3<Real>> points
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time, std::span<const CellNumbers> cells,
-               const std::string& field_data, std::span<const PointPositions> positions) {
-  write<double>(file, points, triangles, arrays, time, cells, field_data, positions);
+               const std::string& field_data, std::span<const PointPositions> positions,
+               const std::function<void()>& before_it_appears) {
+  write<double>(file, points, triangles, arrays, time, cells, field_data, positions, before_it_appears);
 }
 
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time) {
-  write<float>(file, points, triangles, arrays, time, {}, "", {});
+  write<float>(file, points, triangles, arrays, time, {}, "", {}, {});
+}
+
+void write_pvtp(const std::filesystem::path& path, std::span<const std::string> pieces,
+                std::span<const PointArray> arrays, std::span<const std::string> positions) {
+  const auto entry = [](const char* type, const std::string& name, int components) {
+    return fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", type, xml_escaped(name),
+                       components);
+  };
+  std::string xml =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\">\n<PPolyData GhostLevel=\"0\">\n<PPointData>\n";
+  for (const PointArray& array : arrays) xml += entry("Float32", array.name, array.components);
+  for (const std::string& name : positions) xml += entry("Float64", name, 3);
+  xml += "</PPointData>\n<PPoints>\n" + entry("Float64", "Points", 3) + "</PPoints>\n";
+  for (const std::string& piece : pieces) xml += "<Piece Source=\"" + xml_escaped(piece) + "\"/>\n";
+  OutputFile file(path);
+  file.write(xml + "</PPolyData>\n</VTKFile>\n");
+  file.commit();
 }
 
 void write_vtp_lines(const std::filesystem::path& path, std::span<const Vec3d> points, std::size_t vertices,

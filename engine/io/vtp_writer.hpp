@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,14 +23,20 @@ struct PointPositions {
 /// Writes `points`, `triangles` (empty: every point becomes a vertex cell) and `arrays` (one tuple per point each) as
 /// VTK XML PolyData: little-endian numbers in base64, 64-bit headers, no compression; coordinates keep their type.
 /// `time` becomes the field array TimeValue, or `field_data` is a complete <FieldData> element; `cells` are arrays on
-/// the triangles, `positions` more arrays on the points. Data are written directly, never through a second copy. Throws
-/// Error if the file cannot be written, or if the length of an array is not that of the points.
+/// the triangles, `positions` more arrays on the points. `before_it_appears` is called when all is
+/// written. Data are written directly, never through a second copy. Throws Error if the file cannot be written, or if
+/// the length of an array is not that of the points.
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3d> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt,
                std::span<const CellNumbers> cells = {}, const std::string& field_data = "",
-               std::span<const PointPositions> positions = {});
+               std::span<const PointPositions> positions = {}, const std::function<void()>& before_it_appears = {});
 void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points, std::span<const Triangle> triangles,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt);
+
+/// Writes the .pvtp of `pieces`, names of files beside it that `write_vtp` has written with such arrays and positions;
+/// of those only names and components count.
+void write_pvtp(const std::filesystem::path& file, std::span<const std::string> pieces,
+                std::span<const PointArray> arrays, std::span<const std::string> positions);
 
 /// Writes `points`, of which the first `vertices` become a vertex cell each; `line_starts`: for each polyline the
 /// number of its first point, ascending, and how many points there are (empty: no lines). The rest is as for

@@ -51,6 +51,35 @@ TEST_F(Values, OnePointPerSurfaceCellAndNothingElse) {
   EXPECT_NEAR(double(mesh_.points.size()) / area, 1.5, 0.15);
 }
 
+TEST_F(Values, AListOfPiecesHoldsTheSame) {
+  const Arguments dyed = small_flow + Arguments{"--dye", "1,0,0,0.4"};
+  flow(dyed);
+  const Outcome run = nacre(dyed + Arguments{"--out", path("b.pvtp"), "--report", path("r.json")});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run.out, path("b.pvtp") + "\n");
+  EXPECT_EQ(names(), (Arguments{"a.vtp", "b.pvtp", "b_0.vtp", "r.json"}));
+  EXPECT_EQ(content("b_0.vtp"), without_origin(content("a.vtp")));
+  const RawMesh listed = read_raw(folder_ / "b.pvtp").mesh;
+  EXPECT_EQ(listed.points, mesh_.points);
+  for (const RawArray& a : mesh_.point_arrays) {
+    EXPECT_EQ(array(listed, a.name, a.components).values, a.values) << a.name;
+    const std::string entry =
+        "Name=\"" + a.name + "\" NumberOfComponents=\"" + std::to_string(a.components) + "\"/>";
+    EXPECT_TRUE(contains(content("b.pvtp"), entry)) << entry;
+  }
+  EXPECT_EQ(nacre({"rerun", path("r.json"), "--out", path("c.pvtp"), "--quiet"}).status, 0);
+  EXPECT_EQ(content("c_0.vtp"), content("b_0.vtp"));
+}
+
+TEST_F(Values, WherePartsCannotBeWrittenTheOlderOnesStay) {
+  const Arguments all = small_flow + Arguments{"--out", path("b.pvtp")};
+  write("b.pvtp", "an older list");
+  write("b_0.vtp", "an older part");
+  expect_failure(nacre_limited("-f 16", all), 1, {"b_0.vtp"});
+  EXPECT_EQ(content("b.pvtp") + content("b_0.vtp"), "an older listan older part");
+  EXPECT_EQ(names(), (Arguments{"b.pvtp", "b_0.vtp"}));
+}
+
 TEST_F(Values, CentresLieOnALatticeAndAreDistinct) {
   flow(small_flow);
   std::set<std::tuple<long, long, long>> cells;

@@ -28,6 +28,27 @@ same() {
   done
 }
 
+# pieces P: a .pvtp has a piece of each process that has cells, and together they hold what a .vtp holds.
+pieces() {
+  local words=(flow --method octree --sample train --detail 96 --resolution 160 --steps 1 --quiet) p
+  "$program" "${words[@]}" --out one.vtp >/dev/null
+  for p in "$@"; do
+    launch "$p" "$program" "${words[@]}" --out "in-$p.pvtp" >/dev/null || complain "no pieces of $p processes"
+    [[ $(ls in-"$p"_*.vtp | wc -l) == "$p" ]] || complain "not $p pieces: $(ls in-"$p"_*)"
+    python3 - one.vtp "in-$p.pvtp" <<'PY' || complain "the pieces of $p processes hold other values"
+import base64, sys, xml.etree.ElementTree as xml
+def arrays(file):
+    piece = xml.parse(file).getroot().find("PolyData/Piece")
+    read = lambda at: [(a.get("Name"), base64.b64decode(a.text.strip())[8:]) for a in piece.find(at)]
+    return read("PointData") + read("Points")
+whole = arrays(sys.argv[1])
+parts = [arrays(p.get("Source")) for p in xml.parse(sys.argv[2]).getroot().find("PPolyData").findall("Piece")]
+for k, (name, data) in enumerate(whole):
+    assert all(part[k][0] == name for part in parts) and b"".join(part[k][1] for part in parts) == data, name
+PY
+  done
+}
+
 # refused STATUS TEXT P WORDS...: all processes end with this status, and one line of ours that has this text.
 refused() {
   local wanted=$1 text=$2 status=0
@@ -66,6 +87,7 @@ resumed() {
 }
 
 if [[ $what != faults ]]; then
+  pieces 1 3
   resumed stopped --sample train --detail 96 --resolution 160 --steps 5 --warmup 2
   same train "1 2 3 4 7" --sample train --detail 96 --resolution 200 --steps 2
   same vortex "3" --sample delta-wing --detail 200 --resolution 300 --steps 1 --step-cells 12 --streaks 40
@@ -129,6 +151,10 @@ with_checkpoint() {
   refused 1 'damaged' 2 "$program" "${train[@]}" --steps 100000 --frames run/frames --checkpoint run/state
 }
 with_checkpoint
+# A process that cannot write its piece: no piece appears, not even that of the others.
+mkdir full && mkdir full/in_1.vtp
+refused 1 'in_1.vtp' 2 "$program" "${train[@]}" --steps 1 --out full/in.pvtp
+[[ $(ls -A full) == in_1.vtp ]] || complain "left beside a piece that failed: $(ls -A full)"
 ended KILL one
 ended INT all
 exit $bad

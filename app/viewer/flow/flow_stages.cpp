@@ -342,7 +342,7 @@ void FlowWorker::write_boxes(std::uint64_t* memory, int embedding) {
 void FlowWorker::write_values(const ResultFile& wanted) {
   if (!has_values_) throw Error("there is no flow to write yet", "", "wait for the texture");
   StageTimers::Scope scope(pipeline_->timers(), "write");
-  write_flow_values(pipeline_->flow(), wanted.file, wrapped(pipeline_->flow().time()), wanted.origin);
+  write_flow_values(pipeline_->flow().values(), wanted.file, wrapped(pipeline_->flow().time()), wanted.origin);
 }
 
 double FlowWorker::wrapped(double time) const {

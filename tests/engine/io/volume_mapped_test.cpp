@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 
+#include "compute/device/error.hpp"
 #include "engine/io/mapped_values.hpp"
 #include "engine/io/volume_reader.hpp"
 #include "tests/engine/io/temporary_folder.hpp"
@@ -18,6 +19,12 @@ static_assert(mapped_voxels > worth_mapping);
 /// A few labels far apart.
 const std::vector<std::pair<std::size_t, std::uint8_t>> mapped_labels{
     {0, 9}, {511, 3}, {512 * 512, 200}, {std::size_t(1) << 26, 7}, {mapped_voxels - 1, 255}};
+
+VolumeChoice in_place() {
+  VolumeChoice choice;
+  choice.mapped = true;
+  return choice;
+}
 
 class MappedVolume : public testing::Test {
  protected:
@@ -34,7 +41,7 @@ class MappedVolume : public testing::Test {
 
   /// Mapped, and the same as when it is read.
   static void expect_mapped(const std::filesystem::path& file) {
-    const Volume mapped = read_volume(file, {.mapped = true}), read = read_volume(file);
+    const Volume mapped = read_volume(file, in_place()), read = read_volume(file);
     EXPECT_EQ(mapped.dims, mapped_dims);
     const auto& there = std::get<VoxelArray<std::uint8_t>>(mapped.values);
     const auto& here = std::get<VoxelArray<std::uint8_t>>(read.values);
@@ -87,7 +94,7 @@ TEST_F(MappedVolume, ATruncatedFileIsRefused) {
   const std::string header = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 512 512 257\nencoding: raw\n\n";
   const std::filesystem::path file = write("a.nrrd", header, header.size());
   std::filesystem::resize_file(file, header.size() + mapped_voxels - 1);
-  EXPECT_THROW(read_volume(file, {.mapped = true}), Error);
+  EXPECT_THROW(read_volume(file, in_place()), Error);
 }
 
 }  // namespace
