@@ -32,8 +32,8 @@ class LongMeshMemory : public MeshTest {
 /// A ball, and a volume that is full of boundaries.
 TEST_F(LongMeshMemory, IsWhatWasExpected) {
   const auto square = [](double x, double y, double z) { return x * x + y * y + z * z; };
-  const double sparse = over_estimate(write_volume(
-      "ball.nrrd", [&](int x, int y, int z) { return square(x - 80, y - 75, z - 70) < 45 * 45 ? 1 : 0; }));
+  const double sparse = over_estimate(
+      write_volume("ball.nrrd", [&](int x, int y, int z) { return square(x - 80, y - 75, z - 70) < 45 * 45 ? 1 : 0; }));
   const double dense = over_estimate(write_volume("balls.nrrd", [&](int x, int y, int z) {
     return square(x % 20 - 10, y % 20 - 10, z % 20 - 10) < 64 ? 1 + x / 20 + 8 * (y / 75) : 0;
   }));

@@ -63,8 +63,7 @@ TEST_F(Values, AListOfPiecesHoldsTheSame) {
   EXPECT_EQ(listed.points, mesh_.points);
   for (const RawArray& a : mesh_.point_arrays) {
     EXPECT_EQ(array(listed, a.name, a.components).values, a.values) << a.name;
-    const std::string entry =
-        "Name=\"" + a.name + "\" NumberOfComponents=\"" + std::to_string(a.components) + "\"/>";
+    const std::string entry = "Name=\"" + a.name + "\" NumberOfComponents=\"" + std::to_string(a.components) + "\"/>";
     EXPECT_TRUE(contains(content("b.pvtp"), entry)) << entry;
   }
   EXPECT_EQ(nacre({"rerun", path("r.json"), "--out", path("c.pvtp"), "--quiet"}).status, 0);

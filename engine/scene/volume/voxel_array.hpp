@@ -1,6 +1,7 @@
 // Nacre: the values of a volume, which are not changed any more: in memory, or in a file that is mapped.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,6 +49,9 @@ class VoxelArray {
   const std::shared_ptr<const HeldBytes>& held() const { return held_; }
   void let_go(std::size_t first, std::size_t last) const { held_->let_go(first * sizeof(T), last * sizeof(T)); }
   KeptCounts& kept_counts() const { return *counts_; }
+  friend bool operator==(const VoxelArray& a, const VoxelArray& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+  }
 
  private:
   struct OwnBytes : HeldBytes {
