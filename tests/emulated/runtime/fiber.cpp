@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
 extern "C" {
 void* __tsan_get_current_fiber();
 void* __tsan_create_fiber(unsigned flags);
@@ -44,7 +44,7 @@ nacre_switch_stack:
 
 namespace emulated {
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
 namespace {
 constexpr unsigned not_ordered = 1;  // __tsan_switch_to_fiber_no_sync
 }
@@ -61,7 +61,7 @@ void acquire(void*) {}
   if (block == MAP_FAILED) std::perror("emulated device: a fiber's stack"), std::abort();
   mprotect(block, 4096, PROT_NONE);  // who needs more shall not write elsewhere
   stack_ = static_cast<char*>(block);
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
   sanitizer_ = __tsan_create_fiber(0);
 #endif
   // Not all at the same position of their stacks: these would share a few lines of the caches.
@@ -77,7 +77,7 @@ void acquire(void*) {}
 
 [[gnu::no_sanitize("thread")]] void Fiber::resume() {
   void* const to = position_;  // read as who resumes it, for ThreadSanitizer
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
   resumer_ = __tsan_get_current_fiber();
   __tsan_switch_to_fiber(sanitizer_, not_ordered);
 #endif
@@ -86,7 +86,7 @@ void acquire(void*) {}
 
 [[gnu::no_sanitize("thread")]] void Fiber::pause() {
   void* const to = resumed_;
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
   __tsan_switch_to_fiber(resumer_, not_ordered);
 #endif
   nacre_switch_stack(&position_, to);

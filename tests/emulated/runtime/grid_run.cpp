@@ -40,7 +40,7 @@ unsigned char* shared_now = nullptr;
 std::mt19937 random_order{settings().seed};
 char block_ends;
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
 /// The sanitizer shall not see this: it orders blocks by nothing.
 [[gnu::no_sanitize("thread")]] void spoil(volatile unsigned char* shared, std::size_t bytes) {
   for (std::size_t k = 0; k < bytes; ++k) shared[k] = shared_rubbish;
@@ -70,7 +70,7 @@ void run_team_block(const Launch& launch, const std::function<void()>& lane) {
     broken("a team writes behind its shared memory", launch.name);
 }
 
-#if defined(__SANITIZE_THREAD__)
+#if defined(NACRE_EMULATED_SANITIZE_THREAD)
 /// Threads that wait for nobody, as fibers too: races between them are seen.
 struct Loner {
   Fiber fiber;
