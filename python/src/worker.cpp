@@ -16,15 +16,13 @@ struct Worker::Thread {
   std::mutex mutex;
   std::condition_variable changed;
   const std::function<void()>* job = nullptr;
-  bool done = true, leave = false;
+  bool done = true;
   std::exception_ptr thrown;
-  std::thread thread;
 
-  void live() {
+  [[noreturn]] void live() {
     std::unique_lock lock(mutex);
     for (;;) {
-      changed.wait(lock, [this] { return job || leave; });
-      if (leave) return;
+      changed.wait(lock, [this] { return job != nullptr; });
       const std::function<void()>& now = *job;
       lock.unlock();
       std::exception_ptr caught;
@@ -42,22 +40,33 @@ struct Worker::Thread {
   }
 };
 
-Worker::Worker(nb::object progress) : progress_(std::move(progress)), thread_(new Thread), made_in_(getpid()) {
-  thread_->thread = std::thread([thread = thread_] { thread->live(); });
+/// Threads whose runs have ended. They serve the next runs, because oneTBB (2021.8) keeps 7 KiB of every thread that has
+/// used it. Guarded by the interpreter's lock; never destroyed, as the process ends with them waiting.
+struct Worker::IdleThreads {
+  std::vector<Thread*> threads;
+  long made_in = getpid();
+
+  static IdleThreads& instance() {
+    static IdleThreads* idle = new IdleThreads;
+    if (idle->made_in != getpid()) idle = new IdleThreads;  // a fork does not copy threads
+    return *idle;
+  }
+};
+
+Worker::Worker(nb::object progress) : progress_(std::move(progress)), made_in_(getpid()) {
+  std::vector<Thread*>& idle = IdleThreads::instance().threads;
+  if (!idle.empty()) {
+    thread_ = idle.back();
+    idle.pop_back();
+    return;
+  }
+  thread_ = new Thread;
+  std::thread([thread = thread_] { thread->live(); }).detach();
 }
 
 Worker::~Worker() {
   if (is_elsewhere()) return;  // the thread was not copied, and its mutex may be held by nobody
-  {
-    nb::gil_scoped_release release;
-    {
-      const std::lock_guard lock(thread_->mutex);
-      thread_->leave = true;
-    }
-    thread_->changed.notify_all();
-    thread_->thread.join();
-  }
-  delete thread_;
+  IdleThreads::instance().threads.push_back(thread_);
 }
 
 bool Worker::is_elsewhere() const { return made_in_ != getpid(); }

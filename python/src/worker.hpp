@@ -16,7 +16,7 @@ namespace nacre::python {
 
 namespace nb = nanobind;
 
-/// All that a run and its callbacks share. A run keeps one thread for itself: a GPU is chosen thread by thread.
+/// All that a run and its callbacks share. A run has one thread for itself: a GPU is chosen thread by thread.
 class Worker {
  public:
   /// `progress`: called with (stage, fraction, iteration, particles, energy); None: no reports.
@@ -40,6 +40,7 @@ class Worker {
 
  private:
   struct Thread;
+  struct IdleThreads;
 
   void wait();
   void keep(nb::python_error&& error);
