@@ -40,8 +40,8 @@ struct Worker::Thread {
   }
 };
 
-/// Threads whose runs have ended. They serve the next runs, because oneTBB (2021.8) keeps 7 KiB of every thread that has
-/// used it. Guarded by the interpreter's lock; never destroyed, as the process ends with them waiting.
+/// Threads whose runs have ended. They serve the next runs, because oneTBB (2021.8) keeps 7 KiB of every thread that
+/// has used it. Guarded by the interpreter's lock; never destroyed, as the process ends with them waiting.
 struct Worker::IdleThreads {
   std::vector<Thread*> threads;
   long made_in = getpid();
