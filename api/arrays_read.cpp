@@ -16,17 +16,9 @@ std::vector<OriginFile> ArraysRead::list() const {
   const std::scoped_lock lock(mutex_);
   std::vector<OriginFile> arrays;
   for (const auto& [name, steps] : read_) {
-    if (steps.size() == 1) {
-      arrays.push_back(steps.begin()->second);
-      continue;
-    }
-    Sha256 hash;
-    std::uintmax_t bytes = 0;
-    for (const auto& [step, each] : steps) {
-      hash.add(each.sha256.data(), each.sha256.size());
-      bytes += each.bytes;
-    }
-    arrays.push_back({name, bytes, hash.finish()});
+    std::vector<OriginFile> parts;
+    for (const auto& [step, each] : steps) parts.push_back(each);
+    arrays.push_back(parts.size() == 1 ? parts[0] : joined(name, parts));
   }
   return arrays;
 }

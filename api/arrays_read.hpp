@@ -17,8 +17,7 @@ class ArraysRead {
   /// The same array at the same step again replaces the one before.
   void add(const std::string& name, std::size_t step, const void* data, std::size_t bytes);
 
-  /// One entry for each name. Of an array that was read at several steps: its bytes in all, and the SHA-256 of the
-  /// hexadecimal SHA-256 of each step, joined in the order of the steps.
+  /// One entry for each name. Of an array that was read at several steps, these are `joined` in their order.
   std::vector<OriginFile> list() const;
 
  private:

@@ -171,17 +171,22 @@ Origin origin_of(const Session& session, const std::string& command, const std::
   return origin;
 }
 
-OriginFile read_frames(const fs::path& folder) {
-  OriginFile all{folder.string(), 0, {}};
+OriginFile joined(const std::string& name, const std::vector<OriginFile>& parts) {
+  OriginFile all{name, 0, {}};
   Sha256 hash;
-  const int frames = count_frames(folder);
-  for (int number = 0; number < frames; ++number) {
-    const OriginFile frame = read_origin_file(folder / frame_name(number));
-    all.bytes += frame.bytes;
-    hash.add(frame.sha256.data(), frame.sha256.size());
+  for (const OriginFile& part : parts) {
+    all.bytes += part.bytes;
+    hash.add(part.sha256.data(), part.sha256.size());
   }
   all.sha256 = hash.finish();
   return all;
+}
+
+OriginFile read_frames(const fs::path& folder) {
+  std::vector<OriginFile> frames;
+  const int count = count_frames(folder);
+  for (int number = 0; number < count; ++number) frames.push_back(read_origin_file(folder / frame_name(number)));
+  return joined(folder.string(), frames);
 }
 
 json origin_json(const Origin& origin) {

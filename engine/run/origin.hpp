@@ -30,8 +30,7 @@ struct Origin {
   std::vector<OriginFile> inputs;
   std::vector<OriginFile> others;            ///< that the inputs or the knobs name
   std::vector<OriginFile> arrays;            ///< instead of inputs: in memory of a user of the library, by their names
-  std::vector<OriginFile> frames;            ///< of `join`: the folder; the sum of its frames' bytes, and the
-                                             ///< SHA-256 of their hexadecimal SHA-256, joined in order
+  std::vector<OriginFile> frames;            ///< of `join`: the folder, with its frames `joined`
   std::string sample;                        ///< instead of inputs
   int detail = 0;                            ///< of the sample
   std::map<std::string, std::string> knobs;  ///< those that are not at their defaults, and the seed
@@ -46,6 +45,9 @@ struct Origin {
 /// process as long as it does not change. Throws Error where one cannot be read. `others`: files that the inputs name.
 Origin origin_of(const Session& session, const std::string& command, const std::string& backend,
                  const std::vector<std::filesystem::path>& others);
+
+/// Several files or arrays as one: their bytes in all, and the SHA-256 of their hexadecimal SHA-256, joined in order.
+OriginFile joined(const std::string& name, const std::vector<OriginFile>& parts);
 
 /// The entry of Origin::frames for a folder of frames. Throws Error if one is missing or cannot be read.
 OriginFile read_frames(const std::filesystem::path& folder);

@@ -11,7 +11,8 @@ mkdir -p "$out"
 export LD_LIBRARY_PATH=$tbb/prefix/lib TSAN_OPTIONS="suppressions=$here/tsan.supp exitcode=66"
 suites=0 cut=() failed=()
 for program in "$bin"/test_*; do
-  for suite in $("$program" --gtest_list_tests --gtest_filter="$pattern" | sed -n 's/^\([^ ]*\)\.\( .*\)\?$/\1/p'); do
+  list=$("$program" --gtest_list_tests --gtest_filter="$pattern") || { failed+=("$program does not start"); continue; }
+  for suite in $(sed -n 's/^\([^ ]*\)\.\( .*\)\?$/\1/p' <<<"$list"); do
     name=$(basename "$program").${suite//\//_}
     begun=$SECONDS status=0
     timeout "${NACRE_RACES_SECONDS:-900}" "$program" "--gtest_filter=$suite.*" >"$out/$name.log" 2>&1 || status=$?
