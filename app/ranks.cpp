@@ -17,7 +17,7 @@
 namespace nacre {
 namespace {
 
-std::unique_ptr<Ranks> joined;
+std::unique_ptr<Ranks> own_ranks;
 
 /// A number that a launcher gives its processes; 0: it is not there.
 int number_of(const char* variable) {
@@ -48,26 +48,26 @@ void join_run() {
   const int processes = started_processes();
   if (processes == 0) return;
 #if NACRE_HAS_MPI
-  joined = join_mpi_ranks(&interrupt_flag());
-  if (!joined->first() && !std::freopen("/dev/null", "w", stdout)) throw Error("cannot open /dev/null");
+  own_ranks = join_mpi_ranks(&interrupt_flag());
+  if (!own_ranks->first() && !std::freopen("/dev/null", "w", stdout)) throw Error("cannot open /dev/null");
 #else
   if (processes > 1)
     throw UsageError("this build has no MPI: each of the processes would make the whole run; build with NACRE_MPI=ON");
 #endif
 }
 
-Ranks* run_ranks() { return joined.get(); }
+Ranks* run_ranks() { return own_ranks.get(); }
 
-bool is_first_process() { return !joined || joined->first(); }
+bool is_first_process() { return !own_ranks || own_ranks->first(); }
 
 int leave_run(int status) {
 #if NACRE_HAS_MPI
-  if (joined && status != 0) {
+  if (own_ranks && status != 0) {
     std::fflush(nullptr);
     end_mpi_ranks(status);
   }
 #endif
-  joined.reset();
+  own_ranks.reset();
   return status;
 }
 
@@ -78,7 +78,7 @@ void wait_for_the_first() {
 CommonOptions options_of_process(const CommonOptions& options) {
   CommonOptions own = options;
   const int here = std::max(number_of("OMPI_COMM_WORLD_LOCAL_SIZE"), number_of("MPI_LOCALNRANKS"));
-  if (joined && own.threads == 0 && here > 1)
+  if (own_ranks && own.threads == 0 && here > 1)
     own.threads = std::max(1, int(std::thread::hardware_concurrency()) / here);
   if (is_first_process()) return own;
   own.quiet = true;
