@@ -24,6 +24,24 @@ def result_bytes(path):
     return content
 
 
+def assert_equal(ours, theirs, where):
+    """Parts of two reports. Means may differ in their last digits: program and module are compiled one by one, and what
+    the compiler fuses may differ. What is written to files is compared to the byte elsewhere."""
+    assert type(ours) is type(theirs), where
+    if isinstance(ours, dict):
+        assert list(ours) == list(theirs), where
+        for key in ours:
+            assert_equal(ours[key], theirs[key], f"{where}.{key}")
+    elif isinstance(ours, list):
+        assert len(ours) == len(theirs), where
+        for i, (a, b) in enumerate(zip(ours, theirs)):
+            assert_equal(a, b, f"{where}[{i}]")
+    elif isinstance(ours, float):
+        assert ours == pytest.approx(theirs, rel=1e-8, abs=1e-12), where
+    else:
+        assert ours == theirs, where
+
+
 @pytest.fixture(scope="session")
 def program():
     """The program, to compare with."""

@@ -3,7 +3,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import bean, result_bytes, two_balls, write_nrrd
+from conftest import assert_equal, bean, result_bytes, two_balls, write_nrrd
 
 import nacre
 
@@ -27,7 +27,7 @@ def test_report_is_that_of_the_program(program, tmp_path):
     mesh.tetrahedra()
     ours = mesh.report
     for part in ("nacre", "command", "input", "parameters", "embedding", "fields", "mesh", "tetrahedra"):
-        assert ours[part] == theirs[part], part
+        assert_equal(ours[part], theirs[part], part)
 
 
 @pytest.mark.parametrize(
