@@ -2,7 +2,7 @@
 # Nacre: builds the library without the program, installs it into an empty folder, builds examples/ against it by
 # find_package (or with Nacre as a subfolder), and runs them.
 # Usage: run.sh static|shared|subfolder NACRE WORK CMAKE GENERATOR OPTION...
-# With the options of the program's build, ccache need not compile the library again.
+# With the options of the program's build, and files named relative to the build, ccache need not compile the library again.
 set -euo pipefail
 kind=$1 nacre=$2 work=$3 cmake=$4 generator=$5
 options=(-G "$generator" -DCMAKE_BUILD_TYPE=Release -DNACRE_PROGRAM=OFF -DNACRE_TESTS=OFF -DNACRE_CUDA=OFF "${@:6}")
@@ -14,6 +14,7 @@ fail() {
   exit 1
 }
 
+export CCACHE_BASEDIR="$work/build"
 mkdir -p "$work"
 rm -rf "$work/prefix" "$work/examples/CMakeCache.txt" "$work/out"
 mkdir -p "$work/out"

@@ -22,6 +22,7 @@ fi
 if command -v ccache >/dev/null; then
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
+export CCACHE_BASEDIR="$work/build"
 export CC=${CC:-cc} CXX=${CXX:-c++}  # as CMake calls them by itself: by another name, ccache knows nothing of them
 # Compiled for the same processor as the program: only then are results equal to the byte. With the same options, ccache
 # need not compile the library again.
