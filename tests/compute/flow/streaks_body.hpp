@@ -64,24 +64,27 @@ struct StreakRecipe {
   bool smooth = false;  ///< along the flow, before
 };
 
-template <class Backend, class Surface, class Texture>
-DrawnStreaks draw_on(Executor<Backend>& exec, const Surface& on, std::int64_t n, const MeshView& mesh, double cell,
-                     const Vec3f* vectors, const StreakRecipe<Texture>& recipe) {
+/// `marked`: the same surface for what is not computed with several cells at a time.
+template <class Backend, class Marked, class Surface, class Texture>
+DrawnStreaks draw_on(Executor<Backend>& exec, const Marked& marked, const Surface& on, std::int64_t n,
+                     const MeshView& mesh, double cell, const Vec3f* vectors, const StreakRecipe<Texture>& recipe) {
   Arena& arena = exec.arena();
   const Array<Int3> positions = arena.permanent<Int3>(n);
-  for_each_surface_cell_of(exec, on, n, NotePosition{positions.data()});
+  for_each_surface_cell_of(exec, marked, n, NotePosition{positions.data()});
   DrawnStreaks drawn;
   drawn.position = positions.download();
   for (const Int3& p : drawn.position) drawn.value.push_back(0.5f + recipe.value(p));
   const Array<float> value = arena.permanent_copy<float>(drawn.value), streaks = arena.permanent<float>(n);
-  const Array<StreakCell> cells = arena.permanent<StreakCell>(n);
-  for_each_surface_cell_of(exec, on, n, MarkStreakCells<Surface>{on, mesh, cell, vectors, 1e-6f, cells.data()});
+  const Array<StreakCell> cells = arena.permanent<StreakCell>(n + 1);
+  for_each_surface_cell_of(exec, marked, n, MarkStreakCells<Marked>{marked, mesh, cell, vectors, 1e-6f, cells.data()});
   if (recipe.smooth)
-    for_each_surface_cell_of(exec, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value.data(), cells.data()});
+    store_on_surface(exec, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value.data(), cells.data()},
+                     ToStreakCell{cells.data()});
   else
-    for_each_surface_cell_of(exec, on, n, SetValue{value.data(), cells.data()});
-  store_on_surface(exec, on, n, ConvolveAlongFlow<Surface>{on, cells.data(), recipe.reach}, streaks.data());
+    for_each_surface_cell_of(exec, marked, n, SetValue{value.data(), cells.data()});
+  store_on_surface(exec, on, n, ConvolveAlongFlow<Surface>{on, cells.data(), recipe.reach}, ToArray{streaks.data()});
   drawn.cells = cells.download();
+  drawn.cells.pop_back();
   drawn.streaks = streaks.download();
   return drawn;
 }
@@ -101,13 +104,14 @@ DrawnStreaks draw_on_grid(Executor<Backend>& exec, const FlowSheet& sheet, const
   const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
   const ClosestPointGrid coarse = build_closest_point_grid(exec, mesh, triangles, Int3(8), 4, 4.47f);
   const RefinedGrid fine = build_refined_grid(exec, mesh, triangles, coarse, refine);
-  DrawnStreaks drawn = draw_on(exec, GridSurfaceOf<Lanes>{fine.view(coarse.view())}, fine.surface_cells, mesh,
+  const RefinedGridView texture = fine.view(coarse.view());
+  DrawnStreaks drawn = draw_on(exec, GridSurface{texture}, GridSurfaceOf<Lanes>{texture}, fine.surface_cells, mesh,
                                1.0 / refine, vectors, recipe);
   arena.rewind(mark);
   return drawn;
 }
 
-template <class Backend, class Texture>
+template <class Lanes = Widest, class Backend, class Texture>
 DrawnStreaks draw_on_bricks(Executor<Backend>& exec, const FlowSheet& sheet, const StreakRecipe<Texture>& recipe) {
   const std::size_t mark = exec.arena().mark();
   Arena& arena = exec.arena();
@@ -117,7 +121,8 @@ DrawnStreaks draw_on_bricks(Executor<Backend>& exec, const FlowSheet& sheet, con
   const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
   const BrickOctree tree = build_brick_octree(exec, mesh, std::uint32_t(sheet.mesh.triangles.size()), 3, 3.6);
   const BrickOctreeView view = tree.view();
-  DrawnStreaks drawn = draw_on(exec, BrickSurface{view}, std::int64_t(view.surface_cells), mesh, 1.0, vectors, recipe);
+  DrawnStreaks drawn = draw_on(exec, BrickSurface{view}, BrickSurfaceOf<Lanes>{view}, std::int64_t(view.surface_cells),
+                               mesh, 1.0, vectors, recipe);
   arena.rewind(mark);
   return drawn;
 }
@@ -161,23 +166,28 @@ void CellsKnowFlowAndPlane(Executor<Backend>& exec) {
   });
 }
 
+/// Of the samples of a streamline one way, by default.
+inline constexpr int samples_one_way = 6 / ConvolveAlongFlow<GridSurface>::stride;
+
+/// Unsmoothed, every second cell reads it.
 template <class Backend>
 void AnImpulseSpreadsEvenlyAlongItsLine(Executor<Backend>& exec) {
   FlowSheet sheet;
   sheet.add(flat_part(first_x, last_x), {2, 0, 0});
   const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}};
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
-    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * samples_one_way + 1);
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
-      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach;
+      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach && p.x % 2 == 0;
       ASSERT_NEAR(drawn.streaks[s], 0.5f + (reached ? ConvolveAlongFlow<GridSurface>::gain * share : 0), 1e-6)
           << p.x << ' ' << p.y;
     }
   });
 }
 
-/// Smoothed first, it reaches one cell farther, and its ends are soft; the lines beside it become darker.
+/// Smoothed first, all cells read it evenly, two farther than the streamline goes, and its ends are soft; the lines beside
+/// it become darker.
 template <class Backend>
 void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
   FlowSheet sheet;
@@ -185,12 +195,13 @@ void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
   const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}, 6, true};
   const float across = SmoothAlongAndSharpenAcross<GridSurface>::across;
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
-    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * samples_one_way + 1);
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
-      const int beyond = std::abs(p.x - 30) - recipe.reach, beside = std::abs(p.y - middle_y);
-      const float line = beyond > 1 ? 0 : beyond == 1 ? 0.25f : beyond == 0 ? 0.75f : 1;
-      const float part = beside == 0 ? (1 + 2 * across) * line : beside == 1 && beyond <= 0 ? -across : 0;
+      const int ahead = 30 - p.x, beyond = std::abs(ahead) - recipe.reach, beside = std::abs(p.y - middle_y);
+      const float line = beyond < 0 ? 0.5f : beyond < 3 ? 0.125f * float(3 - beyond) : 0;
+      const bool darker = beside == 1 && ahead >= -recipe.reach && ahead <= recipe.reach + 1;
+      const float part = beside == 0 ? (1 + 2 * across) * line : darker ? -0.5f * across : 0;
       ASSERT_NEAR(drawn.streaks[s], 0.5f + ConvolveAlongFlow<GridSurface>::gain * share * part, 1e-6)
           << p.x << ' ' << p.y;
     }
@@ -219,9 +230,9 @@ void StreaksEndWhereTheFlowTurnsBack(Executor<Backend>& exec) {
   const StreakRecipe<Impulse> recipe{{{29, middle_y, layer}}};
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
     for (int x = 20; x < 41; ++x) {
-      const int to_the_line = std::min(recipe.reach, 30 - x);
-      const bool reached = x <= 30 && 29 - x <= recipe.reach;
-      const float share = reached ? 0.1f / float(1 + recipe.reach + to_the_line) : 0;
+      const int to_the_line = std::min(samples_one_way, (30 - x) / 2);
+      const bool reached = x <= 29 && 29 - x <= recipe.reach && x % 2 == 1;
+      const float share = reached ? 0.1f / float(1 + samples_one_way + to_the_line) : 0;
       EXPECT_NEAR(drawn.streaks[drawn.at({x, middle_y, layer})], 0.5f + 4 * share, 1e-6) << x;
     }
   });
