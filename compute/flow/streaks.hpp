@@ -130,8 +130,8 @@ struct MarkStreakCells {
 };
 
 /// What streaks are made of, one value for each surface cell. Along the flow, a mean over five cells that weighs even and
-/// odd ones alike: samples of it two cells apart add up to all cells between them. Across, the values beside are taken
-/// away a little, two at a time for the same reason, which makes streaks as narrow as those of white noise.
+/// odd ones alike: it takes out what alternates from cell to cell, which would leave chequers. Across, the values beside
+/// are taken away a little, which makes streaks as narrow as those of white noise.
 template <class Surface>
 struct SmoothAlongAndSharpenAcross {
   Surface surface;
@@ -157,15 +157,14 @@ struct SmoothAlongAndSharpenAcross {
     };
     const auto pair = [&](const Vec3<Float>& way) { return at(start + way) + at(start - way); };
     const Float mean = (here + pair(along)) * 0.25f + pair(along * Wide::all(2.0f)) * 0.125f;  // exact products
-    const Float beside = (pair(side) + at(start + side + along) + at(start - side + along)) * 0.5f;
-    const Float sharp = multiply_add(mean + mean - beside, Wide::all(across), mean);
+    const Float sharp = multiply_add(mean + mean - pair(side), Wide::all(across), mean);
     return select(flows, sharp, here) - 0.5f;
   }
 };
 
 /// How much farther than its own length, in cells on an axis, a streak may come: it is pulled back onto the surface at
 /// every cell.
-inline constexpr int streak_slack = 2;
+inline constexpr int streak_slack = 6;
 
 /// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
 /// to where the flow or the surface ends or turns back, or it strays; stretched, around 1/2. Streamlines of several
@@ -180,7 +179,6 @@ struct ConvolveAlongFlow {
   using Float = typename Wide::Float;
   using Int = typename Wide::Int;
   using Mask = typename Wide::Mask;
-  static constexpr int stride = 2;  ///< cells between two samples: each already has its neighbours in it
   static constexpr float gain = 4;  ///< a mean of so many values is small
 
   NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
@@ -194,8 +192,7 @@ struct ConvolveAlongFlow {
     const Mask flows = own.direction_word != 0;
     Half up(surface, 1, start, own.direction(), flows), down(surface, -1, start, own.direction(), flows);
     // Both ways at a time: while one waits for memory, the other goes on.
-    for (int i = 0; i < reach; i += stride) {
-      if (!any(up.runs | down.runs)) break;
+    for (int i = 0; i < reach && any(up.runs | down.runs); ++i) {
       advance(up, position);
       advance(down, position);
     }
@@ -220,8 +217,7 @@ struct ConvolveAlongFlow {
   NACRE_HD_INLINE void advance(Half& line, const Vec3<Int>& home) const {
     const Float far = Wide::all(float(reach + streak_slack)), zero = Wide::all(0.0f);
     const auto within = [&](const Float& x) { return (x >= zero - far) & (x <= far); };
-    const Vec3<Float> p =
-        multiply_add(line.before, Wide::all(-0.5f * stride), multiply_add(line.d, Wide::all(1.5f * stride), line.p));
+    const Vec3<Float> p = multiply_add(line.before, Wide::all(-0.5f), multiply_add(line.d, Wide::all(1.5f), line.p));
     const Vec3<Int> in{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
     const auto found = line.cursor.find(home + in, line.runs & within(p.x) & within(p.y) & within(p.z));
     const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);

@@ -1,6 +1,6 @@
 // Nacre: what flow on many processes would cost, counted on the brick octree of a surface: docs/scaling.md.
 //
-// bench_ranks MESH|SAMPLE[:SPLITS] [resolution=4096] [ranks=1,2,4,...] [step_cells=8] [streaks=30] [threads=0]
+// bench_ranks MESH|SAMPLE[:SPLITS] [resolution=4096] [ranks=1,2,4,...] [step_cells=8] [streaks=26] [threads=0]
 //
 // Builds the octree, cuts its bricks into ranges of equal work, finds the halo of every range, and prints what the
 // ranks compute, keep and send in a step; then a model of the time of a step from measured costs.
@@ -27,7 +27,7 @@ constexpr double radius = 2.24;
 
 struct Settings {
   std::string mesh;
-  int resolution = 4096, streaks = 30, threads = 0;
+  int resolution = 4096, streaks = 26, threads = 0;
   double step_cells = 8;
   std::vector<int> ranks{1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096};
 };

@@ -166,28 +166,23 @@ void CellsKnowFlowAndPlane(Executor<Backend>& exec) {
   });
 }
 
-/// Of the samples of a streamline one way, by default.
-inline constexpr int samples_one_way = 6 / ConvolveAlongFlow<GridSurface>::stride;
-
-/// Unsmoothed, every second cell reads it.
 template <class Backend>
 void AnImpulseSpreadsEvenlyAlongItsLine(Executor<Backend>& exec) {
   FlowSheet sheet;
   sheet.add(flat_part(first_x, last_x), {2, 0, 0});
   const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}};
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
-    const float share = recipe.value({30, middle_y, layer}) / float(2 * samples_one_way + 1);
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
-      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach && p.x % 2 == 0;
+      const bool reached = p.y == middle_y && std::abs(p.x - 30) <= recipe.reach;
       ASSERT_NEAR(drawn.streaks[s], 0.5f + (reached ? ConvolveAlongFlow<GridSurface>::gain * share : 0), 1e-6)
           << p.x << ' ' << p.y;
     }
   });
 }
 
-/// Smoothed first, all cells read it evenly, two farther than the streamline goes, and its ends are soft; the lines beside
-/// it become darker.
+/// Smoothed first, it reaches two cells farther, and its ends are soft; the lines beside it become darker.
 template <class Backend>
 void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
   FlowSheet sheet;
@@ -195,13 +190,13 @@ void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
   const StreakRecipe<Impulse> recipe{{{30, middle_y, layer}}, 6, true};
   const float across = SmoothAlongAndSharpenAcross<GridSurface>::across;
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
-    const float share = recipe.value({30, middle_y, layer}) / float(2 * samples_one_way + 1);
+    const float share = recipe.value({30, middle_y, layer}) / float(2 * recipe.reach + 1);
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
-      const int ahead = 30 - p.x, beyond = std::abs(ahead) - recipe.reach, beside = std::abs(p.y - middle_y);
-      const float line = beyond < 0 ? 0.5f : beyond < 3 ? 0.125f * float(3 - beyond) : 0;
-      const bool darker = beside == 1 && ahead >= -recipe.reach && ahead <= recipe.reach + 1;
-      const float part = beside == 0 ? (1 + 2 * across) * line : darker ? -0.5f * across : 0;
+      const int beyond = std::abs(p.x - 30) - recipe.reach, beside = std::abs(p.y - middle_y);
+      const float part_of_the_end[] = {0.875f, 0.625f, 0.375f, 0.125f};  // of the weights 1, 2, 2, 2, 1
+      const float line = beyond < -1 ? 1 : beyond > 2 ? 0 : part_of_the_end[beyond + 1];
+      const float part = beside == 0 ? (1 + 2 * across) * line : beside == 1 && beyond <= 0 ? -across : 0;
       ASSERT_NEAR(drawn.streaks[s], 0.5f + ConvolveAlongFlow<GridSurface>::gain * share * part, 1e-6)
           << p.x << ' ' << p.y;
     }
@@ -230,9 +225,9 @@ void StreaksEndWhereTheFlowTurnsBack(Executor<Backend>& exec) {
   const StreakRecipe<Impulse> recipe{{{29, middle_y, layer}}};
   on_both(exec, sheet, recipe, [&](const DrawnStreaks& drawn) {
     for (int x = 20; x < 41; ++x) {
-      const int to_the_line = std::min(samples_one_way, (30 - x) / 2);
-      const bool reached = x <= 29 && 29 - x <= recipe.reach && x % 2 == 1;
-      const float share = reached ? 0.1f / float(1 + samples_one_way + to_the_line) : 0;
+      const int to_the_line = std::min(recipe.reach, 30 - x);
+      const bool reached = x <= 30 && 29 - x <= recipe.reach;
+      const float share = reached ? 0.1f / float(1 + recipe.reach + to_the_line) : 0;
       EXPECT_NEAR(drawn.streaks[drawn.at({x, middle_y, layer})], 0.5f + 4 * share, 1e-6) << x;
     }
   });
