@@ -20,7 +20,7 @@ HaloDepths HaloDepths::of(double radius, double step_cells, int streaks) {
   depths.beside = bricks(1 + foot);
   depths.detail = bricks(2 + foot);
   depths.whole = std::max({depths.deposits, depths.detail + 1, pictures});
-  if (streaks > 0) depths.whole = std::max(depths.whole, bricks(streaks + streak_slack + 2 * foot + 2));
+  if (streaks > 0) depths.whole = std::max(depths.whole, bricks(streaks + streak_slack + 2 * foot + 4));
   return depths;
 }
 

@@ -63,12 +63,48 @@ NACRE_HD_INLINE StreakCells<Single> load_streak_cells(const StreakCell* cells, C
 }
 
 #if defined(NACRE_PACKETS)
-NACRE_HD_INLINE StreakCells<Packet> load_streak_cells(const StreakCell* cells, Packet::Int s, Packet::Mask mask) {
+/// Reads four bytes behind the last cell.
+template <class Index>
+NACRE_HD_INLINE StreakCells<Packet> load_streak_cells(const StreakCell* cells, const Index& s, Packet::Mask mask) {
   static_assert(sizeof(StreakCell) == 12);
-  const auto* words = reinterpret_cast<const std::uint32_t*>(cells);
-  return {gather(words, s * 3, mask), gather(words, s * 3 + 1, mask), Packet::Float(gather(words, s * 3 + 2, mask))};
+  Packet::Int word[3];
+  gather_triples(reinterpret_cast<const std::uint32_t*>(cells), s, mask, word);
+  return {word[0], word[1], Packet::Float(word[2])};
 }
 #endif
+
+/// Vectors of one or several cells, fused in one way.
+template <class Float>
+NACRE_HD_INLINE Vec3<Float> multiply_add(const Vec3<Float>& a, const Float& b, const Vec3<Float>& c) {
+  return {multiply_add(a.x, b, c.x), multiply_add(a.y, b, c.y), multiply_add(a.z, b, c.z)};
+}
+template <class Float>
+NACRE_HD_INLINE Float fused_dot(const Vec3<Float>& a, const Vec3<Float>& b) {
+  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
+}
+template <class Float>
+NACRE_HD_INLINE Vec3<Float> fused_cross(const Vec3<Float>& a, const Vec3<Float>& b) {
+  return {multiply_add(a.y, b.z, -(a.z * b.y)), multiply_add(a.z, b.x, -(a.x * b.z)),
+          multiply_add(a.x, b.y, -(a.y * b.x))};
+}
+
+/// `values` of surface cells, 0 where they are masked out.
+NACRE_HD_INLINE float load_values(const float* values, CellIndex s, bool mask) { return mask ? values[s] : 0; }
+
+#if defined(NACRE_PACKETS)
+template <class Index>
+NACRE_HD_INLINE Packet::Float load_values(const float* values, const Index& s, Packet::Mask mask) {
+  Packet::Float result;
+  for (int lane = 0; lane < Packet::lanes; ++lane) result[lane] = values[std::uint64_t(s[lane])];
+  return Packet::Float(Packet::Int(result) & mask);
+}
+#endif
+
+/// Where a value of a surface cell is stored.
+struct ToStreakCell {
+  StreakCell* cells;
+  NACRE_HD_INLINE void operator()(CellIndex s, float value) const { cells[s].value = value; }
+};
 
 /// Fills in the flow and the surface of each surface cell, from the triangle of its closest point: exact where vectors
 /// kept on a coarser grid are blurred, and at creases.
@@ -93,38 +129,42 @@ struct MarkStreakCells {
   }
 };
 
-/// What streaks are made of. Along the flow, the mean of the values at a cell and one cell up and down: it takes out
-/// what alternates from cell to cell, which would leave chequers. Across, the values beside are taken away a little,
-/// which makes streaks as narrow as those of white noise.
+/// What streaks are made of, one value for each surface cell. Along the flow, a mean over five cells that weighs even and
+/// odd ones alike: it takes out what alternates from cell to cell, which would leave chequers. Across, the values beside
+/// are taken away a little, which makes streaks as narrow as those of white noise.
 template <class Surface>
 struct SmoothAlongAndSharpenAcross {
   Surface surface;
   const float* value;  ///< 0..1
-  StreakCell* cells;
+  const StreakCell* cells;
 
+  using Wide = typename Surface::Wide;
+  using Float = typename Wide::Float;
+  using Int = typename Wide::Int;
   static constexpr float across = 1.0f / 16;  ///< share of either neighbour; docs/method/chapter-5.md
 
-  NACRE_HD void operator()(CellIndex s, const Int3& position) const {
-    typename Surface::Cursor cursor(surface);
-    const auto at = [&](const Vec3f& p) {
-      const NearSurfaceCell found = cursor.find(position + floor_cell(p));
-      return value[found.cell == no_cell ? s : found.cell];
+  NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
+    const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
+    const Float here = load_values(value, home, Wide::nothing_masked());
+    const auto flows = own.direction_word != 0;
+    const Vec3<Float> normal = own.normal(), along = own.direction(), side = fused_cross(normal, along);
+    const Vec3<Float> start = multiply_add(normal, own.plane(), Vec3<Float>(Wide::all(0.5f)));
+    typename Surface::WideCursor cursor(surface);
+    const auto at = [&](const Vec3<Float>& p) {
+      const auto found =
+          cursor.find(position + Vec3<Int>{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)}, flows);
+      return select(found.found, load_values(value, found.cell, found.found), here);
     };
-    float mean = value[s];
-    const StreakCells<Single> own = load_streak_cells(cells, s, true);
-    if (own.direction_word != 0) {
-      const Vec3f normal = own.normal(), along = own.direction(), side = cross(normal, along);
-      const Vec3f p = Vec3f(0.5f) + normal * own.plane();
-      mean = 0.5f * mean + 0.25f * (at(p + along) + at(p - along));
-      mean = (1 + 2 * across) * mean - across * (at(p + side) + at(p - side));
-    }
-    cells[s].value = mean - 0.5f;
+    const auto pair = [&](const Vec3<Float>& way) { return at(start + way) + at(start - way); };
+    const Float mean = (here + pair(along)) * 0.25f + pair(along * Wide::all(2.0f)) * 0.125f;  // exact products
+    const Float sharp = multiply_add(mean + mean - pair(side), Wide::all(across), mean);
+    return select(flows, sharp, here) - 0.5f;
   }
 };
 
 /// How much farther than its own length, in cells on an axis, a streak may come: it is pulled back onto the surface at
 /// every cell.
-inline constexpr int streak_slack = 8;
+inline constexpr int streak_slack = 6;
 
 /// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
 /// to where the flow or the surface ends or turns back, or it strays; stretched, around 1/2. Streamlines of several
@@ -148,35 +188,47 @@ struct ConvolveAlongFlow {
 
   NACRE_HD_INLINE Float mean(const typename Surface::Index& home, const Vec3<Int>& position) const {
     const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
-    const Vec3<Float> along = own.direction(), middle(Wide::all(0.5f));
-    const Vec3<Float> start = middle + own.normal() * own.plane();
-    const Float far = Wide::all(float(reach + streak_slack));
-    const auto within = [&](const Float& x) { return (x >= Wide::all(0.0f) - far) & (x <= far); };
-    Float sum = own.value, count = Wide::all(1.0f);
-    for (int side = -1; side <= 1; side += 2) {
-      typename Surface::WideCursor cursor(surface);
-      const Float sign = Wide::all(float(side));
-      Vec3<Float> p = start, d = along * sign, before = d;
-      Mask runs = own.direction_word != 0;
-      for (int i = 0; i < reach && any(runs); ++i) {
-        // A cell by Adams and Bashforth's second order: one direction a step.
-        p = p + d * Wide::all(1.5f) - before * Wide::all(0.5f);
-        const Vec3<Int> in{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
-        runs = runs & within(p.x) & within(p.y) & within(p.z);
-        const auto found = cursor.find(position + in, runs);
-        const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);
-        const Vec3<Float> next = cell.direction() * sign;
-        runs = found.found & (dot(next, d) > 0.0f);
-        before = d;
-        d = next;
-        const Vec3<Float> normal = cell.normal(), low{to_float(in.x), to_float(in.y), to_float(in.z)};
-        const Float height = dot(normal, p - low - middle) - cell.plane();
-        p = p - normal * select(found.direct, height, Wide::all(0.0f));
-        sum = sum + select(runs, cell.value, Wide::all(0.0f));
-        count = count + select(runs, Wide::all(1.0f), Wide::all(0.0f));
-      }
+    const Vec3<Float> start = multiply_add(own.normal(), own.plane(), Vec3<Float>(Wide::all(0.5f)));
+    const Mask flows = own.direction_word != 0;
+    Half up(surface, 1, start, own.direction(), flows), down(surface, -1, start, own.direction(), flows);
+    // Both ways at a time: while one waits for memory, the other goes on.
+    for (int i = 0; i < reach && any(up.runs | down.runs); ++i) {
+      advance(up, position);
+      advance(down, position);
     }
-    return sum / count;
+    return (own.value + up.sum + down.sum) / (Wide::all(1.0f) + up.count + down.count);
+  }
+
+ private:
+  /// A streamline one way.
+  struct Half {
+    typename Surface::WideCursor cursor;
+    Float sign;
+    Vec3<Float> p, d, before;  ///< from the lower corner of the home cell; direction of this step and of the last one
+    Mask runs;
+    Float sum = Wide::all(0.0f), count = Wide::all(0.0f);
+
+    NACRE_HD_INLINE Half(const Surface& surface, int side, const Vec3<Float>& start, const Vec3<Float>& along,
+                         Mask flows)
+        : cursor(surface), sign(Wide::all(float(side))), p(start), d(along * sign), before(d), runs(flows) {}
+  };
+
+  /// A cell by Adams and Bashforth's second order: one direction a step.
+  NACRE_HD_INLINE void advance(Half& line, const Vec3<Int>& home) const {
+    const Float far = Wide::all(float(reach + streak_slack)), zero = Wide::all(0.0f);
+    const auto within = [&](const Float& x) { return (x >= zero - far) & (x <= far); };
+    const Vec3<Float> p = multiply_add(line.before, Wide::all(-0.5f), multiply_add(line.d, Wide::all(1.5f), line.p));
+    const Vec3<Int> in{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
+    const auto found = line.cursor.find(home + in, line.runs & within(p.x) & within(p.y) & within(p.z));
+    const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);
+    const Vec3<Float> next = cell.direction() * line.sign, normal = cell.normal();
+    line.runs = found.found & (fused_dot(next, line.d) > 0.0f);
+    line.before = line.d;
+    line.d = next;
+    const Vec3<Float> middle{to_float(in.x) + 0.5f, to_float(in.y) + 0.5f, to_float(in.z) + 0.5f};
+    line.p = multiply_add(normal, select(found.direct, cell.plane() - fused_dot(normal, p - middle), zero), p);
+    line.sum = line.sum + select(line.runs, cell.value, zero);
+    line.count = line.count + select(line.runs, Wide::all(1.0f), zero);
   }
 };
 

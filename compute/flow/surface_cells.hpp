@@ -1,6 +1,9 @@
 // Nacre: how kernels find the surface cell of a position, on the grid and on the octree of bricks.
 #pragma once
 
+#include <type_traits>
+#include <utility>
+
 #include "compute/embedding/band.hpp"
 #include "compute/embedding/brick_octree.hpp"
 #include "compute/embedding/refined_grid.hpp"
@@ -19,7 +22,7 @@ struct SurfaceFoot {
   std::uint32_t triangle;
 };
 
-/// The same for one cell or several. Where `found` is not set, the rest says nothing.
+/// The same for one cell or several. Where `found` is not set, `cell` is one that exists and the rest says nothing.
 template <class Wide, class Index>
 struct NearSurfaceCells {
   Index cell;
@@ -66,7 +69,8 @@ struct GridSurfaceOf {
     NACRE_HD_INLINE explicit WideCursor(const GridSurfaceOf& surface) : cursor_(surface.texture) {}
     NACRE_HD_INLINE NearSurfaceCells<Wide, Index> find(const Vec3<typename Wide::Int>& cell, typename Wide::Mask mask) {
       const Index value = cursor_.texel(cell, mask);
-      return {value & ~std::int32_t(RefinedGridView::extended), value != -1, value >= 0};
+      const typename Wide::Mask found = value != -1;
+      return {select(found, value & ~std::int32_t(RefinedGridView::extended), Wide::all(0)), found, value >= 0};
     }
 
    private:
@@ -76,11 +80,19 @@ struct GridSurfaceOf {
 
 using GridSurface = GridSurfaceOf<Widest>;
 
-/// The same on the octree of bricks.
-struct BrickSurface {
+/// Numbers of as many surface cells as `Lanes` has; 64 bits each.
+template <class Lanes>
+struct CellIndices {
+  CellIndex cell[Lanes::lanes];
+  NACRE_HD_INLINE CellIndex operator[](int lane) const { return cell[lane]; }
+};
+
+/// The same on the octree of bricks: cells are looked up one by one.
+template <class Lanes>
+struct BrickSurfaceOf {
   BrickOctreeView view;
-  using Wide = Single;
-  using Index = CellIndex;
+  using Wide = Lanes;
+  using Index = std::conditional_t<Lanes::lanes == 1, CellIndex, CellIndices<Lanes>>;
 
   NACRE_HD_INLINE SurfaceFoot foot(CellIndex, const Int3& position) const {
     const CellPoint point = view.point[BrickOctreeView::Cursor(view).find(position)];
@@ -92,9 +104,9 @@ struct BrickSurface {
 
   class Cursor {
    public:
-    NACRE_HD_INLINE explicit Cursor(const BrickSurface& surface) : view_(surface.view), cursor_(view_) {}
+    NACRE_HD_INLINE explicit Cursor(const BrickSurfaceOf& surface) : view_(surface.view), cursor_(view_) {}
     /// Begins where another cursor is.
-    NACRE_HD_INLINE Cursor(const BrickSurface& surface, const BrickOctreeView::Cursor& cursor)
+    NACRE_HD_INLINE Cursor(const BrickSurfaceOf& surface, const BrickOctreeView::Cursor& cursor)
         : view_(surface.view), cursor_(cursor) {}
     NACRE_HD_INLINE NearSurfaceCell find(const Int3& cell) {
       const CellIndex at = cursor_.find_surface(cell);
@@ -111,16 +123,38 @@ struct BrickSurface {
 
   class WideCursor {
    public:
-    NACRE_HD_INLINE explicit WideCursor(const BrickSurface& surface) : cursor_(surface) {}
-    NACRE_HD_INLINE NearSurfaceCells<Wide, Index> find(const Int3& cell, bool mask) {
-      const NearSurfaceCell near = mask ? cursor_.find(cell) : NearSurfaceCell{};
-      return {near.cell, near.cell != no_cell, near.direct};
+    NACRE_HD_INLINE explicit WideCursor(const BrickSurfaceOf& surface) : WideCursor(surface, Lane()) {}
+
+    NACRE_HD_INLINE NearSurfaceCells<Wide, Index> find(const Vec3<typename Wide::Int>& cell, typename Wide::Mask mask) {
+      if constexpr (Wide::lanes == 1) {
+        const NearSurfaceCell near = mask ? cursor_[0].find(cell) : NearSurfaceCell{};
+        const bool found = near.cell != no_cell;
+        return {found ? near.cell : 0, found, near.direct};
+      } else {
+        NearSurfaceCells<Wide, Index> all{};
+        for (int lane = 0; lane < Wide::lanes; ++lane) {
+          if (!mask[lane]) continue;
+          const NearSurfaceCell near = cursor_[lane].find({cell.x[lane], cell.y[lane], cell.z[lane]});
+          if (near.cell == no_cell) continue;
+          all.cell.cell[lane] = near.cell;
+          all.found[lane] = -1;
+          all.direct[lane] = -int(near.direct);
+        }
+        return all;
+      }
     }
 
    private:
-    Cursor cursor_;
+    using Lane = std::make_integer_sequence<int, Wide::lanes>;
+    template <int... lane>
+    NACRE_HD_INLINE WideCursor(const BrickSurfaceOf& surface, std::integer_sequence<int, lane...>)
+        : cursor_{(void(lane), Cursor(surface))...} {}
+
+    Cursor cursor_[Wide::lanes];
   };
 };
+
+using BrickSurface = BrickSurfaceOf<Widest>;
 
 /// Runs `kernel(surface_cell, position)` on all surface cells, of the grid or of the octree.
 template <class Kernel>
@@ -144,20 +178,26 @@ void for_each_surface_cell_of(Executor<Backend>& exec, const GridSurfaceOf<Lanes
   exec.for_each(n, OnGridSurface<Kernel>{surface.texture, kernel});
 }
 
-template <class Backend, class Kernel>
-void for_each_surface_cell_of(Executor<Backend>& exec, const BrickSurface& surface, std::int64_t,
+template <class Backend, class Lanes, class Kernel>
+void for_each_surface_cell_of(Executor<Backend>& exec, const BrickSurfaceOf<Lanes>& surface, std::int64_t,
                               const Kernel& kernel) {
   for_each_surface_cell(exec, surface.view, OnBrickSurface<Kernel>{kernel});
 }
 
-/// Stores `kernel(surface_cells, positions)` of all surface cells in `result`, computing as many at a time as the
+/// Where `store_on_surface` puts its results: in an array.
+struct ToArray {
+  float* values;
+  NACRE_HD_INLINE void operator()(CellIndex s, float value) const { values[s] = value; }
+};
+
+/// Calls `store(s, kernel(surface_cells, positions)[s])` for all surface cells, computing as many at a time as the
 /// surface allows.
-template <class Wide, class Kernel>
+template <class Wide, class Kernel, class Store>
 struct StoreOnGridSurface {
   RefinedGridView texture;
   std::int64_t n;
   Kernel kernel;
-  float* result;
+  Store store;
 
   NACRE_HD void operator()(std::int64_t packet) const {
     typename Wide::Int home;
@@ -166,7 +206,7 @@ struct StoreOnGridSurface {
     if constexpr (Wide::lanes == 1) {
       home = std::int32_t(first);
       position = texture.cell(std::uint32_t(first));
-      result[first] = kernel(home, position);
+      store(CellIndex(first), kernel(home, position));
     } else {
       for (int lane = 0; lane < Wide::lanes; ++lane) {
         const auto s = std::uint32_t(first + (lane < count ? lane : count - 1));
@@ -175,29 +215,59 @@ struct StoreOnGridSurface {
         position.x[lane] = cell.x, position.y[lane] = cell.y, position.z[lane] = cell.z;
       }
       const typename Wide::Float value = kernel(home, position);
-      for (int lane = 0; lane < count; ++lane) result[first + lane] = value[lane];
+      for (int lane = 0; lane < count; ++lane) store(CellIndex(first + lane), value[lane]);
     }
   }
 };
 
-template <class Kernel>
+/// The same on the octree: those of a brick side by side.
+template <class Wide, class Kernel, class Store>
 struct StoreOnBrickSurface {
+  BrickOctreeView view;
   Kernel kernel;
-  float* result;
-  NACRE_HD void operator()(CellIndex s, const Int3& position) const { result[s] = kernel(s, position); }
+  Store store;
+  std::size_t scratch_bytes() const { return 0; }
+
+  NACRE_HD void operator()(Team& team, std::int64_t item) const {
+    if constexpr (Wide::lanes == 1) {
+      view.each_surface_cell(team, item, [&](CellIndex s, CellIndex, const Int3& position, BrickOctreeView::Cursor&) {
+        store(s, kernel(s, position));
+      });
+    } else {
+      CellIndices<Wide> home;
+      Vec3<typename Wide::Int> position;
+      int count = 0;
+      const auto compute = [&] {
+        for (int lane = count; lane < Wide::lanes; ++lane) {  // the last one again
+          home.cell[lane] = home.cell[count - 1];
+          position.x[lane] = position.x[count - 1], position.y[lane] = position.y[count - 1];
+          position.z[lane] = position.z[count - 1];
+        }
+        const typename Wide::Float value = kernel(home, position);
+        for (int lane = 0; lane < count; ++lane) store(home.cell[lane], value[lane]);
+        count = 0;
+      };
+      view.each_surface_cell(team, item, [&](CellIndex s, CellIndex, const Int3& at, BrickOctreeView::Cursor&) {
+        home.cell[count] = s;
+        position.x[count] = at.x, position.y[count] = at.y, position.z[count] = at.z;
+        if (++count == Wide::lanes) compute();
+      });
+      if (count > 0) compute();
+    }
+  }
 };
 
-template <class Backend, class Lanes, class Kernel>
+template <class Backend, class Lanes, class Kernel, class Store>
 void store_on_surface(Executor<Backend>& exec, const GridSurfaceOf<Lanes>& surface, std::int64_t n,
-                      const Kernel& kernel, float* result) {
+                      const Kernel& kernel, const Store& store) {
   constexpr int lanes = Lanes::lanes;
-  exec.for_each((n + lanes - 1) / lanes, StoreOnGridSurface<Lanes, Kernel>{surface.texture, n, kernel, result});
+  exec.for_each((n + lanes - 1) / lanes, StoreOnGridSurface<Lanes, Kernel, Store>{surface.texture, n, kernel, store});
 }
 
-template <class Backend, class Kernel>
-void store_on_surface(Executor<Backend>& exec, const BrickSurface& surface, std::int64_t n, const Kernel& kernel,
-                      float* result) {
-  for_each_surface_cell_of(exec, surface, n, StoreOnBrickSurface<Kernel>{kernel, result});
+template <class Backend, class Lanes, class Kernel, class Store>
+void store_on_surface(Executor<Backend>& exec, const BrickSurfaceOf<Lanes>& surface, std::int64_t, const Kernel& kernel,
+                      const Store& store) {
+  exec.for_each_team(surface.view.items(), StoreOnBrickSurface<Lanes, Kernel, Store>{surface.view, kernel, store});
 }
 
 }  // namespace nacre

@@ -6,7 +6,7 @@
 
 #include "compute/device/backend.hpp"
 
-#if !defined(__CUDACC__) && defined(__AVX2__)
+#if !defined(__CUDACC__) && defined(__AVX2__) && defined(__FMA__)
 #include <immintrin.h>
 #endif
 
@@ -30,12 +30,21 @@ NACRE_HD_INLINE std::int32_t select(bool which, std::int32_t a, std::int32_t b) 
 NACRE_HD_INLINE bool any(bool mask) { return mask; }
 NACRE_HD_INLINE float to_float(std::int32_t a) { return float(a); }
 NACRE_HD_INLINE std::int32_t floor_to_int(float a) { return std::int32_t(std::floor(a)); }
+/// a * b + c, rounded once where the processor can. Where the compiler chooses what to fuse, one element and several may
+/// get different last bits.
+NACRE_HD_INLINE float multiply_add(float a, float b, float c) {
+#if defined(__CUDA_ARCH__) || defined(__FMA__)
+  return std::fma(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
 /// `from[index]`, or 0 where it is masked out. The index is read as an unsigned number.
 NACRE_HD_INLINE std::int32_t gather(const std::uint32_t* from, std::int32_t index, bool mask) {
   return mask ? std::int32_t(from[std::uint32_t(index)]) : 0;
 }
 
-#if !defined(__CUDACC__) && defined(__AVX2__)
+#if !defined(__CUDACC__) && defined(__AVX2__) && defined(__FMA__)
 #define NACRE_PACKETS 1
 
 /// As many elements as a SIMD register holds.
@@ -63,6 +72,9 @@ NACRE_HD_INLINE Packet::Int floor_to_int(Packet::Float a) {
 }
 
 #if defined(__AVX512F__)
+NACRE_HD_INLINE Packet::Float multiply_add(Packet::Float a, Packet::Float b, Packet::Float c) {
+  return Packet::Float(_mm512_fmadd_ps(__m512(a), __m512(b), __m512(c)));
+}
 NACRE_HD_INLINE __mmask16 bits_of(Packet::Mask mask) { return _mm512_test_epi32_mask(__m512i(mask), __m512i(mask)); }
 NACRE_HD_INLINE bool any(Packet::Mask mask) { return bits_of(mask) != 0; }
 NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index, Packet::Mask mask) {
@@ -71,6 +83,9 @@ NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index,
       _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), bits_of(mask), __m512i(index ^ half), from + 0x80000000u, 4));
 }
 #else
+NACRE_HD_INLINE Packet::Float multiply_add(Packet::Float a, Packet::Float b, Packet::Float c) {
+  return Packet::Float(_mm256_fmadd_ps(__m256(a), __m256(b), __m256(c)));
+}
 NACRE_HD_INLINE bool any(Packet::Mask mask) { return !_mm256_testz_si256(__m256i(mask), __m256i(mask)); }
 NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index, Packet::Mask mask) {
   constexpr std::int32_t half = INT32_MIN;  // the instruction's indices are signed
@@ -79,6 +94,42 @@ NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index,
                                                  __m256i(index ^ half), __m256i(mask), 4));
 }
 #endif
+
+/// `from[3 * index[i] + k]` of each element i in `result[k]`, k < 3; 0 where it is masked out. One load for the three words
+/// of an element, and of one more word that must exist: several times as fast as three gathers. Masked indices are read.
+template <class Index>
+NACRE_HD_INLINE void gather_triples(const std::uint32_t* from, const Index& index, Packet::Mask mask,
+                                    Packet::Int result[3]) {
+  typedef std::int32_t Row __attribute__((vector_size(16)));
+  typedef std::int32_t UnalignedRow __attribute__((vector_size(16), aligned(4), may_alias));
+  typedef std::int32_t Rows __attribute__((vector_size(32)));
+  constexpr int groups = Packet::lanes / 8;
+  Rows word[3][groups];
+  for (int g = 0; g < groups; ++g) {
+    Rows rows[4];  // element k beside element k + 4
+    for (int k = 0; k < 4; ++k) {
+      const auto row = [&](int element) {
+        return Row(*reinterpret_cast<const UnalignedRow*>(from + 3 * std::uint64_t(index[8 * g + element])));
+      };
+      rows[k] = __builtin_shufflevector(row(k), row(k + 4), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    const Rows low01 = __builtin_shufflevector(rows[0], rows[1], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Rows low23 = __builtin_shufflevector(rows[2], rows[3], 0, 8, 1, 9, 4, 12, 5, 13);
+    const Rows high01 = __builtin_shufflevector(rows[0], rows[1], 2, 10, 3, 11, 6, 14, 7, 15);
+    const Rows high23 = __builtin_shufflevector(rows[2], rows[3], 2, 10, 3, 11, 6, 14, 7, 15);
+    word[0][g] = __builtin_shufflevector(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
+    word[1][g] = __builtin_shufflevector(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
+    word[2][g] = __builtin_shufflevector(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
+  }
+  for (int k = 0; k < 3; ++k) {
+#if defined(__AVX512F__)
+    result[k] =
+        mask & __builtin_shufflevector(word[k][0], word[k][1], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#else
+    result[k] = mask & word[k][0];
+#endif
+  }
+}
 
 using Widest = Packet;
 #else

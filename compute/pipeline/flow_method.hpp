@@ -277,8 +277,8 @@ class FlowMethodOn : public FlowMethod {
     auto stage = exec_.stage("streaks");
     for_each_surface_cell_of(exec_, known, n,
                              MarkStreakCells<Surface>{known, mesh_, cell, present_vectors_.data(), least, cells});
-    for_each_surface_cell_of(exec_, known, n, SmoothAlongAndSharpenAcross<Surface>{known, value, cells});
-    store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, streaks);
+    store_on_surface(exec_, known, n, SmoothAlongAndSharpenAcross<Surface>{known, value, cells}, ToStreakCell{cells});
+    store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, ToArray{streaks});
   }
 
   /// Draws the surface, where it has moved to if it has. `shown`: its texture; null: none.

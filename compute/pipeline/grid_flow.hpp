@@ -51,7 +51,7 @@ class GridFlow final : public GridMethod<Backend> {
     carried_ = arena.permanent<float>(n);
     value_ = arena.permanent<float>(n);
     streaks_ = arena.permanent<float>(n);
-    streak_cells_ = arena.permanent<StreakCell>(n);
+    streak_cells_ = arena.permanent<StreakCell>(n + 1);  // the last one is read as four words
     this->make_frame_arrays();
     for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
   }

@@ -120,7 +120,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     } else {
       moments_ = arena.permanent<Float4>(view.items());
       streaks_ = arena.permanent<float>(n);
-      streak_cells_ = arena.permanent<StreakCell>(n);
+      streak_cells_ = arena.permanent<StreakCell>(n + 1);  // the last one is read as four words
     }
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});

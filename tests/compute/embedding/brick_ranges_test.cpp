@@ -56,7 +56,7 @@ TEST(BrickRanges, KnowWhatLiesAround) {
 }
 
 TEST(HaloDepths, AreAsDeepAsPathsAndStreaksAreLong) {
-  const HaloDepths usual = HaloDepths::of(2.24, 8, 26);  // 21 cells of a path; 26 + 8 + 6 of a streak
+  const HaloDepths usual = HaloDepths::of(2.24, 8, 26);  // 21 cells of a path; 26 + 6 + 8 of a streak
   EXPECT_EQ(usual.deposits, 3);
   EXPECT_EQ(usual.beside, 1);
   EXPECT_EQ(usual.detail, 1);

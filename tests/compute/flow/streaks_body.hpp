@@ -64,24 +64,27 @@ struct StreakRecipe {
   bool smooth = false;  ///< along the flow, before
 };
 
-template <class Backend, class Surface, class Texture>
-DrawnStreaks draw_on(Executor<Backend>& exec, const Surface& on, std::int64_t n, const MeshView& mesh, double cell,
-                     const Vec3f* vectors, const StreakRecipe<Texture>& recipe) {
+/// `marked`: the same surface for what is not computed with several cells at a time.
+template <class Backend, class Marked, class Surface, class Texture>
+DrawnStreaks draw_on(Executor<Backend>& exec, const Marked& marked, const Surface& on, std::int64_t n,
+                     const MeshView& mesh, double cell, const Vec3f* vectors, const StreakRecipe<Texture>& recipe) {
   Arena& arena = exec.arena();
   const Array<Int3> positions = arena.permanent<Int3>(n);
-  for_each_surface_cell_of(exec, on, n, NotePosition{positions.data()});
+  for_each_surface_cell_of(exec, marked, n, NotePosition{positions.data()});
   DrawnStreaks drawn;
   drawn.position = positions.download();
   for (const Int3& p : drawn.position) drawn.value.push_back(0.5f + recipe.value(p));
   const Array<float> value = arena.permanent_copy<float>(drawn.value), streaks = arena.permanent<float>(n);
-  const Array<StreakCell> cells = arena.permanent<StreakCell>(n);
-  for_each_surface_cell_of(exec, on, n, MarkStreakCells<Surface>{on, mesh, cell, vectors, 1e-6f, cells.data()});
+  const Array<StreakCell> cells = arena.permanent<StreakCell>(n + 1);
+  for_each_surface_cell_of(exec, marked, n, MarkStreakCells<Marked>{marked, mesh, cell, vectors, 1e-6f, cells.data()});
   if (recipe.smooth)
-    for_each_surface_cell_of(exec, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value.data(), cells.data()});
+    store_on_surface(exec, on, n, SmoothAlongAndSharpenAcross<Surface>{on, value.data(), cells.data()},
+                     ToStreakCell{cells.data()});
   else
-    for_each_surface_cell_of(exec, on, n, SetValue{value.data(), cells.data()});
-  store_on_surface(exec, on, n, ConvolveAlongFlow<Surface>{on, cells.data(), recipe.reach}, streaks.data());
+    for_each_surface_cell_of(exec, marked, n, SetValue{value.data(), cells.data()});
+  store_on_surface(exec, on, n, ConvolveAlongFlow<Surface>{on, cells.data(), recipe.reach}, ToArray{streaks.data()});
   drawn.cells = cells.download();
+  drawn.cells.pop_back();
   drawn.streaks = streaks.download();
   return drawn;
 }
@@ -101,13 +104,14 @@ DrawnStreaks draw_on_grid(Executor<Backend>& exec, const FlowSheet& sheet, const
   const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
   const ClosestPointGrid coarse = build_closest_point_grid(exec, mesh, triangles, Int3(8), 4, 4.47f);
   const RefinedGrid fine = build_refined_grid(exec, mesh, triangles, coarse, refine);
-  DrawnStreaks drawn = draw_on(exec, GridSurfaceOf<Lanes>{fine.view(coarse.view())}, fine.surface_cells, mesh,
+  const RefinedGridView texture = fine.view(coarse.view());
+  DrawnStreaks drawn = draw_on(exec, GridSurface{texture}, GridSurfaceOf<Lanes>{texture}, fine.surface_cells, mesh,
                                1.0 / refine, vectors, recipe);
   arena.rewind(mark);
   return drawn;
 }
 
-template <class Backend, class Texture>
+template <class Lanes = Widest, class Backend, class Texture>
 DrawnStreaks draw_on_bricks(Executor<Backend>& exec, const FlowSheet& sheet, const StreakRecipe<Texture>& recipe) {
   const std::size_t mark = exec.arena().mark();
   Arena& arena = exec.arena();
@@ -117,7 +121,8 @@ DrawnStreaks draw_on_bricks(Executor<Backend>& exec, const FlowSheet& sheet, con
   const Vec3f* vectors = arena.permanent_copy<Vec3f>(sheet.vectors).data();
   const BrickOctree tree = build_brick_octree(exec, mesh, std::uint32_t(sheet.mesh.triangles.size()), 3, 3.6);
   const BrickOctreeView view = tree.view();
-  DrawnStreaks drawn = draw_on(exec, BrickSurface{view}, std::int64_t(view.surface_cells), mesh, 1.0, vectors, recipe);
+  DrawnStreaks drawn = draw_on(exec, BrickSurface{view}, BrickSurfaceOf<Lanes>{view}, std::int64_t(view.surface_cells),
+                               mesh, 1.0, vectors, recipe);
   arena.rewind(mark);
   return drawn;
 }
@@ -177,7 +182,7 @@ void AnImpulseSpreadsEvenlyAlongItsLine(Executor<Backend>& exec) {
   });
 }
 
-/// Smoothed first, it reaches one cell farther, and its ends are soft; the lines beside it become darker.
+/// Smoothed first, it reaches two cells farther, and its ends are soft; the lines beside it become darker.
 template <class Backend>
 void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
   FlowSheet sheet;
@@ -189,7 +194,8 @@ void SmoothingSoftensTheEndsOfALineAndDarkensItsSides(Executor<Backend>& exec) {
     for (std::size_t s = 0; s < drawn.position.size(); ++s) {
       const Int3 p = drawn.position[s];
       const int beyond = std::abs(p.x - 30) - recipe.reach, beside = std::abs(p.y - middle_y);
-      const float line = beyond > 1 ? 0 : beyond == 1 ? 0.25f : beyond == 0 ? 0.75f : 1;
+      const float part_of_the_end[] = {0.875f, 0.625f, 0.375f, 0.125f};  // of the weights 1, 2, 2, 2, 1
+      const float line = beyond < -1 ? 1 : beyond > 2 ? 0 : part_of_the_end[beyond + 1];
       const float part = beside == 0 ? (1 + 2 * across) * line : beside == 1 && beyond <= 0 ? -across : 0;
       ASSERT_NEAR(drawn.streaks[s], 0.5f + ConvolveAlongFlow<GridSurface>::gain * share * part, 1e-6)
           << p.x << ' ' << p.y;

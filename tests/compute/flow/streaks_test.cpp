@@ -59,8 +59,8 @@ DrawnStreaks on_a_ball(int threads, bool bricks) {
   const auto noise = [](const Int3& p) {
     return uniform_random(7, std::uint32_t((p.z * 64 + p.y) * 64 + p.x), 0) - 0.5f;
   };
-  const StreakRecipe<decltype(noise)> recipe{noise, 16};
-  return bricks ? draw_on_bricks(exec, ball, recipe) : draw_on_grid<Lanes>(exec, ball, recipe);
+  const StreakRecipe<decltype(noise)> recipe{noise, 16, true};
+  return bricks ? draw_on_bricks<Lanes>(exec, ball, recipe) : draw_on_grid<Lanes>(exec, ball, recipe);
 }
 
 TEST(Streaks, AreTheSameOnAnyNumberOfThreads) {
@@ -73,9 +73,12 @@ TEST(Streaks, AreTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(Streaks, OfOneCellAtATimeAndOfManyAreTheSame) {
-  const DrawnStreaks one = on_a_ball<Single>(2, false), many = on_a_ball(2, false);
-  EXPECT_NE(one.streaks.size() % std::size_t(Widest::lanes), 0u) << "the last ones do not fill a packet";
-  EXPECT_EQ(one.streaks, many.streaks);
+  for (const bool bricks : {false, true}) {
+    SCOPED_TRACE(bricks ? "bricks" : "grid");
+    const DrawnStreaks one = on_a_ball<Single>(2, bricks), many = on_a_ball(2, bricks);
+    EXPECT_NE(one.streaks.size() % std::size_t(Widest::lanes), 0u) << "the last ones do not fill a packet";
+    EXPECT_EQ(one.streaks, many.streaks);
+  }
 }
 
 }  // namespace
