@@ -129,9 +129,9 @@ struct MarkStreakCells {
   }
 };
 
-/// What streaks are made of, one value for each surface cell. Along the flow, a mean over five cells that weighs even and
-/// odd ones alike: it takes out what alternates from cell to cell, which would leave chequers. Across, the values beside
-/// are taken away a little, which makes streaks as narrow as those of white noise.
+/// What streaks are made of, one value for each surface cell. Along the flow, a mean over five cells that weighs even
+/// and odd ones alike: it takes out what alternates from cell to cell, which would leave chequers. Across, the values
+/// beside are taken away a little, which makes streaks as narrow as those of white noise.
 template <class Surface>
 struct SmoothAlongAndSharpenAcross {
   Surface surface;

@@ -30,7 +30,7 @@ NACRE_HD_INLINE std::int32_t select(bool which, std::int32_t a, std::int32_t b) 
 NACRE_HD_INLINE bool any(bool mask) { return mask; }
 NACRE_HD_INLINE float to_float(std::int32_t a) { return float(a); }
 NACRE_HD_INLINE std::int32_t floor_to_int(float a) { return std::int32_t(std::floor(a)); }
-/// a * b + c, rounded once where the processor can. Where the compiler chooses what to fuse, the last bits of one element
+/// a * b + c, rounded once where the processor can. If the compiler chooses what to fuse, the last bits of one element
 /// and of several may differ.
 NACRE_HD_INLINE float multiply_add(float a, float b, float c) {
 #if defined(__CUDA_ARCH__) || defined(__FMA__)
@@ -95,8 +95,8 @@ NACRE_HD_INLINE Packet::Int gather(const std::uint32_t* from, Packet::Int index,
 }
 #endif
 
-/// `from[3 * index[i] + k]` of each element i in `result[k]`, k < 3; 0 where it is masked out, though it is read. One load
-/// for the three words of an element, and for one more that must exist: several times as fast as three gathers.
+/// `from[3 * index[i] + k]` of each element i in `result[k]`, k < 3; 0 where it is masked out, though it is read. One
+/// load for the three words of an element, and for one more that must exist: several times as fast as three gathers.
 template <class Index>
 NACRE_HD_INLINE void gather_triples(const std::uint32_t* from, const Index& index, Packet::Mask mask,
                                     Packet::Int result[3]) {
