@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <tuple>
 
 #include "compute/meshing/interface_facets.hpp"
-#include "compute/meshing/point_tree.hpp"
+#include "compute/meshing/near_points.hpp"
 #include "compute/meshing/repair_at.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
@@ -166,62 +166,59 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
 class Settling {
  public:
   Settling(const StarMesh& stars, const PatchWorld& world)
-      : stars_(stars), world_(world), bad_(world.points.size(), 0) {
+      : stars_(stars), world_(world), bad_(world.points.size(), 0), near_(bad_), looked_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
-    const std::uint32_t first[2] = {0, std::uint32_t(world.points.size())};
-    tree_.emplace(world.points, first);
   }
 
   /// The particles within reach of bad ones, ascending.
-  std::vector<std::uint32_t> members() const {
-    std::vector<std::uint8_t> near(bad_.size(), 0);
-    std::vector<PointTree::Found> found;
-    for (std::size_t i = 0; i < bad_.size(); ++i) {
-      if (!bad_[i]) continue;
-      found.clear();
-      tree_->within(0, world_.points[i], around * world_.size[i], found);
-      for (const PointTree::Found& f : found) near[f.point] = 1;
-    }
-    std::vector<std::uint32_t> members;
-    for (std::uint32_t i = 0; i < near.size(); ++i)
-      if (near[i]) members.push_back(i);
-    return members;
+  std::vector<std::uint32_t> members() {
+    const std::vector<std::uint32_t> more =
+        select_where(bad_.size(), [&](std::size_t i) { return bad_[i] && !looked_[i]; });
+    mark_near(world_.points, more, world_.size, around, near_);
+    looked_ = bad_;
+    return select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
   }
 
-  /// Triangles of stars away from bad particles, facets at these.
-  StarMesh join(std::span<const std::uint32_t> members, const InterfaceFacets& facets) const {
-    StarMesh joined;
-    const auto is_bad = [&](const Triangle& t) { return bad_[t.a] || bad_[t.b] || bad_[t.c]; };
-    for (std::size_t i = 0; i < stars_.triangles.size(); ++i)
-      if (!is_bad(stars_.triangles[i])) {
-        joined.triangles.push_back(stars_.triangles[i]);
-        joined.materials.push_back(stars_.materials[i]);
-      }
+  /// Facets at bad particles, and the triangles of stars beside them.
+  StarMesh join(std::span<const std::uint32_t> members, const InterfaceFacets& facets) {
+    StarMesh at_bad;
     for (std::size_t i = 0; i < facets.triangles.size(); ++i) {
       const Triangle& f = facets.triangles[i];
       if (std::max({f.a, f.b, f.c}) >= members.size()) continue;  // a guard
       const Triangle t{members[f.a], members[f.b], members[f.c]};
-      if (is_bad(t)) joined.triangles.push_back(t), joined.materials.push_back(facets.materials[i]);
+      if (at_bad_one(t)) at_bad.triangles.push_back(t), at_bad.materials.push_back(facets.materials[i]);
     }
+    marked_ = bad_;
+    const auto mark = [&](const Triangle& t) { marked_[t.a] = marked_[t.b] = marked_[t.c] = 1; };
+    for (const Triangle& t : at_bad.triangles) mark(t);
+    // A triangle of a star that is gone leaves its edges to facets that may not be there.
+    const std::size_t n = stars_.triangles.size();
+    for (const std::uint32_t i : select_where(n, [&](std::size_t i) { return at_bad_one(stars_.triangles[i]); }))
+      mark(stars_.triangles[i]);
+    StarMesh joined;
+    for (const std::uint32_t i : select_where(n, [&](std::size_t i) {
+           const Triangle& t = stars_.triangles[i];
+           return (marked_[t.a] || marked_[t.b] || marked_[t.c]) && !at_bad_one(t);
+         })) {
+      joined.triangles.push_back(stars_.triangles[i]);
+      joined.materials.push_back(stars_.materials[i]);
+    }
+    beside_ = joined.triangles.size();
+    joined.triangles.insert(joined.triangles.end(), at_bad.triangles.begin(), at_bad.triangles.end());
+    joined.materials.insert(joined.materials.end(), at_bad.materials.begin(), at_bad.materials.end());
     return joined;
   }
 
-  /// Adds what lies at edges that do not match; false where all do.
+  /// Adds what lies at edges of the mesh joined last that do not match; false where all do.
   bool grow(const StarMesh& joined) {
-    std::vector<std::uint8_t> marked = bad_;
-    for (const Triangle& t : joined.triangles)
-      if (bad_[t.a] || bad_[t.b] || bad_[t.c]) marked[t.a] = marked[t.b] = marked[t.c] = 1;
-    // A triangle of a star that is gone leaves its edges to facets that may not be there.
-    for (const Triangle& t : stars_.triangles)
-      if (bad_[t.a] || bad_[t.b] || bad_[t.c]) marked[t.a] = marked[t.b] = marked[t.c] = 1;
-    const std::vector<std::uint32_t> open = at_open_edges(joined, marked);
+    const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
     if (++grown_ > slow_rounds) add_around(joined, open);
     stuck_ = !open.empty() && !any;
     if (!open.empty()) return any;
     pinched_ = false;
-    for (const std::uint32_t i : at_pinched_vertices(joined, marked)) {
+    for (const std::uint32_t i : at_pinched_vertices(joined, marked_)) {
       pinched_ = pinched_ || bad_[i];
       any = any || !bad_[i], bad_[i] = 1;
     }
@@ -236,6 +233,20 @@ class Settling {
       if (there[t.a] || there[t.b] || there[t.c]) bad_[t.a] = bad_[t.b] = bad_[t.c] = 1;
   }
 
+  /// In `stars`, facets of the mesh joined last in place of the triangles at bad particles.
+  void replace(StarMesh& stars, const StarMesh& joined) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < stars.triangles.size(); ++i) {
+      if (at_bad_one(stars.triangles[i])) continue;
+      stars.triangles[kept] = stars.triangles[i];
+      stars.materials[kept++] = stars.materials[i];
+    }
+    stars.triangles.resize(kept), stars.materials.resize(kept);
+    const auto facets = std::ptrdiff_t(beside_);
+    stars.triangles.insert(stars.triangles.end(), joined.triangles.begin() + facets, joined.triangles.end());
+    stars.materials.insert(stars.materials.end(), joined.materials.begin() + facets, joined.materials.end());
+  }
+
   bool stuck() const { return stuck_; }  ///< edges do not match where all is of cells
   bool touches() const { return stuck_ || pinched_; }
   std::vector<std::uint8_t> marks(std::span<const std::uint32_t> members) const {
@@ -247,10 +258,14 @@ class Settling {
   std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
 
  private:
+  bool at_bad_one(const Triangle& t) const { return bad_[t.a] || bad_[t.b] || bad_[t.c]; }
+
   const StarMesh& stars_;
   const PatchWorld& world_;
   std::vector<std::uint8_t> bad_;
-  std::optional<PointTree> tree_;
+  std::vector<std::uint8_t> near_, looked_;  // those within reach of bad ones, and the bad ones that this is known of
+  std::vector<std::uint8_t> marked_;         // corners of triangles at bad ones, of stars or facets
+  std::size_t beside_ = 0;                   // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
   int grown_ = 0;
 };
@@ -281,14 +296,14 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
       joined = settling.join(members, patch.facets());
       if (settling.grow(joined)) continue;
     }
-    if (settling.stuck() || joined.triangles.empty()) return false;
+    if (settling.stuck()) return false;
     for (const auto& defect : patch.defects()) {
       if (std::max(defect[0], defect[1]) >= members.size()) continue;
       const std::array<std::uint32_t, 2> particles = {members[defect[0]], members[defect[1]]};
       if (settling.is_bad(particles[0]) || settling.is_bad(particles[1])) touching.push_back(particles);
     }
-    mesh.triangles = std::move(joined.triangles);
-    mesh.materials = std::move(joined.materials);
+    settling.replace(mesh, joined);
+    if (mesh.triangles.empty()) return false;
     mesh.counts.in_patches = settling.count();
     mesh.unsettled.clear();
     return true;

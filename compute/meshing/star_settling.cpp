@@ -113,12 +113,6 @@ class Settler {
   }();
 };
 
-bool has_open(const Star& star) {
-  for (int k = 0; k < star.count; ++k)
-    if (star.has_triangle(k) && !(star.agreed >> k & 1)) return true;
-  return false;
-}
-
 }  // namespace
 
 bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t, 4>& corners) {
@@ -150,31 +144,43 @@ void mark_agreed(const std::vector<Star>& stars, std::uint32_t i, Star& star) {
   }
 }
 
-void settle_stars(const StarItems& items, std::vector<Star>& stars) {
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t i = 0; i < stars.size(); ++i)
-    if (has_open(stars[i])) open.push_back(i);
+bool has_open(const Star& star) {
+  for (int k = 0; k < star.count; ++k)
+    if (star.has_triangle(k) && !(star.agreed >> k & 1)) return true;
+  return false;
+}
+
+std::vector<std::pair<std::uint32_t, Star>> settle_stars(const StarItems& items, std::vector<Star>& stars,
+                                                         std::vector<std::uint32_t> open) {
+  std::vector<std::pair<std::uint32_t, Star>> before;
+  std::vector<std::uint8_t> kept(stars.size(), 0);
+  const auto keep = [&](std::uint32_t i) {
+    if (!kept[i]) before.push_back({i, stars[i]});
+    kept[i] = 1;
+  };
   for (int round = 0; round < settling_rounds && !open.empty(); ++round) {
     std::vector<Star> changed(open.size());
     std::vector<std::uint8_t> changes(open.size(), 0);
     tbb::parallel_for(std::size_t(0), open.size(),
                       [&](std::size_t k) { changes[k] = Settler(items, stars, open[k]).run(changed[k]); });
+    if (std::find(changes.begin(), changes.end(), 1) == changes.end()) break;
     std::vector<std::uint32_t> touched = open;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      if (!changes[k]) continue;
-      for (const Star* star : {&stars[open[k]], &changed[k]})
-        touched.insert(touched.end(), star->ring.begin(), star->ring.begin() + star->count);
-      stars[open[k]] = changed[k];
-    }
-    if (std::find(changes.begin(), changes.end(), 1) == changes.end()) return;
+    for (std::size_t k = 0; k < open.size(); ++k)
+      if (changes[k])
+        for (const Star* star : {&stars[open[k]], &changed[k]})
+          touched.insert(touched.end(), star->ring.begin(), star->ring.begin() + star->count);
     std::sort(touched.begin(), touched.end());
     touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const std::uint32_t i : touched) keep(i);
+    for (std::size_t k = 0; k < open.size(); ++k)
+      if (changes[k]) stars[open[k]] = changed[k];
     tbb::parallel_for(std::size_t(0), touched.size(),
                       [&](std::size_t k) { mark_agreed(stars, touched[k], stars[touched[k]]); });
     open.clear();
     for (const std::uint32_t i : touched)
       if (has_open(stars[i])) open.push_back(i);
   }
+  return before;
 }
 
 }  // namespace nacre
