@@ -10,10 +10,10 @@
 
 namespace nacre {
 
-/// The numbers i < count for which test(i) is true, ascending. In parallel; `test` may change what belongs to i alone.
+/// The numbers i < count for which test(i) is true, ascending. In parallel, `part` numbers at a time: fewer where a test
+/// is costly. `test` may change what belongs to i alone.
 template <class Test>
-std::vector<std::uint32_t> select_where(std::size_t count, const Test& test) {
-  constexpr std::size_t part = 1 << 13;
+std::vector<std::uint32_t> select_where(std::size_t count, const Test& test, std::size_t part = 1 << 13) {
   std::vector<std::vector<std::uint32_t>> found((count + part - 1) / part);
   tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) {
     for (std::size_t i = k * part; i < std::min(count, (k + 1) * part); ++i)

@@ -126,7 +126,8 @@ std::vector<std::uint8_t> StarFinder::take_over(const StarItems& items) {
                     found);
   });
 
-  std::vector<Star> stars(items.count());
+  std::vector<Star>& stars = spare_;  // its memory is used again
+  stars.resize(items.count());
   tbb::parallel_for(std::size_t(0), items.count(), [&](std::size_t i) {
     if (stale[i]) return;
     Star& star = stars[i] = stars_[known.old_of[i]];
@@ -152,10 +153,13 @@ void StarFinder::find(StarItems items) {
     return stale[i] || std::any_of(star.ring.begin(), star.ring.begin() + star.count,
                                    [&](std::uint32_t r) { return stale[r] != 0; });
   };
-  std::vector<std::uint32_t> open = select_where(stars_.size(), [&](std::size_t i) {
-    if (has_changed(i)) mark_agreed(stars_, std::uint32_t(i), stars_[i]);
-    return has_open(stars_[i]);
-  });
+  std::vector<std::uint32_t> open = select_where(
+      stars_.size(),
+      [&](std::size_t i) {
+        if (has_changed(i)) stars_[i].agreed = agreed_on(stars_, std::uint32_t(i), stars_[i]);
+        return has_open(stars_[i]);
+      },
+      2048);
   unsettled_ = settle_stars(items_, stars_, std::move(open));
 }
 

@@ -26,7 +26,7 @@ class StarFinder {
   std::vector<std::uint8_t> take_over(const StarItems& items);
 
   StarItems items_;
-  std::vector<Star> stars_;
+  std::vector<Star> stars_, spare_;
   std::vector<std::pair<std::uint32_t, Star>> unsettled_;  // stars that settling changed, as they were before
   ItemTree tree_;
   std::int64_t cut_ = 0;

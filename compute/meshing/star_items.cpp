@@ -87,8 +87,7 @@ Vec3d normal_of(const StarParticles& particles, std::uint32_t p, const std::arra
 }
 
 /// The item of a particle on the surface between two materials.
-std::uint32_t find_item(const StarItems& items, std::uint32_t low, std::uint32_t high, std::uint32_t particle) {
-  const std::array<std::uint16_t, 2> pair = {std::uint16_t(low), std::uint16_t(high)};
+std::uint32_t find_item(const StarItems& items, const std::array<std::uint16_t, 2>& pair, std::uint32_t particle) {
   const std::size_t s =
       std::size_t(std::lower_bound(items.materials.begin(), items.materials.end(), pair) - items.materials.begin());
   const auto begin = items.particle.begin();
@@ -98,19 +97,24 @@ std::uint32_t find_item(const StarItems& items, std::uint32_t low, std::uint32_t
 /// Rims run along curves, or against them: the surface between the first and the third material lies to the left of a
 /// curve, the two others to its right.
 void add_rims(StarItems& items, const std::vector<CurveNode>& nodes) {
-  for (const CurveNode& node : nodes) {
+  std::vector<std::array<std::uint32_t, 3>> on(nodes.size());  // its items on the three surfaces
+  tbb::parallel_for(std::size_t(0), nodes.size(), [&](std::size_t n) {
+    Junction curve;
+    curve.packed = nodes[n].curve;
+    if (!nodes[n].is_idle())
+      for_surfaces(curve, [&](int a, int b) {
+        on[n][std::size_t(a + b - 1)] = find_item(items, pair_of(curve, a, b), nodes[n].particle);
+      });
+  });
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const CurveNode& node = nodes[n];
     if (node.is_broken()) items.broken.push_back(node.particle);
     if (node.next == none || node.is_idle()) continue;
-    Junction curve;
-    curve.packed = node.curve;
-    for_surfaces(curve, [&](int a, int b) {
-      const std::uint32_t low = curve.material(a), high = curve.material(b);
-      const std::uint32_t here = find_item(items, low, high, node.particle);
-      const std::uint32_t there = find_item(items, low, high, nodes[node.next].particle);
-      const bool along = b - a == 2;
-      items.next[along ? here : there] = along ? there : here;
-      items.previous[along ? there : here] = along ? here : there;
-    });
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool along = k == 1;
+      const std::uint32_t from = on[along ? n : node.next][k], to = on[along ? node.next : n][k];
+      items.next[from] = to, items.previous[to] = from;
+    }
   }
   std::sort(items.broken.begin(), items.broken.end());
 }

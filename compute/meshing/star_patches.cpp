@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 #include "compute/meshing/interface_facets.hpp"
@@ -33,7 +34,15 @@ Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 /// Delaunay cells of some of the particles, and the facets between materials.
 class Patch {
  public:
-  Patch(const PatchWorld& world, const std::atomic<bool>* stop) : world_(world), stop_(stop) {}
+  Patch(const PatchWorld& world, const std::atomic<bool>* stop) : world_(world), stop_(stop) {
+    Vec3d low = world.points[0], high = world.points[0];
+    for (const Vec3d& p : world.points) low = min(low, p), high = max(high, p);
+    // In steps, so that guards are in the same places as a rule, and the triangulation has less to do again.
+    half_ =
+        std::exp2(std::ceil(std::log2(length(high - low) + *std::max_element(world.size.begin(), world.size.end()))));
+    const double step = half_ / 4;
+    for (int a = 0; a < 3; ++a) middle_[a] = step * std::round((low[a] + high[a]) / (2 * step));
+  }
 
   /// Of `members`, ascending.
   void make(std::span<const std::uint32_t> members, Delaunay& delaunay) {
@@ -41,6 +50,7 @@ class Patch {
     size_.clear();
     for (const std::uint32_t i : members) places_.push_back(world_.points[i]), size_.push_back(world_.size[i]);
     add_guards();
+
     cells_ = delaunay.cells(places_, stop_);
     label_ = world_.material_at(label_points());
     facets_ = interface_facets(cells_, label_);
@@ -61,15 +71,11 @@ class Patch {
  private:
   /// Corners of a box far around: no facet at a particle is on the hull.
   void add_guards() {
-    Vec3d low = places_[0], high = places_[0];
-    for (const Vec3d& p : places_) low = min(low, p), high = max(high, p);
-    const Vec3d middle = 0.5 * (low + high);
-    const double half = 0.5 * length(high - low) + *std::max_element(size_.begin(), size_.end());
     for (int k = 0; k < 8; ++k) {
       // At no corner of a cube exactly, so that no four lie in a plane with others.
-      const double far = (6 + 0.37 * k) * half;
-      places_.push_back(middle + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
-      size_.push_back(half);
+      const double far = (6 + 0.37 * k) * half_;
+      places_.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
+      size_.push_back(half_);
     }
   }
 
@@ -98,6 +104,8 @@ class Patch {
 
   const PatchWorld& world_;
   const std::atomic<bool>* stop_;
+  Vec3d middle_;  // of a ball around all particles
+  double half_ = 0;
   std::vector<Vec3d> places_;
   std::vector<double> size_;
   DelaunayCells cells_;
@@ -166,16 +174,17 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
 class Settling {
  public:
   Settling(const StarMesh& stars, const PatchWorld& world)
-      : stars_(stars), world_(world), bad_(world.points.size(), 0), near_(bad_), looked_(bad_) {
+      : stars_(stars), world_(world), bad_(world.points.size(), 0), near_(bad_), wide_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
   }
 
   /// The particles within reach of bad ones, ascending.
   std::vector<std::uint32_t> members() {
-    const std::vector<std::uint32_t> more =
-        select_where(bad_.size(), [&](std::size_t i) { return bad_[i] && !looked_[i]; });
+    const std::vector<std::uint32_t> all = select_where(bad_.size(), [&](std::size_t i) { return bad_[i] != 0; });
+    std::vector<std::uint32_t> more;
+    std::set_difference(all.begin(), all.end(), all_bad_.begin(), all_bad_.end(), std::back_inserter(more));
     mark_near(world_.points, more, world_.size, around, near_);
-    looked_ = bad_;
+    all_bad_ = all;
     return select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
   }
 
@@ -188,19 +197,12 @@ class Settling {
       const Triangle t{members[f.a], members[f.b], members[f.c]};
       if (at_bad_one(t)) at_bad.triangles.push_back(t), at_bad.materials.push_back(facets.materials[i]);
     }
-    marked_ = bad_;
-    const auto mark = [&](const Triangle& t) { marked_[t.a] = marked_[t.b] = marked_[t.c] = 1; };
-    for (const Triangle& t : at_bad.triangles) mark(t);
-    // A triangle of a star that is gone leaves its edges to facets that may not be there.
-    const std::size_t n = stars_.triangles.size();
-    for (const std::uint32_t i : select_where(n, [&](std::size_t i) { return at_bad_one(stars_.triangles[i]); }))
-      mark(stars_.triangles[i]);
+    while (!mark_corners(at_bad)) look_around();
     StarMesh joined;
-    for (const std::uint32_t i : select_where(n, [&](std::size_t i) {
-           const Triangle& t = stars_.triangles[i];
-           return (marked_[t.a] || marked_[t.b] || marked_[t.c]) && !at_bad_one(t);
-         })) {
-      joined.triangles.push_back(stars_.triangles[i]);
+    for (const std::uint32_t i : around_) {
+      const Triangle& t = stars_.triangles[i];
+      if ((!marked_[t.a] && !marked_[t.b] && !marked_[t.c]) || at_bad_one(t)) continue;
+      joined.triangles.push_back(t);
       joined.materials.push_back(stars_.materials[i]);
     }
     beside_ = joined.triangles.size();
@@ -258,14 +260,43 @@ class Settling {
   std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
 
  private:
+  /// Marks what the triangles at bad particles have for corners; false where `around_` lacks triangles at one of them.
+  bool mark_corners(const StarMesh& at_bad) {
+    marked_ = bad_;
+    bool all = wide_reach_ > 0;
+    const auto mark = [&](const Triangle& t) {
+      for (int k = 0; k < 3; ++k) marked_[t[k]] = 1, all = all && wide_[t[k]];
+    };
+    for (const std::uint32_t i : all_bad_) all = all && wide_[i];
+    for (const Triangle& t : at_bad.triangles) mark(t);
+    // A triangle of a star that is gone leaves its edges to facets that may not be there.
+    for (const std::uint32_t i : around_)
+      if (at_bad_one(stars_.triangles[i])) mark(stars_.triangles[i]);
+    return all;
+  }
+
+  /// Lists the triangles of stars at particles around bad ones, twice as far as is needed at first.
+  void look_around() {
+    wide_reach_ = wide_reach_ > 0 ? 2 * wide_reach_ : 2 * around;
+    mark_near(world_.points, all_bad_, world_.size, wide_reach_, wide_);
+    around_ = select_where(stars_.triangles.size(), [&](std::size_t i) {
+      const Triangle& t = stars_.triangles[i];
+      return wide_[t.a] || wide_[t.b] || wide_[t.c];
+    });
+  }
+
   bool at_bad_one(const Triangle& t) const { return bad_[t.a] || bad_[t.b] || bad_[t.c]; }
 
   const StarMesh& stars_;
   const PatchWorld& world_;
   std::vector<std::uint8_t> bad_;
-  std::vector<std::uint8_t> near_, looked_;  // those within reach of bad ones, and the bad ones that this is known of
-  std::vector<std::uint8_t> marked_;         // corners of triangles at bad ones, of stars or facets
-  std::size_t beside_ = 0;                   // triangles of stars in the mesh joined last
+  std::vector<std::uint32_t> all_bad_;  // when members were asked for last
+  std::vector<std::uint8_t> near_;      // within reach of these
+  std::vector<std::uint8_t> marked_;    // corners of triangles at bad ones, of stars or facets
+  std::vector<std::uint8_t> wide_;      // particles whose triangles are listed:
+  std::vector<std::uint32_t> around_;   // triangles of stars
+  double wide_reach_ = 0;               // sizes; 0: none are listed yet
+  std::size_t beside_ = 0;              // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
   int grown_ = 0;
 };

@@ -1,10 +1,10 @@
 // Nacre: stars that disagree about a quadrilateral decide it by one rule.
 #include "compute/meshing/star_settling.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "compute/meshing/select_where.hpp"
 
 namespace nacre {
 namespace {
@@ -135,13 +135,14 @@ bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t
   return from_low == (low % 2 == 0);
 }
 
-void mark_agreed(const std::vector<Star>& stars, std::uint32_t i, Star& star) {
-  star.agreed = 0;
+std::uint32_t agreed_on(const std::vector<Star>& stars, std::uint32_t i, const Star& star) {
+  std::uint32_t agreed = 0;
   for (int k = 0; k < star.count; ++k) {
     if (!star.has_triangle(k)) continue;
     const std::uint32_t a = star.ring[std::size_t(k)], b = star.ring[std::size_t(star.after(k))];
-    if (stars[a].has(b, i) && stars[b].has(i, a)) star.agreed |= 1u << k;
+    if (stars[a].has(b, i) && stars[b].has(i, a)) agreed |= 1u << k;
   }
+  return agreed;
 }
 
 bool has_open(const Star& star) {
@@ -153,32 +154,47 @@ bool has_open(const Star& star) {
 std::vector<std::pair<std::uint32_t, Star>> settle_stars(const StarItems& items, std::vector<Star>& stars,
                                                          std::vector<std::uint32_t> open) {
   std::vector<std::pair<std::uint32_t, Star>> before;
-  std::vector<std::uint8_t> kept(stars.size(), 0);
+  std::vector<std::uint8_t> kept(stars.size(), 0), concerned(stars.size(), 0), news(stars.size(), 1);
   const auto keep = [&](std::uint32_t i) {
     if (!kept[i]) before.push_back({i, stars[i]});
     kept[i] = 1;
   };
+  std::vector<Star> changed;
   for (int round = 0; round < settling_rounds && !open.empty(); ++round) {
-    std::vector<Star> changed(open.size());
-    std::vector<std::uint8_t> changes(open.size(), 0);
-    tbb::parallel_for(std::size_t(0), open.size(),
-                      [&](std::size_t k) { changes[k] = Settler(items, stars, open[k]).run(changed[k]); });
-    if (std::find(changes.begin(), changes.end(), 1) == changes.end()) break;
-    std::vector<std::uint32_t> touched = open;
-    for (std::size_t k = 0; k < open.size(); ++k)
-      if (changes[k])
-        for (const Star* star : {&stars[open[k]], &changed[k]})
-          touched.insert(touched.end(), star->ring.begin(), star->ring.begin() + star->count);
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    for (const std::uint32_t i : touched) keep(i);
-    for (std::size_t k = 0; k < open.size(); ++k)
-      if (changes[k]) stars[open[k]] = changed[k];
-    tbb::parallel_for(std::size_t(0), touched.size(),
-                      [&](std::size_t k) { mark_agreed(stars, touched[k], stars[touched[k]]); });
-    open.clear();
-    for (const std::uint32_t i : touched)
-      if (has_open(stars[i])) open.push_back(i);
+    changed.resize(open.size());
+    const std::vector<std::uint32_t> changes = select_where(
+        open.size(),
+        [&](std::size_t k) {
+          // A star that knows nothing new decides as it did.
+          const Star& star = stars[open[k]];
+          const bool asks = news[open[k]] || std::any_of(star.ring.begin(), star.ring.begin() + star.count,
+                                                         [&](std::uint32_t r) { return news[r] != 0; });
+          return asks && Settler(items, stars, open[k]).run(changed[k]);
+        },
+        64);
+    if (changes.empty()) break;
+    std::fill(concerned.begin(), concerned.end(), 0);
+    std::fill(news.begin(), news.end(), 0);
+    for (const std::uint32_t i : open) concerned[i] = 1;
+    for (const std::uint32_t k : changes) {
+      news[open[k]] = 1;
+      for (const Star* star : {&stars[open[k]], &changed[k]})
+        for (int r = 0; r < star->count; ++r) concerned[star->ring[std::size_t(r)]] = 1;
+    }
+    const std::vector<std::uint32_t> touched =
+        select_where(stars.size(), [&](std::size_t i) { return concerned[i] != 0; });
+    for (const std::uint32_t k : changes) keep(open[k]), stars[open[k]] = changed[k];
+    std::vector<std::uint32_t> agreed(touched.size());
+    const std::vector<std::uint32_t> differ = select_where(
+        touched.size(),
+        [&](std::size_t k) {
+          const Star& star = stars[touched[k]];
+          return (agreed[k] = agreed_on(stars, touched[k], star)) != star.agreed;
+        },
+        512);
+    for (const std::uint32_t k : differ) keep(touched[k]), stars[touched[k]].agreed = agreed[k];
+    open = select_where(touched.size(), [&](std::size_t k) { return has_open(stars[touched[k]]); });
+    for (std::uint32_t& k : open) k = touched[k];
   }
   return before;
 }

@@ -24,7 +24,7 @@ std::vector<std::pair<std::uint32_t, Star>> settle_stars(const StarItems& items,
 /// Whether a star has a triangle that not all of its corners have.
 bool has_open(const Star& star);
 
-/// Marks in `star` of item i what is in the stars of all its corners.
-void mark_agreed(const std::vector<Star>& stars, std::uint32_t i, Star& star);
+/// What is to be marked as agreed in `star`, of item i: the triangles that are in the stars of all their corners.
+std::uint32_t agreed_on(const std::vector<Star>& stars, std::uint32_t i, const Star& star);
 
 }  // namespace nacre
