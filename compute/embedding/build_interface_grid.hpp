@@ -10,6 +10,7 @@
 #include "compute/embedding/interface_grid.hpp"
 #include "compute/embedding/junction_table.hpp"
 #include "compute/field/sizing.hpp"
+
 namespace nacre {
 
 /// The interfaces of a volume and their embedding, in permanent memory.
@@ -27,9 +28,11 @@ struct InterfaceGrid {
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
   Array<EmbeddedCell> cell;
   float size_unit = 1;
+  bool seeds_only = false;
 
   InterfaceGridView view() const {
-    return {coarse, cells_per_voxel, word.data(), brick_start.data(), brick_interface.data(), cell.data(), size_unit};
+    return {coarse,      cells_per_voxel, word.data(), brick_start.data(), brick_interface.data(),
+            cell.data(), size_unit,       seeds_only};
   }
   std::int64_t cells() const { return bricks * 64; }
   std::int64_t bytes() const {
@@ -40,13 +43,14 @@ struct InterfaceGrid {
 
 namespace detail {
 
-/// Keys (coarse cell << 24 | interface) of the bricks that the stencils of an interface's particles can meet: those
-/// within 3 cells of a cell that it passes through.
+/// Keys (coarse cell << 24 | interface) of the bricks within `reach` cells of a cell that the interface passes through:
+/// 3 for those that the stencils of its particles can meet, 1 for seeds.
 struct BricksAround {
   const FoundJunction* found;
   const Junction* table;
   std::uint32_t table_size;
   Int3 coarse;
+  int reach;
 
   template <class Visit>
   NACRE_HD void operator()(std::int64_t i, const Visit& visit) const {
@@ -54,9 +58,9 @@ struct BricksAround {
     if (f.junction.order() == 0) return;
     const std::uint64_t interface = junction_number(table, table_size, f.junction);
     const Int3 c{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
-    for (int z = f.low(2) < 3 ? -1 : 0; z <= (f.high(2) > 0 ? 1 : 0); ++z)
-      for (int y = f.low(1) < 3 ? -1 : 0; y <= (f.high(1) > 0 ? 1 : 0); ++y)
-        for (int x = f.low(0) < 3 ? -1 : 0; x <= (f.high(0) > 0 ? 1 : 0); ++x) {
+    for (int z = f.low(2) < reach ? -1 : 0; z <= (f.high(2) > 3 - reach ? 1 : 0); ++z)
+      for (int y = f.low(1) < reach ? -1 : 0; y <= (f.high(1) > 3 - reach ? 1 : 0); ++y)
+        for (int x = f.low(0) < reach ? -1 : 0; x <= (f.high(0) > 3 - reach ? 1 : 0); ++x) {
           const Int3 d = c + Int3(x, y, z);
           if (is_within(d, coarse))
             visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);
@@ -139,6 +143,7 @@ struct EmbedInterface {
   EmbeddedCell* cell;
   float size_unit;
   std::uint8_t* found;  ///< per cell: whether the projection arrived
+  bool seeds_only;
 
   NACRE_HD Vec3f centre(std::int64_t i) const {
     const std::uint32_t c = brick_coarse[i / 64];
@@ -176,8 +181,14 @@ struct EmbedInterface {
   /// Steps end here: what is left then is less than WENO makes of such cells.
   NACRE_HD float last_step() const { return 0.04f / min(cells_per_voxel, 1.0f); }
 
-  /// How far Newton's steps can lead, and the distance of known points from each other.
-  NACRE_HD float farthest() const { return min(5 / cells_per_voxel, newton_steps * newton_stride) + 0.35f; }
+  /// How far Newton's steps may lead.
+  NACRE_HD float reach() const { return (seeds_only ? 2 : 5) / cells_per_voxel; }
+
+  /// How far an interface may be: as far as its seeds' cells, or as the steps can lead, and the distance of known points
+  /// from each other.
+  NACRE_HD float farthest() const {
+    return (seeds_only ? 1 / cells_per_voxel : min(reach(), newton_steps * newton_stride)) + 0.35f;
+  }
 
   /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p.
   /// False also for a surface farther away than the stencils around its points reach, two cells along each axis.
@@ -186,16 +197,15 @@ struct EmbedInterface {
     const std::uint32_t q = distance.closest(p, away);
     if ((q == none ? distance.reach : away) > farthest()) return false;
     if (j.order() != 2 || q == none || !(distance.point[q].surface == j))
-      return project(field, j, p, 5 / cells_per_voxel, at, last_step());
+      return project(field, j, p, reach(), at, last_step());
     const Float4 n = distance.point[q].normal;
-    const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
-    if (away > reach) return false;
+    const float stencils = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
+    if (away > stencils) return false;
     const Vec3f normal(n.x, n.y, n.z), on = distance.position(q), r = p - on;
     Vec3f along = r - normal * dot(r, normal);
     const float most = 2, size = length(along);
     if (size > most) along *= most / size;
-    return project(field, j, on + along, 3, at, last_step()) ||
-           project(field, j, p, 5 / cells_per_voxel, at, last_step());
+    return project(field, j, on + along, 3, at, last_step()) || project(field, j, p, reach(), at, last_step());
   }
 };
 
@@ -251,13 +261,15 @@ void index_coarse_cells(Executor<Backend>& exec, InterfaceGrid& grid) {
 }  // namespace detail
 
 /// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where
-/// there are none, or more than `most_interfaces`.
+/// there are none, or more than `most_interfaces`. With `seeds_only`, closest points are found for the cells that seeds
+/// come from alone, a third of what the stencils of particles need.
 template <class Backend>
 InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b, const DistanceField& distance,
-                               const SizingField& size, double cells_per_voxel) {
+                               const SizingField& size, double cells_per_voxel, bool seeds_only = false) {
   Arena& arena = exec.arena();
   InterfaceGrid grid;
   grid.cells_per_voxel = float(cells_per_voxel);
+  grid.seeds_only = seeds_only;
   const Int3 n = b.blocks * Int3(block_size);
   for (int axis = 0; axis < 3; ++axis)
     grid.coarse[axis] =
@@ -274,7 +286,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   grid.junctions = search.table;
   grid.junction = arena.permanent_copy<Junction>(search.table);
   const detail::BricksAround around{search.found.data(), grid.junction.data(), std::uint32_t(search.table.size()),
-                                    grid.coarse};
+                                    grid.coarse, seeds_only ? 1 : 3};
   {
     Array<std::uint64_t> start = arena.temporary<std::uint64_t>(search.found.size());
     exec.for_each(search.count, detail::CountBricks{around, start.data()});
@@ -306,9 +318,10 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
                                      grid.brick_interface.data(),
                                      grid.cell.data(),
                                      grid.size_unit,
-                                     found.data()};
+                                     found.data(),
+                                     seeds_only};
   exec.for_each(grid.cells(), embed);
-  exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});
+  if (!seeds_only) exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});
   grid.crowded_points =
       junction_points(exec, b, size, search, grid.coarse, grid.cells_per_voxel, grid.points, grid.point_junction);
   return grid;

@@ -20,13 +20,14 @@ struct FieldProjector {
   }
 };
 
-/// ... or by the closest points of the embedding (sec. 4.2.1), wherever particles are farther apart than its cells.
+/// ... or by the closest points of the embedding (sec. 4.2.1), if it has the cells for that, wherever particles are
+/// farther apart than these.
 struct EmbeddedProjector {
   InterfaceGridView grid;
   FieldProjector fields;
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on) const {
-    return h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
-                                           : nacre::project(grid, interface, p, on);
+    return grid.seeds_only || h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
+                                                              : nacre::project(grid, interface, p, on);
   }
 };
 

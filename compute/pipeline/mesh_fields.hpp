@@ -176,7 +176,7 @@ void MeshFields<Backend>::build_stage(FieldStage which, const MeshParameters& pa
     case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule, recipe_.bounds, wishes()); break;
     default:
       recipe_.cells_per_voxel = recipe(parameters).cells_per_voxel;  // now that the sizing field is known
-      grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel);
+      grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel, recipe_.seeds_only);
       relate_interfaces(info);
       describe(info);
   }
