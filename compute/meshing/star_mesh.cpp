@@ -123,6 +123,7 @@ void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_it
       const std::size_t s = corners[k - 1].second, t = corners[i].second;
       if (!there(s)) continue;
       join_doubles(made.triangles[t], made.materials[t], made.materials[s]);
+      made.joined.insert(made.joined.end(), corners[k].first.begin(), corners[k].first.end());
       any = true;
     }
   if (!any) return;
@@ -130,6 +131,30 @@ void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_it
   for (std::size_t i = 0; i < made.triangles.size(); ++i)
     if (there(i)) made.triangles[kept] = made.triangles[i], made.materials[kept++] = made.materials[i];
   made.triangles.resize(kept), made.materials.resize(kept);
+}
+
+/// Particles at edges between rims that are no rims themselves, and that two surfaces have: what lies between these has
+/// no thickness there, and touches itself.
+std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const Triangle> with_items) {
+  const auto on_rim = [&](std::uint32_t i) { return items.next[i] != none; };
+  std::vector<std::array<std::uint32_t, 3>> chords;  // two particles and a surface
+  for (const std::uint32_t i : select_where(with_items.size(), [&](std::size_t i) {
+         const Triangle& t = with_items[i];
+         return on_rim(t.a) + on_rim(t.b) + on_rim(t.c) > 1;
+       }))
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = with_items[i][k], b = with_items[i][(k + 1) % 3];
+      if (!on_rim(a) || !on_rim(b) || items.next[a] == b || items.next[b] == a) continue;
+      const auto [low, high] = std::minmax(items.particle[a], items.particle[b]);
+      chords.push_back({low, high, items.surface[a]});
+    }
+  std::sort(chords.begin(), chords.end());
+  chords.erase(std::unique(chords.begin(), chords.end()), chords.end());
+  std::vector<std::uint32_t> shared;
+  for (std::size_t k = 1; k < chords.size(); ++k)
+    if (chords[k][0] == chords[k - 1][0] && chords[k][1] == chords[k - 1][1])
+      shared.push_back(chords[k][0]), shared.push_back(chords[k][1]);
+  return shared;
 }
 
 /// Fills the holes; returns the items of those that cannot be filled.
@@ -190,6 +215,8 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   const std::span<const Triangle> filled = std::span(triangles).subspan(agreed);
   made.counts.filled = std::int64_t(filled.size());
   unsettle(at_odd_edges(items, stars, filled));
+  for (const StarHole& hole : holes.holes)
+    for (const std::uint32_t i : hole.loop) made.joined.push_back(items.particle[i]);
 
   made.triangles.resize(triangles.size());
   made.materials.resize(triangles.size());
@@ -200,6 +227,8 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   });
   remove_doubles(items, triangles, made);
   unsettle(of_lost_materials(items, made));
+  const std::vector<std::uint32_t> shared = at_shared_chords(items, triangles);
+  made.unsettled.insert(made.unsettled.end(), shared.begin(), shared.end());
   std::sort(made.unsettled.begin(), made.unsettled.end());
   made.unsettled.erase(std::unique(made.unsettled.begin(), made.unsettled.end()), made.unsettled.end());
   std::vector<std::uint8_t> used(particles.count(), 0);

@@ -153,7 +153,10 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
     VertexFanCounter::Facet facet;
   };
   std::vector<Use> uses;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+  for (const std::uint32_t i : select_where(mesh.triangles.size(), [&](std::size_t i) {
+         const Triangle& t = mesh.triangles[i];
+         return marked[t.a] || marked[t.b] || marked[t.c];
+       })) {
     const Triangle& t = mesh.triangles[i];
     for (int k = 0; k < 3; ++k)
       if (marked[t[k]]) uses.push_back({t[k], {t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[i]}});
@@ -169,6 +172,16 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
     if (fans.size() == 2 && (fans[0].count > 1 || fans[1].count > 1)) pinched.push_back(uses[i].vertex);
   }
   return pinched;
+}
+
+/// Particles where surfaces are pinched are unsettled, too.
+void add_pinched(StarMesh& mesh, std::size_t particles) {
+  std::vector<std::uint8_t> marked(particles, 0);
+  for (const std::uint32_t i : mesh.joined) marked[i] = 1;
+  const std::vector<std::uint32_t> pinched = at_pinched_vertices(mesh, marked);
+  mesh.unsettled.insert(mesh.unsettled.end(), pinched.begin(), pinched.end());
+  std::sort(mesh.unsettled.begin(), mesh.unsettled.end());
+  mesh.unsettled.erase(std::unique(mesh.unsettled.begin(), mesh.unsettled.end()), mesh.unsettled.end());
 }
 
 class Settling {
@@ -308,6 +321,7 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
   touching.clear();
   if (world.mirrored)
     for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
+  add_pinched(mesh, world.points.size());
   if (mesh.unsettled.empty()) return !mesh.triangles.empty();
   Settling settling(mesh, world);
   Patch patch(world, stop);

@@ -12,7 +12,7 @@
 namespace nacre {
 namespace {
 
-constexpr double first_reach = 2.1;  // sizes within which neighbours are looked for at first,
+constexpr double first_reach = 1.7;  // sizes within which neighbours are looked for at first,
 constexpr double last_reach = 5;     // and at last
 constexpr double same_side = -0.4;   // neighbours' normals differ by no more (cosine)
 constexpr double bent = 0.5;         // cosine under which a neighbour is unfolded into the plane
