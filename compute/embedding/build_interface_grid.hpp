@@ -159,8 +159,8 @@ struct EmbedInterface {
     found[i] = 0;
     JunctionPoint at;
     if (!field.inside(p, 3) || !first_guess(j, p, at)) return;
-    // From there to the closest point: along the tangent towards p and back onto the interface.
-    for (int k = 0; k < 2; ++k) {
+    // From there to the closest point: along the tangent towards p and back onto the interface. Seeds may lie beside it.
+    for (int k = 0; k < (seeds_only ? 0 : 2); ++k) {
       const Vec3f r = p - at.p;
       const Vec3f along =
           j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
