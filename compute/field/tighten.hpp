@@ -58,7 +58,7 @@ struct StartTightening {
       }
     const float most = all > 0.5f ? 0.5f / all : 1;
     for (std::uint32_t k = first; k < last; ++k) here[std::size_t(k) * brick_voxels] *= most;
-    here[std::size_t(brick) * brick_voxels] = 1 - all * most;
+    here[std::size_t(brick) * brick_voxels] = std::fma(-all, most, 1.0f);
   }
 };
 
