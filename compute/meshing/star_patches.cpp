@@ -16,8 +16,7 @@
 namespace nacre {
 namespace {
 
-constexpr int patch_rounds = 12;
-constexpr int slow_rounds = 3;       // then a patch grows by whole rings
+constexpr int patch_rounds = 40;
 constexpr double around = 4;         // sizes: as far as the particles are that a patch is made of
 constexpr double label_reach = 1.5;  // sizes: as far from a facet the material of its cell is looked up
 constexpr double most_work =
@@ -229,7 +228,7 @@ class Settling {
     const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
-    if (++grown_ > slow_rounds) add_around(joined, open);
+    add_around(joined, open);  // else a patch takes many rounds to grow
     stuck_ = !open.empty() && !any;
     if (!open.empty()) return any;
     pinched_ = false;
@@ -311,7 +310,6 @@ class Settling {
   double wide_reach_ = 0;               // sizes; 0: none are listed yet
   std::size_t beside_ = 0;              // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
-  int grown_ = 0;
 };
 
 }  // namespace

@@ -12,9 +12,10 @@ struct FieldProjector {
   MaterialBricksView field;
   const Junction* junction;
   SizingFieldView size;
+  float last_step = 0.01f;  ///< of Newton's, voxels; what is left is about its square times the curvature
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
     JunctionPoint at;
-    if (!nacre::project(field, junction[interface], p, 1, at, 0.01f)) return false;
+    if (!nacre::project(field, junction[interface], p, 1, at, last_step)) return false;
     on = {at.p, at.direction, size(at.p), junction_margin(field, junction[interface], at.p, at.steepness)};
     return true;
   }

@@ -58,7 +58,9 @@ class MeshFields {
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
   double expected(int order) const { return expected_[order]; }  ///< particles, from area and sizing field
   EmbeddingSeeds seeds(int order) const { return {grid_, order_.data(), order}; }
-  FieldProjector field_projector() const { return {bricks_.view(), junction_.data(), size_.view()}; }
+  FieldProjector field_projector() const {
+    return {bricks_.view(), junction_.data(), size_.view(), recipe_.seeds_only ? 0.04f : 0.01f};
+  }
   EmbeddedProjector embedded_projector() const { return {grid_.view(), field_projector()}; }
 
  private:
