@@ -43,14 +43,13 @@ struct InterfaceGrid {
 
 namespace detail {
 
-/// Keys (coarse cell << 24 | interface) of the bricks within `reach` cells of a cell that the interface passes through:
-/// 3 for those that the stencils of its particles can meet, 1 for seeds.
+/// Keys (coarse cell << 24 | interface) of the bricks that the stencils of an interface's particles can meet: those
+/// within 3 cells of a cell that it passes through.
 struct BricksAround {
   const FoundJunction* found;
   const Junction* table;
   std::uint32_t table_size;
   Int3 coarse;
-  int reach;
 
   template <class Visit>
   NACRE_HD void operator()(std::int64_t i, const Visit& visit) const {
@@ -58,9 +57,9 @@ struct BricksAround {
     if (f.junction.order() == 0) return;
     const std::uint64_t interface = junction_number(table, table_size, f.junction);
     const Int3 c{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
-    for (int z = f.low(2) < reach ? -1 : 0; z <= (f.high(2) > 3 - reach ? 1 : 0); ++z)
-      for (int y = f.low(1) < reach ? -1 : 0; y <= (f.high(1) > 3 - reach ? 1 : 0); ++y)
-        for (int x = f.low(0) < reach ? -1 : 0; x <= (f.high(0) > 3 - reach ? 1 : 0); ++x) {
+    for (int z = f.low(2) < 3 ? -1 : 0; z <= (f.high(2) > 0 ? 1 : 0); ++z)
+      for (int y = f.low(1) < 3 ? -1 : 0; y <= (f.high(1) > 0 ? 1 : 0); ++y)
+        for (int x = f.low(0) < 3 ? -1 : 0; x <= (f.high(0) > 0 ? 1 : 0); ++x) {
           const Int3 d = c + Int3(x, y, z);
           if (is_within(d, coarse))
             visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);
@@ -159,18 +158,23 @@ struct EmbedInterface {
     found[i] = 0;
     JunctionPoint at;
     if (!field.inside(p, 3) || !first_guess(j, p, at)) return;
-    // From there to the closest point: along the tangent towards p and back onto the interface. Seeds may lie beside it.
-    for (int k = 0; k < (seeds_only ? 0 : 2); ++k) {
+    // From there to the closest point: along the tangent towards p and back onto the interface.
+    for (int k = 0; k < 2; ++k) {
       const Vec3f r = p - at.p;
       const Vec3f along =
           j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
       if (dot(along, along) < 2.5f * last_step() * last_step()) break;
+      if (seeds_only) {  // in the tangent, which is near enough
+        at.p += along;
+        break;
+      }
       JunctionPoint better;
       if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
         break;
       at = better;
     }
     const Vec3f o = at.p * cells_per_voxel - middle;
+    if (seeds_only && dot(o, o) >= 1) return;  // no seed comes from here
     const float margin = max(junction_margin(field, j, at.p, at.steepness), -4.0f);
     cell[i] =
         EmbeddedCell({o.x, o.y, o.z, margin}, {at.direction.x, at.direction.y, at.direction.z, size(at.p)}, size_unit);
@@ -286,7 +290,7 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   grid.junctions = search.table;
   grid.junction = arena.permanent_copy<Junction>(search.table);
   const detail::BricksAround around{search.found.data(), grid.junction.data(), std::uint32_t(search.table.size()),
-                                    grid.coarse, seeds_only ? 1 : 3};
+                                    grid.coarse};
   {
     Array<std::uint64_t> start = arena.temporary<std::uint64_t>(search.found.size());
     exec.for_each(search.count, detail::CountBricks{around, start.data()});

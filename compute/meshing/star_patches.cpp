@@ -5,9 +5,10 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <tuple>
+#include <utility>
 
-#include "compute/meshing/interface_facets.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
@@ -17,8 +18,10 @@ namespace nacre {
 namespace {
 
 constexpr int patch_rounds = 40;
-constexpr double around = 4;         // sizes: as far as the particles are that a patch is made of
-constexpr double label_reach = 1.5;  // sizes: as far from a facet the material of its cell is looked up
+constexpr int slow_rounds = 8;         // then a patch grows by whole rings
+constexpr double around = 3;           // sizes: as far as the particles are that a patch is made of
+constexpr double label_reach = 1.5;    // sizes: as far from a facet the material of its cell is looked up
+constexpr std::size_t most_made = 16;  // patches that are kept
 constexpr double most_work =
     0.5;  // particles of all rounds, by those that there are: beyond, cells of all cost little more
 
@@ -28,6 +31,29 @@ Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   const double n2 = dot(n, n);
   if (!(n2 > 0)) return (a + b + c) / 3;
   return a + cross(dot(u, u) * v - dot(v, v) * u, n) / (2 * n2);
+}
+
+/// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
+/// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
+std::vector<Vec3d> label_points(const PatchCells::Made& made) {
+  std::vector<Vec3d> at(made.cells.circumcentres);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto& cell = made.cells.vertices[i];
+    double least = 0;
+    Vec3d foot;
+    double size = 0;
+    for (const auto& [a, b, c] : facet_corners) {
+      const Vec3d centre = circumcentre(made.places[cell[a]], made.places[cell[b]], made.places[cell[c]]);
+      const double radius = length(centre - made.places[cell[a]]);
+      if (size > 0 && radius >= least) continue;
+      least = radius, foot = centre;
+      size = std::max({made.size[cell[a]], made.size[cell[b]], made.size[cell[c]]});
+    }
+    const Vec3d away = at[i] - foot;
+    const double far = length(away);
+    if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
+  }
+  return at;
 }
 
 /// Delaunay cells of some of the particles, and the facets between materials.
@@ -44,24 +70,23 @@ class Patch {
   }
 
   /// Of `members`, ascending.
-  void make(std::span<const std::uint32_t> members, Delaunay& delaunay) {
-    places_.clear();
-    size_.clear();
-    for (const std::uint32_t i : members) places_.push_back(world_.points[i]), size_.push_back(world_.size[i]);
-    add_guards();
-
-    cells_ = delaunay.cells(places_, stop_);
-    label_ = world_.material_at(label_points());
-    facets_ = interface_facets(cells_, label_);
+  void make(std::span<const std::uint32_t> members, PatchCells& cells) {
+    std::vector<Vec3d> places;
+    std::vector<double> size;
+    for (const std::uint32_t i : members) places.push_back(world_.points[i]), size.push_back(world_.size[i]);
+    add_guards(places, size);
+    made_ = cells.make(std::move(places), std::move(size), world_, stop_);
+    facets_ = made_->facets;
     defects_.clear();
   }
 
   /// At the members that `there` marks: between the parts of the patch, where particles are missing, labels mean
   /// nothing.
   void repair(std::vector<std::uint8_t> there) {
-    there.resize(places_.size(), 0);
-    defects_ = repair_labels_at(there, places_, cells_, label_, stop_).defects;
-    facets_ = interface_facets(cells_, label_);
+    there.resize(made_->places.size(), 0);
+    std::vector<std::uint16_t> label = made_->label;
+    defects_ = repair_labels_at(there, made_->places, made_->cells, label, stop_).defects;
+    facets_ = interface_facets(made_->cells, label);
   }
 
   const InterfaceFacets& facets() const { return facets_; }
@@ -69,46 +94,20 @@ class Patch {
 
  private:
   /// Corners of a box far around: no facet at a particle is on the hull.
-  void add_guards() {
+  void add_guards(std::vector<Vec3d>& places, std::vector<double>& size) const {
     for (int k = 0; k < 8; ++k) {
       // At no corner of a cube exactly, so that no four lie in a plane with others.
       const double far = (6 + 0.37 * k) * half_;
-      places_.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
-      size_.push_back(half_);
+      places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
+      size.push_back(half_);
     }
-  }
-
-  /// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
-  /// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
-  std::vector<Vec3d> label_points() const {
-    std::vector<Vec3d> at(cells_.circumcentres);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto& cell = cells_.vertices[i];
-      double least = 0;
-      Vec3d foot;
-      double size = 0;
-      for (const auto& [a, b, c] : facet_corners) {
-        const Vec3d centre = circumcentre(places_[cell[a]], places_[cell[b]], places_[cell[c]]);
-        const double radius = length(centre - places_[cell[a]]);
-        if (size > 0 && radius >= least) continue;
-        least = radius, foot = centre;
-        size = std::max({size_[cell[a]], size_[cell[b]], size_[cell[c]]});
-      }
-      const Vec3d away = at[i] - foot;
-      const double far = length(away);
-      if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
-    }
-    return at;
   }
 
   const PatchWorld& world_;
   const std::atomic<bool>* stop_;
   Vec3d middle_;  // of a ball around all particles
   double half_ = 0;
-  std::vector<Vec3d> places_;
-  std::vector<double> size_;
-  DelaunayCells cells_;
-  std::vector<std::uint16_t> label_;
+  std::shared_ptr<const PatchCells::Made> made_;
   InterfaceFacets facets_;
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
@@ -228,7 +227,7 @@ class Settling {
     const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
-    add_around(joined, open);  // else a patch takes many rounds to grow
+    if (++grown_ > slow_rounds) add_around(joined, open);
     stuck_ = !open.empty() && !any;
     if (!open.empty()) return any;
     pinched_ = false;
@@ -310,11 +309,30 @@ class Settling {
   double wide_reach_ = 0;               // sizes; 0: none are listed yet
   std::size_t beside_ = 0;              // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
+  int grown_ = 0;
 };
 
 }  // namespace
 
-bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay,
+std::shared_ptr<const PatchCells::Made> PatchCells::make(std::vector<Vec3d> places, std::vector<double> size,
+                                                         const PatchWorld& world, const std::atomic<bool>* stop) {
+  const auto same = std::find_if(made_.begin(), made_.end(),
+                                 [&](const auto& made) { return made->places == places && made->size == size; });
+  if (same != made_.end()) {
+    std::rotate(made_.begin(), same, same + 1);
+    return made_.front();
+  }
+  const auto made = std::make_shared<Made>();
+  made->places = std::move(places), made->size = std::move(size);
+  made->cells = delaunay_.cells(made->places, stop);
+  made->label = world.material_at(label_points(*made));
+  made->facets = interface_facets(made->cells, made->label);
+  made_.insert(made_.begin(), made);
+  if (made_.size() > most_made) made_.pop_back();
+  return made;
+}
+
+bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
   touching.clear();
   if (world.mirrored)
@@ -329,7 +347,7 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
     const std::vector<std::uint32_t> members = settling.members();
     work += double(members.size());
     if (work > most_work * double(world.points.size()) && world.points.size() > 1000) return false;
-    patch.make(members, delaunay);
+    patch.make(members, cells);
     if (repairs) patch.repair(settling.marks(members));
     StarMesh joined = settling.join(members, patch.facets());
     if (settling.grow(joined)) continue;

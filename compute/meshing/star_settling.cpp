@@ -11,8 +11,20 @@ namespace {
 
 constexpr int settling_rounds = 6;
 
-/// The angle between two directions.
-double angle_between(const Vec3d& u, const Vec3d& v) { return std::atan2(length(cross(u, v)), dot(u, v)); }
+/// An angle from 0 to 360 degrees as a direction in the plane, of any length.
+struct Angle {
+  double cosine, sine;
+  /// Between two directions.
+  Angle(const Vec3d& u, const Vec3d& v) : cosine(dot(u, v)), sine(length(cross(u, v))) {}
+  Angle(double c, double s) : cosine(c), sine(s) {}
+  friend Angle operator+(const Angle& a, const Angle& b) {
+    return {a.cosine * b.cosine - a.sine * b.sine, a.sine * b.cosine + a.cosine * b.sine};
+  }
+  friend bool operator>=(const Angle& a, const Angle& b) {
+    if ((a.sine < 0) != (b.sine < 0)) return a.sine < 0;
+    return b.cosine * a.sine - b.sine * a.cosine >= 0;
+  }
+};
 
 bool are_on_rim(const StarItems& items, std::uint32_t a, std::uint32_t b) {
   return items.next[a] == b || items.previous[a] == b;
@@ -124,14 +136,12 @@ bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t
     if (items.particle[corners[k]] < items.particle[corners[low]]) low = k;
   const bool along = items.particle[corners[(low + 1) % 4]] < items.particle[corners[(low + 3) % 4]];
   const std::size_t step = along ? 1 : 3;
-  double angle[4];
-  for (std::size_t k = 0; k < 4; ++k) {
+  const auto angle = [&](std::size_t k) {
     const std::size_t at = low + k * step;
     const Vec3d here = items.position[corners[at % 4]];
-    angle[k] = angle_between(items.position[corners[(at + step) % 4]] - here,
-                             items.position[corners[(at + 4 - step) % 4]] - here);
-  }
-  const bool from_low = angle[0] + angle[2] >= angle[1] + angle[3];
+    return Angle(items.position[corners[(at + step) % 4]] - here, items.position[corners[(at + 4 - step) % 4]] - here);
+  };
+  const bool from_low = angle(0) + angle(2) >= angle(1) + angle(3);
   return from_low == (low % 2 == 0);
 }
 

@@ -8,7 +8,6 @@
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
-#include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 
 namespace nacre {
@@ -54,7 +53,7 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       rule_(rule),
       tell_(tell),
       delaunay_(rule.threads),
-      patch_delaunay_(rule.threads) {}
+      patch_cells_(rule.threads) {}
 
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
@@ -130,7 +129,7 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
   std::vector<std::array<std::uint32_t, 2>> touching;
   const bool settled =
-      settle_by_cells(stars, {points, size, mirrored, material_at}, patch_delaunay_, touching, rule_.stop);
+      settle_by_cells(stars, {points, size, mirrored, material_at}, patch_cells_, touching, rule_.stop);
   star_use_.last = stars.counts;
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;
