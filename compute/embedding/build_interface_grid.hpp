@@ -188,8 +188,8 @@ struct EmbedInterface {
   /// How far Newton's steps may lead.
   NACRE_HD float reach() const { return (seeds_only ? 2 : 5) / cells_per_voxel; }
 
-  /// How far an interface may be: as far as its seeds' cells, or as the steps can lead, and the distance of known points
-  /// from each other.
+  /// How far an interface may be: as far as its seeds' cells, or as the steps can lead, and the distance of known
+  /// points from each other.
   NACRE_HD float farthest() const {
     return (seeds_only ? 1 / cells_per_voxel : min(reach(), newton_steps * newton_stride)) + 0.35f;
   }

@@ -10,8 +10,8 @@
 
 namespace nacre {
 
-/// The numbers i < count for which test(i) is true, ascending. In parallel, `part` numbers at a time: fewer where a test
-/// is costly. `test` may change what belongs to i alone.
+/// The numbers i < count for which test(i) is true, ascending. In parallel, `part` numbers at a time: fewer where a
+/// test is costly. `test` may change what belongs to i alone.
 template <class Test>
 std::vector<std::uint32_t> select_where(std::size_t count, const Test& test, std::size_t part = 1 << 13) {
   std::vector<std::vector<std::uint32_t>> found((count + part - 1) / part);
