@@ -10,6 +10,7 @@
 #include "compute/embedding/interface_grid.hpp"
 #include "compute/embedding/junction_table.hpp"
 #include "compute/field/sizing.hpp"
+
 namespace nacre {
 
 /// The interfaces of a volume and their embedding, in permanent memory.
@@ -27,9 +28,11 @@ struct InterfaceGrid {
   Array<std::uint32_t> brick_start, brick_interface, brick_coarse;
   Array<EmbeddedCell> cell;
   float size_unit = 1;
+  bool seeds_only = false;
 
   InterfaceGridView view() const {
-    return {coarse, cells_per_voxel, word.data(), brick_start.data(), brick_interface.data(), cell.data(), size_unit};
+    return {coarse,      cells_per_voxel, word.data(), brick_start.data(), brick_interface.data(),
+            cell.data(), size_unit,       seeds_only};
   }
   std::int64_t cells() const { return bricks * 64; }
   std::int64_t bytes() const {
@@ -139,6 +142,7 @@ struct EmbedInterface {
   EmbeddedCell* cell;
   float size_unit;
   std::uint8_t* found;  ///< per cell: whether the projection arrived
+  bool seeds_only;
 
   NACRE_HD Vec3f centre(std::int64_t i) const {
     const std::uint32_t c = brick_coarse[i / 64];
@@ -160,12 +164,17 @@ struct EmbedInterface {
       const Vec3f along =
           j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
       if (dot(along, along) < 2.5f * last_step() * last_step()) break;
+      if (seeds_only) {  // in the tangent, which is near enough
+        at.p += along;
+        break;
+      }
       JunctionPoint better;
       if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
         break;
       at = better;
     }
     const Vec3f o = at.p * cells_per_voxel - middle;
+    if (seeds_only && dot(o, o) >= 1) return;  // no seed comes from here
     const float margin = max(junction_margin(field, j, at.p, at.steepness), -4.0f);
     cell[i] =
         EmbeddedCell({o.x, o.y, o.z, margin}, {at.direction.x, at.direction.y, at.direction.z, size(at.p)}, size_unit);
@@ -176,8 +185,14 @@ struct EmbedInterface {
   /// Steps end here: what is left then is less than WENO makes of such cells.
   NACRE_HD float last_step() const { return 0.04f / min(cells_per_voxel, 1.0f); }
 
-  /// How far Newton's steps can lead, and the distance of known points from each other.
-  NACRE_HD float farthest() const { return min(5 / cells_per_voxel, newton_steps * newton_stride) + 0.35f; }
+  /// How far Newton's steps may lead.
+  NACRE_HD float reach() const { return (seeds_only ? 2 : 5) / cells_per_voxel; }
+
+  /// How far an interface may be: as far as its seeds' cells, or as the steps can lead, and the distance of known
+  /// points from each other.
+  NACRE_HD float farthest() const {
+    return (seeds_only ? 1 / cells_per_voxel : min(reach(), newton_steps * newton_stride)) + 0.35f;
+  }
 
   /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p.
   /// False also for a surface farther away than the stencils around its points reach, two cells along each axis.
@@ -186,16 +201,15 @@ struct EmbedInterface {
     const std::uint32_t q = distance.closest(p, away);
     if ((q == none ? distance.reach : away) > farthest()) return false;
     if (j.order() != 2 || q == none || !(distance.point[q].surface == j))
-      return project(field, j, p, 5 / cells_per_voxel, at, last_step());
+      return project(field, j, p, reach(), at, last_step());
     const Float4 n = distance.point[q].normal;
-    const float reach = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
-    if (away > reach) return false;
+    const float stencils = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
+    if (away > stencils) return false;
     const Vec3f normal(n.x, n.y, n.z), on = distance.position(q), r = p - on;
     Vec3f along = r - normal * dot(r, normal);
     const float most = 2, size = length(along);
     if (size > most) along *= most / size;
-    return project(field, j, on + along, 3, at, last_step()) ||
-           project(field, j, p, 5 / cells_per_voxel, at, last_step());
+    return project(field, j, on + along, 3, at, last_step()) || project(field, j, p, reach(), at, last_step());
   }
 };
 
@@ -251,13 +265,15 @@ void index_coarse_cells(Executor<Backend>& exec, InterfaceGrid& grid) {
 }  // namespace detail
 
 /// Finds the interfaces and embeds them, `cells_per_voxel` closest-point cells to a voxel and axis. Throws Error where
-/// there are none, or more than `most_interfaces`.
+/// there are none, or more than `most_interfaces`. With `seeds_only`, closest points are found for the cells that seeds
+/// come from alone, a third of what the stencils of particles need.
 template <class Backend>
 InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b, const DistanceField& distance,
-                               const SizingField& size, double cells_per_voxel) {
+                               const SizingField& size, double cells_per_voxel, bool seeds_only = false) {
   Arena& arena = exec.arena();
   InterfaceGrid grid;
   grid.cells_per_voxel = float(cells_per_voxel);
+  grid.seeds_only = seeds_only;
   const Int3 n = b.blocks * Int3(block_size);
   for (int axis = 0; axis < 3; ++axis)
     grid.coarse[axis] =
@@ -306,9 +322,10 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
                                      grid.brick_interface.data(),
                                      grid.cell.data(),
                                      grid.size_unit,
-                                     found.data()};
+                                     found.data(),
+                                     seeds_only};
   exec.for_each(grid.cells(), embed);
-  exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});
+  if (!seeds_only) exec.for_each(grid.cells(), detail::BorrowClosestPoint{grid.view(), embed});
   grid.crowded_points =
       junction_points(exec, b, size, search, grid.coarse, grid.cells_per_voxel, grid.points, grid.point_junction);
   return grid;

@@ -88,7 +88,8 @@ struct InterfaceGridView {
   /// Closest points. The margin is by how much the interface's materials lead over all others there; negative beyond
   /// the rim of the interface.
   const EmbeddedCell* cell = nullptr;
-  float size_unit = 1;  ///< of the cells' h, voxels
+  float size_unit = 1;      ///< of the cells' h, voxels
+  bool seeds_only = false;  ///< only cells next to the interface have closest points: too few for stencils
 
   NACRE_HD Int3 dims() const { return coarse * Int3(sub); }
   NACRE_HD std::int64_t coarse_number(const Int3& c) const {

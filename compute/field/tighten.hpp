@@ -25,19 +25,25 @@ struct GaussianTaps {
 
 namespace detail {
 
-/// What of each voxel belongs to the material of a brick: all or nothing, but along slopes.
+/// What of each voxel belongs to the materials of its block: all or nothing, but along slopes. The element of the
+/// voxel's own material does it for the bricks of all.
 struct StartTightening {
   BrickVoxels voxels;
   LabelSlopes slopes;
   float* source;
 
   NACRE_HD void operator()(std::int64_t i) const {
+    const MaterialBricksView& field = slopes.field;
     const Int3 v = voxels(i);
-    const std::uint32_t brick = std::uint32_t(i / brick_voxels) + 2;
-    const BlockVoxels material(slopes.field, voxels.brick_block[brick]);
-    const std::uint32_t mine = slopes.field.brick_material[brick], own = material(v);
-    const Int3 n = slopes.field.voxels();
-    float all = 0, part = 0;
+    const std::uint32_t brick = std::uint32_t(i / brick_voxels) + 2, block = voxels.brick_block[brick];
+    const BlockVoxels material(field, block);
+    const std::uint32_t own = material(v);
+    if (field.brick_material[brick] != own) return;
+    const std::uint32_t first = field.block_start[block], last = field.block_start[block + 1];
+    float* here = source + i % brick_voxels;
+    for (std::uint32_t k = first; k < last; ++k) here[std::size_t(k) * brick_voxels] = 0;
+    const Int3 n = field.voxels();
+    float all = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
         if (slopes.reach <= 0 || v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
@@ -47,10 +53,12 @@ struct StartTightening {
         if (other == own) continue;
         const float share = slopes.share_beyond(v, axis, side);
         all += share;
-        part += other == mine ? share : 0;
+        for (std::uint32_t k = first; k < last; ++k)
+          if (field.brick_material[k] == other) here[std::size_t(k) * brick_voxels] += share;
       }
     const float most = all > 0.5f ? 0.5f / all : 1;
-    source[i + 2 * brick_voxels] = mine == own ? 1 - all * most : part * most;
+    for (std::uint32_t k = first; k < last; ++k) here[std::size_t(k) * brick_voxels] *= most;
+    here[std::size_t(brick) * brick_voxels] = std::fma(-all, most, 1.0f);
   }
 };
 

@@ -1,6 +1,10 @@
 // Nacre: which particles of a junction curve follow each other.
 #include "compute/meshing/curve_links.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -84,13 +88,12 @@ std::vector<CurveNode> link_curves(const StarParticles& particles) {
   }
   first.push_back(std::uint32_t(nodes.node.size()));
   const PointTree tree(position, first);
-  std::vector<PointTree::Found> found;
   std::vector<Link> links;
   for (const Reach& reach : reaches) {
-    links.clear();
-    for (std::uint32_t i = 0; i < nodes.node.size(); ++i) {
+    tbb::enumerable_thread_specific<std::vector<Link>> of_thread;
+    const auto list_links = [&](std::uint32_t i, std::vector<PointTree::Found>& found, std::vector<Link>& to_i) {
       const CurveNode& from = nodes.node[i];
-      if (!from.has_next || from.next != none) continue;
+      if (!from.has_next || from.next != none) return;
       found.clear();
       tree.within(group[i], position[i], reach.sizes * particles.position[from.particle].w, found);
       for (const auto& [distance2, k] : found) {
@@ -99,9 +102,15 @@ std::vector<CurveNode> link_curves(const StarParticles& particles) {
         const Vec3d step = position[k] - position[i];
         const double length = std::sqrt(distance2);
         if (std::min(dot(step, nodes.tangent[i]), dot(step, nodes.tangent[k])) >= reach.cosine * length)
-          links.push_back({length, i, k});
+          to_i.push_back({length, i, k});
       }
-    }
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.node.size(), 256), [&](const auto& range) {
+      std::vector<PointTree::Found> found;
+      for (std::size_t i = range.begin(); i != range.end(); ++i) list_links(std::uint32_t(i), found, of_thread.local());
+    });
+    links.clear();
+    for (const auto& some : of_thread) links.insert(links.end(), some.begin(), some.end());
     std::sort(links.begin(), links.end());
     for (const Link& link : links) {
       CurveNode &from = nodes.node[link.from], &to = nodes.node[link.to];

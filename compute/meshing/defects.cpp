@@ -7,6 +7,7 @@
 
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
+#include "compute/meshing/select_where.hpp"
 
 namespace nacre {
 namespace {
@@ -28,6 +29,14 @@ struct Wish {
 std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
   const Triangle& c = mesh.triangles[t];
   return {mesh.points[c.a], mesh.points[c.b], mesh.points[c.c]};
+}
+
+/// Triangles with a radius ratio of `ratio` or less.
+std::vector<std::uint32_t> triangles_under(double ratio, const SurfaceMesh& mesh) {
+  return select_where(mesh.triangles.size(), [&](std::size_t t) {
+    const auto p = corners(mesh, t);
+    return !ratio_is_above(ratio, p[0], p[1], p[2]) && radius_ratio(p[0], p[1], p[2]) <= ratio;
+  });
 }
 
 bool at_junction(const Triangle& t, std::span<const std::uint8_t> order) {
@@ -207,10 +216,9 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
   };
   std::vector<Wish> wishes;
   std::vector<Cap> caps;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (const std::uint32_t t : triangles_under(0.75, mesh)) {  // in others no angle is under 25 degrees
     const auto p = corners(mesh, t);
     const double ratio = radius_ratio(p[0], p[1], p[2]);
-    if (ratio > 0.75) continue;  // then no angle is under 25 degrees
     const Triangle& c = mesh.triangles[t];
     const bool near = at_junction(c, order);
     const std::array<double, 3> angles = triangle_angles(p[0], p[1], p[2]);
@@ -236,9 +244,19 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
 }
 
 void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order) {
-  const std::vector<std::uint8_t> at_junction = junction_points(mesh);
+  const auto near =
+      select_where(mesh.triangles.size(), [&](std::size_t t) { return at_junction(mesh.triangles[t], order); });
+  constexpr std::array<std::uint16_t, 2> nothing{0xffff, 0xffff};
+  std::vector<std::array<std::uint16_t, 2>> seen(order.size(), nothing);
+  std::vector<std::uint8_t> stays(order.size(), 0);
+  for (const std::uint32_t t : near)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[t][k];
+      if (seen[v] == nothing) seen[v] = mesh.materials[t];
+      stays[v] |= mesh.materials[t] != seen[v];
+    }
   for (std::size_t v = 0; v < order.size(); ++v)
-    if (!at_junction[v]) order[v] = 2;
+    if (!stays[v]) order[v] = 2;
 }
 
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
@@ -249,15 +267,16 @@ double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const 
 }
 
 double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule) {
-  double least = best_fitness(rule);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+  const double best = best_fitness(rule);
+  double least = best;
+  for (const std::uint32_t t : triangles_under(best * std::max(rule.ratio, rule.near) + 1e-6, mesh))
     least = std::min(least, triangle_fitness(mesh, t, order, rule));
   return least;
 }
 
 std::vector<std::uint8_t> points_at_triangles_under(double ratio, const SurfaceMesh& mesh) {
   std::vector<std::uint8_t> marked(mesh.points.size(), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (const std::uint32_t t : triangles_under(ratio, mesh)) {
     const auto p = corners(mesh, t);
     if (radius_ratio(p[0], p[1], p[2]) < ratio)
       for (int k = 0; k < 3; ++k) marked[mesh.triangles[t][k]] = 1;

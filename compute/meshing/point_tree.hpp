@@ -21,7 +21,7 @@ class PointTree {
     }
   };
 
-  /// Group g holds points first[g] .. first[g + 1] - 1; `points` must outlive the tree. In parallel.
+  /// Group g holds points first[g] .. first[g + 1] - 1. In parallel.
   PointTree(std::span<const Vec3d> points, std::span<const std::uint32_t> first);
 
   /// Adds to `found` the points of the group within `radius` of `position`, in no particular order.
@@ -32,14 +32,17 @@ class PointTree {
  private:
   static constexpr std::uint32_t leaf = 8;  // as many points or fewer are not divided
 
+  struct Entry {
+    Vec3d position;
+    std::uint32_t point;
+    std::uint8_t axis;  // of the one in the middle of a range: across which it is divided
+  };
+
   void build(std::uint32_t begin, std::uint32_t end);
   void search(std::uint32_t begin, std::uint32_t end, const Vec3d& at, double radius2, std::vector<Found>& found) const;
 
-  std::span<const Vec3d> points_;
   std::vector<std::uint32_t> first_;
-  std::vector<std::uint32_t> order_;  // points; a range is divided at its middle
-  std::vector<Vec3d> position_;       // their positions, in this order
-  std::vector<std::uint8_t> axis_;    // at the middle of a range: across which it is divided
+  std::vector<Entry> entry_;  // a range is divided at its middle
 };
 
 }  // namespace nacre

@@ -13,6 +13,15 @@ namespace nacre {
 /// 2 r_in / r_circ of a triangle: 1 where it is equilateral, 0 where it has no area.
 double radius_ratio(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 
+/// Cheaper than the ratio: true only where this is above `bound`, as it is where the mean ratio, 1 for an equilateral
+/// triangle, too, is above the bound's root. (The ratio is 4 d^2 / (abc (a + b + c)), d twice the area, and the mean
+/// ratio 2 sqrt(3) d / s with s = a^2 + b^2 + c^2; a + b + c <= sqrt(3 s) and abc <= (s / 3)^(3/2).)
+inline bool ratio_is_above(double bound, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const Vec3d u = b - a, v = c - a, w = c - b, n = cross(u, v);
+  const double s = dot(u, u) + dot(v, v) + dot(w, w);
+  return 12 * dot(n, n) > (bound + 1e-6) * s * s;
+}
+
 /// The three angles of a triangle at a, b and c, degrees; zeros where two corners coincide.
 std::array<double, 3> triangle_angles(const Vec3d& a, const Vec3d& b, const Vec3d& c);
 

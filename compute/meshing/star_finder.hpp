@@ -2,30 +2,34 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
+#include "compute/meshing/item_tree.hpp"
 #include "compute/meshing/stars.hpp"
 
 namespace nacre {
 
-/// Finds stars. Items of the last call are known again by their surface and position; the stars that have the same
-/// items within reach are taken from there. What it gives depends on the items alone.
+/// Finds stars. Items of the last call are known again where they come in the same order, as most do where a few
+/// particles move, go or come; the stars that have the same items within reach are taken from there. What it gives
+/// depends on the items alone.
 class StarFinder {
  public:
   /// All stars, settled, with what is agreed marked.
-  std::vector<Star> find(const StarItems& items);
+  void find(StarItems items);
 
-  std::int64_t cut() const { return cut_; }  ///< stars that the last call found again
+  const StarItems& items() const { return items_; }          ///< of the last call
+  const std::vector<Star>& stars() const { return stars_; }  ///< of each
+  std::int64_t cut() const { return cut_; }                  ///< stars that the last call found again
 
  private:
-  std::vector<std::uint8_t> take_over(const StarItems& items, const PointTree& tree, std::vector<Star>& stars) const;
+  std::vector<std::uint8_t> take_over(const StarItems& items);
 
   StarItems items_;
-  std::vector<Star> stars_;  ///< before they were settled
+  std::vector<Star> stars_, spare_;
+  std::vector<std::pair<std::uint32_t, Star>> unsettled_;  // stars that settling changed, as they were before
+  ItemTree tree_;
   std::int64_t cut_ = 0;
 };
-
-/// Those of items that are not going to change.
-inline std::vector<Star> find_stars(const StarItems& items) { return StarFinder().find(items); }
 
 }  // namespace nacre

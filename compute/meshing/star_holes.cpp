@@ -30,9 +30,10 @@ bool agreed_to(const Star& star, int k) {
 
 bool is_used(const Star& star) { return star.agreed != 0; }
 
-std::vector<Side> list_sides(const StarItems& items, const std::vector<Star>& stars) {
+std::vector<Side> list_sides(const StarItems& items, const std::vector<Star>& stars,
+                             std::span<const std::uint32_t> incomplete) {
   std::vector<Side> sides;
-  for (std::uint32_t i = 0; i < items.count(); ++i) {
+  for (const std::uint32_t i : incomplete) {
     const Star& star = stars[i];
     const std::uint32_t next = items.next[i];
     bool has_next = false;
@@ -73,11 +74,12 @@ std::ptrdiff_t unused_neighbours(const std::vector<Star>& stars, const Star& sta
 }
 
 /// Items that no triangle has go to the hole that most of their neighbours are at.
-void add_orphans(StarHoles& found, const StarItems& items, const std::vector<Star>& stars) {
+void add_orphans(StarHoles& found, const StarItems& items, const std::vector<Star>& stars,
+                 std::span<const std::uint32_t> incomplete) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> holes_at;
   for (std::uint32_t h = 0; h < found.holes.size(); ++h)
     for (const std::uint32_t v : found.holes[h].loop) holes_at[v].push_back(h);
-  for (std::uint32_t i = 0; i < items.count(); ++i) {
+  for (const std::uint32_t i : incomplete) {
     const Star& star = stars[i];
     if (is_used(star) || star.hidden || items.next[i] != none) continue;
     std::map<std::uint32_t, int> votes;
@@ -230,8 +232,9 @@ class Filling {
 
 }  // namespace
 
-StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars) {
-  std::vector<Side> sides = list_sides(items, stars);
+StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars,
+                     std::span<const std::uint32_t> incomplete) {
+  std::vector<Side> sides = list_sides(items, stars, incomplete);
   StarHoles found;
   for (std::size_t s = 0; s < sides.size(); ++s) {
     if (sides[s].used) continue;
@@ -249,7 +252,7 @@ StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars) {
     else
       found.holes.push_back(std::move(hole));
   }
-  add_orphans(found, items, stars);
+  add_orphans(found, items, stars, incomplete);
   return found;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_holes.hpp"
 
 namespace nacre {
@@ -22,17 +23,43 @@ bool agrees(const StarItems& items, const Star& star, std::uint32_t i) {
   return true;
 }
 
-/// The triangles that all corners agree on, each listed by its smallest item, as items.
-std::vector<Triangle> agreed_triangles(const std::vector<Star>& stars) {
-  std::vector<Triangle> triangles;
-  triangles.reserve(2 * stars.size());
-  for (std::uint32_t i = 0; i < stars.size(); ++i)
-    for (int k = 0; k < stars[i].count; ++k) {
-      if (!(stars[i].agreed >> k & 1)) continue;
-      const std::uint32_t a = stars[i].ring[std::size_t(k)], b = stars[i].ring[std::size_t(stars[i].after(k))];
-      if (i < a && i < b) triangles.push_back({i, a, b});
-    }
-  return triangles;
+/// What one pass over all stars finds.
+struct Agreed {
+  std::vector<Triangle> triangles;        ///< that all corners agree on, each listed by its smallest item, as items
+  std::vector<std::uint32_t> incomplete;  ///< see is_incomplete; ascending
+  std::int64_t unsettled = 0;             ///< stars that do not do without a hole
+};
+
+void add_agreed(const StarItems& items, const std::vector<Star>& stars, std::uint32_t i, Agreed& found) {
+  const Star& star = stars[i];
+  for (int k = 0; k < star.count; ++k) {
+    if (!(star.agreed >> k & 1)) continue;
+    const std::uint32_t a = star.ring[std::size_t(k)], b = star.ring[std::size_t(star.after(k))];
+    if (i < a && i < b) found.triangles.push_back({i, a, b});
+  }
+  if (!is_incomplete(items, star, i)) return;
+  found.incomplete.push_back(i);
+  found.unsettled += !agrees(items, star, i);
+}
+
+Agreed find_agreed(const StarItems& items, const std::vector<Star>& stars) {
+  constexpr std::size_t part = 1 << 13;
+  std::vector<Agreed> parts((stars.size() + part - 1) / part);
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t k) {
+    const std::size_t end = std::min(stars.size(), (k + 1) * part);
+    parts[k].triangles.reserve(2 * (end - k * part));
+    for (std::size_t i = k * part; i < end; ++i) add_agreed(items, stars, std::uint32_t(i), parts[k]);
+  });
+  Agreed all;
+  std::size_t triangles = 0;
+  for (const Agreed& some : parts) triangles += some.triangles.size();
+  all.triangles.reserve(triangles + triangles / 16);
+  for (const Agreed& some : parts) {
+    all.triangles.insert(all.triangles.end(), some.triangles.begin(), some.triangles.end());
+    all.incomplete.insert(all.incomplete.end(), some.incomplete.begin(), some.incomplete.end());
+    all.unsettled += some.unsettled;
+  }
+  return all;
 }
 
 /// Items at edges of filled holes that are not passed once each way, counting the agreed triangles beside them.
@@ -78,9 +105,12 @@ void join_doubles(Triangle& first, std::array<std::uint16_t, 2>& first_materials
 /// would have the same corners, all of which are on rims.
 void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_items, StarMesh& made) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::size_t>> corners;
-  for (std::size_t i = 0; i < with_items.size(); ++i) {
+  const auto on_rims = [&](std::size_t i) {
     const Triangle& t = with_items[i];
-    if (items.next[t.a] == none || items.next[t.b] == none || items.next[t.c] == none) continue;
+    return items.next[t.a] != none && items.next[t.b] != none && items.next[t.c] != none;
+  };
+  for (const std::uint32_t i : select_where(with_items.size(), on_rims)) {
+    const Triangle& t = with_items[i];
     std::array<std::uint32_t, 3> c = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
     std::sort(c.begin(), c.end());
     corners.push_back({c, i});
@@ -93,6 +123,7 @@ void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_it
       const std::size_t s = corners[k - 1].second, t = corners[i].second;
       if (!there(s)) continue;
       join_doubles(made.triangles[t], made.materials[t], made.materials[s]);
+      made.joined.insert(made.joined.end(), corners[k].first.begin(), corners[k].first.end());
       any = true;
     }
   if (!any) return;
@@ -100,6 +131,30 @@ void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_it
   for (std::size_t i = 0; i < made.triangles.size(); ++i)
     if (there(i)) made.triangles[kept] = made.triangles[i], made.materials[kept++] = made.materials[i];
   made.triangles.resize(kept), made.materials.resize(kept);
+}
+
+/// Particles at edges between rims that are no rims themselves, and that two surfaces have: what lies between these has
+/// no thickness there, and touches itself.
+std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const Triangle> with_items) {
+  const auto on_rim = [&](std::uint32_t i) { return items.next[i] != none; };
+  std::vector<std::array<std::uint32_t, 3>> chords;  // two particles and a surface
+  for (const std::uint32_t i : select_where(with_items.size(), [&](std::size_t i) {
+         const Triangle& t = with_items[i];
+         return on_rim(t.a) + on_rim(t.b) + on_rim(t.c) > 1;
+       }))
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t a = with_items[i][k], b = with_items[i][(k + 1) % 3];
+      if (!on_rim(a) || !on_rim(b) || items.next[a] == b || items.next[b] == a) continue;
+      const auto [low, high] = std::minmax(items.particle[a], items.particle[b]);
+      chords.push_back({low, high, items.surface[a]});
+    }
+  std::sort(chords.begin(), chords.end());
+  chords.erase(std::unique(chords.begin(), chords.end()), chords.end());
+  std::vector<std::uint32_t> shared;
+  for (std::size_t k = 1; k < chords.size(); ++k)
+    if (chords[k][0] == chords[k - 1][0] && chords[k][1] == chords[k - 1][1])
+      shared.push_back(chords[k][0]), shared.push_back(chords[k][1]);
+  return shared;
 }
 
 /// Fills the holes; returns the items of those that cannot be filled.
@@ -139,34 +194,41 @@ StarMesh mesh_from_stars(const StarParticles& particles) {
 
 StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   StarMesh made;
-  const StarItems items = star_items(particles);
+  finder.find(star_items(particles));
+  const StarItems& items = finder.items();
+  const std::vector<Star>& stars = finder.stars();
   made.counts.stars = std::int64_t(items.count());
   made.unsettled = items.broken;
   const auto unsettle = [&](std::span<const std::uint32_t> some) {
     for (const std::uint32_t i : some) made.unsettled.push_back(items.particle[i]);
   };
-  const std::vector<Star> stars = finder.find(items);
-  for (std::uint32_t i = 0; i < items.count(); ++i) made.counts.unsettled += !agrees(items, stars[i], i);
-  const StarHoles found = find_holes(items, stars);
-  made.counts.holes = std::int64_t(found.holes.size());
-  unsettle(found.alone);
-  unsettle(found.open);
+  Agreed found = find_agreed(items, stars);
+  made.counts.unsettled = found.unsettled;
+  const StarHoles holes = find_holes(items, stars, found.incomplete);
+  made.counts.holes = std::int64_t(holes.holes.size());
+  unsettle(holes.alone);
+  unsettle(holes.open);
 
-  std::vector<Triangle> triangles = agreed_triangles(stars);
+  std::vector<Triangle>& triangles = found.triangles;
   const std::size_t agreed = triangles.size();
-  unsettle(fill(items, stars, found.holes, triangles));
+  unsettle(fill(items, stars, holes.holes, triangles));
   const std::span<const Triangle> filled = std::span(triangles).subspan(agreed);
   made.counts.filled = std::int64_t(filled.size());
   unsettle(at_odd_edges(items, stars, filled));
+  for (const StarHole& hole : holes.holes)
+    for (const std::uint32_t i : hole.loop) made.joined.push_back(items.particle[i]);
 
-  made.triangles.reserve(triangles.size());
-  made.materials.reserve(triangles.size());
-  for (const Triangle& t : triangles) {
-    made.triangles.push_back({items.particle[t.a], items.particle[t.b], items.particle[t.c]});
-    made.materials.push_back(items.materials[items.surface[t.a]]);
-  }
+  made.triangles.resize(triangles.size());
+  made.materials.resize(triangles.size());
+  tbb::parallel_for(std::size_t(0), triangles.size(), [&](std::size_t i) {
+    const Triangle& t = triangles[i];
+    made.triangles[i] = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
+    made.materials[i] = items.materials[items.surface[t.a]];
+  });
   remove_doubles(items, triangles, made);
   unsettle(of_lost_materials(items, made));
+  const std::vector<std::uint32_t> shared = at_shared_chords(items, triangles);
+  made.unsettled.insert(made.unsettled.end(), shared.begin(), shared.end());
   std::sort(made.unsettled.begin(), made.unsettled.end());
   made.unsettled.erase(std::unique(made.unsettled.begin(), made.unsettled.end()), made.unsettled.end());
   std::vector<std::uint8_t> used(particles.count(), 0);

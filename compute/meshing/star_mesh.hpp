@@ -18,6 +18,8 @@ struct StarMesh {
   /// cannot be filled, or what may be a body is left out. Where there are none, the mesh is closed around every
   /// material.
   std::vector<std::uint32_t> unsettled;
+  /// Particles at filled holes, and where a material of no thickness was taken away: surfaces may be pinched there.
+  std::vector<std::uint32_t> joined;
 
   bool sound() const { return unsettled.empty() && !triangles.empty(); }
 };

@@ -4,21 +4,24 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <iterator>
+#include <memory>
 #include <tuple>
+#include <utility>
 
-#include "compute/meshing/interface_facets.hpp"
-#include "compute/meshing/point_tree.hpp"
+#include "compute/meshing/near_points.hpp"
 #include "compute/meshing/repair_at.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
 namespace {
 
-constexpr int patch_rounds = 12;
-constexpr int slow_rounds = 3;       // then a patch grows by whole rings
-constexpr double around = 4;         // sizes: as far as the particles are that a patch is made of
-constexpr double label_reach = 1.5;  // sizes: as far from a facet the material of its cell is looked up
+constexpr int patch_rounds = 40;
+constexpr int slow_rounds = 8;         // then a patch grows by whole rings
+constexpr double around = 3;           // sizes: as far as the particles are that a patch is made of
+constexpr double label_reach = 1.5;    // sizes: as far from a facet the material of its cell is looked up
+constexpr std::size_t most_made = 16;  // patches that are kept
 constexpr double most_work =
     0.5;  // particles of all rounds, by those that there are: beyond, cells of all cost little more
 
@@ -30,29 +33,60 @@ Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   return a + cross(dot(u, u) * v - dot(v, v) * u, n) / (2 * n2);
 }
 
+/// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
+/// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
+std::vector<Vec3d> label_points(const PatchCells::Made& made) {
+  std::vector<Vec3d> at(made.cells.circumcentres);
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto& cell = made.cells.vertices[i];
+    double least = 0;
+    Vec3d foot;
+    double size = 0;
+    for (const auto& [a, b, c] : facet_corners) {
+      const Vec3d centre = circumcentre(made.places[cell[a]], made.places[cell[b]], made.places[cell[c]]);
+      const double radius = length(centre - made.places[cell[a]]);
+      if (size > 0 && radius >= least) continue;
+      least = radius, foot = centre;
+      size = std::max({made.size[cell[a]], made.size[cell[b]], made.size[cell[c]]});
+    }
+    const Vec3d away = at[i] - foot;
+    const double far = length(away);
+    if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
+  }
+  return at;
+}
+
 /// Delaunay cells of some of the particles, and the facets between materials.
 class Patch {
  public:
-  Patch(const PatchWorld& world, const std::atomic<bool>* stop) : world_(world), stop_(stop) {}
+  Patch(const PatchWorld& world, const std::atomic<bool>* stop) : world_(world), stop_(stop) {
+    Vec3d low = world.points[0], high = world.points[0];
+    for (const Vec3d& p : world.points) low = min(low, p), high = max(high, p);
+    // In steps, so that guards are in the same places as a rule, and the triangulation has less to do again.
+    half_ =
+        std::exp2(std::ceil(std::log2(length(high - low) + *std::max_element(world.size.begin(), world.size.end()))));
+    const double step = half_ / 4;
+    for (int a = 0; a < 3; ++a) middle_[a] = step * std::round((low[a] + high[a]) / (2 * step));
+  }
 
   /// Of `members`, ascending.
-  void make(std::span<const std::uint32_t> members, Delaunay& delaunay) {
-    places_.clear();
-    size_.clear();
-    for (const std::uint32_t i : members) places_.push_back(world_.points[i]), size_.push_back(world_.size[i]);
-    add_guards();
-    cells_ = delaunay.cells(places_, stop_);
-    label_ = world_.material_at(label_points());
-    facets_ = interface_facets(cells_, label_);
+  void make(std::span<const std::uint32_t> members, PatchCells& cells) {
+    std::vector<Vec3d> places;
+    std::vector<double> size;
+    for (const std::uint32_t i : members) places.push_back(world_.points[i]), size.push_back(world_.size[i]);
+    add_guards(places, size);
+    made_ = cells.make(std::move(places), std::move(size), world_, stop_);
+    facets_ = made_->facets;
     defects_.clear();
   }
 
   /// At the members that `there` marks: between the parts of the patch, where particles are missing, labels mean
   /// nothing.
   void repair(std::vector<std::uint8_t> there) {
-    there.resize(places_.size(), 0);
-    defects_ = repair_labels_at(there, places_, cells_, label_, stop_).defects;
-    facets_ = interface_facets(cells_, label_);
+    there.resize(made_->places.size(), 0);
+    std::vector<std::uint16_t> label = made_->label;
+    defects_ = repair_labels_at(there, made_->places, made_->cells, label, stop_).defects;
+    facets_ = interface_facets(made_->cells, label);
   }
 
   const InterfaceFacets& facets() const { return facets_; }
@@ -60,48 +94,20 @@ class Patch {
 
  private:
   /// Corners of a box far around: no facet at a particle is on the hull.
-  void add_guards() {
-    Vec3d low = places_[0], high = places_[0];
-    for (const Vec3d& p : places_) low = min(low, p), high = max(high, p);
-    const Vec3d middle = 0.5 * (low + high);
-    const double half = 0.5 * length(high - low) + *std::max_element(size_.begin(), size_.end());
+  void add_guards(std::vector<Vec3d>& places, std::vector<double>& size) const {
     for (int k = 0; k < 8; ++k) {
       // At no corner of a cube exactly, so that no four lie in a plane with others.
-      const double far = (6 + 0.37 * k) * half;
-      places_.push_back(middle + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
-      size_.push_back(half);
+      const double far = (6 + 0.37 * k) * half_;
+      places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
+      size.push_back(half_);
     }
-  }
-
-  /// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
-  /// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
-  std::vector<Vec3d> label_points() const {
-    std::vector<Vec3d> at(cells_.circumcentres);
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const auto& cell = cells_.vertices[i];
-      double least = 0;
-      Vec3d foot;
-      double size = 0;
-      for (const auto& [a, b, c] : facet_corners) {
-        const Vec3d centre = circumcentre(places_[cell[a]], places_[cell[b]], places_[cell[c]]);
-        const double radius = length(centre - places_[cell[a]]);
-        if (size > 0 && radius >= least) continue;
-        least = radius, foot = centre;
-        size = std::max({size_[cell[a]], size_[cell[b]], size_[cell[c]]});
-      }
-      const Vec3d away = at[i] - foot;
-      const double far = length(away);
-      if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
-    }
-    return at;
   }
 
   const PatchWorld& world_;
   const std::atomic<bool>* stop_;
-  std::vector<Vec3d> places_;
-  std::vector<double> size_;
-  DelaunayCells cells_;
-  std::vector<std::uint16_t> label_;
+  Vec3d middle_;  // of a ball around all particles
+  double half_ = 0;
+  std::shared_ptr<const PatchCells::Made> made_;
   InterfaceFacets facets_;
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
@@ -145,7 +151,10 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
     VertexFanCounter::Facet facet;
   };
   std::vector<Use> uses;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+  for (const std::uint32_t i : select_where(mesh.triangles.size(), [&](std::size_t i) {
+         const Triangle& t = mesh.triangles[i];
+         return marked[t.a] || marked[t.b] || marked[t.c];
+       })) {
     const Triangle& t = mesh.triangles[i];
     for (int k = 0; k < 3; ++k)
       if (marked[t[k]]) uses.push_back({t[k], {t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[i]}});
@@ -163,65 +172,66 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
   return pinched;
 }
 
+/// Particles where surfaces are pinched are unsettled, too.
+void add_pinched(StarMesh& mesh, std::size_t particles) {
+  std::vector<std::uint8_t> marked(particles, 0);
+  for (const std::uint32_t i : mesh.joined) marked[i] = 1;
+  const std::vector<std::uint32_t> pinched = at_pinched_vertices(mesh, marked);
+  mesh.unsettled.insert(mesh.unsettled.end(), pinched.begin(), pinched.end());
+  std::sort(mesh.unsettled.begin(), mesh.unsettled.end());
+  mesh.unsettled.erase(std::unique(mesh.unsettled.begin(), mesh.unsettled.end()), mesh.unsettled.end());
+}
+
 class Settling {
  public:
   Settling(const StarMesh& stars, const PatchWorld& world)
-      : stars_(stars), world_(world), bad_(world.points.size(), 0) {
+      : stars_(stars), world_(world), bad_(world.points.size(), 0), near_(bad_), wide_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
-    const std::uint32_t first[2] = {0, std::uint32_t(world.points.size())};
-    tree_.emplace(world.points, first);
   }
 
   /// The particles within reach of bad ones, ascending.
-  std::vector<std::uint32_t> members() const {
-    std::vector<std::uint8_t> near(bad_.size(), 0);
-    std::vector<PointTree::Found> found;
-    for (std::size_t i = 0; i < bad_.size(); ++i) {
-      if (!bad_[i]) continue;
-      found.clear();
-      tree_->within(0, world_.points[i], around * world_.size[i], found);
-      for (const PointTree::Found& f : found) near[f.point] = 1;
-    }
-    std::vector<std::uint32_t> members;
-    for (std::uint32_t i = 0; i < near.size(); ++i)
-      if (near[i]) members.push_back(i);
-    return members;
+  std::vector<std::uint32_t> members() {
+    const std::vector<std::uint32_t> all = select_where(bad_.size(), [&](std::size_t i) { return bad_[i] != 0; });
+    std::vector<std::uint32_t> more;
+    std::set_difference(all.begin(), all.end(), all_bad_.begin(), all_bad_.end(), std::back_inserter(more));
+    mark_near(world_.points, more, world_.size, around, near_);
+    all_bad_ = all;
+    return select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
   }
 
-  /// Triangles of stars away from bad particles, facets at these.
-  StarMesh join(std::span<const std::uint32_t> members, const InterfaceFacets& facets) const {
-    StarMesh joined;
-    const auto is_bad = [&](const Triangle& t) { return bad_[t.a] || bad_[t.b] || bad_[t.c]; };
-    for (std::size_t i = 0; i < stars_.triangles.size(); ++i)
-      if (!is_bad(stars_.triangles[i])) {
-        joined.triangles.push_back(stars_.triangles[i]);
-        joined.materials.push_back(stars_.materials[i]);
-      }
+  /// Facets at bad particles, and the triangles of stars beside them.
+  StarMesh join(std::span<const std::uint32_t> members, const InterfaceFacets& facets) {
+    StarMesh at_bad;
     for (std::size_t i = 0; i < facets.triangles.size(); ++i) {
       const Triangle& f = facets.triangles[i];
       if (std::max({f.a, f.b, f.c}) >= members.size()) continue;  // a guard
       const Triangle t{members[f.a], members[f.b], members[f.c]};
-      if (is_bad(t)) joined.triangles.push_back(t), joined.materials.push_back(facets.materials[i]);
+      if (at_bad_one(t)) at_bad.triangles.push_back(t), at_bad.materials.push_back(facets.materials[i]);
     }
+    while (!mark_corners(at_bad)) look_around();
+    StarMesh joined;
+    for (const std::uint32_t i : around_) {
+      const Triangle& t = stars_.triangles[i];
+      if ((!marked_[t.a] && !marked_[t.b] && !marked_[t.c]) || at_bad_one(t)) continue;
+      joined.triangles.push_back(t);
+      joined.materials.push_back(stars_.materials[i]);
+    }
+    beside_ = joined.triangles.size();
+    joined.triangles.insert(joined.triangles.end(), at_bad.triangles.begin(), at_bad.triangles.end());
+    joined.materials.insert(joined.materials.end(), at_bad.materials.begin(), at_bad.materials.end());
     return joined;
   }
 
-  /// Adds what lies at edges that do not match; false where all do.
+  /// Adds what lies at edges of the mesh joined last that do not match; false where all do.
   bool grow(const StarMesh& joined) {
-    std::vector<std::uint8_t> marked = bad_;
-    for (const Triangle& t : joined.triangles)
-      if (bad_[t.a] || bad_[t.b] || bad_[t.c]) marked[t.a] = marked[t.b] = marked[t.c] = 1;
-    // A triangle of a star that is gone leaves its edges to facets that may not be there.
-    for (const Triangle& t : stars_.triangles)
-      if (bad_[t.a] || bad_[t.b] || bad_[t.c]) marked[t.a] = marked[t.b] = marked[t.c] = 1;
-    const std::vector<std::uint32_t> open = at_open_edges(joined, marked);
+    const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
     if (++grown_ > slow_rounds) add_around(joined, open);
     stuck_ = !open.empty() && !any;
     if (!open.empty()) return any;
     pinched_ = false;
-    for (const std::uint32_t i : at_pinched_vertices(joined, marked)) {
+    for (const std::uint32_t i : at_pinched_vertices(joined, marked_)) {
       pinched_ = pinched_ || bad_[i];
       any = any || !bad_[i], bad_[i] = 1;
     }
@@ -236,6 +246,20 @@ class Settling {
       if (there[t.a] || there[t.b] || there[t.c]) bad_[t.a] = bad_[t.b] = bad_[t.c] = 1;
   }
 
+  /// In `stars`, facets of the mesh joined last in place of the triangles at bad particles.
+  void replace(StarMesh& stars, const StarMesh& joined) const {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < stars.triangles.size(); ++i) {
+      if (at_bad_one(stars.triangles[i])) continue;
+      stars.triangles[kept] = stars.triangles[i];
+      stars.materials[kept++] = stars.materials[i];
+    }
+    stars.triangles.resize(kept), stars.materials.resize(kept);
+    const auto facets = std::ptrdiff_t(beside_);
+    stars.triangles.insert(stars.triangles.end(), joined.triangles.begin() + facets, joined.triangles.end());
+    stars.materials.insert(stars.materials.end(), joined.materials.begin() + facets, joined.materials.end());
+  }
+
   bool stuck() const { return stuck_; }  ///< edges do not match where all is of cells
   bool touches() const { return stuck_ || pinched_; }
   std::vector<std::uint8_t> marks(std::span<const std::uint32_t> members) const {
@@ -247,21 +271,73 @@ class Settling {
   std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
 
  private:
+  /// Marks what the triangles at bad particles have for corners; false where `around_` lacks triangles at one of them.
+  bool mark_corners(const StarMesh& at_bad) {
+    marked_ = bad_;
+    bool all = wide_reach_ > 0;
+    const auto mark = [&](const Triangle& t) {
+      for (int k = 0; k < 3; ++k) marked_[t[k]] = 1, all = all && wide_[t[k]];
+    };
+    for (const std::uint32_t i : all_bad_) all = all && wide_[i];
+    for (const Triangle& t : at_bad.triangles) mark(t);
+    // A triangle of a star that is gone leaves its edges to facets that may not be there.
+    for (const std::uint32_t i : around_)
+      if (at_bad_one(stars_.triangles[i])) mark(stars_.triangles[i]);
+    return all;
+  }
+
+  /// Lists the triangles of stars at particles around bad ones, twice as far as is needed at first.
+  void look_around() {
+    wide_reach_ = wide_reach_ > 0 ? 2 * wide_reach_ : 2 * around;
+    mark_near(world_.points, all_bad_, world_.size, wide_reach_, wide_);
+    around_ = select_where(stars_.triangles.size(), [&](std::size_t i) {
+      const Triangle& t = stars_.triangles[i];
+      return wide_[t.a] || wide_[t.b] || wide_[t.c];
+    });
+  }
+
+  bool at_bad_one(const Triangle& t) const { return bad_[t.a] || bad_[t.b] || bad_[t.c]; }
+
   const StarMesh& stars_;
   const PatchWorld& world_;
   std::vector<std::uint8_t> bad_;
-  std::optional<PointTree> tree_;
+  std::vector<std::uint32_t> all_bad_;  // when members were asked for last
+  std::vector<std::uint8_t> near_;      // within reach of these
+  std::vector<std::uint8_t> marked_;    // corners of triangles at bad ones, of stars or facets
+  std::vector<std::uint8_t> wide_;      // particles whose triangles are listed:
+  std::vector<std::uint32_t> around_;   // triangles of stars
+  double wide_reach_ = 0;               // sizes; 0: none are listed yet
+  std::size_t beside_ = 0;              // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
   int grown_ = 0;
 };
 
 }  // namespace
 
-bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay,
+std::shared_ptr<const PatchCells::Made> PatchCells::make(std::vector<Vec3d> places, std::vector<double> size,
+                                                         const PatchWorld& world, const std::atomic<bool>* stop) {
+  const auto same = std::find_if(made_.begin(), made_.end(),
+                                 [&](const auto& made) { return made->places == places && made->size == size; });
+  if (same != made_.end()) {
+    std::rotate(made_.begin(), same, same + 1);
+    return made_.front();
+  }
+  const auto made = std::make_shared<Made>();
+  made->places = std::move(places), made->size = std::move(size);
+  made->cells = delaunay_.cells(made->places, stop);
+  made->label = world.material_at(label_points(*made));
+  made->facets = interface_facets(made->cells, made->label);
+  made_.insert(made_.begin(), made);
+  if (made_.size() > most_made) made_.pop_back();
+  return made;
+}
+
+bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
   touching.clear();
   if (world.mirrored)
     for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
+  add_pinched(mesh, world.points.size());
   if (mesh.unsettled.empty()) return !mesh.triangles.empty();
   Settling settling(mesh, world);
   Patch patch(world, stop);
@@ -271,7 +347,7 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
     const std::vector<std::uint32_t> members = settling.members();
     work += double(members.size());
     if (work > most_work * double(world.points.size()) && world.points.size() > 1000) return false;
-    patch.make(members, delaunay);
+    patch.make(members, cells);
     if (repairs) patch.repair(settling.marks(members));
     StarMesh joined = settling.join(members, patch.facets());
     if (settling.grow(joined)) continue;
@@ -281,14 +357,14 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay
       joined = settling.join(members, patch.facets());
       if (settling.grow(joined)) continue;
     }
-    if (settling.stuck() || joined.triangles.empty()) return false;
+    if (settling.stuck()) return false;
     for (const auto& defect : patch.defects()) {
       if (std::max(defect[0], defect[1]) >= members.size()) continue;
       const std::array<std::uint32_t, 2> particles = {members[defect[0]], members[defect[1]]};
       if (settling.is_bad(particles[0]) || settling.is_bad(particles[1])) touching.push_back(particles);
     }
-    mesh.triangles = std::move(joined.triangles);
-    mesh.materials = std::move(joined.materials);
+    settling.replace(mesh, joined);
+    if (mesh.triangles.empty()) return false;
     mesh.counts.in_patches = settling.count();
     mesh.unsettled.clear();
     return true;

@@ -4,10 +4,12 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "compute/meshing/delaunay.hpp"
+#include "compute/meshing/interface_facets.hpp"
 #include "compute/meshing/star_mesh.hpp"
 
 namespace nacre {
@@ -21,13 +23,34 @@ struct PatchWorld {
   std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)> material_at;
 };
 
+/// Cells of patches, from one mesh to the next: those of the latest ones are used again where they have the same
+/// particles and, as is asked, the same materials around them.
+class PatchCells {
+ public:
+  explicit PatchCells(int threads = 0) : delaunay_(threads) {}
+
+  struct Made {
+    std::vector<Vec3d> places;
+    std::vector<double> size;
+    DelaunayCells cells;
+    std::vector<std::uint16_t> label;  ///< per cell
+    InterfaceFacets facets;            ///< between cells of different labels
+  };
+  std::shared_ptr<const Made> make(std::vector<Vec3d> places, std::vector<double> size, const PatchWorld& world,
+                                   const std::atomic<bool>* stop);
+
+ private:
+  Delaunay delaunay_;
+  std::vector<std::shared_ptr<const Made>> made_;  // the latest first
+};
+
 /// Replaces the triangles at the mesh's unsettled particles by the facets that the Delaunay triangulation of the
-/// particles within four sizes has there, between cells of different materials and after `repair_labels`. Where the
+/// particles within three sizes has there, between cells of different materials and after `repair_labels`. Where the
 /// two kinds of triangles do not meet edge to edge, the particles there are added, and it is done again.
 /// `mesh.unsettled` becomes empty; false where edges still do not match after some rounds, or too much is unsettled for
 /// this to be worth it: the mesh is then to be made of all cells. `touching` receives where the surface touches itself
 /// in a patch (two particles, or one twice). Triangles are turned as in the world. Depends on its arguments alone.
-bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, Delaunay& delaunay,
+bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace nacre

@@ -1,18 +1,30 @@
 // Nacre: stars that disagree about a quadrilateral decide it by one rule.
 #include "compute/meshing/star_settling.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include "compute/meshing/select_where.hpp"
 
 namespace nacre {
 namespace {
 
 constexpr int settling_rounds = 6;
 
-/// The angle between two directions.
-double angle_between(const Vec3d& u, const Vec3d& v) { return std::atan2(length(cross(u, v)), dot(u, v)); }
+/// An angle from 0 to 360 degrees as a direction in the plane, of any length.
+struct Angle {
+  double cosine, sine;
+  /// Between two directions.
+  Angle(const Vec3d& u, const Vec3d& v) : cosine(dot(u, v)), sine(length(cross(u, v))) {}
+  Angle(double c, double s) : cosine(c), sine(s) {}
+  friend Angle operator+(const Angle& a, const Angle& b) {
+    return {a.cosine * b.cosine - a.sine * b.sine, a.sine * b.cosine + a.cosine * b.sine};
+  }
+  friend bool operator>=(const Angle& a, const Angle& b) {
+    if ((a.sine < 0) != (b.sine < 0)) return a.sine < 0;
+    return b.cosine * a.sine - b.sine * a.cosine >= 0;
+  }
+};
 
 bool are_on_rim(const StarItems& items, std::uint32_t a, std::uint32_t b) {
   return items.next[a] == b || items.previous[a] == b;
@@ -113,12 +125,6 @@ class Settler {
   }();
 };
 
-bool has_open(const Star& star) {
-  for (int k = 0; k < star.count; ++k)
-    if (star.has_triangle(k) && !(star.agreed >> k & 1)) return true;
-  return false;
-}
-
 }  // namespace
 
 bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t, 4>& corners) {
@@ -130,51 +136,77 @@ bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t
     if (items.particle[corners[k]] < items.particle[corners[low]]) low = k;
   const bool along = items.particle[corners[(low + 1) % 4]] < items.particle[corners[(low + 3) % 4]];
   const std::size_t step = along ? 1 : 3;
-  double angle[4];
-  for (std::size_t k = 0; k < 4; ++k) {
+  const auto angle = [&](std::size_t k) {
     const std::size_t at = low + k * step;
     const Vec3d here = items.position[corners[at % 4]];
-    angle[k] = angle_between(items.position[corners[(at + step) % 4]] - here,
-                             items.position[corners[(at + 4 - step) % 4]] - here);
-  }
-  const bool from_low = angle[0] + angle[2] >= angle[1] + angle[3];
+    return Angle(items.position[corners[(at + step) % 4]] - here, items.position[corners[(at + 4 - step) % 4]] - here);
+  };
+  const bool from_low = angle(0) + angle(2) >= angle(1) + angle(3);
   return from_low == (low % 2 == 0);
 }
 
-void mark_agreed(const std::vector<Star>& stars, std::uint32_t i, Star& star) {
-  star.agreed = 0;
+std::uint32_t agreed_on(const std::vector<Star>& stars, std::uint32_t i, const Star& star) {
+  std::uint32_t agreed = 0;
   for (int k = 0; k < star.count; ++k) {
     if (!star.has_triangle(k)) continue;
     const std::uint32_t a = star.ring[std::size_t(k)], b = star.ring[std::size_t(star.after(k))];
-    if (stars[a].has(b, i) && stars[b].has(i, a)) star.agreed |= 1u << k;
+    if (stars[a].has(b, i) && stars[b].has(i, a)) agreed |= 1u << k;
   }
+  return agreed;
 }
 
-void settle_stars(const StarItems& items, std::vector<Star>& stars) {
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t i = 0; i < stars.size(); ++i)
-    if (has_open(stars[i])) open.push_back(i);
+bool has_open(const Star& star) {
+  for (int k = 0; k < star.count; ++k)
+    if (star.has_triangle(k) && !(star.agreed >> k & 1)) return true;
+  return false;
+}
+
+std::vector<std::pair<std::uint32_t, Star>> settle_stars(const StarItems& items, std::vector<Star>& stars,
+                                                         std::vector<std::uint32_t> open) {
+  std::vector<std::pair<std::uint32_t, Star>> before;
+  std::vector<std::uint8_t> kept(stars.size(), 0), concerned(stars.size(), 0), news(stars.size(), 1);
+  const auto keep = [&](std::uint32_t i) {
+    if (!kept[i]) before.push_back({i, stars[i]});
+    kept[i] = 1;
+  };
+  std::vector<Star> changed;
   for (int round = 0; round < settling_rounds && !open.empty(); ++round) {
-    std::vector<Star> changed(open.size());
-    std::vector<std::uint8_t> changes(open.size(), 0);
-    tbb::parallel_for(std::size_t(0), open.size(),
-                      [&](std::size_t k) { changes[k] = Settler(items, stars, open[k]).run(changed[k]); });
-    std::vector<std::uint32_t> touched = open;
-    for (std::size_t k = 0; k < open.size(); ++k) {
-      if (!changes[k]) continue;
+    changed.resize(open.size());
+    const std::vector<std::uint32_t> changes = select_where(
+        open.size(),
+        [&](std::size_t k) {
+          // A star that knows nothing new decides as it did.
+          const Star& star = stars[open[k]];
+          const bool asks = news[open[k]] || std::any_of(star.ring.begin(), star.ring.begin() + star.count,
+                                                         [&](std::uint32_t r) { return news[r] != 0; });
+          return asks && Settler(items, stars, open[k]).run(changed[k]);
+        },
+        64);
+    if (changes.empty()) break;
+    std::fill(concerned.begin(), concerned.end(), 0);
+    std::fill(news.begin(), news.end(), 0);
+    for (const std::uint32_t i : open) concerned[i] = 1;
+    for (const std::uint32_t k : changes) {
+      news[open[k]] = 1;
       for (const Star* star : {&stars[open[k]], &changed[k]})
-        touched.insert(touched.end(), star->ring.begin(), star->ring.begin() + star->count);
-      stars[open[k]] = changed[k];
+        for (int r = 0; r < star->count; ++r) concerned[star->ring[std::size_t(r)]] = 1;
     }
-    if (std::find(changes.begin(), changes.end(), 1) == changes.end()) return;
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-    tbb::parallel_for(std::size_t(0), touched.size(),
-                      [&](std::size_t k) { mark_agreed(stars, touched[k], stars[touched[k]]); });
-    open.clear();
-    for (const std::uint32_t i : touched)
-      if (has_open(stars[i])) open.push_back(i);
+    const std::vector<std::uint32_t> touched =
+        select_where(stars.size(), [&](std::size_t i) { return concerned[i] != 0; });
+    for (const std::uint32_t k : changes) keep(open[k]), stars[open[k]] = changed[k];
+    std::vector<std::uint32_t> agreed(touched.size());
+    const std::vector<std::uint32_t> differ = select_where(
+        touched.size(),
+        [&](std::size_t k) {
+          const Star& star = stars[touched[k]];
+          return (agreed[k] = agreed_on(stars, touched[k], star)) != star.agreed;
+        },
+        512);
+    for (const std::uint32_t k : differ) keep(touched[k]), stars[touched[k]].agreed = agreed[k];
+    open = select_where(touched.size(), [&](std::size_t k) { return has_open(stars[touched[k]]); });
+    for (std::uint32_t& k : open) k = touched[k];
   }
+  return before;
 }
 
 }  // namespace nacre

@@ -1,6 +1,7 @@
 // Nacre: stars that disagree about a quadrilateral decide it by one rule.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "compute/meshing/stars.hpp"
@@ -15,10 +16,15 @@ bool takes_first_diagonal(const StarItems& items, const std::array<std::uint32_t
 
 /// Changes stars that have a triangle which not all of its corners have: where two of them lay different triangles on
 /// an edge, the four corners are a quadrilateral, and each of the four stars takes the diagonal of the rule. Several
-/// rounds, in each of which every star reads what all were before. `agreed` is kept up to date. In parallel.
-void settle_stars(const StarItems& items, std::vector<Star>& stars);
+/// rounds, in each of which every star reads what all were before. `agreed` is kept up to date. `open` are the stars
+/// with such a triangle, ascending. Returns what changed as it was before. In parallel.
+std::vector<std::pair<std::uint32_t, Star>> settle_stars(const StarItems& items, std::vector<Star>& stars,
+                                                         std::vector<std::uint32_t> open);
 
-/// Marks in `star` of item i what is in the stars of all its corners.
-void mark_agreed(const std::vector<Star>& stars, std::uint32_t i, Star& star);
+/// Whether a star has a triangle that not all of its corners have.
+bool has_open(const Star& star);
+
+/// What is to be marked as agreed in `star`, of item i: the triangles that are in the stars of all their corners.
+std::uint32_t agreed_on(const std::vector<Star>& stars, std::uint32_t i, const Star& star);
 
 }  // namespace nacre

@@ -12,72 +12,12 @@
 namespace nacre {
 namespace {
 
-constexpr double first_reach = 2.1;  // sizes within which neighbours are looked for at first,
+constexpr double first_reach = 1.7;  // sizes within which neighbours are looked for at first,
 constexpr double last_reach = 5;     // and at last
 constexpr double same_side = -0.4;   // neighbours' normals differ by no more (cosine)
 constexpr double bent = 0.5;         // cosine under which a neighbour is unfolded into the plane
 constexpr double tie = 1e-7;         // weight of a particle at most, squares of its size
 constexpr double coincident = 1e-5;  // sizes: nearer ones count as one
-
-struct NewItem {
-  std::uint32_t surface_key, particle;
-  Vec3d normal;
-};
-
-std::uint32_t key_of(std::uint32_t low, std::uint32_t high) { return low << 16 | high; }
-
-std::vector<NewItem> list_items(const StarParticles& particles, const std::vector<CurveNode>& nodes) {
-  std::vector<std::uint8_t> idle(particles.count(), 0);
-  for (const CurveNode& node : nodes) idle[node.particle] = idle[node.particle] || node.is_idle();
-  std::vector<NewItem> items;
-  items.reserve(particles.count() + particles.count() / 4);
-  for (std::uint32_t p = 0; p < particles.count(); ++p) {
-    const Junction j = particles.junction[p];
-    if (idle[p]) continue;
-    if (j.order() == 2) {
-      const Float4 n = particles.direction[p];
-      items.push_back({key_of(j.material(0), j.material(1)), p, normalized(Vec3d(n.x, n.y, n.z))});
-      continue;
-    }
-    for (int a = 0; a < j.materials(); ++a)
-      for (int b = a + 1; b < j.materials(); ++b)
-        items.push_back({key_of(j.material(a), j.material(b)), p, normalized(particles.difference(p, a, b))});
-  }
-  std::sort(items.begin(), items.end(), [](const NewItem& s, const NewItem& t) {
-    return std::tie(s.surface_key, s.particle) < std::tie(t.surface_key, t.particle);
-  });
-  return items;
-}
-
-/// The item of a particle on the surface between two materials.
-std::uint32_t find_item(const StarItems& items, std::uint32_t low, std::uint32_t high, std::uint32_t particle) {
-  const std::array<std::uint16_t, 2> pair = {std::uint16_t(low), std::uint16_t(high)};
-  const std::size_t s =
-      std::size_t(std::lower_bound(items.materials.begin(), items.materials.end(), pair) - items.materials.begin());
-  const auto begin = items.particle.begin();
-  return std::uint32_t(std::lower_bound(begin + items.first[s], begin + items.first[s + 1], particle) - begin);
-}
-
-/// Rims run along curves, or against them: the surface between the first and the third material lies to the left of a
-/// curve, the two others to its right.
-void add_rims(StarItems& items, const std::vector<CurveNode>& nodes) {
-  for (const CurveNode& node : nodes) {
-    if (node.is_broken()) items.broken.push_back(node.particle);
-    if (node.next == none || node.is_idle()) continue;
-    Junction curve;
-    curve.packed = node.curve;
-    for (int a = 0; a < 3; ++a)
-      for (int b = a + 1; b < 3; ++b) {
-        const std::uint32_t low = curve.material(a), high = curve.material(b);
-        const std::uint32_t here = find_item(items, low, high, node.particle);
-        const std::uint32_t there = find_item(items, low, high, nodes[node.next].particle);
-        const bool along = b - a == 2;
-        items.next[along ? here : there] = along ? there : here;
-        items.previous[along ? there : here] = along ? here : there;
-      }
-  }
-  std::sort(items.broken.begin(), items.broken.end());
-}
 
 /// A number in [0, 1) that looks random, by the position alone.
 double hash(const Vec3d& position) {
@@ -91,7 +31,7 @@ double hash(const Vec3d& position) {
 /// Cuts the Voronoi cell of an item out of its tangent plane.
 class Cutter {
  public:
-  Cutter(const StarItems& items, const PointTree& tree) : items_(items), tree_(tree) {}
+  Cutter(const StarItems& items, const ItemTree& tree) : items_(items), tree_(tree) {}
 
   Star cut(std::uint32_t item) {
     item_ = item;
@@ -263,7 +203,7 @@ class Cutter {
   }
 
   const StarItems& items_;
-  const PointTree& tree_;
+  const ItemTree& tree_;
   std::uint32_t item_ = 0, next_ = none, previous_ = none;
   Vec3d normal_, u_, v_;
   double next_u_ = 0, next_v_ = 0, previous_u_ = 0, previous_v_ = 0;
@@ -276,32 +216,7 @@ class Cutter {
 
 }  // namespace
 
-StarItems star_items(const StarParticles& particles) {
-  const std::vector<CurveNode> nodes = link_curves(particles);
-  const std::vector<NewItem> list = list_items(particles, nodes);
-  StarItems items;
-  const std::size_t n = list.size();
-  items.position.resize(n), items.normal.resize(n), items.size.resize(n);
-  items.particle.resize(n), items.surface.resize(n);
-  items.next.assign(n, none), items.previous.assign(n, none);
-  for (std::size_t i = 0; i < n; ++i) {
-    const NewItem& item = list[i];
-    if (i == 0 || item.surface_key != list[i - 1].surface_key) {
-      items.materials.push_back({std::uint16_t(item.surface_key >> 16), std::uint16_t(item.surface_key & 0xffff)});
-      items.first.push_back(std::uint32_t(i));
-    }
-    items.position[i] = particles.point(item.particle);
-    items.normal[i] = item.normal;
-    items.size[i] = particles.position[item.particle].w;
-    items.particle[i] = item.particle;
-    items.surface[i] = std::uint32_t(items.materials.size() - 1);
-  }
-  items.first.push_back(std::uint32_t(n));
-  add_rims(items, nodes);
-  return items;
-}
-
-void cut_stars(const StarItems& items, const PointTree& tree, std::span<const std::uint8_t> wanted,
+void cut_stars(const StarItems& items, const ItemTree& tree, std::span<const std::uint8_t> wanted,
                std::vector<Star>& stars) {
   tbb::enumerable_thread_specific<Cutter> cutters([&] { return Cutter(items, tree); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, items.count(), 256), [&](const auto& range) {

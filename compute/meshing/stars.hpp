@@ -8,28 +8,10 @@
 #include <vector>
 
 #include "compute/math/vec.hpp"
-#include "compute/meshing/curve_links.hpp"
-#include "compute/meshing/point_tree.hpp"
+#include "compute/meshing/item_tree.hpp"
+#include "compute/meshing/star_items.hpp"
 
 namespace nacre {
-
-/// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
-/// particle.
-struct StarItems {
-  std::vector<Vec3d> position, normal;  ///< the unit normal towards the lower material
-  std::vector<double> size;
-  std::vector<std::uint32_t> particle;
-  std::vector<std::uint32_t> surface;         ///< number of its surface
-  std::vector<std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the left
-                                              ///< of the rim, seen against the normal; `none` off the rims
-  std::vector<std::array<std::uint16_t, 2>> materials;  ///< per surface, ascending
-  std::vector<std::uint32_t> first;                     ///< per surface and one more: its first item
-  std::vector<std::uint32_t> broken;                    ///< particles at which a rim begins or ends; ascending
-
-  std::size_t count() const { return position.size(); }
-};
-
-StarItems star_items(const StarParticles& particles);
 
 /// The neighbours of one item, counter-clockwise: those whose bisecting planes bound its Voronoi cell in the tangent
 /// plane. On a rim from the next item of the rim to the previous one, else closed.
@@ -55,7 +37,7 @@ struct Star {
 
 /// Puts the stars of the items that `wanted` marks into `stars`, one for each item; what is agreed is not known yet. A
 /// star depends on the items within its reach alone, and not on their numbers. In parallel.
-void cut_stars(const StarItems& items, const PointTree& tree, std::span<const std::uint8_t> wanted,
+void cut_stars(const StarItems& items, const ItemTree& tree, std::span<const std::uint8_t> wanted,
                std::vector<Star>& stars);
 
 }  // namespace nacre

@@ -12,21 +12,23 @@ struct FieldProjector {
   MaterialBricksView field;
   const Junction* junction;
   SizingFieldView size;
+  float last_step = 0.01f;  ///< of Newton's, voxels; what is left is about its square times the curvature
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
     JunctionPoint at;
-    if (!nacre::project(field, junction[interface], p, 1, at, 0.01f)) return false;
+    if (!nacre::project(field, junction[interface], p, 1, at, last_step)) return false;
     on = {at.p, at.direction, size(at.p), junction_margin(field, junction[interface], at.p, at.steepness)};
     return true;
   }
 };
 
-/// ... or by the closest points of the embedding (sec. 4.2.1), wherever particles are farther apart than its cells.
+/// ... or by the closest points of the embedding (sec. 4.2.1), if it has the cells for that, wherever particles are
+/// farther apart than these.
 struct EmbeddedProjector {
   InterfaceGridView grid;
   FieldProjector fields;
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on) const {
-    return h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
-                                           : nacre::project(grid, interface, p, on);
+    return grid.seeds_only || h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
+                                                              : nacre::project(grid, interface, p, on);
   }
 };
 

@@ -15,7 +15,7 @@ int FieldRecipe::alike(const FieldRecipe& other) const {
   if (width != other.width || stairs != other.stairs) return tighten_stage;
   if (kernel != other.kernel || !(lattice == other.lattice) || reach != other.reach) return distance_stage;
   if (!(rule == other.rule) || bounds != other.bounds) return sizing_stage;
-  return cells_per_voxel != other.cells_per_voxel ? embed_stage : field_stages;
+  return cells_per_voxel != other.cells_per_voxel || seeds_only != other.seeds_only ? embed_stage : field_stages;
 }
 
 FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind, const MaterialBricks& bricks,
@@ -44,6 +44,7 @@ FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind
   // forever.
   constexpr double fewest = 0.125, to_a_size = 1.5;
   recipe.cells_per_voxel = std::clamp(to_a_size / small, fewest, double(parameters.subcells));
+  recipe.seeds_only = quality_from_string(parameters.quality) == MeshQuality::draft;
   return recipe;
 }
 

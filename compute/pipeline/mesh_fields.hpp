@@ -58,7 +58,9 @@ class MeshFields {
   RelatedView related() const { return {related_start_.data(), related_.data(), order_.data()}; }
   double expected(int order) const { return expected_[order]; }  ///< particles, from area and sizing field
   EmbeddingSeeds seeds(int order) const { return {grid_, order_.data(), order}; }
-  FieldProjector field_projector() const { return {bricks_.view(), junction_.data(), size_.view()}; }
+  FieldProjector field_projector() const {
+    return {bricks_.view(), junction_.data(), size_.view(), recipe_.seeds_only ? 0.04f : 0.01f};
+  }
   EmbeddedProjector embedded_projector() const { return {grid_.view(), field_projector()}; }
 
  private:
@@ -176,7 +178,7 @@ void MeshFields<Backend>::build_stage(FieldStage which, const MeshParameters& pa
     case sizing_stage: size_ = sizing_field(exec_, distance_, recipe_.rule, recipe_.bounds, wishes()); break;
     default:
       recipe_.cells_per_voxel = recipe(parameters).cells_per_voxel;  // now that the sizing field is known
-      grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel);
+      grid_ = embed_interfaces(exec_, bricks_, distance_, size_, recipe_.cells_per_voxel, recipe_.seeds_only);
       relate_interfaces(info);
       describe(info);
   }

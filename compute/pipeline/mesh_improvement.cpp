@@ -6,8 +6,8 @@
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/interfaces.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
-#include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 
 namespace nacre {
@@ -53,7 +53,7 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       rule_(rule),
       tell_(tell),
       delaunay_(rule.threads),
-      patch_delaunay_(rule.threads) {}
+      patch_cells_(rule.threads) {}
 
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
@@ -106,19 +106,20 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
 /// False where the stars do not give a sound mesh.
 bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points,
                                            Triangulated& made) {
-  std::vector<Junction> junction;
-  std::vector<Vec3f> position_on_rims;
+  std::vector<Junction> junction(particles.count());
+  const std::vector<std::uint32_t> on_rims = select_where(particles.count(), [&](std::size_t i) {
+    junction[i] = table_.junctions[particles.interface[i]];
+    return junction[i].order() < 2;
+  });
+  std::vector<Vec3f> rim_position;
   std::vector<Junction> rims;
-  for (std::size_t i = 0; i < particles.count(); ++i) {
-    junction.push_back(table_.junctions[particles.interface[i]]);
-    if (junction.back().order() == 2) continue;
-    position_on_rims.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
-    rims.push_back(junction.back());
+  for (const std::uint32_t i : on_rims) {
+    rim_position.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
+    rims.push_back(junction[i]);
   }
-  const std::vector<JunctionGradients> on_rims = particles_.junction_gradients(position_on_rims, rims);
+  const std::vector<JunctionGradients> rim_gradient = particles_.junction_gradients(rim_position, rims);
   std::vector<JunctionGradients> gradient(particles.count());
-  for (std::size_t i = 0, next = 0; i < particles.count(); ++i)
-    if (junction[i].order() < 2) gradient[i] = on_rims[next++];
+  for (std::size_t k = 0; k < on_rims.size(); ++k) gradient[on_rims[k]] = rim_gradient[k];
   StarMesh stars = mesh_from_stars({particles.position, particles.direction, junction, gradient}, star_finder_);
   check_stop(rule_.stop);
   std::vector<double> size;
@@ -128,7 +129,7 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
   std::vector<std::array<std::uint32_t, 2>> touching;
   const bool settled =
-      settle_by_cells(stars, {points, size, mirrored, material_at}, patch_delaunay_, touching, rule_.stop);
+      settle_by_cells(stars, {points, size, mirrored, material_at}, patch_cells_, touching, rule_.stop);
   star_use_.last = stars.counts;
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;

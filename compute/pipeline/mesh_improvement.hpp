@@ -22,6 +22,7 @@
 #include "compute/meshing/repair.hpp"
 #include "compute/meshing/star_counts.hpp"
 #include "compute/meshing/star_finder.hpp"
+#include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 #include "compute/pipeline/mesh_deviation.hpp"
 #include "compute/pipeline/movable_particles.hpp"
@@ -106,7 +107,7 @@ class MeshImprovement {
   const TellStage& tell_;
   Delaunay delaunay_;  ///< of all particles,
   StarFinder star_finder_;
-  Delaunay patch_delaunay_;  ///< and of those where stars do not settle
+  PatchCells patch_cells_;  ///< and of those where stars do not settle
   StarUse star_use_;
   int smoothed_ = 0, remeshed_ = 0;           ///< rounds so far
   std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began

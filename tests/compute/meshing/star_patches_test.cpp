@@ -28,10 +28,10 @@ Settled settle(const Cloud& cloud, double radius, const std::vector<std::uint32_
   std::vector<Vec3d> points;
   std::vector<double> size;
   for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
-  Delaunay delaunay;
+  PatchCells cells;
   const PatchWorld world{points, size, false,
                          [&](std::span<const Vec3d> at) { return material_in_halves(radius, at); }};
-  settled.sound = settle_by_cells(settled.mesh, world, delaunay, settled.touching);
+  settled.sound = settle_by_cells(settled.mesh, world, cells, settled.touching);
   return settled;
 }
 

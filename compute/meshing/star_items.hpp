@@ -1,0 +1,32 @@
+// Nacre: particles once for each surface that they are on.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "compute/math/vec.hpp"
+#include "compute/meshing/curve_links.hpp"
+
+namespace nacre {
+
+/// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
+/// particle.
+struct StarItems {
+  std::vector<Vec3d> position, normal;  ///< the unit normal towards the lower material
+  std::vector<double> size;
+  std::vector<std::uint32_t> particle;
+  std::vector<std::uint32_t> surface;         ///< number of its surface
+  std::vector<std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the left
+                                              ///< of the rim, seen against the normal; `none` off the rims
+  std::vector<std::array<std::uint16_t, 2>> materials;  ///< per surface, ascending
+  std::vector<std::uint32_t> first;                     ///< per surface and one more: its first item
+  std::vector<std::uint32_t> broken;                    ///< particles at which a rim begins or ends; ascending
+
+  std::size_t count() const { return position.size(); }
+};
+
+/// In parallel.
+StarItems star_items(const StarParticles& particles);
+
+}  // namespace nacre
