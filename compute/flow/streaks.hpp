@@ -141,7 +141,7 @@ struct SmoothAlongAndSharpenAcross {
   using Wide = typename Surface::Wide;
   using Float = typename Wide::Float;
   using Int = typename Wide::Int;
-  static constexpr float across = 1.0f / 16;  ///< share of either neighbour; docs/method/chapter-5.md
+  static constexpr float across = 1.0f / 12;  ///< share of either neighbour; docs/method/chapter-5.md
 
   NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
     const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
