@@ -88,6 +88,12 @@ NACRE_HD_INLINE Vec3<Float> fused_cross(const Vec3<Float>& a, const Vec3<Float>&
           multiply_add(a.x, b.y, -(a.y * b.x))};
 }
 
+/// The cells that positions lie in.
+template <class Float>
+NACRE_HD_INLINE auto cells_of(const Vec3<Float>& p) {
+  return Vec3<decltype(floor_to_int(p.x))>{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
+}
+
 /// `values` of surface cells, 0 where they are masked out.
 NACRE_HD_INLINE float load_values(const float* values, CellIndex s, bool mask) { return mask ? values[s] : 0; }
 
@@ -151,8 +157,7 @@ struct SmoothAlongAndSharpenAcross {
     const Vec3<Float> start = multiply_add(normal, own.plane(), Vec3<Float>(Wide::all(0.5f)));
     typename Surface::WideCursor cursor(surface);
     const auto at = [&](const Vec3<Float>& p) {
-      const auto found =
-          cursor.find(position + Vec3<Int>{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)}, flows);
+      const auto found = cursor.find(position + cells_of(p), flows);
       return select(found.found, load_values(value, found.cell, found.found), here);
     };
     const auto pair = [&](const Vec3<Float>& way) { return at(start + way) + at(start - way); };
@@ -218,7 +223,7 @@ struct ConvolveAlongFlow {
     const Float far = Wide::all(float(reach + streak_slack)), zero = Wide::all(0.0f);
     const auto within = [&](const Float& x) { return (x >= zero - far) & (x <= far); };
     const Vec3<Float> p = multiply_add(line.before, Wide::all(-0.5f), multiply_add(line.d, Wide::all(1.5f), line.p));
-    const Vec3<Int> in{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
+    const Vec3<Int> in = cells_of(p);
     const auto found = line.cursor.find(home + in, line.runs & within(p.x) & within(p.y) & within(p.z));
     const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);
     const Vec3<Float> next = cell.direction() * line.sign, normal = cell.normal();
