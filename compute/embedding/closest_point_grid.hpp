@@ -37,7 +37,7 @@ struct Divider {
   int shift = 0;  ///< -1: not a power of two
   float inverse = 1;
 
-  NACRE_HD Divider() = default;
+  Divider() = default;
   NACRE_HD explicit Divider(int d) : divisor(d), shift(-1), inverse(1.0f / float(d)) {
     for (int k = 0; k < 5; ++k)
       if (d == 1 << k) shift = k;

@@ -17,7 +17,7 @@ struct alignas(16) EmbeddedCell {
 
   static constexpr float offset_unit = 0x1p-12f, margin_unit = offset_unit, direction_unit = 0x1p-14f;
 
-  NACRE_HD EmbeddedCell() = default;
+  EmbeddedCell() = default;
   /// `offset`: w is the margin; `direction`: w is h. Values beyond the range are clamped: 8 cells, 8 voxels.
   NACRE_HD EmbeddedCell(const Float4& o, const Float4& d, float size_unit)
       : offset{rounded(o.x / offset_unit), rounded(o.y / offset_unit), rounded(o.z / offset_unit)},

@@ -12,7 +12,7 @@ namespace nacre {
 struct Junction {
   std::uint64_t packed = ~0ull;
 
-  NACRE_HD constexpr Junction() = default;
+  constexpr Junction() = default;
   NACRE_HD constexpr Junction(std::uint32_t a, std::uint32_t b, std::uint32_t c = 0xffff, std::uint32_t d = 0xffff)
       : packed(std::uint64_t(a) | std::uint64_t(b) << 16 | std::uint64_t(c) << 32 | std::uint64_t(d) << 48) {}
 

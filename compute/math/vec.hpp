@@ -12,7 +12,7 @@ template <class T>
 struct Vec3 {
   T x{}, y{}, z{};
 
-  NACRE_HD constexpr Vec3() = default;
+  constexpr Vec3() = default;
   NACRE_HD constexpr Vec3(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
   NACRE_HD constexpr explicit Vec3(T s) : x(s), y(s), z(s) {}
   template <class U>

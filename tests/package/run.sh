@@ -14,7 +14,8 @@ fail() {
   exit 1
 }
 
-export CCACHE_BASEDIR="$work/build"
+[[ $kind == subfolder ]] && build=examples || build=build
+export CCACHE_BASEDIR="$work/$build"
 mkdir -p "$work"
 rm -rf "$work/prefix" "$work/examples/CMakeCache.txt" "$work/out"
 mkdir -p "$work/out"
