@@ -6,18 +6,21 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 #include <set>
 
 #include "api/arrays_read.hpp"
+#include "api/shared_run.hpp"
 #include "api/support.hpp"
-#include "engine/io/flow_values.hpp"
 #include "engine/picture/png.hpp"
+#include "engine/run/among_ranks.hpp"
 #include "engine/run/flow_painter.hpp"
 #include "engine/run/flow_report.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/run/picture_settings.hpp"
 #include "engine/run/report.hpp"
+#include "engine/run/write_values.hpp"
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/flow_motion.hpp"
@@ -78,6 +81,7 @@ const std::set<std::string> start_knobs{"ttl", "warmup", "seed", "pattern_spacin
 
 struct Flow::State {
   RunOptions options;
+  std::unique_ptr<RanksOfCaller> ranks;  ///< null: this process is alone
   Session session;
   std::unique_ptr<Device> device;
   std::unique_ptr<FlowPipeline> pipeline;
@@ -121,6 +125,8 @@ struct Flow::State {
     color = settings().color;
     input = std::make_unique<VectorsInTime>(make_flow_input(std::move(series), settings(), log, options.stop));
     span = flow_span(settings(), {input->start(), input->end()});
+    if (ranks && input->moves()) throw Error("a surface that moves needs one process");
+    if (ranks) require_same_input(*ranks, *input, span.start, knob_values(settings()).dump());
     motion = std::make_unique<FlowMotion>(*pipeline, *input, log.warn);
   }
 
@@ -144,7 +150,8 @@ struct Flow::State {
       const PreparedSurface& surface = input->surface();
       const FlowView view{fit_camera("iso", triangle_corners(surface), settings().width, settings().height),
                           settings().width, settings().height};
-      resolution = picture_resolution(view, surface, settings().flow, device->available_bytes());
+      resolution =
+          picture_resolution(view, surface, settings().flow, first_ones(ranks.get(), device->available_bytes()));
       pipeline->parameters.resolution = resolution;
       motion->embed(time_of(done));
       embedded = true;
@@ -188,7 +195,16 @@ struct Flow::State {
     }
     check_picture_settings(view.settings);
     Image image = FlowPainter(*pipeline, *input, view, span.frame_time).paint(std::max(0, done - 1));
+    if (ranks) share(image);
     return {image.width, image.height, std::move(image.pixels), origin(view, "image")};
+  }
+
+  /// Gives all processes the picture of the first.
+  void share(Image& image) const {
+    const auto* from = reinterpret_cast<const std::byte*>(image.pixels.data());
+    std::vector<std::byte> bytes(from, from + image.pixels.size());
+    broadcast(*ranks, bytes);
+    std::memcpy(image.pixels.data(), bytes.data(), bytes.size());
   }
 
   std::string origin(const Session& of, const std::string& output) const {
@@ -211,7 +227,9 @@ Flow::Flow(SurfaceFlow surface, const KnobValues& knobs, RunOptions options) : s
     check_color_range(s.settings());
     s.device = open_library_device(s.options);
     const Caller caller(s.mutex, s.options.threads);
+    if (s.options.processes) s.ranks = std::make_unique<RanksOfCaller>(*s.options.processes);
     s.pipeline = make_flow_pipeline(*s.device);
+    s.pipeline->ranks = s.ranks.get();
     s.pipeline->watch(s.options.stop);
     s.open(std::move(surface));
   });
@@ -308,9 +326,9 @@ void Flow::save(const std::filesystem::path& file) const {
   library_call([&] {
     const Caller caller(state_->mutex, state_->options.threads);
     state_->prepare();
-    if (file.extension() != ".vtp") throw Error("cannot write " + file.string(), "", "values are written as .vtp");
-    write_flow_values(state_->pipeline->flow().values(), file, state_->pipeline->flow().time(),
-                      state_->origin(state_->session, "out"));
+    if (file.extension() != ".vtp" && file.extension() != ".pvtp")
+      throw Error("cannot write " + file.string(), "", "values are written as .vtp or .pvtp");
+    write_values(file, state_->pipeline->flow(), state_->ranks.get(), state_->origin(state_->session, "out"));
   });
 }
 
@@ -323,6 +341,7 @@ std::string Flow::report() const {
     add_flow_report(report, *s.input, s.vectors, s.settings(), s.pipeline->flow().embedding(), s.seconds);
     if (s.input->moves())
       report["motion"] = {{"groups", s.input->series().motion->groups}, {"rebuilds", s.motion->rebuilds()}};
+    if (s.ranks) report["processes"] = ranks_report(*s.ranks, s.pipeline->flow().embedding(), report, s.seconds);
     return report.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
   });
 }

@@ -10,6 +10,7 @@
 
 #include "app/ranks.hpp"
 #include "compute/device/error.hpp"
+#include "engine/run/among_ranks.hpp"
 #include "engine/system/faults.hpp"
 
 namespace nacre {

@@ -17,6 +17,7 @@
 #include "engine/picture/colormap.hpp"
 #include "engine/picture/png.hpp"
 #include "engine/picture/video.hpp"
+#include "engine/run/among_ranks.hpp"
 #include "engine/run/dye_run.hpp"
 #include "engine/run/flow_maps.hpp"
 #include "engine/run/flow_painter.hpp"
@@ -24,6 +25,7 @@
 #include "engine/run/flow_report.hpp"
 #include "engine/run/focus.hpp"
 #include "engine/run/report.hpp"
+#include "engine/run/write_values.hpp"
 #include "engine/scene/samples/samples.hpp"
 #include "engine/scene/session/session.hpp"
 #include "engine/scene/settings/knobs.hpp"
@@ -232,30 +234,15 @@ std::vector<std::string> write_outputs(const FlowOptions& options, FlowPipeline&
     write_png(options.image, image, origin_of_output(origin, "image")), outputs.push_back(options.image);
   if (films.frames) films.frames->finish(), outputs.push_back(options.frames);
   if (films.video) films.video->finish(), outputs.push_back(options.video);
-  if (!options.out.empty()) write_values(options.out, pipeline.flow(), dye, origin), outputs.push_back(options.out);
-  return first ? outputs : std::vector<std::string>();
-}
-
-double median(std::vector<double> seconds) {
-  std::sort(seconds.begin(), seconds.end());
-  return seconds.empty() ? 0 : seconds[seconds.size() / 2];
-}
-
-/// What the processes of a run did, on the first: each one's share, memory, bytes sent, and time spent waiting.
-json processes_report(Ranks& ranks, const FlowPipeline& pipeline, const json& own_report,
-                      const std::vector<double>& seconds) {
-  const EmbeddingInfo& e = pipeline.flow().embedding();
-  const json own = {{"bricks", e.own_bricks},           {"surface_cells", e.own_surface_cells},
-                    {"halo_bricks", e.halo_bricks},     {"memory", own_report["memory"]},
-                    {"stages", own_report["stages"]},   {"seconds_per_step", median(seconds)},
-                    {"sent_bytes", ranks.sent_bytes()}, {"waited_seconds", ranks.waited_seconds()}};
-  json all = gather_reports(ranks, own);
-  double most = 0, sum = 0;
-  for (const json& each : all) {
-    most = std::max(most, each["surface_cells"].get<double>());
-    sum += each["surface_cells"].get<double>();
+  if (!options.out.empty()) {
+    Origin of_values = origin;
+    if (lower_extension(options.out) == ".pvtp") of_values.pieces = run_ranks() ? run_ranks()->count() : 1;
+    MoreArrays dyes;
+    if (dye) dyes = [dye](std::span<const Vec3d> points) { return dye->at(points); };
+    write_values(options.out, pipeline.flow(), run_ranks(), origin_of_output(of_values, "out"), dyes);
+    outputs.push_back(options.out);
   }
-  return {{"count", ranks.count()}, {"imbalance", sum > 0 ? most * ranks.count() / sum : 1}, {"each", std::move(all)}};
+  return first ? outputs : std::vector<std::string>();
 }
 
 void run_flow(FlowOptions options, const KnobOptions& knob_options) {
@@ -352,7 +339,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
     if (!options.checkpoint.empty()) report["checkpoint"] = checkpoint.report();
-    if (ranks) report["processes"] = processes_report(*ranks, *pipeline, report, seconds);
+    if (ranks) report["processes"] = ranks_report(*ranks, pipeline->flow().embedding(), report, seconds);
     report.update(lines);
     report.update(map_report);
     if (dye) report["dye"] = dye->report();

@@ -7,8 +7,6 @@
 #include "app/common.hpp"
 #include "app/ranks.hpp"
 #include "compute/device/stage_timers.hpp"
-#include "compute/pipeline/gather_values.hpp"
-#include "engine/io/flow_values.hpp"
 #include "engine/io/vtk_inline.hpp"
 #include "engine/io/vtp_writer.hpp"
 #include "engine/run/flow_maps.hpp"
@@ -30,35 +28,6 @@ void write_haemodynamics(const std::string& file, VectorsInTime& input, const Or
   const PreparedSurface& surface = input.surface();
   write_vtp(file, std::span<const Vec3d>(surface.points), surface.triangles, arrays, std::nullopt, {},
             xml_origin(origin_of_output(origin, "haemodynamics")));
-}
-
-void write_values(const std::string& file, const FlowMethod& flow, const DyeRun* dye, const Origin& origin) {
-  Ranks* ranks = run_ranks();
-  FlowValues values = flow.values();
-  MoreArrays dyes;
-  if (dye) dyes = [dye](std::span<const Vec3d> points) { return dye->at(points); };
-  if (lower_extension(file) != ".pvtp") {
-    if (ranks) gather_values(*ranks, values);
-    if (is_first_process()) write_flow_values(values, file, flow.time(), origin_of_output(origin, "out"), dyes);
-    return;
-  }
-  const int own = ranks ? ranks->rank() : 0;
-  std::vector<std::uint64_t> cells(static_cast<std::size_t>(ranks ? ranks->count() : 1));
-  cells[static_cast<std::size_t>(own)] = values.value.size();
-  if (ranks) ranks->sum(cells);
-  const auto wait_for_all = [ranks] {
-    std::uint64_t nothing = 0;
-    if (ranks) ranks->sum({&nothing, 1});
-  };
-  if (values.value.empty())
-    wait_for_all();
-  else
-    write_flow_values(values, flow_values_piece(file, own), flow.time(), "", dyes, wait_for_all);
-  wait_for_all();
-  std::vector<int> parts;  // not those of processes that have no cells
-  for (std::size_t k = 0; k < cells.size(); ++k)
-    if (cells[k] > 0) parts.push_back(int(k));
-  if (is_first_process()) write_flow_values_list(file, parts, dyes);
 }
 
 json make_flow_map(const FlowOptions& options, StageTimers& timers, VectorsInTime& input, const FlowSpan& span,

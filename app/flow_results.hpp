@@ -28,10 +28,6 @@ struct FlowOptions {
 /// The first shape with the means of the vectors over time.
 void write_haemodynamics(const std::string& file, VectorsInTime& input, const Origin& origin);
 
-/// --out: a file, or for .pvtp one for each process and then their list, so that nobody holds all values. Where a
-/// process cannot write its own, none appears. Collective.
-void write_values(const std::string& file, const FlowMethod& flow, const DyeRun* dye, const Origin& origin);
-
 /// The flow map where it is asked for, as a file or as colours. Returns its part of the report, and adds to the
 /// outputs.
 nlohmann::json make_flow_map(const FlowOptions& options, StageTimers& timers, VectorsInTime& input,

@@ -1,12 +1,8 @@
 // Nacre: the processes that mpirun has started as one run of the program.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
-
 #include "app/common.hpp"
 #include "compute/device/ranks.hpp"
-#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 
@@ -29,18 +25,5 @@ void wait_for_the_first();
 /// What the command's options are for this process: those that do not come first are quiet and write nothing by
 /// themselves, and the processes of one machine share its threads.
 CommonOptions options_of_process(const CommonOptions& options);
-
-/// The first process's number, on all of them.
-std::uint64_t first_ones(Ranks* ranks, std::uint64_t value);
-
-/// The same of a text.
-std::string first_ones(Ranks* ranks, const std::string& text);
-
-/// Throws Error where the processes have read different surfaces or vectors at the time `start`, or were given
-/// different knobs. Collective.
-void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const std::string& knobs);
-
-/// One entry for each process, on the first; `own` is that of this one. Collective.
-nlohmann::json gather_reports(Ranks& ranks, const nlohmann::json& own);
 
 }  // namespace nacre

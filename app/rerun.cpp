@@ -139,6 +139,9 @@ void run_rerun(const RerunOptions& options, const std::function<void(const Argum
   const fs::path file = options.file;
   const Origin origin = require_origin(file);
   check_inputs(origin, file);
+  if (origin.pieces > 0 && options.out.empty())
+    throw Error(file.string() + " cannot be compared", "it is of the values of several processes, in pieces",
+                "give --out FILE.vtp: all of them in one file, by one process");
   CommonOptions common;
   common.quiet = options.quiet;
   if (origin.version != version)

@@ -313,7 +313,7 @@ class FlowMethodOn : public FlowMethod {
     }
     Array<std::uint32_t> pixels = arena.template temporary<std::uint32_t>(std::size_t(pixel.width) * pixel.height);
     pixel.pixels = pixels.data();
-    draw_among(exec_, ranks_, pixel, known_around_);
+    draw_among(exec_, ranks_, pixel, pixels, known_around_);
     std::vector<std::uint8_t> bytes(pixels.bytes());
     exec_.device().copy_to_host(bytes.data(), pixels.data(), bytes.size());
     return bytes;

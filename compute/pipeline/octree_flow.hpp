@@ -409,7 +409,7 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
 template <class Backend, class Band>
 std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d> points) {
   this->require_started();
-  if (share_) throw std::logic_error("a probe of a surface that several processes share");
+  exchange(shown_);
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<BandPoint> host;
@@ -419,7 +419,7 @@ std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d
   Array<float> value = arena.template temporary<float>(host.size());
   exec_.for_each(std::int64_t(host.size()),
                  detail::SampleBandAt<View>{octree_.view(), shown_.data(), positions.data(), value.data()});
-  return value.download();
+  return share_ ? share_->of_owners(host, value.download()) : value.download();
 }
 
 }  // namespace nacre

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -142,6 +143,21 @@ class OctreeShare {
       exec_.for_each(std::int64_t(side.bricks.size()),
                      detail::AddToBricks{brick_, side.listed.data(), side.start.data(), row, sums.data()});
     });
+  }
+
+  /// What the owner of each of these positions of the surface has there; all processes ask for the same. Collective.
+  std::vector<float> of_owners(const std::vector<BandPoint>& positions, const std::vector<float>& own) const {
+    std::vector<std::uint64_t> bits(positions.size());
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      const Int3 cell = positions[k].cell();
+      constexpr int width = BrickOctreeView::width;
+      if (owner_of(morton({cell.x / width, cell.y / width, cell.z / width})) == ranks_.rank())
+        bits[k] = std::bit_cast<std::uint32_t>(own[k]);
+    }
+    ranks_.sum(bits);
+    std::vector<float> values;
+    for (const std::uint64_t each : bits) values.push_back(std::bit_cast<float>(std::uint32_t(each)));
+    return values;
   }
 
   /// Gives the cells of the halo the values that they have where they belong: as deep as paths are asked for beside a

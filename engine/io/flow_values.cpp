@@ -43,10 +43,11 @@ std::filesystem::path flow_values_piece(const std::filesystem::path& file, int k
   return file.parent_path() / fmt::format("{}_{}.vtp", file.stem().string(), k);
 }
 
-void write_flow_values_list(const std::filesystem::path& file, std::span<const int> parts, const MoreArrays& more) {
+void write_flow_values_list(const std::filesystem::path& file, std::span<const int> parts, const std::string& origin,
+                            const MoreArrays& more) {
   std::vector<std::string> names;
   for (const int k : parts) names.push_back(flow_values_piece(file, k).filename().string());
-  write_pvtp(file, names, arrays_of({}, more), std::span(&closest_point_name, 1));
+  write_pvtp(file, names, arrays_of({}, more), std::span(&closest_point_name, 1), xml_origin(origin));
 }
 
 }  // namespace nacre

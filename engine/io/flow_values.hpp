@@ -25,7 +25,8 @@ void write_flow_values(const FlowValues& values, const std::filesystem::path& fi
 /// The name of part `k` of the values that a .pvtp lists: a.pvtp has a_0.vtp, a_1.vtp and so on.
 std::filesystem::path flow_values_piece(const std::filesystem::path& file, int k);
 
-/// Writes the .pvtp that lists these parts, which are there already.
-void write_flow_values_list(const std::filesystem::path& file, std::span<const int> parts, const MoreArrays& more = {});
+/// Writes the .pvtp that lists these parts, which are there already; `origin` and `more` are theirs.
+void write_flow_values_list(const std::filesystem::path& file, std::span<const int> parts, const std::string& origin,
+                            const MoreArrays& more = {});
 
 }  // namespace nacre

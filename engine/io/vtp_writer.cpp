@@ -113,14 +113,16 @@ void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points,
 }
 
 void write_pvtp(const std::filesystem::path& path, std::span<const std::string> pieces,
-                std::span<const PointArray> arrays, std::span<const std::string> positions) {
+                std::span<const PointArray> arrays, std::span<const std::string> positions,
+                const std::string& comment) {
   const auto entry = [](const char* type, const std::string& name, int components) {
     return fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n", type, xml_escaped(name),
                        components);
   };
   std::string xml =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\">\n<PPolyData GhostLevel=\"0\">\n<PPointData>\n";
+      "header_type=\"UInt64\">\n" +
+      comment + "<PPolyData GhostLevel=\"0\">\n<PPointData>\n";
   for (const PointArray& array : arrays) xml += entry("Float32", array.name, array.components);
   for (const std::string& name : positions) xml += entry("Float64", name, 3);
   xml += "</PPointData>\n<PPoints>\n" + entry("Float64", "Points", 3) + "</PPoints>\n";

@@ -34,9 +34,10 @@ void write_vtp(const std::filesystem::path& file, std::span<const Vec3f> points,
                std::span<const PointArray> arrays, std::optional<double> time = std::nullopt);
 
 /// Writes the .pvtp of `pieces`, names of files beside it that `write_vtp` has written with such arrays and positions;
-/// of those only names and components count.
+/// of those only names and components count. `comment`: an XML comment, or nothing.
 void write_pvtp(const std::filesystem::path& file, std::span<const std::string> pieces,
-                std::span<const PointArray> arrays, std::span<const std::string> positions);
+                std::span<const PointArray> arrays, std::span<const std::string> positions,
+                const std::string& comment = "");
 
 /// Writes `points`, of which the first `vertices` become a vertex cell each; `line_starts`: for each polyline the
 /// number of its first point, ascending, and how many points there are (empty: no lines). The rest is as for

@@ -86,6 +86,7 @@ Origin parse_origin(const json& from) {
   origin.options = from.value("options", std::vector<std::string>());
   origin.output = from.at("output").get<std::string>();
   origin.beside = from.value("beside", std::map<std::string, std::string>());
+  origin.pieces = from.value("pieces", 0);
   origin.interrupted = from.value("interrupted", false);
   return origin;
 }
@@ -201,6 +202,7 @@ json origin_json(const Origin& origin) {
   if (origin.camera) to["camera"] = camera_json(*origin.camera);
   if (!origin.options.empty()) to["options"] = origin.options;
   if (!origin.beside.empty()) to["beside"] = origin.beside;
+  if (origin.pieces > 0) to["pieces"] = origin.pieces;
   if (origin.interrupted) to["interrupted"] = true;
   return to;
 }

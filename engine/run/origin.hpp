@@ -38,6 +38,7 @@ struct Origin {
   std::vector<std::string> options;          ///< of the command, beside knobs: "--per-material"
   std::string output;  ///< which result this is: "image", "video", "out", "report"; "screenshot", of a window
   std::map<std::string, std::string> beside;  ///< of a report: the other results of the run, and their extensions
+  int pieces = 0;                             ///< of values that several processes wrote; 0: the result is one file
   bool interrupted = false;                   ///< the particles were stopped by Ctrl-C, and nobody knows where
 };
 

@@ -58,7 +58,8 @@ struct PictureOptions {
   std::optional<int> width, height;  ///< pixels
 };
 
-/// One entry per surface cell, world coordinates.
+/// One entry per surface cell, world coordinates. Of several processes each has its own; one after the other, in the
+/// order of the processes, they are those of the whole surface.
 struct FlowCells {
   std::vector<std::array<double, 3>> centre, closest_point;
   std::vector<float> value;                            ///< of the texture, 0..1
@@ -67,6 +68,8 @@ struct FlowCells {
 
 /// A flow run. `step` makes the next frame; the texture is made when it is first needed. A run belongs to one thread at
 /// a time. Every call throws Error for bad input and too little memory, and Interrupted when RunOptions::stop is set.
+/// Where RunOptions::processes are several, `method` has to be "octree", and all of them call the same members: they get
+/// the same pictures and samples, and cells each its own.
 class NACRE_API Flow {
  public:
   explicit Flow(SurfaceFlow surface, const KnobValues& knobs = {}, RunOptions options = {});
@@ -91,7 +94,8 @@ class NACRE_API Flow {
   FlowCells cells() const;
   /// Shown values at points of the surface, 0..1; `points` in world coordinates.
   std::vector<float> sample(std::span<const std::array<double, 3>> points);
-  /// Writes `cells` as .vtp, one point per surface cell, and how they came about.
+  /// Writes `cells` as .vtp, one point per surface cell, and how they came about: of all processes, by the first. As
+  /// .pvtp, each process writes its own beside that list.
   void save(const std::filesystem::path& file) const;
 
   /// Version, device, knobs, input and timings, as JSON: what the program writes as its report.

@@ -8,6 +8,8 @@
 
 namespace nacre {
 
+class Processes;
+
 /// How far a run is.
 struct RunProgress {
   std::string stage;           ///< for example "distance", "relax", "triangulate", "step"
@@ -25,6 +27,8 @@ struct RunOptions {
   std::function<void(const RunProgress&)> progress;
   std::function<void(const std::string& sentence)> warn;  ///< what was assumed or dropped
   const std::atomic<bool>* stop = nullptr;                ///< once it is true, the run throws Interrupted soon
+  /// Those that make one flow run together (processes.hpp); they must outlive it. Null: this process is alone.
+  Processes* processes = nullptr;
 };
 
 }  // namespace nacre
