@@ -61,8 +61,8 @@ inline std::vector<SeenSample> nearest_hits(Ranks& ranks, const std::vector<Seen
   return nearest;
 }
 
-/// Puts the pixels that each process has shaded into the picture of the first. `parts`: first pixel and number of pixels
-/// of each part. Collective.
+/// Puts the pixels that each process has shaded into the picture of the first. `parts`: first pixel and number of
+/// pixels of each part. Collective.
 inline void gather_pixels(Ranks& ranks, const Array<std::uint32_t>& pixels,
                           const std::vector<std::pair<std::int64_t, std::int64_t>>& parts) {
   std::vector<std::uint32_t> picture = pixels.download();

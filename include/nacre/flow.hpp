@@ -68,8 +68,8 @@ struct FlowCells {
 
 /// A flow run. `step` makes the next frame; the texture is made when it is first needed. A run belongs to one thread at
 /// a time. Every call throws Error for bad input and too little memory, and Interrupted when RunOptions::stop is set.
-/// Where RunOptions::processes are several, `method` has to be "octree", and all of them call the same members: they get
-/// the same pictures and samples, and cells each its own.
+/// Where RunOptions::processes are several, `method` has to be "octree", and all of them call the same members: they
+/// get the same pictures and samples, and cells each its own.
 class NACRE_API Flow {
  public:
   explicit Flow(SurfaceFlow surface, const KnobValues& knobs = {}, RunOptions options = {});

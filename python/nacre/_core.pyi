@@ -4,6 +4,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ._processes import Processes
+
 version: str
 
 def knobs(job: str, /) -> list[dict[str, Any]]: ...
@@ -75,6 +77,7 @@ class Flow:
         device: str,
         threads: int,
         progress: Callable[..., object] | None,
+        processes: Processes | None,
     ) -> None: ...
     def frames(self) -> int: ...
     def frame(self) -> int: ...

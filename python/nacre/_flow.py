@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._arrays import knob, knob_dict, real_array, rows, three
 from ._errors import Error
+from ._processes import Processes
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -107,10 +108,12 @@ class Frame:
         return self._present().picture(_camera(camera), pixels)[0]
 
     def save(self, file: str | os.PathLike[str]) -> None:
-        """Write the picture (.png) or the values (.vtp)."""
+        """Write the picture (.png) or the values (.vtp; .pvtp: a file for each process, and their list)."""
         path = os.fspath(file)
         if os.path.splitext(path)[1].lower() == ".png":
-            _core.save_picture(path, self.image, self._origin)
+            image = self.image
+            if self._flow._is_first:
+                _core.save_picture(path, image, self._origin)
         else:
             self._present().save(path)
 
@@ -130,9 +133,10 @@ class Flow:
 
     _native: _core.Flow
     _changes: int
+    _is_first: bool  # of several processes, or the only one: it writes pictures
 
-    def __init__(self, core: _core.Flow) -> None:
-        self.__dict__.update(_native=core, _changes=0)
+    def __init__(self, core: _core.Flow, is_first: bool = True) -> None:
+        self.__dict__.update(_native=core, _changes=0, _is_first=is_first)
 
     def __iter__(self) -> Iterator[Frame]:
         return self
@@ -337,6 +341,7 @@ def flow(
     device: str = "auto",
     threads: int = 0,
     progress: Progress | None = None,
+    comm: Any = None,
     **knobs: Unpack[FlowKnobs],
 ) -> Flow:
     """Show unsteady flow on a surface as a moving texture.
@@ -365,6 +370,11 @@ def flow(
         Threads of the CPU; 0: all. Results do not depend on it.
     progress : callable, optional
         progress(stage, fraction, iteration, particles, energy); the run stops where it returns False or raises.
+    comm : mpi4py.MPI.Intracomm, optional
+        The processes that make the run together, with `method="octree"`; results do not depend on how many there are.
+        All of them make the same calls with the same arguments, and get the same images and samples; `values` are each
+        one's own cells. `threads=0`: a fair share of the machine for each. Start with `mpirun -n 4 python -m mpi4py
+        script.py`: then an exception in one process ends all.
     **knobs
         See below.
 
@@ -376,6 +386,9 @@ def flow(
     given = flow_input(points, triangles, velocity, times, scalars, vector_name, knobs.get("color"))
     if progress is not None and not callable(progress):
         raise Error("progress is no function")
+    processes = None if comm is None else Processes(comm)
+    if processes is not None and threads == 0:
+        threads = processes.threads()
     core = _core.Flow(
         given.points,
         given.triangles,
@@ -390,5 +403,6 @@ def flow(
         str(device),
         int(threads),
         progress,
+        processes,
     )
-    return Flow(core)
+    return Flow(core, is_first=processes is None or processes.rank == 0)

@@ -6,6 +6,7 @@
 #include <nacre/flow.hpp>
 
 #include "arrays.hpp"
+#include "processes.hpp"
 #include "worker.hpp"
 
 namespace nacre::python {
@@ -60,17 +61,22 @@ nb::dict cells_dict(FlowCells cells) {
   return result;
 }
 
+/// A run, and the processes that share it; null: this one is alone.
+struct Run : Runner<Flow> {
+  using Runner<Flow>::Runner;
+  std::unique_ptr<PythonProcesses> processes;
+};
+
 }  // namespace
 
 void bind_flow(nb::module_& module) {
-  using Run = Runner<Flow>;
   nb::class_<Run>(module, "Flow")
       .def(
           "__init__",
           [](Run* self, const Rows<double, 3>& points, const Rows<std::int64_t, 3>& triangles,
              const std::vector<double>& times, nb::object positions, nb::object vectors, nb::object scalars,
              const std::vector<std::string>& scalar_names, const std::string& name, const std::string& vector_name,
-             const nb::dict& knobs, const std::string& device, int threads, nb::object progress) {
+             const nb::dict& knobs, const std::string& device, int threads, nb::object progress, nb::object processes) {
             SurfaceFlow surface;
             surface.points = to_rows<3>(points);
             surface.triangles = to_corners<3>(triangles);
@@ -94,9 +100,13 @@ void bind_flow(nb::module_& module) {
                                                               std::span<float> to) {
               worker.with_python([&] { fill(nb::handle(call)(array, step), to); });
             };
+            RunOptions options = worker.options(device, threads);
+            if (!processes.is_none()) {
+              self->processes = std::make_unique<PythonProcesses>(worker, processes);
+              options.processes = self->processes.get();
+            }
             try {
-              self->make(
-                  [&] { return std::make_unique<Flow>(std::move(surface), values, worker.options(device, threads)); });
+              self->make([&] { return std::make_unique<Flow>(std::move(surface), values, std::move(options)); });
             } catch (...) {
               self->~Run();
               throw;
@@ -105,7 +115,8 @@ void bind_flow(nb::module_& module) {
           nb::arg("points"), nb::arg("triangles"), nb::arg("times"), nb::arg("positions").none(),
           nb::arg("vectors").none(), nb::arg("scalars"), nb::arg("scalar_names"), nb::arg("name"),
           nb::arg("vector_name"), nb::arg("knobs"), nb::arg("device"), nb::arg("threads"), nb::arg("progress").none(),
-          nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>(), nb::keep_alive<1, 7>())
+          nb::arg("processes").none(), nb::keep_alive<1, 5>(), nb::keep_alive<1, 6>(), nb::keep_alive<1, 7>(),
+          nb::keep_alive<1, 15>())
       .def("frames", [](Run& run) { return run.run().frames(); })
       .def("frame", [](Run& run) { return run.run().frame(); })
       .def("time", [](Run& run) { return run.run().time(); })

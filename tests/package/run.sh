@@ -50,4 +50,11 @@ cd "$work/out"
 grep -q ' sound$' said || fail "the mesh of labels_to_mesh is not sound"
 "$work/examples/flow_to_pictures" torus | tee said
 [[ $(ls torus*.png | wc -l) == 4 ]] || fail "flow_to_pictures made other pictures"
+if [[ -x $work/examples/flow_by_mpi ]] && command -v mpirun >/dev/null; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  for n in 1 3; do
+    mpirun --oversubscribe -n $n "$work/examples/flow_by_mpi" "sheet-$n-" || fail "flow_by_mpi on $n processes"
+  done
+  cmp sheet-1-3.png sheet-3-3.png || fail "flow_by_mpi draws another picture on 3 processes"
+fi
 "$work/examples/heat_in_labels" || fail "heat_in_labels is off"
