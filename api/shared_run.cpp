@@ -36,7 +36,7 @@ std::vector<Ranks::Bytes> RanksOfCaller::exchange(const std::vector<Bytes>& send
     to.push_back({rank, std::as_writable_bytes(std::span(&out[q], 1))});
     from.push_back({rank, std::as_writable_bytes(std::span(&in[q], 1))});
   });
-  exchange(to, from);
+  Ranks::exchange(to, from);
   to.clear(), from.clear();
   std::vector<Bytes> received(n);
   received[own] = send[own];
@@ -46,20 +46,24 @@ std::vector<Ranks::Bytes> RanksOfCaller::exchange(const std::vector<Bytes>& send
     if (out[q]) to.push_back({rank, {const_cast<std::byte*>(send[q].data()), send[q].size()}});
     if (in[q]) from.push_back({rank, received[q]});
   });
-  exchange(to, from);
+  Ranks::exchange(to, from);
   return received;
 }
 
-void RanksOfCaller::exchange(std::span<const Part> send, std::span<const Part> receive) {
-  if (count_ == 1) return;
-  std::vector<Processes::Part> to, from;
+void RanksOfCaller::begin(std::span<const Part> send, std::span<const Part> receive) {
+  to_.clear(), from_.clear();
   for (const Part& part : send) {
-    to.push_back({part.rank, part.bytes});
+    to_.push_back({part.rank, part.bytes});
     sent_ += part.bytes.size();
   }
-  for (const Part& part : receive) from.push_back({part.rank, part.bytes});
+  for (const Part& part : receive) from_.push_back({part.rank, part.bytes});
+}
+
+/// The caller's exchange waits, so nothing is sent before.
+void RanksOfCaller::finish() {
+  if (count_ == 1) return;
   const auto begun = std::chrono::steady_clock::now();
-  processes_.exchange(to, from);
+  processes_.exchange(to_, from_);
   waited_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 

@@ -15,7 +15,8 @@ class RanksOfCaller final : public Ranks {
   int count() const override { return count_; }
   void sum(std::span<std::uint64_t> values) override;
   std::vector<Bytes> exchange(const std::vector<Bytes>& send) override;
-  void exchange(std::span<const Part> send, std::span<const Part> receive) override;
+  void begin(std::span<const Part> send, std::span<const Part> receive) override;
+  void finish() override;
   std::uint64_t sent_bytes() const override { return sent_; }
   double waited_seconds() const override { return waited_; }
 
@@ -24,6 +25,7 @@ class RanksOfCaller final : public Ranks {
   int rank_, count_;
   std::uint64_t sent_ = 0;
   double waited_ = 0;
+  std::vector<Processes::Part> to_, from_;  ///< of the exchange that has begun
 };
 
 }  // namespace nacre

@@ -30,8 +30,16 @@ class Ranks {
   virtual void sum(std::span<std::uint64_t> values) = 0;
   /// Sends `send[q]` to process q, for all q; returns what came from each.
   virtual std::vector<Bytes> exchange(const std::vector<Bytes>& send) = 0;
-  /// The same with neighbours alone, into memory that is there; at most one part for each process on either side.
-  virtual void exchange(std::span<const Part> send, std::span<const Part> receive) = 0;
+  /// Begins the same with neighbours alone, into memory that is there; at most one part for each process on either side.
+  /// Until `finish` returns, the memory is not touched and no other exchange begins.
+  virtual void begin(std::span<const Part> send, std::span<const Part> receive) = 0;
+  /// Lets messages move on; called now and then by who works meanwhile.
+  virtual void progress() {}
+  virtual void finish() = 0;
+  void exchange(std::span<const Part> send, std::span<const Part> receive) {
+    begin(send, receive);
+    finish();
+  }
 
   /// What this process has sent so far, and how long it has waited for others.
   virtual std::uint64_t sent_bytes() const = 0;

@@ -268,17 +268,24 @@ class FlowMethodOn : public FlowMethod {
     load_present(k);
   }
 
-  /// Streaks of `value` along the flow of the frame, around 1/2, into `streaks`. `cell`: edge of a texture cell in
-  /// cells of the domain. `known`: what streaks run through; `on`: where they are made.
+  /// What streaks of the frame run through. `cell`: edge of a texture cell in cells of the domain.
   template <class Surface>
-  void draw_streaks(const Surface& known, const Surface& on, std::int64_t n, double cell, const float* value,
-                    StreakCell* cells, float* streaks) {
+  void mark_streaks(const Surface& surface, std::int64_t n, double cell, StreakCell* cells) {
     const float least = 1e-6f * float(vectors_.reference_speed);
-    auto stage = exec_.stage("streaks");
-    for_each_surface_cell_of(exec_, known, n,
-                             MarkStreakCells<Surface>{known, mesh_, cell, present_vectors_.data(), least, cells});
-    store_on_surface(exec_, known, n, SmoothAlongAndSharpenAcross<Surface>{known, value, cells}, ToStreakCell{cells});
-    store_on_surface(exec_, on, n, ConvolveAlongFlow<Surface>{on, cells, parameters_.streaks}, ToArray{streaks});
+    for_each_surface_cell_of(exec_, surface, n,
+                             MarkStreakCells<Surface>{surface, mesh_, cell, present_vectors_.data(), least, cells});
+  }
+  /// And what they are made of.
+  template <class Surface>
+  void smooth_streaks(const Surface& surface, std::int64_t n, const float* value, StreakCell* cells) {
+    store_on_surface(exec_, surface, n, SmoothAlongAndSharpenAcross<Surface>{surface, value, cells},
+                     ToStreakCell{cells});
+  }
+  /// Streaks along the flow of the frame, around 1/2.
+  template <class Surface>
+  void draw_streaks(const Surface& surface, std::int64_t n, const StreakCell* cells, float* streaks) {
+    store_on_surface(exec_, surface, n, ConvolveAlongFlow<Surface>{surface, cells, parameters_.streaks},
+                     ToArray{streaks});
   }
 
   /// Draws the surface, where it has moved to if it has. `shown`: its texture; null: none.

@@ -111,9 +111,13 @@ class GridFlow final : public GridMethod<Backend> {
     exec_.for_each(n, SharpenAndJitter{texture, detail_.data(), float(parameters_.sharpen), float(parameters_.jitter),
                                        seed_, std::uint32_t(launched_ + 1), carried_.data()});
     if (!this->shows_) return;
-    if (parameters_.streaks > 0)
-      this->draw_streaks(GridSurface{texture}, GridSurface{texture}, n, 1.0 / refine_, value_.data(),
-                         streak_cells_.data(), streaks_.data());
+    if (parameters_.streaks > 0) {
+      auto streaks = exec_.stage("streaks");
+      const GridSurface surface{texture};
+      this->mark_streaks(surface, n, 1.0 / refine_, streak_cells_.data());
+      this->smooth_streaks(surface, n, value_.data(), streak_cells_.data());
+      this->draw_streaks(surface, n, streak_cells_.data(), streaks_.data());
+    }
     this->show_frame(parameters_.streaks > 0 ? streaks_.data() : value_.data());
   }
 

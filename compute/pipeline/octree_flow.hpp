@@ -211,21 +211,24 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     particles.ended = ended.data();
     particles.ttl = ttl_;
     particles.rounding = this->rounding_of(launched_);
-    {
+    const auto move = [&](const View& on) {
       auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
-      for_each_surface_cell(exec_, own(), particles);
-    }
+      for_each_surface_cell(exec_, on, particles);
+    };
+    const auto normalise = [&](const View& on) {
+      auto stage = exec_.stage("extend");
+      const BrickSurface surface{on};
+      for_each_surface_cell_of(
+          exec_, surface, std::int64_t(view.surface_cells),
+          Normalise<BrickSurface>{surface, ended.data(), crossed.data(), carried_.data(), value_.data()});
+    };
     if (share_) {
-      auto stage = exec_.stage("exchange");
-      share_->collect(crossed);
-      share_->collect(ended);
-      share_->refresh_beside(crossed);
+      share_->collect(crossed, ended, view, move);
+      share_->refresh_beside_for(crossed, view, normalise);
+    } else {
+      move(view);
+      normalise(view);
     }
-    auto stage = exec_.stage("extend");
-    const BrickSurface surface{own()};
-    for_each_surface_cell_of(
-        exec_, surface, std::int64_t(view.surface_cells),
-        Normalise<BrickSurface>{surface, ended.data(), crossed.data(), carried_.data(), value_.data()});
     exec_.fill(crossed, 0);
     exec_.fill(arrived, 0);
   }
@@ -263,10 +266,17 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
 
   /// Sharpening and jitter for the next step, streaks and contrast for the eye.
   void show() override {
-    exchange(value_);
-    auto stage = exec_.stage("filter");
     const View view = octree_.view();
     const auto n = std::int64_t(view.surface_cells);
+    const bool streaks = !Band::as_thesis && this->shows_ && parameters_.streaks > 0;
+    refresh(value_, [&] {
+      if constexpr (!Band::as_thesis)
+        if (streaks) {
+          auto stage = exec_.stage("streaks");
+          this->mark_streaks(BrickSurface{view}, n, 1.0, streak_cells_.data());
+        }
+    });
+    auto filter = exec_.stage("filter");
     Arena::Scope scope(exec_.arena());
     float* detail = exec_.arena().template temporary<float>(n).data();
     equalise(Band::as_thesis ? ahead_.data() : value_.data(), detail, around_own());
@@ -276,11 +286,17 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     frame_ = value_.data();
     if (!this->shows_) return;
     if constexpr (!Band::as_thesis) {
-      if (parameters_.streaks > 0) {
-        this->draw_streaks(BrickSurface{view}, BrickSurface{own()}, n, 1.0, value_.data(), streak_cells_.data(),
-                           streaks_.data());
+      if (streaks) {
+        const auto draw = [&](const View& on) {
+          auto stage = exec_.stage("streaks");
+          this->draw_streaks(BrickSurface{on}, n, streak_cells_.data(), streaks_.data());
+        };
+        {
+          auto stage = exec_.stage("streaks");
+          this->smooth_streaks(BrickSurface{view}, n, value_.data(), streak_cells_.data());
+        }
+        share_ ? share_->refresh_beside_of(streaks_, view, draw) : draw(view);
         frame_ = streaks_.data();
-        exchange(streaks_, true);
       }
     }
     equalise(frame_, detail, own());
@@ -293,13 +309,13 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     if constexpr (!Band::as_thesis) exec_.for_each(view.items(), BrickMeans{view, shown_.data(), means});
   }
 
-  /// Gives the halo the values of the processes that own them; `beside`: only around its own bricks.
-  void exchange(const Array<float>& value, bool beside = false) {
-    if constexpr (!Band::as_thesis) {
-      if (!share_) return;
-      auto stage = exec_.stage("exchange");
-      beside ? share_->refresh_beside(value) : share_->refresh(value);
-    }
+  /// Gives the halo the values of the processes that own them, while this one does something else.
+  template <class Work>
+  void refresh(const Array<float>& value, const Work& meanwhile) {
+    share_ ? share_->refresh(value, meanwhile) : meanwhile();
+  }
+  void refresh(const Array<float>& value) {
+    refresh(value, [] {});
   }
 
   /// Own bricks, and those whose values sharpening asks for.
@@ -355,7 +371,7 @@ std::vector<std::uint8_t> OctreeFlow<Backend, Band>::render(const RenderOptions&
   BandTarget<View> target{view, this->nearest_triangles()};
   const float* shown = started_ && options.texture ? shown_.data() : nullptr;
   Arena::Scope scope(exec_.arena());
-  if (shown) exchange(shown_);
+  if (shown) refresh(shown_);
   if constexpr (!Band::as_thesis)
     if (share_) target.own_first = share_->own_first_brick(), target.own_count = std::uint32_t(share_->own_bricks());
   if (shown && !Band::as_thesis) {
@@ -409,7 +425,7 @@ FlowValues OctreeFlow<Backend, Band>::values() const {
 template <class Backend, class Band>
 std::vector<float> OctreeFlow<Backend, Band>::sample_shown(std::span<const Vec3d> points) {
   this->require_started();
-  exchange(shown_);
+  refresh(shown_);
   Arena& arena = exec_.arena();
   Arena::Scope scope(arena);
   std::vector<BandPoint> host;

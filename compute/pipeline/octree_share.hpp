@@ -22,7 +22,8 @@ std::vector<std::uint64_t> cut_octree(Ranks& ranks, const MeshView& mesh, std::u
 
 namespace detail {
 
-/// Copies the surface cells of bricks into a row, brick after brick, or back.
+/// Copies the surface cells of bricks into a row, brick after brick, or back. A row may hold several `arrays`, those of
+/// a brick one after the other; this is number `which`.
 template <class Value>
 struct PackBricks {
   const OctreeBrick* brick;
@@ -30,10 +31,12 @@ struct PackBricks {
   const std::uint64_t* start;  // of each listed brick in the row
   const Value* value;
   Value* row;
+  int arrays = 1, which = 0;
   NACRE_HD void operator()(std::int64_t i) const {
     const CellMask& mask = brick[listed[i]].surface;
     const int n = mask.count();
-    for (int k = 0; k < n; ++k) row[start[i] + std::uint64_t(k)] = value[mask.first + CellIndex(k)];
+    Value* to = row + arrays * start[i] + which * n;
+    for (int k = 0; k < n; ++k) to[k] = value[mask.first + CellIndex(k)];
   }
 };
 
@@ -63,18 +66,20 @@ struct ClearBricks {
   }
 };
 
-/// Adds a row to the surface cells of bricks, of which two may be the same one.
+/// Adds a row to the surface cells of bricks, of which two may be the same one; `arrays` and `which` as above.
 struct AddToBricks {
   const OctreeBrick* brick;
   const std::uint32_t* listed;
   const std::uint64_t* start;
   const std::uint64_t* row;
   std::uint64_t* value;
+  int arrays = 1, which = 0;
   NACRE_HD void operator()(std::int64_t i) const {
     const CellMask& mask = brick[listed[i]].surface;
     const int n = mask.count();
+    const std::uint64_t* from = row + arrays * start[i] + which * n;
     for (int k = 0; k < n; ++k)
-      if (row[start[i] + std::uint64_t(k)] != 0) atomic_add(value + mask.first + k, row[start[i] + std::uint64_t(k)]);
+      if (from[k] != 0) atomic_add(value + mask.first + k, from[k]);
   }
 };
 
@@ -113,7 +118,7 @@ class OctreeShare {
     deposits_ = make_halo(bricks, around(tree.levels, depths_.deposits, false));
     beside_ = make_halo(bricks, around(tree.levels, depths_.beside, false));
     whole_ = make_halo(bricks, around(tree.levels, depths_.whole, false));
-    const std::size_t most = std::max({deposits_.cells(), beside_.cells(), whole_.cells()});
+    const std::size_t most = std::max({2 * deposits_.cells(), beside_.cells(), whole_.cells()});
     row_ = exec_.arena().template permanent<std::uint64_t>(most);
   }
 
@@ -134,15 +139,59 @@ class OctreeShare {
     return start.back() - start.front();
   }
 
-  /// Deposits in cells of others go to those, and theirs come here; in cells of others they are 0 afterwards.
-  void collect(const Array<std::uint64_t>& sums) {
-    send(deposits_, &Halo::theirs, sums);
-    exec_.for_each(std::int64_t(deposits_.theirs.bricks.size()),
-                   detail::ClearBricks{brick_, deposits_.theirs.listed.data(), sums.data()});
-    receive<std::uint64_t>(deposits_, &Halo::mine, [&](const Side& side, const std::uint64_t* row) {
-      exec_.for_each(std::int64_t(side.bricks.size()),
-                     detail::AddToBricks{brick_, side.listed.data(), side.start.data(), row, sums.data()});
-    });
+  /// `work(view)` lets the particles of chosen bricks move, which leave deposits in two arrays. First those that may come
+  /// to bricks of others: what they leave there goes to the owners while the rest moves. Cells of others are 0
+  /// afterwards.
+  template <class Work>
+  void collect(const Array<std::uint64_t>& crossed, const Array<std::uint64_t>& ended, const BrickOctreeView& view,
+               const Work& work) {
+    const Array<std::uint64_t> arrays[] = {crossed, ended};
+    work(choose(view, deposits_.border));
+    {
+      auto stage = exec_.stage("exchange");
+      Side& out = deposits_.theirs;
+      for (int k = 0; k < 2; ++k) {
+        pack(out, arrays[k], 2, k);
+        exec_.for_each(std::int64_t(out.bricks.size()),
+                       detail::ClearBricks{brick_, out.listed.data(), arrays[k].data()});
+      }
+      begin<std::uint64_t>(out, deposits_.mine, 2);
+    }
+    work_inside(deposits_, view, work);
+    auto stage = exec_.stage("exchange");
+    const Side& in = deposits_.mine;
+    const auto* row = finish<std::uint64_t>(in);
+    for (int k = 0; k < 2; ++k)
+      exec_.for_each(std::int64_t(in.bricks.size()),
+                     detail::AddToBricks{brick_, in.listed.data(), in.start.data(), row, arrays[k].data(), 2, k});
+  }
+
+  /// Gives the cells beside its own bricks the values of their owners. `work(view)` reads those: bricks that lie among
+  /// its own go first, while messages are on their way.
+  template <class Value, class Work>
+  void refresh_beside_for(const Array<Value>& value, const BrickOctreeView& view, const Work& work) {
+    begin_refresh(beside_, value);
+    work_inside(beside_, view, work);
+    finish_refresh(beside_, value);
+    work(choose(view, beside_.border));
+  }
+
+  /// The same after `work(view)` has made the values: of bricks that others wait for first, and of the rest while
+  /// messages are on their way.
+  template <class Value, class Work>
+  void refresh_beside_of(const Array<Value>& value, const BrickOctreeView& view, const Work& work) {
+    work(choose(view, beside_.border));
+    begin_refresh(beside_, value);
+    work_inside(beside_, view, work);
+    finish_refresh(beside_, value);
+  }
+
+  /// Gives the whole halo the values of their owners; `meanwhile` touches none of them.
+  template <class Value, class Work>
+  void refresh(const Array<Value>& value, const Work& meanwhile) {
+    begin_refresh(whole_, value);
+    meanwhile();
+    finish_refresh(whole_, value);
   }
 
   /// What the owner of each of these positions of the surface has there; all processes ask for the same. Collective.
@@ -160,17 +209,6 @@ class OctreeShare {
     return values;
   }
 
-  /// Gives the cells of the halo the values that they have where they belong: as deep as paths are asked for beside a
-  /// cell, or in all of it.
-  template <class Value>
-  void refresh_beside(const Array<Value>& value) {
-    refresh(beside_, value);
-  }
-  template <class Value>
-  void refresh(const Array<Value>& value) {
-    refresh(whole_, value);
-  }
-
  private:
   /// Bricks that take part in an exchange, those that concern one process after those that concern another.
   struct Side {
@@ -185,6 +223,7 @@ class OctreeShare {
   /// Bricks of this process that others have in their halos, and those of theirs that it has in its own.
   struct Halo {
     Side mine, theirs;
+    Array<std::uint32_t> border, inside;  ///< own bricks that lie within the depth of one of others, and the rest
     std::size_t cells() const { return std::max<std::size_t>(1, std::max(mine.cells, theirs.cells)); }
   };
 
@@ -241,8 +280,9 @@ class OctreeShare {
       }
     ranks_.sum({&wrong, 1});
     if (wrong > 0) throw Error("the processes do not see the same surface", "", "give all of them the same files");
-    finish(halo.mine);
-    finish(halo.theirs);
+    upload(halo.mine);
+    upload(halo.theirs);
+    divide(halo);
     return halo;
   }
 
@@ -261,7 +301,17 @@ class OctreeShare {
     side.ends.back().second = side.cells;
   }
 
-  void finish(Side& side) {
+  /// What others want of its bricks is what lies within the depth of theirs.
+  void divide(Halo& halo) {
+    std::vector<bool> wanted(own_count_);
+    for (const std::uint32_t b : halo.mine.bricks) wanted[b - own_first_] = true;
+    std::vector<std::uint32_t> border, inside;
+    for (std::size_t b = 0; b < own_count_; ++b) (wanted[b] ? border : inside).push_back(std::uint32_t(own_first_ + b));
+    halo.border = exec_.arena().template permanent_copy<std::uint32_t>(border);
+    halo.inside = exec_.arena().template permanent_copy<std::uint32_t>(inside);
+  }
+
+  void upload(Side& side) {
     side.listed = exec_.arena().template permanent_copy<std::uint32_t>(side.bricks);
     side.start = exec_.arena().template permanent_copy<std::uint64_t>(side.starts);
   }
@@ -277,37 +327,66 @@ class OctreeShare {
     return all;
   }
 
-  /// Packs the values of one side, ready to be sent.
+  /// Copies values of a side into its row, ready to be sent; as one of several `arrays`, of which the last one comes last.
   template <class Value>
-  void send(Halo& halo, Side Halo::*which, const Array<Value>& value) {
-    Side& side = halo.*which;
-    side.row.resize(side.cells * sizeof(Value));
+  void pack(Side& side, const Array<Value>& value, int arrays = 1, int which = 0) {
     auto* row = reinterpret_cast<Value*>(row_.data());
-    exec_.for_each(std::int64_t(side.bricks.size()),
-                   detail::PackBricks<Value>{brick_, side.listed.data(), side.start.data(), value.data(), row});
+    exec_.for_each(
+        std::int64_t(side.bricks.size()),
+        detail::PackBricks<Value>{brick_, side.listed.data(), side.start.data(), value.data(), row, arrays, which});
+    if (which + 1 < arrays) return;
+    side.row.resize(side.cells * sizeof(Value) * std::size_t(arrays));
     if (side.cells) exec_.device().copy_to_host(side.row.data(), row, side.row.size());
   }
 
-  /// Sends what `send` has packed of the other side, and gives what comes to `use(side, row)`.
-  template <class Value, class Use>
-  void receive(Halo& halo, Side Halo::*which, const Use& use) {
-    Side& in = halo.*which;
-    Side& out = which == &Halo::mine ? halo.theirs : halo.mine;
-    in.row.resize(in.cells * sizeof(Value));
-    const std::vector<Ranks::Part> to = parts(out, sizeof(Value)), from = parts(in, sizeof(Value));
-    ranks_.exchange(to, from);
+  /// Begins to send the row of one side and to receive that of the other.
+  template <class Value>
+  void begin(Side& out, Side& in, int arrays = 1) {
+    const std::size_t width = sizeof(Value) * std::size_t(arrays);
+    in.row.resize(in.cells * width);
+    const std::vector<Ranks::Part> to = parts(out, width), from = parts(in, width);
+    ranks_.begin(to, from);
+  }
+
+  /// What has come, on the device.
+  template <class Value>
+  const Value* finish(const Side& in) {
+    ranks_.finish();
     auto* row = reinterpret_cast<Value*>(row_.data());
     if (in.cells) exec_.device().copy_to_device(row, in.row.data(), in.row.size());
-    use(in, row);
+    return row;
+  }
+
+  /// Runs `work(view)` on the bricks inside, in some pieces, and lets messages move on in between.
+  template <class Work>
+  void work_inside(const Halo& halo, const BrickOctreeView& view, const Work& work) {
+    constexpr std::size_t pieces = 8;
+    const std::size_t n = halo.inside.size();
+    for (std::size_t k = 0; k < pieces; ++k) {
+      const std::size_t first = n * k / pieces, last = n * (k + 1) / pieces;
+      if (first == last) continue;
+      BrickOctreeView piece = view;
+      piece.chosen = halo.inside.data() + first;
+      piece.chosen_count = std::uint32_t(last - first);
+      work(piece);
+      ranks_.progress();
+    }
   }
 
   template <class Value>
-  void refresh(Halo& halo, const Array<Value>& value) {
-    send(halo, &Halo::mine, value);
-    receive<Value>(halo, &Halo::theirs, [&](const Side& side, const Value* row) {
-      exec_.for_each(std::int64_t(side.bricks.size()),
-                     detail::UnpackBricks<Value>{brick_, side.listed.data(), side.start.data(), row, value.data()});
-    });
+  void begin_refresh(Halo& halo, const Array<Value>& value) {
+    auto stage = exec_.stage("exchange");
+    pack(halo.mine, value);
+    begin<Value>(halo.mine, halo.theirs);
+  }
+
+  template <class Value>
+  void finish_refresh(Halo& halo, const Array<Value>& value) {
+    auto stage = exec_.stage("exchange");
+    const Side& in = halo.theirs;
+    const Value* row = finish<Value>(in);
+    exec_.for_each(std::int64_t(in.bricks.size()),
+                   detail::UnpackBricks<Value>{brick_, in.listed.data(), in.start.data(), row, value.data()});
   }
 
   Executor<Backend>& exec_;

@@ -71,29 +71,39 @@ class MpiRanks final : public Ranks {
       if (out[at]) to.push_back({q, {const_cast<std::byte*>(send[at].data()), send[at].size()}});
       if (in[at]) from.push_back({q, received[at]});
     }
-    exchange(to, from);
+    Ranks::exchange(to, from);
     return received;
   }
 
-  void exchange(std::span<const Part> send, std::span<const Part> receive) override {
-    std::vector<MPI_Request> requests;
+  void begin(std::span<const Part> send, std::span<const Part> receive) override {
     const auto each_piece = [](const Part& part, const auto& visit) {
       for (std::size_t at = 0; at < part.bytes.size(); at += most_bytes)
         visit(part.bytes.data() + at, int(std::min(most_bytes, part.bytes.size() - at)));
     };
     for (const Part& part : receive)
       each_piece(part, [&](std::byte* data, int size) {
-        check(MPI_Irecv(data, size, MPI_BYTE, part.rank, tag, MPI_COMM_WORLD, &requests.emplace_back()), "receive");
+        check(MPI_Irecv(data, size, MPI_BYTE, part.rank, tag, MPI_COMM_WORLD, &requests_.emplace_back()), "receive");
       });
     for (const Part& part : send)
       each_piece(part, [&](std::byte* data, int size) {
-        check(MPI_Isend(data, size, MPI_BYTE, part.rank, tag, MPI_COMM_WORLD, &requests.emplace_back()), "send");
+        check(MPI_Isend(data, size, MPI_BYTE, part.rank, tag, MPI_COMM_WORLD, &requests_.emplace_back()), "send");
         sent_ += std::uint64_t(size);
       });
-    wait(requests, "exchange what they have");
+  }
+
+  void progress() override {
+    int done = 0;
+    check(MPI_Testall(int(requests_.size()), requests_.data(), &done, MPI_STATUSES_IGNORE), exchanging);
+  }
+
+  void finish() override {
+    wait(requests_, exchanging);
+    requests_.clear();
   }
 
  private:
+  static constexpr const char* exchanging = "exchange what they have";
+
   /// Until all are done; looks at the user's wish to stop meanwhile, and leaves the processor to others.
   void wait(std::span<MPI_Request> requests, const char* what) {
     const auto begun = std::chrono::steady_clock::now();
@@ -116,6 +126,7 @@ class MpiRanks final : public Ranks {
   int rank_ = 0, count_ = 1;
   std::uint64_t sent_ = 0;
   double waited_ = 0;
+  std::vector<MPI_Request> requests_;  ///< of the exchange that has begun
 };
 
 }  // namespace

@@ -16,7 +16,8 @@ class FirstOfTwo final : public Ranks {
   int count() const override { return 2; }
   void sum(std::span<std::uint64_t>) override {}
   std::vector<Bytes> exchange(const std::vector<Bytes>&) override { return std::vector<Bytes>(2); }
-  void exchange(std::span<const Part>, std::span<const Part>) override {}
+  void begin(std::span<const Part>, std::span<const Part>) override {}
+  void finish() override {}
   std::uint64_t sent_bytes() const override { return 0; }
   double waited_seconds() const override { return 0; }
 };
