@@ -3,28 +3,42 @@
 
 #include <cmath>
 
-#include "compute/embedding/cells_near.hpp"
+#include "compute/math/morton.hpp"
 
 namespace nacre {
 namespace {
 
-/// A brick that a triangle touches, and about how many surface cells (in sixteenths) the triangle adds to it.
+/// A brick that triangles lie in, and about how many surface cells they add to it, in millionths.
 struct TouchedBrick {
   std::uint64_t code, work;
 };
 
+/// Divides a triangle until its parts have edges of half a brick at most, and adds the bricks that their middles are in.
+/// A part of a plane crosses as many cells as its shadows on the three sides of the domain have squares.
+void add_bricks(const Corners& c, int levels, std::vector<TouchedBrick>& bricks) {
+  constexpr double longest = 0.5 * BrickOctreeView::width;
+  const Vec3d edge[3] = {c.b - c.a, c.c - c.b, c.a - c.c};
+  const double squared[3] = {dot(edge[0], edge[0]), dot(edge[1], edge[1]), dot(edge[2], edge[2])};
+  const auto k = std::max_element(squared, squared + 3) - squared;
+  if (squared[k] > longest * longest) {
+    const Vec3d from = k == 0 ? c.a : k == 1 ? c.b : c.c, to = k == 0 ? c.b : k == 1 ? c.c : c.a;
+    const Vec3d other = k == 0 ? c.c : k == 1 ? c.a : c.b, middle = (from + to) * 0.5;
+    add_bricks({from, middle, other}, levels, bricks);
+    add_bricks({middle, to, other}, levels, bricks);
+    return;
+  }
+  const Vec3d middle = (c.a + c.b + c.c) * (1.0 / 3), normal = cross(edge[0], edge[1]);
+  const double shadows = 0.5 * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
+  Int3 brick;
+  for (int axis = 0; axis < 3; ++axis)
+    brick[axis] = std::clamp(int(std::floor(middle[axis] / BrickOctreeView::width)), 0, (1 << levels) - 1);
+  bricks.push_back({morton(brick), std::uint64_t(std::llround(1e6 * shadows)) + 1});
+}
+
 /// Of the triangles first .. last - 1; ascending, each brick once.
 std::vector<TouchedBrick> touched_bricks(const MeshView& mesh, std::uint32_t first, std::uint32_t last, int levels) {
   std::vector<TouchedBrick> all;
-  for (std::uint32_t t = first; t < last; ++t) {
-    const Corners c = mesh.corners(t);
-    const std::size_t begin = all.size();
-    for_cells_near(c * (1.0 / BrickOctreeView::width), 0.0, Int3(1 << levels), [&](const Int3& b) {
-      all.push_back({morton(b), 0});
-    });
-    const double area = 0.5 * length(cross(c.b - c.a, c.c - c.a)), bricks = double(all.size() - begin);
-    for (std::size_t k = begin; k < all.size(); ++k) all[k].work = std::uint64_t(std::llround(24 * area / bricks)) + 1;
-  }
+  for (std::uint32_t t = first; t < last; ++t) add_bricks(mesh.corners(t), levels, all);
   std::sort(all.begin(), all.end(), [](const TouchedBrick& a, const TouchedBrick& b) { return a.code < b.code; });
   std::size_t kept = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {

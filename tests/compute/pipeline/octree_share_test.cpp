@@ -50,5 +50,39 @@ TEST(CutOctree, HalvesTheWork) {
   EXPECT_EQ(border({0, 0, 0, 0, 1, 4}), morton({0, 0, 0}) + 1);
 }
 
+/// Where two processes divide triangles that the first of them has.
+std::uint64_t border_of(const std::vector<Vec3d>& points, const std::vector<Triangle>& triangles, int levels) {
+  std::vector<Triangle> twice = triangles;
+  twice.resize(2 * triangles.size(), triangles[0]);
+  FirstOfTwo ranks;
+  const MeshView mesh{points.data(), twice.data(), nullptr};
+  return cut_octree(ranks, mesh, std::uint32_t(twice.size()), levels)[1];
+}
+
+TEST(CutOctree, MeasuresWhatLiesInEachBrick) {
+  // Half of this triangle lies before x = 19.6.
+  const std::vector<Vec3d> points{{2, 2, 2}, {62, 2, 2}, {2, 6, 2}};
+  EXPECT_EQ(border_of(points, {{0, 1, 2}}, 3), morton({2, 0, 0}) + 1);
+  EXPECT_EQ(border_of(points, {{2, 0, 1}}, 3), morton({2, 0, 0}) + 1) << "whatever its first corner";
+  EXPECT_EQ(border_of(points, {{2, 1, 0}}, 3), morton({2, 0, 0}) + 1) << "whatever its winding";
+}
+
+TEST(CutOctree, CountsSmallTrianglesByTheirSizeToo) {
+  // A strip of 8 bricks: the first in a thousand small triangles, the others in two each.
+  std::vector<Vec3d> points;
+  std::vector<Triangle> triangles;
+  const auto add = [&](double from, double to) {
+    const auto first = std::uint32_t(points.size());
+    points.insert(points.end(), {{from, 2, 2}, {to, 2, 2}, {to, 6, 2}, {from, 6, 2}});
+    triangles.push_back({first, first + 1, first + 2});
+    triangles.push_back({first, first + 2, first + 3});
+  };
+  for (int k = 0; k < 500; ++k) add(8.0 * k / 500, 8.0 * (k + 1) / 500);
+  for (int brick = 1; brick < 8; ++brick) add(8.0 * brick, 8.0 * (brick + 1));
+  const std::uint64_t border = border_of(points, triangles, 3);
+  EXPECT_GE(border, morton({3, 0, 0}) + 1);
+  EXPECT_LE(border, morton({4, 0, 0}) + 1);
+}
+
 }  // namespace
 }  // namespace nacre
