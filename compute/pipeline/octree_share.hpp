@@ -139,8 +139,8 @@ class OctreeShare {
     return start.back() - start.front();
   }
 
-  /// `work(view)` lets the particles of chosen bricks move, which leave deposits in two arrays. First those that may come
-  /// to bricks of others: what they leave there goes to the owners while the rest moves. Cells of others are 0
+  /// `work(view)` lets the particles of chosen bricks move, which leave deposits in two arrays. First those that may
+  /// come to bricks of others: what they leave there goes to the owners while the rest moves. Cells of others are 0
   /// afterwards.
   template <class Work>
   void collect(const Array<std::uint64_t>& crossed, const Array<std::uint64_t>& ended, const BrickOctreeView& view,
@@ -327,7 +327,7 @@ class OctreeShare {
     return all;
   }
 
-  /// Copies values of a side into its row, ready to be sent; as one of several `arrays`, of which the last one comes last.
+  /// Copies values of a side into its row, ready to be sent; as one of several `arrays`, the last of which comes last.
   template <class Value>
   void pack(Side& side, const Array<Value>& value, int arrays = 1, int which = 0) {
     auto* row = reinterpret_cast<Value*>(row_.data());

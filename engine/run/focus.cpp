@@ -48,6 +48,13 @@ class Projection {
     return {0.5 * view_.width + dot(v, right_) / edge, 0.5 * view_.height - dot(v, up_) / edge, z};
   }
 
+  /// The point at a depth that a pixel shows.
+  Vec3d position(double x, double y, double depth) const {
+    const double edge = pixel(depth);
+    return view_.camera.eye + forward_ * depth + right_ * ((x - 0.5 * view_.width) * edge) +
+           up_ * ((0.5 * view_.height - y) * edge);
+  }
+
   /// What the picture shows, `margin` wider on all sides.
   std::vector<HalfSpace> sides(double margin) const {
     const double half_height = 0.5 * view_.camera.height, half_width = half_height * view_.width / view_.height;
@@ -77,9 +84,11 @@ struct Depths {
   double nearest, farthest;
 };
 
-/// The depths that are seen, of all pixels; by a depth buffer on the host. None: no pixel shows the surface.
-std::optional<Depths> visible_depths(const Projection& project, const FlowView& view, const PreparedSurface& surface) {
-  constexpr float nothing = std::numeric_limits<float>::infinity();
+constexpr double rounding = 1e-9;
+constexpr float nothing = std::numeric_limits<float>::infinity();
+
+/// The depth that each pixel shows, or `nothing`.
+std::vector<float> depth_buffer(const Projection& project, const FlowView& view, const PreparedSurface& surface) {
   std::vector<float> buffer(std::size_t(view.width) * view.height, nothing);
   for (const Triangle& t : surface.triangles) {
     const Vec3d a = project(surface.points[t.a]), b = project(surface.points[t.b]), c = project(surface.points[t.c]);
@@ -93,13 +102,18 @@ std::optional<Depths> visible_depths(const Projection& project, const FlowView& 
         const double px = x + 0.5, py = y + 0.5;
         const double u = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / twice_area;
         const double v = ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / twice_area;
-        if (u < 0 || v < 0 || u + v > 1) continue;
+        if (u < -rounding || v < -rounding || u + v > 1 + rounding) continue;  // no hole between two triangles
         // Exact with parallel rays; else between the corners' depths, which is enough for a bound.
         const auto z = float(std::max(a.z + u * (b.z - a.z) + v * (c.z - a.z), std::min({a.z, b.z, c.z})));
         float& nearest_here = buffer[std::size_t(y) * view.width + x];
         nearest_here = std::min(nearest_here, z);
       }
   }
+  return buffer;
+}
+
+/// The depths that are seen. None: no pixel shows the surface.
+std::optional<Depths> visible_depths(std::vector<float> buffer) {
   std::erase(buffer, nothing);
   if (buffer.empty()) return {};
   // One pixel in a hundred may be nearer: a spike towards the eye does not decide how fine all cells are.
@@ -166,7 +180,7 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
   if (!(coarse > 0) || !(project.distance() > 0) || !(view.camera.height > 0)) return {};
   const SurfacePart seen = cut_surface(whole, project.sides(0));
   if (seen.whole_triangles == whole.triangles.size()) return {};  // all of it
-  const std::optional<Depths> depths = visible_depths(project, view, seen.surface);
+  const std::optional<Depths> depths = visible_depths(depth_buffer(project, view, seen.surface));
   if (!depths) return {};
 
   Focus focus;
@@ -180,6 +194,8 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
     std::vector<HalfSpace> inside = project.sides(cells_beside * cell);
     inside.push_back(project.no_deeper(depths->farthest + cells_beside * cell));
     focus.part = cut_surface(whole, inside);
+    focus.shown = project.sides(0);
+    focus.shown.push_back(inside.back());
     cell = std::max(cell, std::sqrt(area_of(focus.part.surface) / budget));
   }
   const double longest = Extent(focus.part.surface.points, focus.part.surface.triangles).longest_side();
@@ -190,6 +206,36 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
   focus.cell_size = longest / focus.resolution;
   if (focus.cell_size * coarsest_cell > coarse) return {};  // no finer than the whole
   return focus;
+}
+
+FlowView widened(const FlowView& view, double factor) {
+  FlowView wide = view;
+  wide.width = int(std::lround(view.width * factor));
+  wide.height = int(std::lround(view.height * factor));
+  wide.camera.height = view.camera.height * wide.height / view.height;
+  return wide;
+}
+
+bool serves(std::span<const HalfSpace> shown, double cell_size, const FlowView& view, const PreparedSurface& whole) {
+  constexpr int along = 200;  // pixels looked at, along the longer side
+  FlowView coarse = view;
+  const double scale = double(along) / std::max(view.width, view.height);
+  coarse.width = std::max(1, int(view.width * scale));
+  coarse.height = std::max(1, int(view.height * scale));
+  const Projection project(coarse);
+  const std::vector<float> buffer = depth_buffer(project, coarse, cut_surface(whole, project.sides(0)).surface);
+  const std::optional<Depths> depths = visible_depths(buffer);
+  if (!depths) return true;  // nothing is seen
+  if (cell_size > coarsest_cell * Projection(view).pixel(depths->nearest)) return false;
+  for (int y = 0; y < coarse.height; ++y)
+    for (int x = 0; x < coarse.width; ++x) {
+      const float depth = buffer[std::size_t(y) * coarse.width + x];
+      if (depth == nothing) continue;
+      const Vec3d p = project.position(x + 0.5, y + 0.5, depth);
+      for (const HalfSpace& side : shown)
+        if (dot(side.normal, p) > side.offset) return false;
+    }
+  return true;
 }
 
 std::string coarser_than_pixels(const Focus& focus) {

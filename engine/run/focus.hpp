@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/camera.hpp"
@@ -20,11 +22,12 @@ struct FlowView {
 };
 
 struct Focus {
-  SurfacePart part;      ///< what is in view, with a margin as wide as streaks and a step are long
-  int resolution = 0;    ///< for FlowParameters, of the part
-  int wanted = 0;        ///< the same, if the memory did not count
-  double cell_size = 0;  ///< world units
-  double pixel = 0;      ///< edge of a pixel where the surface is nearest, world units
+  SurfacePart part;              ///< what is in view, with a margin as wide as streaks and a step are long
+  std::vector<HalfSpace> shown;  ///< what is in view, without it
+  int resolution = 0;            ///< for FlowParameters, of the part
+  int wanted = 0;                ///< the same, if the memory did not count
+  double cell_size = 0;          ///< world units
+  double pixel = 0;              ///< edge of a pixel where the surface is nearest, world units
 };
 
 /// Larger cells than this many pixels are seen as such.
@@ -46,6 +49,13 @@ double window_budget(const FlowView& view);
 /// the limits of the method ask for it.
 std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole, const FlowParameters& parameters,
                               std::size_t available, double budget);
+
+/// The same view with `factor` times as much around its middle, in pixels of the same size.
+FlowView widened(const FlowView& view, double factor);
+
+/// Whether a focus (its `shown` and `cell_size`) does for another view, too: all that is seen of the surface lies in
+/// it, and its cells are fine enough. Looks at some hundred pixels along either side of the picture.
+bool serves(std::span<const HalfSpace> shown, double cell_size, const FlowView& view, const PreparedSurface& whole);
 
 /// A sentence for the user where the memory makes a focus coarser; else empty.
 std::string coarser_than_pixels(const Focus& focus);

@@ -16,11 +16,11 @@ constexpr int least_warmup = 2;
 
 }  // namespace
 
-void FlowWorker::focus(const FlowView& view, double budget, int request) {
+void FlowWorker::focus(const FlowView& view, double budget, double width, int request) {
   {
     std::scoped_lock lock(mutex_);
     stop_focusing();
-    focus_wanted_ = {view, budget, request};
+    focus_wanted_ = {view, budget, width, request};
   }
   wake_.notify_all();
 }
@@ -95,14 +95,16 @@ void FlowWorker::run_focus(std::unique_lock<std::mutex>& lock) {
   focusing_ = false;
 }
 
-/// Embeds the part in view and starts its flow one step before the one that is shown: the step from there on is the
+/// Nothing where the focus that is there serves. Else embeds the part in view and starts its flow one step before the one that is shown: the step from there on is the
 /// first that the viewer has memory for. Its cells get the memory that all else has left; the focus before it stays as
 /// long as they have enough.
 void FlowWorker::make_focus(const FocusRequest& wanted, FlowFocused& answer) {
   const bool of_thesis = settings_.flow.method == EmbeddingKind::octree && settings_.flow.octree == OctreeKind::thesis;
   if (!has_values_ || steps_made_ == 0 || of_thesis) return;
+  if (focus_ && serves(focus_->shown, focus_->cell_size, wanted.view, vectors_->surface())) return;
   const auto find = [&] {
-    return focus_on(wanted.view, vectors_->surface(), parameters(), device_->arena_bytes(), wanted.budget);
+    return focus_on(widened(wanted.view, wanted.width), vectors_->surface(), parameters(), device_->arena_bytes(),
+                    wanted.budget);
   };
   std::optional<Focus> found = find();
   if (focus_ && (!found || found->resolution < found->wanted)) {
@@ -119,6 +121,8 @@ void FlowWorker::make_focus(const FocusRequest& wanted, FlowFocused& answer) {
 
   auto made = std::make_unique<WorkerFocus>();
   made->part = std::make_shared<SurfacePart>(std::move(found->part));
+  made->shown = std::move(found->shown);
+  made->cell_size = found->cell_size;
   made->pipeline = make_flow_pipeline(*device_);
   made->pipeline->watch(&interrupt_);
   made->pipeline->parameters = settings_.flow;

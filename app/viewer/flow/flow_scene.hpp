@@ -149,7 +149,7 @@ class FlowScene : public Scene {
   double pixel() const;
   bool cells_are_fine() const;
   bool focus_changes() const;
-  void ask_focus();
+  void ask_focus(double width);
   void drop_focus();
   void release(std::unique_ptr<FocusTexture>& texture);
   void warn_once(const std::string& sentence);

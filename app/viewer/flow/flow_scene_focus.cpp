@@ -14,6 +14,7 @@ constexpr double rest_seconds = 0.1;  ///< that a camera stands still before a f
 constexpr double fade_seconds = 0.25;
 constexpr double most_pixels =
     1.3;  ///< times the pixel that a focus was made for: then it covers too little of the view
+constexpr double moving_width = 1.4;  ///< of a focus for a camera that moves, times its view: it serves some frames
 constexpr float former_steps = 4, focus_steps = 8;  ///< of the depth, that they are drawn nearer than the whole
 
 }  // namespace
@@ -41,20 +42,21 @@ void FlowScene::watch_view(double now) {
   if (focus_ && (former_focus_ || !focused())) ++version_;
   if (focused()) release(former_focus_);
   if (!sees(view_)) rests_since_ = now;
-  if (now - rests_since_ >= rest_seconds) ask_focus();
+  if (now - rests_since_ >= rest_seconds) ask_focus(1);
   fill_focus();
 }
 
-/// In a replay each frame of a camera that rests waits for its focus. It is faded in where the camera has moved before.
+/// In a replay each frame waits for a focus that serves it; for a camera that moves it is made wider than the view. It is
+/// faded in where the camera has moved before.
 void FlowScene::await_focus(const View& view) {
   static const std::atomic<bool> never{false};
   const std::atomic<bool>& stop = stop_ ? *stop_ : never;
   const bool first = !begun_looking_ && complete();
   now_ += 1.0 / settings_.fps;
   if (focused()) release(former_focus_);
-  if (!sees(view) && !first) return;
+  const bool rests = sees(view);
   begun_looking_ = begun_looking_ || complete();
-  ask_focus();
+  ask_focus(rests || first ? 1 : moving_width);
   while (!stop && failure_.empty()) {
     fill_focus();
     if (!awaits_focus_ && !next_focus_) break;
@@ -76,7 +78,7 @@ bool FlowScene::sees(const View& view) {
   looked_ = false;
   if (awaits_focus_) worker_.stop_focus();
   const FocusTexture* newest = next_focus_ ? next_focus_.get() : focus_.get();
-  if (cells_are_fine() || (newest && pixel() > most_pixels * newest->pixel)) drop_focus();
+  if (cells_are_fine() || (!lockstep_ && newest && pixel() > most_pixels * newest->pixel)) drop_focus();
   return false;
 }
 
@@ -100,12 +102,13 @@ double FlowScene::pixel() const {
 bool FlowScene::cells_are_fine() const { return !shown_ || shown_->info.cell_size <= coarsest_cell * pixel(); }
 
 /// Not while a step is being made, so that no step comes between the focus and its first values.
-void FlowScene::ask_focus() {
+void FlowScene::ask_focus(double width) {
   if (looked_ || !settings_.focus || !complete() || seen_.height <= 0 || cells_are_fine()) return;
   if (moved_since_ && !settings_.view.play && !worker_.busy()) warm_up_behind();
   if (focus_changes() || looks_back_ || warming_ || newest_ < 0 || next_ || shown_->values.writing()) return;
   looked_ = awaits_focus_ = true;
-  worker_.focus(seen_, lockstep_ ? picture_budget(seen_) : window_budget(seen_), ++focus_request_);
+  const FlowView wide = widened(seen_, width);
+  worker_.focus(seen_, lockstep_ ? picture_budget(wide) : window_budget(seen_), width, ++focus_request_);
 }
 
 /// All of it goes, at once. What is on its way will not be shown.
@@ -191,7 +194,7 @@ bool FlowScene::lend_focus(bool wait, float*& memory, int& number) {
 /// The step that it was lent for is made, or will not be.
 void FlowScene::return_focus(bool written) {
   std::erase_if(leaving_focuses_, [](const auto& texture) { return texture->in_step; });
-  release(former_focus_);  // it is one step behind
+  if (!lockstep_ || focused()) release(former_focus_);  // it is a step behind
   if (!focus_ || !focus_->in_step) return;
   focus_->in_step = false;
   if (written) return focus_->values.end_write();

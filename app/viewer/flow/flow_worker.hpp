@@ -205,10 +205,10 @@ class FlowWorker : public Worker<FlowEvent> {
   /// Asks for the boxes of an embedding in `memory` of the device; FlowBoxed answers. Memory for one that has been
   /// followed by another is not touched.
   void show_boxes(std::uint64_t* memory, int embedding);
-  /// Asks for a focus on what this view shows, with a budget of cells (`focus_on`), made between two steps.
-  /// Each request has one answer, FlowFocused, also
+  /// Asks for a focus that serves this view. Where the one that is there does not, another is made between two steps,
+  /// `width` times as wide as the view, with a budget of cells (`focus_on`). Each request has one answer, FlowFocused, also
   /// where another request or one of the next two calls puts an end to it.
-  void focus(const FlowView& view, double budget, int request);
+  void focus(const FlowView& view, double budget, double width, int request);
   void stop_focus();  ///< no other focus is wanted
   void drop_focus();  ///< nor the one that there is
   /// Asks for the values of the focus of that number at the newest step, in `memory` of the device; FlowFocusFilled
@@ -224,6 +224,7 @@ class FlowWorker : public Worker<FlowEvent> {
   struct FocusRequest {
     FlowView view;
     double budget;
+    double width;  ///< how many times as wide as the view a new focus is
     int number;
   };
 
@@ -231,6 +232,8 @@ class FlowWorker : public Worker<FlowEvent> {
   struct WorkerFocus {
     std::unique_ptr<FlowPipeline> pipeline;
     std::shared_ptr<SurfacePart> part;
+    std::vector<HalfSpace> shown;
+    double cell_size = 0;
     std::uint64_t values = 0;  ///< where its means begin behind its shown values; 0: there are none
     int number = 0, resolution = 0;
     int steps = 0;         ///< the step of the whole that it is at

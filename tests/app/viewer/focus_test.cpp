@@ -279,6 +279,60 @@ TEST_F(FocusInView, FramesOfReplaysWaitForIt) {
   EXPECT_LT(largest, 0.5 * in_all) << "it is faded in after the camera has moved";
 }
 
+TEST_F(FocusInView, FramesOfACameraThatMovesInAReplayStaySharp) {
+  open(true);
+  look(8, 0);
+  const double at_rest = sharpness(frame());
+  double least = at_rest;
+  for (int k = 1; k <= 24; ++k) {  // two widths of the view to the side, along the sphere
+    look(8, 0.02 * k);
+    least = std::min(least, sharpness(frame()));
+  }
+  session_.settings.focus = false;
+  scene_.reset();
+  open(true);
+  look(8, 0.2);
+  const double coarse = sharpness(frame());
+  std::printf("sharpness: %.1f at rest, at least %.1f on the way, %.1f without a focus\n", at_rest, least, coarse);
+  EXPECT_GT(at_rest, 2 * coarse);
+  EXPECT_GT(least, 0.6 * at_rest);
+}
+
+TEST(FocusServes, OtherViewsOfWhatItShowsNoNearer) {
+  const PreparedSurface sphere = prepare(make_sample("sphere", 48).load(0), 40);
+  FlowParameters parameters;
+  parameters.resolution = 48;
+  FlowView view{fit_camera("+x", triangle_corners(sphere), 400, 300), 400, 300};
+  view.camera.height /= 8;
+  const auto focus_of = [&](const FlowView& v) {
+    return focus_on(v, sphere, parameters, std::size_t(1) << 34, picture_budget(v));
+  };
+  const std::optional<Focus> focus = focus_of(view), wide = focus_of(widened(view, 1.4));
+  ASSERT_TRUE(focus && wide);
+  const auto served = [&](const Focus& by, const FlowView& v) { return serves(by.shown, by.cell_size, v, sphere); };
+  const auto moved = [&](double share) {  // of the height of the view
+    FlowView v = view;
+    const Vec3d aside = v.camera.right() * (share * v.camera.height);
+    v.camera.eye += aside, v.camera.target += aside;
+    return v;
+  };
+  EXPECT_TRUE(served(*focus, view));
+  EXPECT_FALSE(served(*focus, moved(0.1)));
+  EXPECT_TRUE(served(*wide, moved(0.1)));
+  EXPECT_FALSE(served(*wide, moved(0.4)));
+  FlowView near = view, far = view, behind = view;
+  near.camera.height /= 2;
+  EXPECT_FALSE(served(*focus, near)) << "its cells are too large";
+  far.camera.height *= 1.2;
+  EXPECT_FALSE(served(*focus, far)) << "more is seen";
+  EXPECT_TRUE(served(*wide, far));
+  behind.camera.eye = view.camera.target * 2 - view.camera.eye;
+  EXPECT_FALSE(served(*wide, behind));
+  behind.camera.target = behind.camera.eye * 2 - view.camera.target;  // away from the surface
+  EXPECT_TRUE(served(*focus, behind)) << "nothing is seen";
+  EXPECT_NEAR(wide->cell_size, focus->cell_size, 0.2 * focus->cell_size) << "pixels are as large";
+}
+
 TEST(FocusBudget, AFocusThatDoesNotFitTheMemoryIsCoarserAndSaysSo) {
   const PreparedSurface sphere = prepare(make_sample("sphere", 24).load(0), 40);
   FlowParameters parameters;
