@@ -30,8 +30,8 @@ class Ranks {
   virtual void sum(std::span<std::uint64_t> values) = 0;
   /// Sends `send[q]` to process q, for all q; returns what came from each.
   virtual std::vector<Bytes> exchange(const std::vector<Bytes>& send) = 0;
-  /// Begins the same with neighbours alone, into memory that is there; at most one part for each process on either side.
-  /// Until `finish` returns, the memory is not touched and no other exchange begins.
+  /// Begins the same with neighbours alone, into memory that is there; at most one part for each process on either
+  /// side. Until `finish` returns, the memory is not touched and no other exchange begins.
   virtual void begin(std::span<const Part> send, std::span<const Part> receive) = 0;
   /// Lets messages move on; called now and then by who works meanwhile.
   virtual void progress() {}

@@ -268,24 +268,23 @@ class FlowMethodOn : public FlowMethod {
     load_present(k);
   }
 
-  /// What streaks of the frame run through. `cell`: edge of a texture cell in cells of the domain.
+  /// Streaks of a frame, in three steps: what they run through (`cell`: edge of a texture cell in cells of the domain),
+  /// what they are made of, and what is shown, around 1/2.
   template <class Surface>
   void mark_streaks(const Surface& surface, std::int64_t n, double cell, StreakCell* cells) {
     const float least = 1e-6f * float(vectors_.reference_speed);
-    for_each_surface_cell_of(exec_, surface, n,
-                             MarkStreakCells<Surface>{surface, mesh_, cell, present_vectors_.data(), least, cells});
+    const MarkStreakCells<Surface> mark{surface, mesh_, cell, present_vectors_.data(), least, cells};
+    for_each_surface_cell_of(exec_, surface, n, mark);
   }
-  /// And what they are made of.
   template <class Surface>
   void smooth_streaks(const Surface& surface, std::int64_t n, const float* value, StreakCell* cells) {
-    store_on_surface(exec_, surface, n, SmoothAlongAndSharpenAcross<Surface>{surface, value, cells},
-                     ToStreakCell{cells});
+    const SmoothAlongAndSharpenAcross<Surface> smooth{surface, value, cells};
+    store_on_surface(exec_, surface, n, smooth, ToStreakCell{cells});
   }
-  /// Streaks along the flow of the frame, around 1/2.
   template <class Surface>
   void draw_streaks(const Surface& surface, std::int64_t n, const StreakCell* cells, float* streaks) {
-    store_on_surface(exec_, surface, n, ConvolveAlongFlow<Surface>{surface, cells, parameters_.streaks},
-                     ToArray{streaks});
+    const ConvolveAlongFlow<Surface> convolve{surface, cells, parameters_.streaks};
+    store_on_surface(exec_, surface, n, convolve, ToArray{streaks});
   }
 
   /// Draws the surface, where it has moved to if it has. `shown`: its texture; null: none.

@@ -13,8 +13,8 @@ struct TouchedBrick {
   std::uint64_t code, work;
 };
 
-/// Divides a triangle until its parts have edges of half a brick at most, and adds the bricks that their middles are in.
-/// A part of a plane crosses as many cells as its shadows on the three sides of the domain have squares.
+/// Divides a triangle until its parts have edges of half a brick at most, and adds the bricks that their middles are
+/// in. A part of a plane crosses as many cells as its shadows on the three sides of the domain have squares.
 void add_bricks(const Corners& c, int levels, std::vector<TouchedBrick>& bricks) {
   constexpr double longest = 0.5 * BrickOctreeView::width;
   const Vec3d edge[3] = {c.b - c.a, c.c - c.b, c.a - c.c};

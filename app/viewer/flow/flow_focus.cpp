@@ -95,9 +95,9 @@ void FlowWorker::run_focus(std::unique_lock<std::mutex>& lock) {
   focusing_ = false;
 }
 
-/// Nothing where the focus that is there serves. Else embeds the part in view and starts its flow one step before the one that is shown: the step from there on is the
-/// first that the viewer has memory for. Its cells get the memory that all else has left; the focus before it stays as
-/// long as they have enough.
+/// Nothing where the focus that is there serves. Else embeds the part in view and starts its flow one step before the
+/// one that is shown: the step from there on is the first that the viewer has memory for. Its cells get the memory that
+/// all else has left; the focus before it stays as long as they have enough.
 void FlowWorker::make_focus(const FocusRequest& wanted, FlowFocused& answer) {
   const bool of_thesis = settings_.flow.method == EmbeddingKind::octree && settings_.flow.octree == OctreeKind::thesis;
   if (!has_values_ || steps_made_ == 0 || of_thesis) return;

@@ -46,8 +46,8 @@ void FlowScene::watch_view(double now) {
   fill_focus();
 }
 
-/// In a replay each frame waits for a focus that serves it; for a camera that moves it is made wider than the view. It is
-/// faded in where the camera has moved before.
+/// In a replay each frame waits for a focus that serves it; for a camera that moves it is made wider than the view. It
+/// is faded in where the camera has moved before.
 void FlowScene::await_focus(const View& view) {
   static const std::atomic<bool> never{false};
   const std::atomic<bool>& stop = stop_ ? *stop_ : never;

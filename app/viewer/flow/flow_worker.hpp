@@ -206,8 +206,8 @@ class FlowWorker : public Worker<FlowEvent> {
   /// followed by another is not touched.
   void show_boxes(std::uint64_t* memory, int embedding);
   /// Asks for a focus that serves this view. Where the one that is there does not, another is made between two steps,
-  /// `width` times as wide as the view, with a budget of cells (`focus_on`). Each request has one answer, FlowFocused, also
-  /// where another request or one of the next two calls puts an end to it.
+  /// `width` times as wide as the view, with a budget of cells (`focus_on`). Each request has one answer, FlowFocused,
+  /// also where another request or one of the next two calls puts an end to it.
   void focus(const FlowView& view, double budget, double width, int request);
   void stop_focus();  ///< no other focus is wanted
   void drop_focus();  ///< nor the one that there is
