@@ -268,8 +268,7 @@ class FlowMethodOn : public FlowMethod {
     load_present(k);
   }
 
-  /// Streaks of a frame, in three steps: what they run through (`cell`: edge of a texture cell in cells of the domain),
-  /// what they are made of, and what is shown, around 1/2.
+  /// Streaks, in three steps. `cell`: edge of a texture cell in cells of the domain; `streaks`: values around 1/2.
   template <class Surface>
   void mark_streaks(const Surface& surface, std::int64_t n, double cell, StreakCell* cells) {
     const float least = 1e-6f * float(vectors_.reference_speed);
