@@ -16,7 +16,7 @@ class FourRays : public MovableParticles {
  public:
   FourRays(int rays, double first) {
     for (std::uint32_t left_out = 0; int(left_out) < rays; ++left_out)
-      for (int k = 0; k < 6; ++k) {
+      for (int k = 0; k < 12; ++k) {
         std::vector<std::uint32_t> m;
         for (std::uint32_t i = 0; i < 4; ++i)
           if (i != left_out) m.push_back(i);
@@ -78,7 +78,7 @@ TEST(MissingPoints, FourCurvesThatEndBesideEachOtherGetTheirPoint) {
   FourRays rays(4, 0.05);
   EXPECT_EQ(rays.broken(), 8u) << "all ends of all curves";
   EXPECT_EQ(put_missing_points(rays, rays.table, rays.frame), 1u);
-  EXPECT_EQ(rays.count(), 4 * 6 - 3);
+  EXPECT_EQ(rays.count(), 4 * 12 - 3);
   const std::uint32_t point = *rays.table.find(Junction(0, 1, 2, 3));
   ASSERT_EQ(std::count(rays.particles.interface.begin(), rays.particles.interface.end(), point), 1);
   const auto at = std::find(rays.particles.interface.begin(), rays.particles.interface.end(), point);
@@ -93,17 +93,17 @@ TEST(MissingPoints, ThreeAreEnoughAndTwoAreNot) {
   FourRays three(3, 0.3), two(2, 0.05);
   EXPECT_EQ(put_missing_points(three, three.table, three.frame), 1u);
   EXPECT_EQ(put_missing_points(two, two.table, two.frame), 0u);
-  EXPECT_EQ(two.count(), 12);
+  EXPECT_EQ(two.count(), 24);
 }
 
 TEST(MissingPoints, WhereThereIsOneOrNoneCanBeFoundNothingChanges) {
   FourRays known(4, 0.6), none(4, 0.05);
   known.add(Vec3d(), *known.table.find(Junction(0, 1, 2, 3)));
   EXPECT_EQ(put_missing_points(known, known.table, known.frame), 0u);
-  EXPECT_EQ(known.count(), 25);
+  EXPECT_EQ(known.count(), 49);
   none.found = false;
   EXPECT_EQ(put_missing_points(none, none.table, none.frame), 0u);
-  EXPECT_EQ(none.count(), 24);
+  EXPECT_EQ(none.count(), 48);
 }
 
 }  // namespace
