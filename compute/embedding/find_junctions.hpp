@@ -132,7 +132,8 @@ struct SearchCoarseCell {
     for (int a = 0; a < kept; ++a)
       for (int b = a + 1; b < kept; ++b) {
         const FieldSample two[2] = {f[a], f[b]};
-        if (!passes(two, 2, first.value, 0.87f * cell)) continue;
+        if (!passes(two, 2, first.value, 0.87f * cell) && !steps_down(p, two, material[a], material[b], first.value))
+          continue;
         result.add(Junction(material[a], material[b]), local);
         for (int c = b + 1; c < kept; ++c) add_curve(p, f, material, a, b, c, kept, first.value, local, result);
       }
@@ -143,12 +144,13 @@ struct SearchCoarseCell {
     const float cell = spacing();
     const FieldSample three[3] = {f[a], f[b], f[c]};
     const Junction curve(material[a], material[b], material[c]);
-    if (!passes(three, 3, highest, 1.2f * cell) || !exists(curve, p, 2 * cell)) return;
+    const float more = is_coarse() ? 1.4f : 1;  // see steps_down
+    if (!passes(three, 3, highest, 1.2f * more * cell) || !exists(curve, p, 2 * cell)) return;
     result.add(curve, local);
     for (int d = c + 1; d < kept; ++d) {
       const FieldSample four[4] = {f[a], f[b], f[c], f[d]};
       const Junction point(material[a], material[b], material[c], material[d]);
-      if (passes(four, 4, highest, 1.5f * cell) && exists(point, p, 3 * cell)) result.add(point, local);
+      if (passes(four, 4, highest, 1.5f * more * cell) && exists(point, p, 3 * cell)) result.add(point, local);
     }
   }
 
@@ -160,6 +162,27 @@ struct SearchCoarseCell {
     for (int m = 0; m < count; ++m)
       if (highest - f[m].value > 2 * reach * at.steepness) return false;
     return true;
+  }
+
+  /// Samples are as far apart as voxels, and may be at their centres.
+  NACRE_HD bool is_coarse() const {
+    const Vec3f& n = field.cells_per_unit;
+    return spacing() * max(n.x, max(n.y, n.z)) > 0.99f;
+  }
+
+  /// Where a function falls from one plateau to another between two voxels, as at the faces of the volume, its slope at
+  /// their centres is half of what it is between them, and one step leads a whole voxel on. Closer samples find such
+  /// an interface from beside it; these look where it is once the voxels around are of both materials.
+  NACRE_HD bool steps_down(const Vec3f& p, const FieldSample* two, std::uint32_t a, std::uint32_t b,
+                           float highest) const {
+    if (!is_coarse() || !passes(two, 2, highest, 1.3f * spacing())) return false;
+    bool has_a = false, has_b = false;
+    const Int3 low = voxel(p);
+    field.each_material(low, low + Int3(2), [&](std::uint32_t m) {
+      has_a = has_a || m == a, has_b = has_b || m == b;
+      return !has_a || !has_b;
+    });
+    return has_a && has_b && exists(Junction(a, b), p, 0.87f * spacing());
   }
 
   NACRE_HD bool exists(const Junction& j, const Vec3f& p, float reach) const {
@@ -293,21 +316,28 @@ struct ListFirst {
   }
 };
 
-/// Junction points near the coarse cells in which one was found: position and size; size 0 where there is none.
+/// Junction points near the coarse cells in which one was found: position and size; size 0 where there is none. Looked
+/// for from the middle of what was found and, where `starts` is more than one, from the middles of its octants: a cell
+/// of several voxels may have two.
 struct FindJunctionPoints {
   MaterialBricksView field;
   SizingFieldView size;
   Int3 coarse;
   float cells_per_voxel;
   const FoundJunction* found;
+  int starts;  ///< 1 or 9
   Float4* point;
   NACRE_HD void operator()(std::int64_t i) const {
     point[i] = {0, 0, 0, 0};
-    const FoundJunction f = found[i];
-    if (f.junction.order() != 0) return;
+    const FoundJunction f = found[i / starts];
+    const int octant = int(i % starts) - 1;
     const Int3 b{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
     Vec3f middle;
-    for (int axis = 0; axis < 3; ++axis) middle[axis] = b[axis] * 4 + 0.5f * float(f.low(axis) + f.high(axis) + 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      middle[axis] = b[axis] * 4 + 0.5f * float(f.low(axis) + f.high(axis) + 1);
+      const float aside = 0.25f * float(f.high(axis) + 1 - f.low(axis));
+      if (octant >= 0) middle[axis] += (octant >> axis & 1) ? aside : -aside;
+    }
     JunctionPoint at;
     if (!project(field, f.junction, middle / cells_per_voxel, cells_per_voxel < 1 ? 6 / cells_per_voxel : 6.0f, at))
       return;
@@ -383,25 +413,32 @@ int junction_points(Executor<Backend>& exec, const MaterialBricks& b, const Sizi
                     std::vector<Float4>& points, std::vector<Junction>& junctions) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  Array<Float4> position = arena.temporary<Float4>(search.count);
-  exec.for_each(search.count, detail::FindJunctionPoints{b.view(), size.view(), coarse, cells_per_voxel,
-                                                         search.found.data(), position.data()});
+  std::vector<FoundJunction> found = search.found.download(0, search.count);
+  std::erase_if(found, [](const FoundJunction& f) { return f.junction.order() != 0; });
+  if (found.empty()) return 0;
+  const int starts = cells_per_voxel > 1 ? 1 : 9;
+  Array<FoundJunction> sought = arena.temporary<FoundJunction>(found.size());
+  sought.upload(found);
+  Array<Float4> position = arena.temporary<Float4>(found.size() * std::size_t(starts));
+  exec.for_each(std::int64_t(position.size()),
+                detail::FindJunctionPoints{b.view(), size.view(), coarse, cells_per_voxel, sought.data(), starts,
+                                           position.data()});
   const std::vector<Float4> all = position.download();
-  const std::vector<FoundJunction> found = search.found.download(0, search.count);
   std::vector<bool> crowded;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].w <= 0) continue;
+    const Junction junction = found[i / std::size_t(starts)].junction;
     std::size_t known = points.size();
     for (std::size_t k = points.size(); k-- > 0 && known == points.size();) {
       const Vec3f r(points[k].x - all[i].x, points[k].y - all[i].y, points[k].z - all[i].z);
       if (dot(r, r) < 0.1f * all[i].w * all[i].w) known = k;
     }
     if (known < points.size()) {
-      if (!(junctions[known] == found[i].junction)) crowded[known] = true;
+      if (!(junctions[known] == junction)) crowded[known] = true;
       continue;
     }
     points.push_back(all[i]);
-    junctions.push_back(found[i].junction);
+    junctions.push_back(junction);
     crowded.push_back(false);
   }
   return int(std::count(crowded.begin(), crowded.end(), true));

@@ -135,7 +135,9 @@ NACRE_HD inline float junction_margin(const MaterialBricksView& field, const Jun
   const std::int64_t block = field.block_at(p);
   const std::uint32_t first = field.block_start[block], last = field.block_start[block + 1];
   const int count = junction.materials();
-  if (last - first <= std::uint32_t(count)) return 4;
+  bool others = false;  // however few are listed: the junction's own may not be among them
+  for (std::uint32_t k = first; k < last; ++k) others = others || !junction.has(field.brick_material[k]);
+  if (!others) return 4;
   const CubicStencil stencil(field, p);
   float own = stencil.value(field, junction.material(0));
   for (int m = 1; m < count; ++m) own = min(own, stencil.value(field, junction.material(m)));

@@ -142,7 +142,7 @@ std::vector<std::uint8_t> StarFinder::take_over(const StarItems& items) {
 }
 
 void StarFinder::find(StarItems items) {
-  for (const auto& [i, star] : unsettled_) stars_[i] = star;
+  for (auto known = unsettled_.rbegin(); known != unsettled_.rend(); ++known) stars_[known->first] = known->second;
   const std::vector<std::uint8_t> stale = take_over(items);
   cut_ = std::count(stale.begin(), stale.end(), 1);
   items_ = std::move(items);
@@ -161,6 +161,29 @@ void StarFinder::find(StarItems items) {
       },
       2048);
   unsettled_ = settle_stars(items_, stars_, std::move(open));
+}
+
+std::vector<std::uint32_t> StarFinder::open(std::span<const std::uint32_t> some) {
+  std::vector<std::uint32_t> changed;
+  const auto forget = [&](std::uint32_t item, std::uint32_t from, std::uint32_t to) {
+    Star& star = stars_[item];
+    for (int k = 0; k < star.count; ++k) {
+      if (star.ring[std::size_t(k)] != from || star.ring[std::size_t(star.after(k))] != to) continue;
+      if (!(star.agreed >> k & 1)) continue;
+      unsettled_.push_back({item, star});
+      changed.push_back(item);
+      star.agreed &= ~(1u << k);
+    }
+  };
+  for (const std::uint32_t i : some) {
+    const Star star = stars_[i];
+    for (int k = 0; k < star.count; ++k) {
+      if (!(star.agreed >> k & 1)) continue;
+      const std::uint32_t a = star.ring[std::size_t(k)], b = star.ring[std::size_t(star.after(k))];
+      forget(i, a, b), forget(a, b, i), forget(b, i, a);
+    }
+  }
+  return changed;
 }
 
 }  // namespace nacre

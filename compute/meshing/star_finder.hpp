@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,9 @@ class StarFinder {
   /// All stars, settled, with what is agreed marked.
   void find(StarItems items);
 
+  /// Takes back what is agreed on at `some` items, until the next call of `find`. Returns the items whose stars change.
+  std::vector<std::uint32_t> open(std::span<const std::uint32_t> some);
+
   const StarItems& items() const { return items_; }          ///< of the last call
   const std::vector<Star>& stars() const { return stars_; }  ///< of each
   std::int64_t cut() const { return cut_; }                  ///< stars that the last call found again
@@ -27,7 +31,7 @@ class StarFinder {
 
   StarItems items_;
   std::vector<Star> stars_, spare_;
-  std::vector<std::pair<std::uint32_t, Star>> unsettled_;  // stars that settling changed, as they were before
+  std::vector<std::pair<std::uint32_t, Star>> unsettled_;  // stars that have changed since, as they were
   ItemTree tree_;
   std::int64_t cut_ = 0;
 };

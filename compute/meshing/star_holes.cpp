@@ -11,7 +11,8 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t longest_loop = 160;  // the time to fill one grows with its cube
+constexpr std::size_t longest_loop = 80;   // the time to fill one grows with its cube
+constexpr std::size_t plain_loop = 12;     // beyond, its shape need not be given by what is around it
 constexpr double fold = 1e3, taken = 1e9;  // prices of a triangle that faces aside, and of an edge that there is
 
 /// An edge of a hole: a triangle that has it is wanted.
@@ -105,6 +106,8 @@ class Filling {
     if (n_ < 3 || n_ > longest_loop || !triangulate_loop()) return {};
     for (const std::uint32_t v : hole_.within) insert(v);
     if (!hole_.within.empty()) improve();
+    if (n_ == 3 && triangles_.size() == 1 && stars_has_backwards()) return {};
+    if (n_ > plain_loop && any_folded()) return {};
     return triangles_;
   }
 
@@ -156,9 +159,13 @@ class Filling {
         cost[i * n_ + j] = best + inner_edge(i, j);
       }
     if (!(cost[n_ - 1] < taken)) return false;
-    if (n_ == 3 && stars_has_backwards()) return false;
     emit(0, n_ - 1, apex);
     return true;
+  }
+
+  bool any_folded() const {
+    return std::any_of(triangles_.begin(), triangles_.end(),
+                       [&](const Triangle& t) { return price(t.a, t.b, t.c) >= fold * 0.1; });
   }
 
   bool stars_has_backwards() const {

@@ -7,12 +7,12 @@
 #include <tuple>
 
 #include "compute/meshing/select_where.hpp"
+#include "compute/meshing/star_chords.hpp"
+#include "compute/meshing/star_filling.hpp"
 #include "compute/meshing/star_holes.hpp"
 
 namespace nacre {
 namespace {
-
-constexpr std::size_t largest_hole = 12;  // sides: beyond, its shape is no longer given by what is around it
 
 /// Whether a star does without a hole: all its triangles are agreed, or it has none, as a particle beyond a rim has.
 bool agrees(const StarItems& items, const Star& star, std::uint32_t i) {
@@ -62,30 +62,6 @@ Agreed find_agreed(const StarItems& items, const std::vector<Star>& stars) {
   return all;
 }
 
-/// Items at edges of filled holes that are not passed once each way, counting the agreed triangles beside them.
-std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vector<Star>& stars,
-                                        std::span<const Triangle> filled) {
-  std::vector<std::array<std::uint32_t, 2>> edges;
-  for (const Triangle& t : filled)
-    for (int k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
-  std::sort(edges.begin(), edges.end());
-  const auto agreed = [&](std::uint32_t a, std::uint32_t b) {
-    const Star& star = stars[a];
-    for (int k = 0; k < star.count; ++k)
-      if (star.ring[std::size_t(k)] == b) return (star.agreed >> k & 1) != 0;
-    return false;
-  };
-  std::vector<std::uint32_t> odd;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto& e = edges[i];
-    const bool twice = i + 1 < edges.size() && edges[i + 1] == e;
-    const bool ends = items.next[e[0]] == e[1];  // the surface ends here
-    const bool back = agreed(e[1], e[0]) || std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]});
-    if (twice || agreed(e[0], e[1]) || (!ends && !back)) odd.insert(odd.end(), e.begin(), e.end());
-  }
-  return odd;
-}
-
 /// Of two triangles with the same corners, what is left without the material between them: one triangle or, where the
 /// same material is on both outer sides, none. Both are used up, the first one for what is left.
 void join_doubles(Triangle& first, std::array<std::uint16_t, 2>& first_materials,
@@ -133,47 +109,6 @@ void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_it
   made.triangles.resize(kept), made.materials.resize(kept);
 }
 
-/// Particles at edges between rims that are no rims themselves, and that two surfaces have: what lies between these has
-/// no thickness there, and touches itself.
-std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const Triangle> with_items) {
-  const auto on_rim = [&](std::uint32_t i) { return items.next[i] != none; };
-  std::vector<std::array<std::uint32_t, 3>> chords;  // two particles and a surface
-  for (const std::uint32_t i : select_where(with_items.size(), [&](std::size_t i) {
-         const Triangle& t = with_items[i];
-         return on_rim(t.a) + on_rim(t.b) + on_rim(t.c) > 1;
-       }))
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = with_items[i][k], b = with_items[i][(k + 1) % 3];
-      if (!on_rim(a) || !on_rim(b) || items.next[a] == b || items.next[b] == a) continue;
-      const auto [low, high] = std::minmax(items.particle[a], items.particle[b]);
-      chords.push_back({low, high, items.surface[a]});
-    }
-  std::sort(chords.begin(), chords.end());
-  chords.erase(std::unique(chords.begin(), chords.end()), chords.end());
-  std::vector<std::uint32_t> shared;
-  for (std::size_t k = 1; k < chords.size(); ++k)
-    if (chords[k][0] == chords[k - 1][0] && chords[k][1] == chords[k - 1][1])
-      shared.push_back(chords[k][0]), shared.push_back(chords[k][1]);
-  return shared;
-}
-
-/// Fills the holes; returns the items of those that cannot be filled.
-std::vector<std::uint32_t> fill(const StarItems& items, const std::vector<Star>& stars,
-                                const std::vector<StarHole>& holes, std::vector<Triangle>& triangles) {
-  std::vector<std::vector<Triangle>> fillings(holes.size());
-  tbb::parallel_for(std::size_t(0), holes.size(), [&](std::size_t i) {
-    if (holes[i].loop.size() <= largest_hole) fillings[i] = fill_hole(items, stars, holes[i]);
-  });
-  std::vector<std::uint32_t> open;
-  for (std::size_t i = 0; i < holes.size(); ++i) {
-    triangles.insert(triangles.end(), fillings[i].begin(), fillings[i].end());
-    if (!fillings[i].empty()) continue;
-    open.insert(open.end(), holes[i].loop.begin(), holes[i].loop.end());
-    open.insert(open.end(), holes[i].within.begin(), holes[i].within.end());
-  }
-  return open;
-}
-
 /// Items on the surfaces of materials that have no triangle.
 std::vector<std::uint32_t> of_lost_materials(const StarItems& items, const StarMesh& made) {
   std::vector<std::uint8_t> there(0x10000, 0);
@@ -204,19 +139,20 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   };
   Agreed found = find_agreed(items, stars);
   made.counts.unsettled = found.unsettled;
-  const StarHoles holes = find_holes(items, stars, found.incomplete);
-  made.counts.holes = std::int64_t(holes.holes.size());
-  unsettle(holes.alone);
-  unsettle(holes.open);
+  StarFilling filling = fill_holes(finder, std::move(found.incomplete));
+  made.counts.holes = filling.holes;
+  made.counts.filled = std::int64_t(filling.triangles.size());
+  unsettle(filling.unsettled);
+  for (const std::uint32_t i : filling.around) made.joined.push_back(items.particle[i]);
 
   std::vector<Triangle>& triangles = found.triangles;
-  const std::size_t agreed = triangles.size();
-  unsettle(fill(items, stars, holes.holes, triangles));
-  const std::span<const Triangle> filled = std::span(triangles).subspan(agreed);
-  made.counts.filled = std::int64_t(filled.size());
-  unsettle(at_odd_edges(items, stars, filled));
-  for (const StarHole& hole : holes.holes)
-    for (const std::uint32_t i : hole.loop) made.joined.push_back(items.particle[i]);
+  if (!filling.opened.empty()) {
+    std::vector<std::uint8_t> opened(items.count(), 0);
+    for (const std::uint32_t i : filling.opened) opened[i] = 1;
+    std::erase_if(triangles, [&](const Triangle& t) { return opened[t.a] || opened[t.b] || opened[t.c]; });
+  }
+  triangles.insert(triangles.end(), filling.triangles.begin(), filling.triangles.end());
+  exchange_shared_chords(items, triangles);
 
   made.triangles.resize(triangles.size());
   made.materials.resize(triangles.size());

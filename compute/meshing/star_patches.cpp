@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
@@ -69,14 +70,17 @@ class Patch {
     for (int a = 0; a < 3; ++a) middle_[a] = step * std::round((low[a] + high[a]) / (2 * step));
   }
 
-  /// Of `members`, ascending.
-  void make(std::span<const std::uint32_t> members, PatchCells& cells) {
+  /// Of `members`, ascending. `kept` are triangles that stay, corners as numbers of members: the cells beside them have
+  /// the materials on their sides, wherever the centres are.
+  void make(std::span<const std::uint32_t> members, const StarMesh& kept, PatchCells& cells) {
     std::vector<Vec3d> places;
     std::vector<double> size;
     for (const std::uint32_t i : members) places.push_back(world_.points[i]), size.push_back(world_.size[i]);
     add_guards(places, size);
     made_ = cells.make(std::move(places), std::move(size), world_, stop_);
-    facets_ = made_->facets;
+    label_ = made_->label;
+    label_beside(made_->cells, kept.triangles, kept.materials, label_);
+    facets_ = interface_facets(made_->cells, label_);
     defects_.clear();
   }
 
@@ -84,7 +88,7 @@ class Patch {
   /// nothing.
   void repair(std::vector<std::uint8_t> there) {
     there.resize(made_->places.size(), 0);
-    std::vector<std::uint16_t> label = made_->label;
+    std::vector<std::uint16_t> label = label_;
     defects_ = repair_labels_at(there, made_->places, made_->cells, label, stop_).defects;
     facets_ = interface_facets(made_->cells, label);
   }
@@ -108,6 +112,7 @@ class Patch {
   Vec3d middle_;  // of a ball around all particles
   double half_ = 0;
   std::shared_ptr<const PatchCells::Made> made_;
+  std::vector<std::uint16_t> label_;  // per cell
   InterfaceFacets facets_;
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
@@ -197,6 +202,23 @@ class Settling {
     mark_near(world_.points, more, world_.size, around, near_);
     all_bad_ = all;
     return select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
+  }
+
+  /// Triangles of stars between members none of which is bad, corners as numbers of members.
+  StarMesh kept(std::span<const std::uint32_t> members) const {
+    std::vector<std::uint32_t> number(bad_.size(), none);
+    for (std::uint32_t k = 0; k < members.size(); ++k)
+      if (!bad_[members[k]]) number[members[k]] = k;
+    StarMesh kept;
+    for (const std::uint32_t i : select_where(stars_.triangles.size(), [&](std::size_t i) {
+           const Triangle& t = stars_.triangles[i];
+           return number[t.a] != none && number[t.b] != none && number[t.c] != none;
+         })) {
+      const Triangle& t = stars_.triangles[i];
+      kept.triangles.push_back({number[t.a], number[t.b], number[t.c]});
+      kept.materials.push_back(stars_.materials[i]);
+    }
+    return kept;
   }
 
   /// Facets at bad particles, and the triangles of stars beside them.
@@ -326,7 +348,6 @@ std::shared_ptr<const PatchCells::Made> PatchCells::make(std::vector<Vec3d> plac
   made->places = std::move(places), made->size = std::move(size);
   made->cells = delaunay_.cells(made->places, stop);
   made->label = world.material_at(label_points(*made));
-  made->facets = interface_facets(made->cells, made->label);
   made_.insert(made_.begin(), made);
   if (made_.size() > most_made) made_.pop_back();
   return made;
@@ -347,7 +368,7 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
     const std::vector<std::uint32_t> members = settling.members();
     work += double(members.size());
     if (work > most_work * double(world.points.size()) && world.points.size() > 1000) return false;
-    patch.make(members, cells);
+    patch.make(members, settling.kept(members), cells);
     if (repairs) patch.repair(settling.marks(members));
     StarMesh joined = settling.join(members, patch.facets());
     if (settling.grow(joined)) continue;

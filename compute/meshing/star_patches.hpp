@@ -33,8 +33,7 @@ class PatchCells {
     std::vector<Vec3d> places;
     std::vector<double> size;
     DelaunayCells cells;
-    std::vector<std::uint16_t> label;  ///< per cell
-    InterfaceFacets facets;            ///< between cells of different labels
+    std::vector<std::uint16_t> label;  ///< per cell, where it is looked up
   };
   std::shared_ptr<const Made> make(std::vector<Vec3d> places, std::vector<double> size, const PatchWorld& world,
                                    const std::atomic<bool>* stop);

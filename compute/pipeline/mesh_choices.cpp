@@ -71,7 +71,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
       p.subcells = std::min(p.subcells, 1);
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);
-      p.remesh = std::min(p.remesh, 6);
+      p.remesh = std::min(p.remesh, 12);
       if (triangles_from_string(p.triangles) == TriangleSource::automatic) p.triangles = "stars";
       break;
     case MeshQuality::best:

@@ -46,7 +46,7 @@ MeshQuality quality_from_string(std::string_view text);
 SeedOrigin seeds_from_string(std::string_view text, Solver solver);
 
 /// The parameters that a run with these works with. A draft has one closest-point cell per voxel and axis, of which
-/// those alone are filled that seeds come from, 8 iterations, one round of smoothing and six of remeshing, or fewer
+/// those alone are filled that seeds come from, 8 iterations, one round of smoothing and twelve of remeshing, or fewer
 /// where `parameters` say so, triangles of stars unless told otherwise, and does not measure the energy at the end; the
 /// best has at least 120 iterations, four rounds of smoothing and 40 of remeshing. Standard changes nothing.
 MeshParameters at_quality(const MeshParameters& parameters);

@@ -62,12 +62,12 @@ inline Vec3d sector_direction(int k) {
 
 /// A body in three sectors about an axis along z. Planes part the sectors; all four materials meet on the axis, where
 /// the body ends above and below.
-inline MeshVolume sectors() {
+inline MeshVolume sectors(const Vec3d& centre = sector_centre, double radius = sector_radius) {
   std::vector<PlaceFunction> functions{[](const Vec3d&) { return 0.0; }};
   for (int k = 0; k < 3; ++k)
-    functions.push_back([k](const Vec3d& p) {
-      const Vec3d r = p - sector_centre;
-      return sector_radius - length(r) + 0.5 * dot(sector_direction(k), r);
+    functions.push_back([=](const Vec3d& p) {
+      const Vec3d r = p - centre;
+      return radius - length(r) + 0.5 * dot(sector_direction(k), r);
     });
   return indicator_volume({30, 29, 30}, functions);
 }

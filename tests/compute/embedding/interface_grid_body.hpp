@@ -133,7 +133,41 @@ void WhereTooManyMaterialsMeetIsCounted(Executor<Backend>& exec) {
   }
 }
 
+/// A box whose function falls from one plateau to another between two voxels, as functions do at the faces of a volume:
+/// the shares of the cells beside it add up to its area, where the cells' centres are the voxels', too.
+template <class Backend>
+void PlateausThatEndBetweenTwoVoxelsHaveTheirArea(Executor<Backend>& exec) {
+  const auto inside = [](const Vec3d& p) {
+    return std::min({p.x, p.y, p.z}) > 4.5 && std::max({p.x, p.y, p.z}) < 14.5 ? 5.0 : -5.0;
+  };
+  const MeshVolume box = indicator_volume({20, 20, 20}, {[&](const Vec3d& p) { return -inside(p); }, inside});
+  for (const double cells_per_voxel : {1, 2}) {
+    const Embedding e = embedding_of(exec, box, {}, cells_per_voxel);
+    double area = 0;
+    for (const EmbeddedCell& cell : e.grid.cell.download()) {
+      const Float4 o = store(load(cell));
+      if (o.w >= 0) area += std::max(0.0f, 1 - length(Vec3f(o.x, o.y, o.z)));
+    }
+    EXPECT_NEAR(area / (cells_per_voxel * cells_per_voxel), 600, 45) << cells_per_voxel;
+  }
+}
+
+/// With one cell per voxel, a coarse cell has room for both ends of a body's axis.
+template <class Backend>
+void TwoPointsOfOneCoarseCellAreTold(Executor<Backend>& exec) {
+  const Vec3d centre(14.3, 13.8, 13.4);
+  const double radius = 1.7;
+  for (const double end : {-radius, radius})
+    for (int axis = 0; axis < 3; ++axis)
+      ASSERT_EQ(int(in_fields(centre + Vec3d(0, 0, end))[axis] / 4), 5) << "the test is not what it says";
+  const Embedding e = embedding_of(exec, sectors(centre, radius), {}, 1);
+  ASSERT_EQ(e.grid.points.size(), 2u);
+  EXPECT_NEAR(std::fabs(e.grid.points[0].z - e.grid.points[1].z), 2 * radius, 0.8);
+}
+
 NACRE_DEVICE_TEST(InterfaceGrid, JunctionsAreFoundAndNamed)
+NACRE_DEVICE_TEST(InterfaceGrid, TwoPointsOfOneCoarseCellAreTold)
+NACRE_DEVICE_TEST(InterfaceGrid, PlateausThatEndBetweenTwoVoxelsHaveTheirArea)
 NACRE_DEVICE_TEST(InterfaceGrid, WhereTooManyMaterialsMeetIsCounted)
 NACRE_DEVICE_TEST(InterfaceGrid, PlanesAndTheirRims)
 NACRE_DEVICE_TEST(InterfaceGrid, CurvesAndTheirTangents)

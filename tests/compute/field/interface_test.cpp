@@ -165,6 +165,15 @@ TEST(Project, OnlyTheIndicatorSeesThatAnotherMaterialCoversThePlace) {
   EXPECT_GT(junction_margin(host.view(), Junction(1, 2), at.p, at.steepness), 0.5f);
 }
 
+/// Within a third material, two that are far away may be equally low: one of them is listed, the other is not.
+TEST(Project, ThereIsNoJunctionOfAMaterialThatIsNotListed) {
+  const HostField host({3, 3, 3}, {1, 1, 1}, catmull_rom,
+                       {[](const Vec3f&) { return 3.0f; }, [](const Vec3f& p) { return -8 + p.x - centre.x; }});
+  JunctionPoint at;
+  ASSERT_TRUE(project(host.view(), Junction(1, 2), centre + Vec3f(0.3f, 0, 0), 1, at));
+  EXPECT_LT(junction_margin(host.view(), Junction(1, 2), at.p, at.steepness), -3);
+}
+
 TEST(Project, TheIndicatorReachesASurfaceRightBesideItsRim) {  // a third material that is nearly as large mixes in
   const HostField host = four_materials();
   for (int k = 1; k <= 60; ++k) {

@@ -1,0 +1,122 @@
+// Nacre: what stars leave open is filled: wide holes, specks, bodies of a few particles, shared edges.
+#include "compute/meshing/star_filling.hpp"
+
+#include <gtest/gtest.h>
+
+#include "compute/meshing/star_chords.hpp"
+#include "tests/compute/meshing/star_clouds.hpp"
+
+namespace nacre::test {
+namespace {
+
+/// A sphere without the particles near its top.
+Cloud with_a_gap(double gap) {
+  const Cloud whole = sphere(spiral(2000), 10);
+  Cloud cloud;
+  for (std::size_t i = 0; i < whole.position.size(); ++i) {
+    const Float4 p = whole.position[i], n = whole.direction[i];
+    if (length(Vec3d(p.x, p.y, p.z) - Vec3d(0, 0, 10)) > gap * p.w) cloud.add({p.x, p.y, p.z}, p.w, {n.x, n.y, n.z});
+  }
+  return cloud;
+}
+
+TEST(StarFilling, WideHolesAreFilledWhereTheyAreFlat) {
+  for (const double gap : {2.0, 3.0, 4.0}) {
+    const Cloud cloud = with_a_gap(gap);
+    const StarMesh made = mesh_from_stars(cloud.view());
+    ASSERT_TRUE(made.sound()) << gap;
+    EXPECT_EQ(made.triangles.size(), 2 * cloud.position.size() - 4) << gap;
+    EXPECT_TRUE(cloud.topology(made).sound()) << gap;
+    EXPECT_EQ(cloud.topology(made).materials[1].euler, 2) << gap;
+    if (gap > 2.5) {
+      EXPECT_GT(made.counts.filled, 12) << gap;
+    }
+  }
+}
+
+TEST(StarFilling, ATriangleAloneBoundsNothing) {
+  Cloud cloud = sphere(spiral(600), 5);
+  for (const Vec3d& p : {Vec3d(20, 0, 0), Vec3d(20.6, 0, 0), Vec3d(20.3, 0.5, 0)}) cloud.add(p, 0.6, {0, 0, 1});
+  const StarMesh made = mesh_from_stars(cloud.view());
+  ASSERT_TRUE(made.sound());
+  EXPECT_EQ(made.triangles.size(), 2 * 600 - 4);
+  EXPECT_EQ(made.counts.left_out, 3);
+}
+
+/// Particles of a thin plate's rim and of a body that is little larger than one particle, as in the vessels of a head:
+/// their normals say little. Whatever becomes of it, the sphere beside it is closed.
+TEST(StarFilling, BodiesOfAFewParticlesAreClosedOrLeftOut) {
+  std::mt19937 generator(4);
+  std::uniform_real_distribution<double> random(-1, 1);
+  int closed = 0, left_out = 0;
+  for (int round = 0; round < 200; ++round) {
+    Cloud cloud = sphere(spiral(300), 4);
+    const int count = 4 + round % 9;
+    for (const Vec3d& d : random_directions(count, unsigned(round))) {
+      const Vec3d noise = Vec3d(random(generator), random(generator), random(generator)) * (0.15 * double(round % 7));
+      cloud.add(Vec3d(20, 0, 0) + d * 0.4, 0.5, normalized(d + noise));
+    }
+    const StarMesh made = mesh_from_stars(cloud.view());
+    if (!made.sound()) continue;
+    const TopologyReport topology = cloud.topology(made);
+    ASSERT_TRUE(topology.sound()) << round;
+    ++(topology.materials[1].euler == 4 ? closed : left_out);
+    EXPECT_TRUE(topology.materials[1].euler == 4 || topology.materials[1].euler == 2) << round;
+  }
+  EXPECT_GT(closed, 150);
+  EXPECT_GT(closed + left_out, 190);
+}
+
+TEST(StarFilling, WhatWasOpenedIsThereAgainTheNextTime) {
+  const Cloud cloud = sphere(random_directions(800, 3), 6);
+  StarFinder finder;
+  const StarMesh first = mesh_from_stars(cloud.view(), finder);
+  const std::vector<std::uint32_t> some = {5, 6, 90};
+  const std::vector<std::uint32_t> changed = finder.open(some);
+  EXPECT_GT(changed.size(), 3 * some.size());
+  for (const std::uint32_t i : some) EXPECT_EQ(finder.stars()[i].agreed, 0u);
+  EXPECT_EQ(mesh_from_stars(cloud.view(), finder).triangles, first.triangles);
+  EXPECT_EQ(finder.cut(), 0);
+}
+
+/// Two surfaces, 0 and 1, over the same four particles: the rims 0 1 and 2 3, with the same diagonal.
+StarItems two_quadrilaterals(double lift) {
+  StarItems items;
+  items.materials = {{0, 1}, {0, 2}};
+  items.first = {0, 4, 8};
+  for (std::uint32_t s = 0; s < 2; ++s)
+    for (std::uint32_t p = 0; p < 4; ++p) {
+      items.position.push_back({double(p == 1 || p == 2), double(p > 1), p == 3 && s == 0 ? lift : 0});
+      items.normal.push_back({0, 0, 1});
+      items.size.push_back(1);
+      items.particle.push_back(p), items.surface.push_back(s);
+      const std::uint32_t beside[] = {1, 0, 3, 2};
+      items.next.push_back(4 * s + beside[p]), items.previous.push_back(4 * s + beside[p]);
+    }
+  return items;
+}
+
+TEST(StarChords, AnEdgeThatTwoSurfacesHaveIsExchangedInOne) {
+  const StarItems items = two_quadrilaterals(0.3);
+  const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  EXPECT_EQ(at_shared_chords(items, both), (std::vector<std::uint32_t>{0, 2}));
+  std::vector<Triangle> triangles = both;
+  exchange_shared_chords(items, triangles);
+  EXPECT_TRUE(at_shared_chords(items, triangles).empty());
+  EXPECT_EQ(triangles[0], both[0]) << "in the flat one: the other triangles are worse";
+  EXPECT_EQ(triangles[1], both[1]);
+  std::vector<Triangle> one = {both[0], both[1]};
+  exchange_shared_chords(items, one);
+  EXPECT_EQ(one, std::vector<Triangle>(both.begin(), both.begin() + 2));
+}
+
+TEST(StarChords, WhereTheOtherEdgeIsThereAlreadyNothingChanges) {
+  const StarItems items = two_quadrilaterals(0);
+  const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {4, 5, 6}, {4, 6, 7}, {5, 7, 6}};
+  std::vector<Triangle> triangles = both;
+  exchange_shared_chords(items, triangles);
+  EXPECT_EQ(triangles, both);
+}
+
+}  // namespace
+}  // namespace nacre::test
