@@ -91,7 +91,7 @@ void refuse_known_edges(std::span<const Triangle> triangles, std::vector<std::ve
          return is_end[t.a] + is_end[t.b] + is_end[t.c] > 1;
        }))
     for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(triangles[i][k], triangles[i][(k + 1) % 3]);
+      const auto [low, high] = std::minmax({triangles[i][k], triangles[i][(k + 1) % 3]});
       if (std::binary_search(edges.begin(), edges.end(), std::array<std::uint32_t, 2>{low, high}))
         known.push_back({low, high});
     }

@@ -23,8 +23,7 @@ constexpr int slow_rounds = 8;         // then a patch grows by whole rings
 constexpr double around = 3;           // sizes: as far as the particles are that a patch is made of
 constexpr double label_reach = 1.5;    // sizes: as far from a facet the material of its cell is looked up
 constexpr std::size_t most_made = 16;  // patches that are kept
-constexpr double most_work =
-    0.5;  // particles of all rounds, by those that there are: beyond, cells of all cost little more
+constexpr double most_work = 0.3;  // particles of all rounds, by those that there are: beyond, cells of all cost less
 
 /// The circumcentre of a triangle.
 Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {

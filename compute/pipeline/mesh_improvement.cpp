@@ -15,7 +15,13 @@ namespace {
 
 /// Rounds of an attempt after its first. With stars, which change less from one mesh to the next than cells do, other
 /// attempts help more.
-constexpr int most_further(const ImprovementRule& rule) { return rule.stars ? 1 : 4; }
+int most_further(const ImprovementRule& rule, const StarUse& use) { return rule.stars && use.fallbacks == 0 ? 1 : 4; }
+
+/// Rounds of remeshing: cells, which cost several times as much as stars, get fewer where stars were asked for; but not
+/// where the particles were smoothed for triangles of stars first.
+int most_rounds(const ImprovementRule& rule, const StarUse& use) {
+  return use.fallbacks == 0 || use.meshes > 0 ? rule.remesh : (rule.remesh + 1) / 2;
+}
 
 /// What an attempt does to the particles around bad points.
 struct AttemptKind {
@@ -156,7 +162,7 @@ bool MeshImprovement::improve(Triangulated& made) {
   const std::vector<std::uint8_t> bad = bad_points(made.mesh, made.touching);
   const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
   const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * bad_);
-  if (remeshed_ >= rule_.remesh || !worth) return false;
+  if (remeshed_ >= most_rounds(rule_, star_use_) || !worth) return false;
   ++remeshed_;
   bad_ = count;
   return begin_attempt(made, bad);
@@ -184,7 +190,8 @@ bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uin
 bool MeshImprovement::continue_attempt(Triangulated& made) {
   attempt_->judge(made.view());
   const std::vector<std::uint8_t> open = attempt_->open(made.view());
-  if (open.empty() || further_ == most_further(rule_) || remeshed_ >= rule_.remesh) return false;
+  if (open.empty() || further_ == most_further(rule_, star_use_) || remeshed_ >= most_rounds(rule_, star_use_))
+    return false;
   ++further_, ++remeshed_;
   std::vector<std::uint8_t> moving = bad_points(made.mesh, made.touching);
   for (std::size_t v = 0; v < moving.size(); ++v) moving[v] &= open[v];
