@@ -2,9 +2,11 @@
 #include "api/shared_run.hpp"
 
 #include <chrono>
+#include <cstring>
 #include <string>
 
 #include "compute/device/error.hpp"
+#include "compute/device/exchange_bytes.hpp"
 
 namespace nacre {
 
@@ -24,30 +26,16 @@ void RanksOfCaller::sum(std::span<std::uint64_t> values) {
 
 /// First each tells all others how much comes.
 std::vector<Ranks::Bytes> RanksOfCaller::exchange(const std::vector<Bytes>& send) {
-  const auto n = static_cast<std::size_t>(count_), own = static_cast<std::size_t>(rank_);
-  std::vector<std::uint64_t> out(n), in(n);
-  std::vector<Part> to, from;
-  const auto others = [&](const auto& visit) {
-    for (std::size_t q = 0; q < n; ++q)
-      if (q != own) visit(q, int(q));
-  };
-  others([&](std::size_t q, int rank) {
-    out[q] = send[q].size();
-    to.push_back({rank, std::as_writable_bytes(std::span(&out[q], 1))});
-    from.push_back({rank, std::as_writable_bytes(std::span(&in[q], 1))});
-  });
-  Ranks::exchange(to, from);
-  to.clear(), from.clear();
-  std::vector<Bytes> received(n);
-  received[own] = send[own];
-  others([&](std::size_t q, int rank) {
-    received[q].resize(in[q]);
-    // What is sent is not written to; a part is for both ways.
-    if (out[q]) to.push_back({rank, {const_cast<std::byte*>(send[q].data()), send[q].size()}});
-    if (in[q]) from.push_back({rank, received[q]});
-  });
-  Ranks::exchange(to, from);
-  return received;
+  constexpr std::size_t width = sizeof(std::uint64_t);
+  std::vector<Bytes> sizes(send.size(), Bytes(width));
+  std::vector<std::uint64_t> coming(send.size(), width);
+  for (std::size_t q = 0; q < send.size(); ++q) {
+    const std::uint64_t size = send[q].size();
+    std::memcpy(sizes[q].data(), &size, width);
+  }
+  const std::vector<Bytes> told = exchange_bytes(*this, sizes, coming);
+  for (std::size_t q = 0; q < send.size(); ++q) std::memcpy(&coming[q], told[q].data(), width);
+  return exchange_bytes(*this, send, coming);
 }
 
 void RanksOfCaller::begin(std::span<const Part> send, std::span<const Part> receive) {

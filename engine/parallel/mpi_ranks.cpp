@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "compute/device/error.hpp"
+#include "compute/device/exchange_bytes.hpp"
 
 namespace nacre {
 namespace {
@@ -58,21 +59,7 @@ class MpiRanks final : public Ranks {
     check(MPI_Ialltoall(out.data(), 1, MPI_UINT64_T, in.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD, &request),
           "tell each other what comes");
     wait({&request, 1}, "tell each other what comes");
-    std::vector<Bytes> received(out.size());
-    std::vector<Part> to, from;
-    for (int q = 0; q < count_; ++q) {
-      const auto at = static_cast<std::size_t>(q);
-      received[at].resize(in[at]);
-      if (q == rank_) {
-        received[at] = send[at];
-        continue;
-      }
-      // What is sent is not written to: MPI-2 had no const.
-      if (out[at]) to.push_back({q, {const_cast<std::byte*>(send[at].data()), send[at].size()}});
-      if (in[at]) from.push_back({q, received[at]});
-    }
-    Ranks::exchange(to, from);
-    return received;
+    return exchange_bytes(*this, send, in);
   }
 
   void begin(std::span<const Part> send, std::span<const Part> receive) override {

@@ -298,12 +298,21 @@ TEST_F(FocusInView, FramesOfACameraThatMovesInAReplayStaySharp) {
   EXPECT_GT(least, 0.6 * at_rest);
 }
 
-TEST(FocusServes, OtherViewsOfWhatItShowsNoNearer) {
-  const PreparedSurface sphere = prepare(make_sample("sphere", 48).load(0), 40);
+/// A sphere, and a view of a part of it.
+struct CloseUp {
+  PreparedSurface sphere;
   FlowParameters parameters;
-  parameters.resolution = 48;
-  FlowView view{fit_camera("+x", triangle_corners(sphere), 400, 300), 400, 300};
-  view.camera.height /= 8;
+  FlowView view;
+
+  CloseUp(int detail, int width, int height, double zoom) : sphere(prepare(make_sample("sphere", detail).load(0), 40)) {
+    parameters.resolution = 48;
+    view = {fit_camera("+x", triangle_corners(sphere), width, height), width, height};
+    view.camera.height /= zoom;
+  }
+};
+
+TEST(FocusServes, OtherViewsOfWhatItShowsNoNearer) {
+  const auto [sphere, parameters, view] = CloseUp(48, 400, 300, 8);
   const auto focus_of = [&](const FlowView& v) {
     return focus_on(v, sphere, parameters, std::size_t(1) << 34, picture_budget(v));
   };
@@ -334,11 +343,8 @@ TEST(FocusServes, OtherViewsOfWhatItShowsNoNearer) {
 }
 
 TEST(FocusBudget, AFocusThatDoesNotFitTheMemoryIsCoarserAndSaysSo) {
-  const PreparedSurface sphere = prepare(make_sample("sphere", 24).load(0), 40);
-  FlowParameters parameters;
-  parameters.resolution = 48;
-  FlowView view{fit_camera("+x", triangle_corners(sphere), 1000, 750), 1000, 750};
-  view.camera.height /= 16;
+  CloseUp close_up(24, 1000, 750, 16);
+  auto& [sphere, parameters, view] = close_up;
   for (const EmbeddingKind method : {EmbeddingKind::grid, EmbeddingKind::octree}) {
     parameters.method = method;
     const auto in = [&](std::size_t bytes) { return focus_on(view, sphere, parameters, bytes, picture_budget(view)); };
