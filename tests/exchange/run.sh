@@ -24,8 +24,9 @@ mkdir "$work/case"
 "$python" "$here/make_inputs.py" "$work"
 "$python" -W ignore "$here/make_dicom.py" "$work"
 
+# The meshes are coarse: what pyfebio takes to read one grows with the square of its elements (seven minutes for 6,000).
 mesh() {
-  "$nacre" mesh "$work/labels.seg.nrrd" --max-size 3 --min-size 1.5 --quiet --out "$work/$1" "${@:2}" >/dev/null
+  "$nacre" mesh "$work/labels.seg.nrrd" --max-size 6 --min-size 4 --quiet --out "$work/$1" "${@:2}" >/dev/null
 }
 mesh cells.vtu
 for file in cells.msh cells.msh4 cells.inp cells.mesh cells.feb cells.xdmf case/liver.foam surface.glb; do mesh "$file"; done
