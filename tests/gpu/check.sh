@@ -2,7 +2,7 @@
 # Nacre: everything that needs a GPU, in one command and under eight minutes.
 #   check.sh --pack [DIR]   build for sm_90 into a folder that runs anywhere with a driver (default build/gpu-pack);
 #                           with the viewer's libraries it holds the tests of buffers that CUDA shares with OpenGL, too
-#   check.sh --run [DIR]    run what is in such a folder: needs bash, awk and an NVIDIA driver, nothing else
+#   check.sh --run [DIR]    run what is in such a folder: needs bash, awk, tar, gzip and an NVIDIA driver, nothing else
 #   check.sh                run the folder; where there is none, build it first
 # Results (JSON, logs, pictures, results.txt) go to $OUT, else to build/gpu-results. Status: 0 all well, 1 something
 # failed, 77 no CUDA device.
@@ -12,7 +12,7 @@ here=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)
 root=$(cd "$here/../.." && pwd -P)
 architecture=${NACRE_GPU_ARCHITECTURE:-90}
 march=${NACRE_MARCH:-x86-64-v3}  # the machine with the GPU need not have this one's processor
-pack_limit_mib=60
+pack_limit_mib=44
 seconds_limit=450
 
 say() { printf 'check: %s\n' "$*"; }
@@ -23,15 +23,15 @@ fail() {
 
 # ---- the half that builds ----
 
-# Copies a program and the libraries that it needs, those of the C library and the driver excepted.
+# Copies a program into FOLDER, and the libraries that it needs, those of the C library and the driver excepted.
 pack_program() {
-  local program=$1 pack=$2 library
-  install -m 755 "$program" "$pack/bin/"
-  strip "$pack/bin/$(basename "$program")"
+  local program=$1 folder=$2 library
+  install -m 755 "$program" "$folder/bin/"
+  strip "$folder/bin/$(basename "$program")"
   while read -r library; do
     case $(basename "$library") in
       libc.so* | libm.so* | libdl.so* | librt.so* | libpthread.so* | ld-linux* | libcuda.so*) ;;
-      *) [[ -e $pack/lib/$(basename "$library") ]] || install -m 644 "$library" "$pack/lib/" ;;
+      *) [[ -e $folder/lib/$(basename "$library") ]] || install -m 644 "$library" "$folder/lib/" ;;
     esac
   done < <(ldd "$program" | awk '$2 == "=>" && $3 ~ /^\// { print $3 }')
   if ldd "$program" | grep -q 'not found'; then
@@ -41,11 +41,15 @@ pack_program() {
 
 pack() {
   local pack=$1 build=${NACRE_GPU_BUILD:-$root/build/gpu} name size
+  local folder=$build/programs
   local programs=(nacre test_gpu test_bodies_cuda gpu_info gpu_floors)
   command -v cmake >/dev/null || fail "cmake is not installed: nothing to build with; bring a folder made by --pack"
-  local options=(-DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_TESTS=ON "-DNACRE_MARCH=$march" -DCMAKE_BUILD_TYPE=Release
+  local options=(-DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_MPI=OFF -DNACRE_TESTS=ON "-DNACRE_MARCH=$march" -DCMAKE_BUILD_TYPE=Release
     -DCMAKE_CXX_FLAGS=-Wno-psabi  # our 64-byte vectors never cross a call
     "-DCMAKE_CUDA_ARCHITECTURES=$architecture" "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$build/bin")
+  if nvcc --help 2>/dev/null | grep -q -- --compress-mode; then
+    options+=(-DCMAKE_CUDA_FLAGS=--compress-mode=size)  # a third of the size
+  fi
   command -v ninja >/dev/null && options+=(-G Ninja)
   command -v ccache >/dev/null && options+=(-DCMAKE_{CXX,CUDA}_COMPILER_LAUNCHER=ccache)
   cmake -S "$root" -B "$build" "${options[@]}"
@@ -55,11 +59,12 @@ pack() {
     say "without the viewer's libraries: test_interop is left out"
   fi
   cmake --build "$build" --parallel "${NACRE_JOBS:-$(nproc)}" --target "${programs[@]}"
-  rm -rf "$pack"
-  mkdir -p "$pack/bin" "$pack/lib"
+  rm -rf "$pack" "$folder"
+  mkdir -p "$pack" "$folder/bin" "$folder/lib"
   for name in "${programs[@]}"; do
-    pack_program "$build/bin/$name" "$pack"
+    pack_program "$build/bin/$name" "$folder"
   done
+  tar -C "$folder" -czf "$pack/programs.tar.gz" bin lib
   install -m 755 "$here/check.sh" "$pack/run.sh"
   install -m 644 "$root/tests/bench/report.sh" "$pack/"
   size=$(du -sm "$pack" | cut -f 1)
@@ -347,14 +352,16 @@ write_results() {
 }
 
 run() {
-  pack=$1
+  [[ -s $1/programs.tar.gz ]] || fail "$1 holds no programs: make it with check.sh --pack"
+  pack=$(mktemp -d)
+  trap 'rm -rf "$pack"' EXIT
+  tar -C "$pack" -xzf "$1/programs.tar.gz"
   out=${OUT:-$root/build/gpu-results}
-  [[ -x $pack/bin/test_gpu ]] || fail "$pack holds no programs: make it with check.sh --pack"
   mkdir -p "$out"
   LD_LIBRARY_PATH=$pack/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
   [[ -d /usr/local/nvidia/lib64 ]] && LD_LIBRARY_PATH+=:/usr/local/nvidia/lib64  # where containers find the driver
   export LD_LIBRARY_PATH
-  source "$pack/report.sh"
+  source "$1/report.sh"
   exec > >(tee "$out/results.txt")
   device_info
   unit_tests
@@ -374,12 +381,12 @@ run() {
   say "all good in $SECONDS s; results in $out"
 }
 
-[[ -x $here/bin/test_gpu ]] && root=$here && default=$here || default=$root/build/gpu-pack
+[[ -s $here/programs.tar.gz ]] && root=$here && default=$here || default=$root/build/gpu-pack
 case ${1:-} in
   --pack) pack "${2:-$root/build/gpu-pack}" ;;
   --run) run "${2:-$default}" ;;
   '')
-    [[ -x $default/bin/test_gpu ]] || pack "$default"
+    [[ -s $default/programs.tar.gz ]] || pack "$default"
     run "$default"
     ;;
   *) fail "no such option: $1 (--pack or --run)" ;;
