@@ -6,9 +6,9 @@
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/interfaces.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
 #include "compute/meshing/triangle_rings.hpp"
-#include "compute/pipeline/missing_points.hpp"
 
 namespace nacre {
 namespace {
@@ -65,7 +65,6 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
 
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
-  if (rule_.stars) particles_.in_stage("triangulate", [&] { put_missing_points(particles_, table_, frame_); });
   settle(best);
   if (rule_.deviation > 0) refine(*best);
   particles_.upload(best->particles);
@@ -115,8 +114,21 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
 /// False where the stars do not give a sound mesh.
 bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points,
                                            Triangulated& made) {
-  const StarInput input = star_input(particles_, particles, table_);
-  StarMesh stars = mesh_from_stars(input.of(particles), star_finder_);
+  std::vector<Junction> junction(particles.count());
+  const std::vector<std::uint32_t> on_rims = select_where(particles.count(), [&](std::size_t i) {
+    junction[i] = table_.junctions[particles.interface[i]];
+    return junction[i].order() < 2;
+  });
+  std::vector<Vec3f> rim_position;
+  std::vector<Junction> rims;
+  for (const std::uint32_t i : on_rims) {
+    rim_position.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
+    rims.push_back(junction[i]);
+  }
+  const std::vector<JunctionGradients> rim_gradient = particles_.junction_gradients(rim_position, rims);
+  std::vector<JunctionGradients> gradient(particles.count());
+  for (std::size_t k = 0; k < on_rims.size(); ++k) gradient[on_rims[k]] = rim_gradient[k];
+  StarMesh stars = mesh_from_stars({particles.position, particles.direction, junction, gradient}, star_finder_);
   check_stop(rule_.stop);
   std::vector<double> size;
   for (const Float4& p : particles.position) size.push_back(p.w * frame_.unit);
