@@ -233,6 +233,8 @@ Meshing::Meshing(std::span<const VolumeView> volumes, const KnobValues& knobs, R
   library_call([&] {
     State& s = *state_;
     s.options = std::move(options);
+    if (s.options.processes)
+      throw Error("a mesh cannot be made by several processes", "RunOptions::processes is set", "leave it null");
     if (!preset.empty() && preset != "source") throw Error("no preset '" + preset + "'", "", "use source");
     if (preset == "source") apply_thesis_preset(s.settings());
     apply_knobs(s.settings(), knobs, Job::mesh);

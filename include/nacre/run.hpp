@@ -27,7 +27,8 @@ struct RunOptions {
   std::function<void(const RunProgress&)> progress;
   std::function<void(const std::string& sentence)> warn;  ///< what was assumed or dropped
   const std::atomic<bool>* stop = nullptr;                ///< once it is true, the run throws Interrupted soon
-  /// Those that make one flow run together (processes.hpp); they must outlive it. Null: this process is alone.
+  /// Those that make one flow run together (processes.hpp); they must outlive it. Null: this process is alone, as it
+  /// has to be for a mesh.
   Processes* processes = nullptr;
 };
 

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "include/nacre/flow.hpp"
+#include "include/nacre/mesh.hpp"
 #include "tests/api/thread_processes.hpp"
 
 namespace nacre {
@@ -136,13 +137,13 @@ std::vector<std::string> refusals(const std::function<void(int, SurfaceFlow&, Kn
 TEST(FlowOfSeveralProcesses, IsRefusedOnAllOfThem) {
   for (const std::string& said : refusals([](int, SurfaceFlow&, KnobValues& own) { own["method"] = "grid"; }))
     EXPECT_NE(said.find("octree"), std::string::npos) << said;
-  for (const std::string& said : refusals([](int rank, SurfaceFlow&, KnobValues& own) { own["seed"] = 1 + rank; }))
+  for (const std::string& said : refusals([](int rank, SurfaceFlow&, KnobValues&own) { own["seed"] = 1 + rank; }))
     EXPECT_NE(said.find("another input"), std::string::npos) << said;
-  for (const std::string& said : refusals([](int rank, SurfaceFlow& flow, KnobValues&) {
+  for (const std::string& said : refusals([](int rank, SurfaceFlow&flow, KnobValues&) {
          if (rank == 1) flow.points[3][0] += 0.01;
        }))
     EXPECT_NE(said.find("another input"), std::string::npos) << said;
-  for (const std::string& said : refusals([](int, SurfaceFlow& flow, KnobValues&) {
+  for (const std::string& said : refusals([](int, SurfaceFlow&flow, KnobValues&) {
          const auto points = flow.points;
          flow.times = {0, 1};
          flow.positions = [points](std::size_t step, std::span<double> to) {
@@ -162,6 +163,21 @@ TEST(FlowOfSeveralProcesses, NeedsARankThatIsThere) {
   RunOptions options;
   options.processes = &beyond;
   EXPECT_THROW(Flow(ball(), knobs, options), Error);
+}
+
+TEST(MeshOfSeveralProcesses, IsRefused) {
+  const std::vector<std::uint8_t> labels(8, 1);
+  const VolumeView volume = volume_view(std::span(labels), {2, 2, 2});
+  on_processes(2, [&](Processes& processes) {
+    RunOptions options;
+    options.processes = &processes;
+    try {
+      Meshing(volume, {}, options);
+      ADD_FAILURE() << "a mesh by two processes";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("several processes"), std::string::npos) << error.what();
+    }
+  });
 }
 
 }  // namespace
