@@ -8,6 +8,7 @@
 
 #include "compute/device/error.hpp"
 #include "compute/field/distance.hpp"
+#include "compute/field/sizing.hpp"
 #include "compute/pipeline/particle_rules.hpp"
 
 namespace nacre {
@@ -22,9 +23,18 @@ constexpr double host_bytes_of_particle = 1250;
 
 double largest_size(const MeshParameters& parameters) { return std::max(parameters.min_size, parameters.max_size); }
 
-/// Half-way between the sizes, but never far from the smallest one: bodies are as thin as that somewhere.
+/// Half-way between the sizes, but never far from the smallest one.
 double usual_size(const MeshParameters& parameters) {
   return std::min(0.5 * (parameters.min_size + largest_size(parameters)), 1.5 * parameters.min_size);
+}
+
+/// Beside something thin: the ball that touches both of its sides is half as wide.
+double size_beside(double thickness, const MeshParameters& parameters) {
+  const SizingRule rule{.epsilon = float(parameters.epsilon),
+                        .delta = float(parameters.delta),
+                        .min_size = float(parameters.min_size),
+                        .max_size = float(largest_size(parameters))};
+  return std::min(usual_size(parameters), double(rule.size(float(thickness / 2), rule.max_size, rule.max_size)));
 }
 
 std::string one_decimal(double x) {
@@ -36,22 +46,30 @@ std::string gigabytes(double bytes) { return one_decimal(bytes / 1e9) + " GB"; }
 
 double particles_on(double area, double size) { return 1.1547 * area / (size * size); }
 
+double particles_on(const BoundaryArea& boundary, const MeshParameters& parameters) {
+  double particles = 0, thick = boundary.usual;
+  for (const BoundaryArea::Thin& thin : boundary.thin) {
+    particles += particles_on(thin.area, size_beside(thin.thickness, parameters));
+    thick -= thin.area;
+  }
+  return particles + particles_on(std::max(thick, 0.0), usual_size(parameters));
+}
+
 }  // namespace
 
 double MemoryEstimate::peak() const { return fields + std::max(building, particles + triangulation); }
 
 MemoryEstimate estimate_memory(const VolumeFacts& facts, const MeshParameters& parameters) {
   const double brick = brick_voxels * sizeof(float), tile = Lattice::tile_cells * sizeof(float);
-  const double points = boundary_cells * facts.area / (facts.spacing * facts.spacing);
+  const double points = boundary_cells * facts.boundary.usual / (facts.spacing * facts.spacing);
   const double cells_per_voxel = std::min(1.5 / (0.9 * largest_size(parameters)), double(parameters.subcells));
-  const double particles =
-      parameters.particles > 0 ? parameters.particles : particles_on(facts.area, usual_size(parameters));
+  const double particles = parameters.particles > 0 ? parameters.particles : particles_on(facts.boundary, parameters);
   const bool tightens = parameters.tighten > 0;
   MemoryEstimate estimate;
   estimate.fields =
       double(facts.bricks) * brick + 2 * double(facts.lattice_tiles) * tile + points * sizeof(InterfacePoint);
   estimate.building = std::max(tightens ? double(facts.bricks) * brick : 0.0, double(facts.lattice_tiles) * tile);
-  estimate.particles = cells_on_area * facts.area * cells_per_voxel * cells_per_voxel * bytes_of_cell +
+  estimate.particles = cells_on_area * facts.boundary.usual * cells_per_voxel * cells_per_voxel * bytes_of_cell +
                        solver_bytes(std::int64_t(std::min(particles, 4e9)), 1, parameters);
   estimate.triangulation = particles * host_bytes_of_particle;
   return estimate;

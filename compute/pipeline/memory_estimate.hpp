@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "compute/field/boundary_area.hpp"
 #include "compute/pipeline/mesh_pipeline.hpp"
 
 namespace nacre {
@@ -11,7 +12,7 @@ namespace nacre {
 struct VolumeFacts {
   std::int64_t bricks = 0;         ///< of materials' functions
   std::int64_t lattice_tiles = 0;  ///< of distances, those that are stored
-  double area = 0;                 ///< of all boundaries, squares of the smallest spacing
+  BoundaryArea boundary;           ///< between materials
   double spacing = 1;              ///< of the lattice, in smallest spacings
 };
 
@@ -25,7 +26,7 @@ struct MemoryEstimate {
 };
 
 /// By what each element takes; `triangulation` by what was measured. The sizes of particles are those that the
-/// parameters ask for: where much is thinner than `min_size` there are more.
+/// parameters ask for, and what SizingRule gives beside thin materials.
 MemoryEstimate estimate_memory(const VolumeFacts& facts, const MeshParameters& parameters);
 
 /// By how much `min_size` and `max_size` must be larger for `free` bytes to be enough; 0 where that would not help.

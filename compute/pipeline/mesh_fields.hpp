@@ -45,8 +45,8 @@ class MeshFields {
   const VolumeFrame& frame() const { return frame_; }
   std::vector<SizeBound> bounds(const MeshParameters& p) const { return size_bounds(p.sizes, described_); }
   const SizeWishes* wishes() const { return wishes_ ? &*wishes_ : nullptr; }  ///< null: the volume has none
-  double least_area() const { return least_area_; }     ///< of all boundaries, squares of the smallest spacing
-  VolumeFacts facts(const MeshParameters& parameters);  ///< before the fields are built
+  const BoundaryArea& area() const { return area_; }                          ///< from the voxels
+  VolumeFacts facts(const MeshParameters& parameters);                        ///< before the fields are built
   const MaterialBricks& bricks() const { return bricks_; }
   const DistanceField& distance() const { return distance_; }
   const SizingField& size() const { return size_; }
@@ -77,7 +77,7 @@ class MeshFields {
   std::optional<MeshVolume::Kind> kind_;  ///< of the volume; none: none is loaded
   std::optional<SizeWishes> wishes_;
   MaterialBricks bricks_;
-  double least_area_ = 0;
+  BoundaryArea area_;
   DistanceField distance_;
   SizingField size_;
   InterfaceGrid grid_;
@@ -124,7 +124,7 @@ void MeshFields<Backend>::load(const MeshVolume& volume, const MeshParameters& p
     const float slope = volume.levels.size() == 1 ? distance_slope(volume.dims, spacing, values, volume.levels[0]) : 0;
     info.ridge_voxels = fill_scalar(exec_, bricks_, values, volume.levels, scale > 0 ? scale : 1, slope);
   }
-  least_area_ = least_boundary_area(exec_, bricks_);
+  area_ = boundary_area(exec_, bricks_);
   info.blocks = bricks_.blocks;
   mark_[0] = arena.mark();
   kind_ = volume.kind;
@@ -139,7 +139,7 @@ VolumeFacts MeshFields<Backend>::facts(const MeshParameters& parameters) {
   facts.lattice_tiles = tiles_near(exec_, bricks_, wanted.lattice, wanted.reach).count();
   arena.rewind(mark);
   facts.bricks = bricks_.bricks;
-  facts.area = usual_over_least_area * least_area_;
+  facts.boundary = area_;
   facts.spacing = wanted.lattice.spacing.x;
   return facts;
 }

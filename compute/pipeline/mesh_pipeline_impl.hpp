@@ -147,7 +147,7 @@ class MeshPipelineOf : public MeshPipeline {
     for (const SizeBound& bound : fields_.bounds(parameters)) h = std::max(h, double(bound.size));
     if (fields_.wishes()) h = std::max(h, double(fields_.wishes()->most));
     if (parameters.particles == 0)
-      require_room_for(fields_.least_area() * 1.1547 / (h * h), 0, exec_.arena().room_bytes(), exec_.device(),
+      require_room_for(fields_.area().least * 1.1547 / (h * h), 0, exec_.arena().room_bytes(), exec_.device(),
                        parameters, "the boundaries ask for at least ");
     const VolumeFacts facts = fields_.facts(used);
     info_.estimated_peak_bytes =

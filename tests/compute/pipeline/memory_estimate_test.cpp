@@ -12,7 +12,7 @@ VolumeFacts large_facts() {
   VolumeFacts facts;
   facts.bricks = 300000;
   facts.lattice_tiles = 100000;
-  facts.area = 2.6e6;
+  facts.boundary.usual = 2.6e6;
   return facts;
 }
 
@@ -62,8 +62,19 @@ TEST(MemoryEstimate, GrowsWithAreaAndShrinksWithSizes) {
   EXPECT_LT(estimate_memory(large_facts(), with_sizes(4, 6)).peak(), peak);
   EXPECT_GT(estimate_memory(large_facts(), with_sizes(1, 1.5)).peak(), 1.5 * peak);
   VolumeFacts twice = large_facts();
-  twice.bricks *= 2, twice.lattice_tiles *= 2, twice.area *= 2;
+  twice.bricks *= 2, twice.lattice_tiles *= 2, twice.boundary.usual *= 2;
   EXPECT_NEAR(estimate_memory(twice, with_sizes(2, 3)).peak(), 2 * peak, 0.05 * peak);
+}
+
+/// Half of the area is beside plates that are two voxels thin, where particles are as small as the sizes allow.
+TEST(MemoryEstimate, ThinMaterialsTakeMoreParticles) {
+  VolumeFacts facts = large_facts();
+  const MemoryEstimate thick = estimate_memory(facts, with_sizes(2, 3));
+  facts.boundary.thin = {{2, 1.3e6}};
+  const MemoryEstimate thin = estimate_memory(facts, with_sizes(2, 3));
+  const double usual = 2.5, beside = 1.2;  // SizingRule::resolve, of a ball of radius 1
+  EXPECT_NEAR(thin.triangulation / thick.triangulation, 0.5 + 0.5 * usual * usual / (beside * beside), 0.01);
+  EXPECT_EQ(thin.fields, thick.fields);
 }
 
 TEST(MemoryEstimate, WhatFitsIsAccepted) {
