@@ -26,8 +26,25 @@ struct MeshView {
 
   /// Unit normal at a point with these barycentric coordinates.
   NACRE_HD Vec3f normal(std::uint32_t t, const Vec3f& weights) const {
+    const Vec3f n = unscaled_normal(t, weights);
+    const float size = length(n);
+    return size > 0 ? n * (1 / size) : Vec3f{};
+  }
+
+  /// The same, of another length.
+  NACRE_HD Vec3f unscaled_normal(std::uint32_t t, const Vec3f& weights) const {
     const Vec3f* n = corner_normals + 3 * std::size_t(t);
-    return normalized(n[0] * weights.x + n[1] * weights.y + n[2] * weights.z);
+    return n[0] * weights.x + n[1] * weights.y + n[2] * weights.z;
+  }
+
+  /// What vectors of the points become at a point with these barycentric coordinates: interpolated, and without their
+  /// part along the normal.
+  NACRE_HD Vec3f tangential(const Vec3f* vectors, std::uint32_t t, const Vec3f& weights) const {
+    const Triangle corner = triangles[t];
+    const Vec3f v = vectors[corner.a] * weights.x + vectors[corner.b] * weights.y + vectors[corner.c] * weights.z;
+    const Vec3f n = unscaled_normal(t, weights);
+    const float squared = dot(n, n);
+    return squared > 0 ? v - n * (dot(n, v) / squared) : v;
   }
 };
 

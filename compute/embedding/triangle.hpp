@@ -90,15 +90,16 @@ NACRE_HD inline Vec3d barycentric(const Corners& t, const Vec3d& p) {
   const Vec3d ab = t.b - t.a, ac = t.c - t.a, ap = p - t.a, n = cross(ab, ac);
   const double area = dot(n, n);
   if (!(area > 1e-14 * dot(ab, ab) * dot(ac, ac))) return detail::closest_edge_weights(t, p);
-  double v = dot(cross(ap, ac), n) / area, w = dot(cross(ab, ap), n) / area;
+  const double per_area = 1 / area;  // divisions are what this function waits for
+  double v = dot(cross(ap, ac), n) * per_area, w = dot(cross(ab, ap), n) * per_area;
   double u = 1 - v - w;
   const double outside = -1e-6;  // farther than rounding could move a point of the triangle
   if (u < outside || v < outside || w < outside) return detail::closest_edge_weights(t, p);
   u = u > 0 ? u : 0;
   v = v > 0 ? v : 0;
   w = w > 0 ? w : 0;
-  const double sum = u + v + w;
-  return {u / sum, v / sum, w / sum};
+  const double scale = 1 / (u + v + w);
+  return {u * scale, v * scale, w * scale};
 }
 
 /// `barycentric` in single precision but for the differences of positions: consumer GPUs have a 64th of the rate in
@@ -109,24 +110,16 @@ NACRE_HD inline Vec3f barycentric_in_float(const Corners& t, const Vec3d& p) {
   const Vec3f ab(t.b - t.a), ac(t.c - t.a), ap(p - t.a), n = cross(ab, ac);
   const float area = dot(n, n), bb = dot(ab, ab), cc = dot(ac, ac), longest = bb > cc ? bb : cc;
   if (!(area > 1e-2f * longest * longest)) return Vec3f(barycentric(t, p));
-  float v = dot(cross(ap, ac), n) / area, w = dot(cross(ab, ap), n) / area;
+  const float per_area = 1 / area;
+  float v = dot(cross(ap, ac), n) * per_area, w = dot(cross(ab, ap), n) * per_area;
   float u = 1 - v - w;
   const float outside = -1e-5f;
   if (u < outside || v < outside || w < outside) return Vec3f(barycentric(t, p));
   u = u > 0 ? u : 0;
   v = v > 0 ? v : 0;
   w = w > 0 ? w : 0;
-  const float sum = u + v + w;
-  return {u / sum, v / sum, w / sum};
-}
-
-/// The faster of the two where a kernel needs weights in each step.
-NACRE_HD_INLINE Vec3f interpolation_weights(const Corners& t, const Vec3d& p) {
-#if defined(__CUDACC__)
-  return barycentric_in_float(t, p);
-#else
-  return Vec3f(barycentric(t, p));
-#endif
+  const float scale = 1 / (u + v + w);
+  return {u * scale, v * scale, w * scale};
 }
 
 namespace detail {

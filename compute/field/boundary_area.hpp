@@ -1,4 +1,5 @@
-// Nacre: how large the boundaries between materials are, and how thin what they bound, from voxels alone: before any field is made.
+// Nacre: how large the boundaries between materials are, and how thin materials are there, from voxels alone: before
+// any field is made.
 #pragma once
 
 #include <algorithm>
@@ -76,10 +77,10 @@ struct FacesOfRow {
 
 }  // namespace detail
 
-/// From below: a plane has at most sqrt(3) times its area in faces of voxels; what smoothing takes off single voxels and
-/// the like is a tenth more. Boundaries of all directions have one and a half times their area. A row across a plate is
-/// as long as the plate is thick, or longer: for plates of all directions, the mean of the inverse squares is twice as
-/// large by the thickness as by rows, so a thickness is taken to be sqrt(1/2) of the row.
+/// From below: a plane has at most sqrt(3) times its area in faces of voxels; what smoothing takes off single voxels
+/// and the like is a tenth more. Boundaries of all directions have one and a half times their area. A row of voxels
+/// across a plate is as long as the plate is thick, or longer: of plates of all directions, the inverse square of the
+/// thickness is twice the mean of that of the rows, so a thickness is taken to be sqrt(1/2) of the row.
 template <class Backend>
 BoundaryArea boundary_area(Executor<Backend>& exec, const MaterialBricks& b) {
   const VoxelEdges edges(b);

@@ -59,11 +59,8 @@ struct ExtendVelocity {
   NACRE_HD void operator()(CellIndex cell, const Int3& position, typename View::Cursor&) const {
     const CellPoint point = view.point[cell];
     const Vec3d p = Vec3d(position) + Vec3d(0.5) + Vec3d(point.offset(view.quantum));
-    const Vec3f w = interpolation_weights(mesh.corners(point.triangle), p);
-    const Triangle corner = mesh.triangles[point.triangle];
-    const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
-    const Vec3f n = mesh.normal(point.triangle, w);
-    slot[cell] = PackedVector::pack(scale(v - n * dot(n, v)));
+    const Vec3f w = barycentric_in_float(mesh.corners(point.triangle), p);
+    slot[cell] = PackedVector::pack(scale(mesh.tangential(vectors, point.triangle, w)));
   }
 };
 

@@ -19,19 +19,18 @@ struct PackedVector {
     const float x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
     const float most = x > y ? (x > z ? x : z) : (y > z ? y : z);
     if (!(most > 0)) return 0;
-    const float share = most / float(largest);
+    const float share = most * (1.0f / largest);
     std::uint32_t bits;
     memcpy(&bits, &share, sizeof bits);
-    int exponent = int(bits >> 23) - 126 + bias;  // most <= largest * 2^(exponent - bias)
+    int exponent = int(bits >> 23) - 126 + bias;  // most <= largest * 2^(exponent - bias), but for rounding
     exponent = exponent < 0 ? 0 : exponent > 31 ? 31 : exponent;
     bits = std::uint32_t(127 + bias - exponent) << 23;
     float scale;
     memcpy(&scale, &bits, sizeof scale);
     std::uint32_t all = std::uint32_t(exponent) << 27;
     for (int axis = 0; axis < 3; ++axis) {
-      const float q = std::floor(v[axis] * scale + 0.5f);
-      const int m = int(q < -largest ? -largest : q > largest ? largest : q);
-      all |= (std::uint32_t(m) & 0x1ff) << (9 * axis);
+      const float q = max(min(std::floor(v[axis] * scale + 0.5f), float(largest)), -float(largest));
+      all |= (std::uint32_t(int(q)) & 0x1ff) << (9 * axis);
     }
     return all;
   }

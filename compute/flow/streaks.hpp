@@ -126,12 +126,9 @@ struct MarkStreakCells {
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
     const SurfaceFoot foot = surface.foot(s, position);
     const Vec3f w(barycentric(mesh.corners(foot.triangle), (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * cell));
-    const Triangle corner = mesh.triangles[foot.triangle];
-    const Vec3f n = mesh.normal(foot.triangle, w);
-    const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
-    const Vec3f tangential = v - n * dot(n, v);
-    const float speed = length(tangential);
-    cells[s] = StreakCell::of(speed > least ? tangential / speed : Vec3f{}, n, dot(n, foot.offset));
+    const Vec3f n = mesh.normal(foot.triangle, w), v = mesh.tangential(vectors, foot.triangle, w);
+    const float speed = length(v);
+    cells[s] = StreakCell::of(speed > least ? v * (1 / speed) : Vec3f{}, n, dot(n, foot.offset));
   }
 };
 

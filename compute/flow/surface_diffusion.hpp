@@ -178,10 +178,8 @@ struct WeighDirections {
     const std::uint32_t at = outer[i], t = grid.triangle[at];
     const Float4 o = grid.offset[at];
     const Vec3d p = Vec3d(grid.cell(at)) + Vec3d(0.5) + Vec3d(o.x, o.y, o.z);
-    const Vec3f w = interpolation_weights(mesh.corners(t), p);
-    const Triangle corner = mesh.triangles[t];
-    const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
-    const Vec3f n = mesh.normal(t, w), along = v - n * dot(n, v);
+    const Vec3f w = barycentric_in_float(mesh.corners(t), p);
+    const Vec3f along = mesh.tangential(vectors, t, w);
     const float speed = length(along);
     const bool moves = speed > 1e-6f * stretch.slow && std::isfinite(speed);
     selling_weights(moves ? along / speed : Vec3f{}, moves ? stretch(speed) : 0.0f,

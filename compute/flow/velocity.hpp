@@ -28,14 +28,20 @@ struct FlowField {
 
 /// How a speed becomes a displacement.
 struct SpeedScale {
-  float reference = 1;  ///< the speed that moves `displacement` cells a step (98th percentile of the data)
-  float displacement = 1;
-  float power = 1;  ///< 1: in proportion; 0: all alike, as in a line integral convolution
-  float limit = 2;  ///< fastest displacement, in units of `displacement`
+  float reference;     ///< the speed that moves `displacement` cells a step (98th percentile of the data)
+  float displacement;  ///< cells
+  float power;         ///< 1: in proportion; 0: all alike, as in a line integral convolution
+  float limit;         ///< fastest displacement, in units of `displacement`
+  float usual;         ///< displacement of a speed of 1 where it is in proportion
+
+  SpeedScale(float reference, float displacement, float power, float limit)
+      : reference(reference), displacement(displacement), power(power), limit(limit), usual(displacement / reference) {}
 
   NACRE_HD Vec3f operator()(const Vec3f& v) const {
-    const float speed = length(v);
-    if (!(speed > 1e-6f * reference)) return {};
+    const float squared = dot(v, v), least = 1e-6f * reference, most = limit * reference;
+    if (!(squared > least * least)) return {};
+    if (power == 1 && squared <= most * most) return v * usual;  // without a root
+    const float speed = std::sqrt(squared);
     float moved = speed / reference;
     if (power != 1) moved = std::pow(moved, power);
     moved = moved < limit ? moved : limit;
@@ -60,11 +66,8 @@ struct EmbedVelocity {
     }
     const std::uint32_t t = grid.triangle[i];
     const Vec3d p = Vec3d(grid.cell(std::uint32_t(i))) + Vec3d(0.5) + Vec3d(o.x, o.y, o.z);
-    const Vec3f w = interpolation_weights(mesh.corners(t), p);
-    const Triangle corner = mesh.triangles[t];
-    const Vec3f v = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
-    const Vec3f n = mesh.normal(t, w);
-    const Vec3f d = scale(v - n * dot(n, v));
+    const Vec3f w = barycentric_in_float(mesh.corners(t), p);
+    const Vec3f d = scale(mesh.tangential(vectors, t, w));
     slot[i] = {d.x, d.y, d.z, 0};
   }
 };
