@@ -11,8 +11,9 @@
 namespace nacre {
 namespace {
 
-/// Steps: after them, no noise is seen among the streaks, and a user waits for each.
-constexpr int least_warmup = 2;
+/// Steps before the one that is shown first: a user waits for each. Streaks look the same after none as after four; the
+/// particles' own lines have noise among them after one.
+int least_warmup(const FlowParameters& parameters) { return parameters.streaks > 0 ? 1 : 2; }
 
 }  // namespace
 
@@ -136,7 +137,7 @@ void FlowWorker::make_focus(const FocusRequest& wanted, FlowFocused& answer) {
   vectors.start += (vectors.end - vectors.start) * (double(before) / std::max(1, steps_in_all_));
   FlowParameters& start = made->pipeline->parameters;
   start.steps = made->steps_in_all = std::max(1, steps_in_all_ - before);
-  start.warmup = least_warmup;
+  start.warmup = least_warmup(settings_.flow);
   start.streaks = 0;  // this frame is not seen
   made->pipeline->flow().start(vectors);
   made->steps = steps_made_ - 1;
