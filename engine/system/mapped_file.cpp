@@ -35,7 +35,9 @@ MappedFile::MappedFile(const std::filesystem::path& path, std::size_t offset, st
                     off_t(offset - skipped_));
   const int why = errno;
   ::close(file);
-  if (at == MAP_FAILED) throw Error(path.string() + " cannot be mapped", std::strerror(why), "copy it to a local disk");
+  if (at == MAP_FAILED)
+    throw Error(path.string() + " cannot be mapped", std::strerror(why),
+                why == ENOMEM ? "allow the program more addresses (ulimit -v)" : "copy it to a local disk");
   base_ = static_cast<std::byte*>(at);
   std::signal(SIGBUS, end_without_file);
 }

@@ -40,6 +40,15 @@ TEST_F(MappedFileTest, WhatWasLetGoComesBack) {
   expect_bytes(mapped, 77, 29000);
 }
 
+TEST_F(MappedFileTest, WhatDoesNotFitIntoTheAddressesIsAnErrorWithAdvice) {
+  try {
+    MappedFile(file_, 0, std::size_t(1) << 50);
+    ADD_FAILURE() << "a petabyte was mapped";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("ulimit -v"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(MappedFileTest, AMissingFileIsAnError) { EXPECT_THROW(MappedFile(file_.string() + ".not", 0, 10), Error); }
 
 }  // namespace
