@@ -24,6 +24,7 @@ struct Wish {
   double ratio;
   std::uint32_t point, triangle;
   std::size_t few;  ///< bodies of no more points keep it
+  int flat = -1;    ///< the point's corner of the triangle, where it lies flat between the others
 };
 
 std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
@@ -97,6 +98,8 @@ bool on_small_body(const SurfaceMesh& mesh, const VertexTable& facets_at, std::u
   return false;
 }
 
+bool has_corner(const Triangle& t, std::uint32_t point) { return t.a == point || t.b == point || t.c == point; }
+
 /// Where points are too few to take one away, another one splits the longest edge of a bad triangle, if it is long.
 bool split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size, std::uint32_t t,
            MeshDefects& defects) {
@@ -110,6 +113,25 @@ bool split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::sp
   if (length(mesh.points[b] - mesh.points[a]) <= long_edge * std::min(size[a], size[b])) return false;
   defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t], a});
   return true;
+}
+
+/// A new point splits the side of a triangle that is opposite its flat corner, if that is long and runs along a curve;
+/// not where a curve ends, whose last points crowd.
+bool split_curve(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<const std::uint8_t> order,
+                 std::span<const float> size, std::uint32_t t, int flat, MeshDefects& defects) {
+  const Triangle& c = mesh.triangles[t];
+  const std::uint32_t a = c[(flat + 1) % 3], b = c[(flat + 2) % 3];
+  if (order[a] != 1 || order[b] != 1) return false;
+  if (length(mesh.points[b] - mesh.points[a]) <= long_edge * std::min(size[a], size[b])) return false;
+  for (const std::uint32_t corner : facets_at.corners(a)) {
+    if (!has_corner(mesh.triangles[corner / 3], b)) continue;
+    for (const std::uint16_t third : mesh.materials[corner / 3]) {
+      if (third == mesh.materials[t][0] || third == mesh.materials[t][1]) continue;
+      defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t], a, third});
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Points of a surface that have come into a junction.
@@ -160,8 +182,6 @@ void choose(const SurfaceMesh& mesh, const VertexTable& facets_at, std::span<con
   }
   std::sort(defects.remove.begin(), defects.remove.end());
 }
-
-bool has_corner(const Triangle& t, std::uint32_t point) { return t.a == point || t.b == point || t.c == point; }
 
 /// New points in the facets where a surface of two materials touches itself, or another one off the junctions; at
 /// junctions `anyhow`. Not next to old ones.
@@ -229,13 +249,18 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
     const int flat = flat_corner(angles);
     const std::uint32_t point = culprit(mesh, t, order, size, flat, rule, few);
     if (point != none)
-      wishes.push_back({ratio, point, std::uint32_t(t), few});
+      wishes.push_back({ratio, point, std::uint32_t(t), few, flat >= 0 && point == c[flat] ? flat : -1});
     else if (flat >= 0)
       caps.push_back({std::uint32_t(t), flat});
   }
   const std::vector<std::uint32_t> candidates = in_junctions(mesh, order);
   if (wishes.empty() && touching.empty() && caps.empty() && candidates.empty()) return defects;
   const VertexTable facets_at(mesh.triangles, mesh.points.size());
+  if (rule.splits)
+    std::erase_if(wishes, [&](const Wish& w) {
+      return w.flat >= 0 && order[w.point] == 1 &&
+             split_curve(mesh, facets_at, order, size, w.triangle, w.flat, defects);
+    });
   find_intruders(mesh, facets_at, order, size, candidates, wishes);
   choose(mesh, facets_at, order, size, wishes, defects);
   fill_in(mesh, facets_at, order, size, touching, !rule.fills, defects);

@@ -17,11 +17,13 @@ struct DefectRule {
   double near = 0.4;   ///< ... where a corner is on a junction
   /// A rim's corner that lies flat gets a new point in front of it; else a neighbour goes, if one may.
   bool fills = true;
+  /// Of three points of curves, the flat one stays where the side opposite it can be split.
+  bool splits = false;
 };
 
 /// The least that is asked of a mesh, with a margin. Once all particles have been smoothed, only triangles below it
 /// make particles come and go.
-inline constexpr DefectRule worst_defects{0, 0.31, 0.17, false};
+inline constexpr DefectRule worst_defects{0, 0.31, 0.21, false};
 /// Triangles with a smaller ratio are worth further rounds of smoothing.
 inline constexpr double wanted_ratio = 0.5;
 
@@ -42,8 +44,9 @@ struct MeshDefects {
 /// is to go, the one on the surface rather than the one on a curve, on a curve rather than at a point; or, where all
 /// edges are long, from one that lies flat between its neighbours: it is to go if it is on a surface. One on a rim
 /// stays: a new point is put in front of it or, as a last resort (`rule.fills` unset), the nearest corner on the
-/// surface is to go, and where all are on curves the flat one. A point of a surface that stands between two neighbours
-/// on a curve goes, too: it bends the curve aside. Small bodies keep theirs (a closed surface of 24 points; of 12, if
+/// surface is to go, and where all are on curves the flat one (with `rule.splits`, if the side opposite it is long and
+/// runs along a curve, a new point splits that instead). A point of a surface that stands between two neighbours on a
+/// curve goes, too: it bends the curve aside. Small bodies keep theirs (a closed surface of 24 points; of 12, if
 /// they are too close together), but for those nearer than 0.2 sizes; there a new point splits the longest edge, if it
 /// is long. `touching` are edges (two points), or vertices (one point twice), where a surface touches itself: off the
 /// junctions that shows that it is too coarsely sampled, and new points go into the middle of the facets there; as a

@@ -17,10 +17,11 @@ namespace {
 /// attempts help more.
 int most_further(const ImprovementRule& rule, const StarUse& use) { return rule.stars && use.fallbacks == 0 ? 1 : 4; }
 
-/// Rounds of remeshing: cells, which cost several times as much as stars, get fewer where stars were asked for; but not
-/// where the particles were smoothed for triangles of stars first.
-int most_rounds(const ImprovementRule& rule, const StarUse& use) {
-  return use.fallbacks == 0 || use.meshes > 0 ? rule.remesh : (rule.remesh + 1) / 2;
+/// Rounds of remeshing: cells, which cost several times as much as stars, get fewer where stars were asked for, once no
+/// triangle is worse than what is asked; but not where the particles were smoothed for triangles of stars first.
+int most_rounds(const ImprovementRule& rule, const StarUse& use, double fitness) {
+  const bool cells_alone = use.fallbacks > 0 && use.meshes == 0;
+  return cells_alone && fitness >= 1 ? (rule.remesh + 1) / 2 : rule.remesh;
 }
 
 /// What an attempt does to the particles around bad points.
@@ -28,11 +29,12 @@ struct AttemptKind {
   int turns;    ///< of smoothing; 0: none
   bool shakes;  ///< smoothing begins from random positions
   bool remeshes;
+  bool splits;  ///< ... the sides of curves, where that helps
 };
 /// Tried in turn: smoothing and remeshing together; fewer steps, for particles that flip to and fro; remeshing alone,
 /// which leaves the other particles where they are; and both again from a random start.
 constexpr std::array<AttemptKind, 4> attempt_kinds{
-    {{6, false, true}, {2, false, false}, {0, false, true}, {6, true, true}}};
+    {{6, false, true, true}, {2, false, false, false}, {0, false, true, false}, {6, true, true, false}}};
 
 /// `defects` in terms of the mesh's points instead of particles. The mesh has some of the particles, in the same order.
 std::vector<std::array<std::uint32_t, 2>> points_of_defects(std::vector<std::array<std::uint32_t, 2>> defects,
@@ -174,7 +176,7 @@ bool MeshImprovement::improve(Triangulated& made) {
   const std::vector<std::uint8_t> bad = bad_points(made.mesh, made.touching);
   const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
   const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * bad_);
-  if (remeshed_ >= most_rounds(rule_, star_use_) || !worth) return false;
+  if (remeshed_ >= most_rounds(rule_, star_use_, made.fitness) || !worth) return false;
   ++remeshed_;
   bad_ = count;
   return begin_attempt(made, bad);
@@ -190,7 +192,9 @@ bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uin
     const AttemptKind& kind = attempt_kinds[number % attempt_kinds.size()];
     const bool moves = kind.turns > 0 && rule_.smooth > 0;
     const bool moved = moves && smooth(made, bad, {kind.turns, kind.shakes ? number : 0}) > 0;
-    const bool remeshed = kind.remeshes && remesh(made, worst_defects);
+    DefectRule rule = worst_defects;
+    rule.splits = kind.splits;
+    const bool remeshed = kind.remeshes && remesh(made, rule);
     if (moved || remeshed) return true;
   }
   attempt_.reset();
@@ -202,7 +206,8 @@ bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uin
 bool MeshImprovement::continue_attempt(Triangulated& made) {
   attempt_->judge(made.view());
   const std::vector<std::uint8_t> open = attempt_->open(made.view());
-  if (open.empty() || further_ == most_further(rule_, star_use_) || remeshed_ >= most_rounds(rule_, star_use_))
+  if (open.empty() || further_ == most_further(rule_, star_use_) ||
+      remeshed_ >= most_rounds(rule_, star_use_, made.fitness))
     return false;
   ++further_, ++remeshed_;
   std::vector<std::uint8_t> moving = bad_points(made.mesh, made.touching);

@@ -171,6 +171,33 @@ TEST(Defects, SmallBodiesKeepAllOfTheirs) {
   }
 }
 
+/// Three points of curves: the flat one is near the middle of a long side, along which another curve runs.
+TEST(Defects, ALongSideAlongACurveIsSplit) {
+  Ball ball(test::points_on_sphere(400, 1));
+  ball.mesh.points = {{-1, 0, 0}, {0, 0.1, 0}, {1, 0, 0}, {0, -1, 0}};
+  ball.mesh.triangles = {{0, 2, 1}, {2, 0, 3}};
+  ball.mesh.materials = {{1, 2}, {0, 1}};
+  ball.order = {1, 1, 1, 2};
+  ball.size.assign(4, 1);
+  DefectRule rule = worst_defects;
+  EXPECT_TRUE(ball.defects(rule).insert.empty());
+  rule.splits = true;
+  const MeshDefects d = ball.defects(rule);
+  ASSERT_EQ(d.insert.size(), 1u);
+  EXPECT_LT(length(d.insert[0].position), 1e-12);
+  EXPECT_EQ(d.insert[0].materials, (std::array<std::uint16_t, 2>{1, 2}));
+  EXPECT_EQ(d.insert[0].third, 0);
+  EXPECT_TRUE(d.remove.empty());
+  ball.order[2] = 0;
+  EXPECT_TRUE(ball.defects(rule).insert.empty()) << "the curve ends there";
+  ball.order[2] = 1;
+  ball.size.assign(4, 2);
+  EXPECT_TRUE(ball.defects(rule).insert.empty()) << "it is not long";
+  ball.size.assign(4, 1);
+  ball.mesh.materials[1] = {1, 2};
+  EXPECT_TRUE(ball.defects(rule).insert.empty()) << "no curve runs there";
+}
+
 /// That a small body needs its points says nothing about one that all but coincides with another.
 TEST(Defects, AnIntruderOnASmallBodyGoesWhereItIsOneTooMany) {
   Ball ball(test::points_on_sphere(400, 1));
