@@ -11,6 +11,7 @@
 #include "compute/flow/surface_diffusion.hpp"
 #include "tests/compute/meshes.hpp"
 #include "tests/compute/on_devices.hpp"
+#include "tests/compute/small_cases.hpp"
 
 namespace nacre::test {
 
@@ -132,13 +133,14 @@ class DiffusingSphere {
   Array<Pair> value_, change_;
 };
 
-/// Lets two eigenfunctions decay on spheres of 5, 10 and 20 cells, and compares with the same steps of the exact
+/// Lets two eigenfunctions decay on spheres of 5, 10 and, but for small cases, 20 cells, and compares with the same steps of the exact
 /// operator, so that only the error in space is left.
 template <class Backend>
 void expect_second_order(Executor<Backend>& exec, bool vectors, const Eigenfunction& first, const Eigenfunction& second,
                          double end, const char* what) {
   double before_u = 0, before_v = 0, first_u = 0, first_v = 0;
-  for (const double radius : {5.0, 10.0, 20.0}) {
+  const std::vector<double> radii = small_cases() ? std::vector{5.0, 10.0} : std::vector{5.0, 10.0, 20.0};
+  for (const double radius : radii) {
     DiffusingSphere<Backend> sphere(exec, radius, vectors);
     sphere.weigh();
     const double duration = end * radius * radius;
@@ -166,6 +168,7 @@ void expect_second_order(Executor<Backend>& exec, bool vectors, const Eigenfunct
     before_u = error.u;
     before_v = error.v;
   }
+  if (small_cases()) return;
   EXPECT_GE(0.5 * std::log2(first_u / before_u), 1.9) << what << ", over all three";
   EXPECT_GE(0.5 * std::log2(first_v / before_v), 1.9) << what << ", over all three";
   EXPECT_LT(before_u, 1e-3);
