@@ -133,8 +133,8 @@ class DiffusingSphere {
   Array<Pair> value_, change_;
 };
 
-/// Lets two eigenfunctions decay on spheres of 5, 10 and, but for small cases, 20 cells, and compares with the same steps
-/// of the exact operator, so that only the error in space is left.
+/// Lets two eigenfunctions decay on spheres of 5, 10 and, but for small cases, 20 cells, and compares with the same
+/// steps of the exact operator, so that only the error in space is left.
 template <class Backend>
 void expect_second_order(Executor<Backend>& exec, bool vectors, const Eigenfunction& first, const Eigenfunction& second,
                          double end, const char* what) {
