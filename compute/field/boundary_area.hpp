@@ -2,7 +2,6 @@
 // any field is made.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>

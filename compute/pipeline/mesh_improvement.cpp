@@ -45,6 +45,35 @@ std::vector<std::array<std::uint32_t, 2>> points_of_defects(std::vector<std::arr
   return defects;
 }
 
+/// What stars ask of particles, beyond what these hold.
+struct StarInput {
+  std::vector<Junction> junction;
+  std::vector<JunctionGradients> gradient;
+
+  StarParticles of(const HostParticles& particles) const {
+    return {particles.position, particles.direction, junction, gradient};
+  }
+};
+
+StarInput star_input(MovableParticles& fields, const HostParticles& particles, const JunctionTable& table) {
+  StarInput input;
+  input.junction.resize(particles.count());
+  const std::vector<std::uint32_t> on_rims = select_where(particles.count(), [&](std::size_t i) {
+    input.junction[i] = table.junctions[particles.interface[i]];
+    return input.junction[i].order() < 2;
+  });
+  std::vector<Vec3f> position;
+  std::vector<Junction> junction;
+  for (const std::uint32_t i : on_rims) {
+    position.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
+    junction.push_back(input.junction[i]);
+  }
+  const std::vector<JunctionGradients> gradient = fields.junction_gradients(position, junction);
+  input.gradient.resize(particles.count());
+  for (std::size_t k = 0; k < on_rims.size(); ++k) input.gradient[on_rims[k]] = gradient[k];
+  return input;
+}
+
 /// Marks the points of the mesh at triangles that are worth further work, and where it touches itself.
 std::vector<std::uint8_t> bad_points(const SurfaceMesh& mesh, std::span<const std::array<std::uint32_t, 2>> touching) {
   std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, mesh);
@@ -116,21 +145,8 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
 /// False where the stars do not give a sound mesh.
 bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points,
                                            Triangulated& made) {
-  std::vector<Junction> junction(particles.count());
-  const std::vector<std::uint32_t> on_rims = select_where(particles.count(), [&](std::size_t i) {
-    junction[i] = table_.junctions[particles.interface[i]];
-    return junction[i].order() < 2;
-  });
-  std::vector<Vec3f> rim_position;
-  std::vector<Junction> rims;
-  for (const std::uint32_t i : on_rims) {
-    rim_position.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
-    rims.push_back(junction[i]);
-  }
-  const std::vector<JunctionGradients> rim_gradient = particles_.junction_gradients(rim_position, rims);
-  std::vector<JunctionGradients> gradient(particles.count());
-  for (std::size_t k = 0; k < on_rims.size(); ++k) gradient[on_rims[k]] = rim_gradient[k];
-  StarMesh stars = mesh_from_stars({particles.position, particles.direction, junction, gradient}, star_finder_);
+  const StarInput input = star_input(particles_, particles, table_);
+  StarMesh stars = mesh_from_stars(input.of(particles), star_finder_);
   check_stop(rule_.stop);
   std::vector<double> size;
   for (const Float4& p : particles.position) size.push_back(p.w * frame_.unit);

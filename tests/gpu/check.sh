@@ -44,7 +44,8 @@ pack() {
   local folder=$build/programs
   local programs=(nacre test_gpu test_bodies_cuda gpu_info gpu_floors)
   command -v cmake >/dev/null || fail "cmake is not installed: nothing to build with; bring a folder made by --pack"
-  local options=(-DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_MPI=OFF -DNACRE_TESTS=ON "-DNACRE_MARCH=$march" -DCMAKE_BUILD_TYPE=Release
+  local options=(-DCMAKE_BUILD_TYPE=Release -DNACRE_CUDA=ON -DNACRE_VTK=OFF -DNACRE_MPI=OFF -DNACRE_TESTS=ON
+    "-DNACRE_MARCH=$march"
     -DCMAKE_CXX_FLAGS=-Wno-psabi  # our 64-byte vectors never cross a call
     "-DCMAKE_CUDA_ARCHITECTURES=$architecture" "-DCMAKE_RUNTIME_OUTPUT_DIRECTORY=$build/bin")
   if nvcc --help 2>/dev/null | grep -q -- --compress-mode; then

@@ -11,8 +11,8 @@
 namespace nacre {
 namespace {
 
-/// Steps before the one that is shown first: a user waits for each. Streaks look the same after none as after four; the
-/// particles' own lines have noise among them after one.
+/// Steps before the one that is shown first: a user waits for each. Streaks look the same after none as after four;
+/// without them, two steps take the noise out.
 int least_warmup(const FlowParameters& parameters) { return parameters.streaks > 0 ? 1 : 2; }
 
 }  // namespace
