@@ -123,11 +123,14 @@ bool split_curve(const SurfaceMesh& mesh, const VertexTable& facets_at, std::spa
   const std::uint32_t a = c[(flat + 1) % 3], b = c[(flat + 2) % 3];
   if (order[a] != 1 || order[b] != 1) return false;
   if (length(mesh.points[b] - mesh.points[a]) <= long_edge * std::min(size[a], size[b])) return false;
+  const Vec3d middle = (mesh.points[a] + mesh.points[b]) / 2.0;
+  const auto is_there = [&](const MeshDefects::NewPoint& p) { return p.position == middle; };
+  if (std::any_of(defects.insert.begin(), defects.insert.end(), is_there)) return true;  // for a triangle beyond it
   for (const std::uint32_t corner : facets_at.corners(a)) {
     if (!has_corner(mesh.triangles[corner / 3], b)) continue;
     for (const std::uint16_t third : mesh.materials[corner / 3]) {
       if (third == mesh.materials[t][0] || third == mesh.materials[t][1]) continue;
-      defects.insert.push_back({(mesh.points[a] + mesh.points[b]) / 2.0, mesh.materials[t], a, third});
+      defects.insert.push_back({middle, mesh.materials[t], a, third});
       return true;
     }
   }

@@ -188,6 +188,11 @@ TEST(Defects, ALongSideAlongACurveIsSplit) {
   EXPECT_EQ(d.insert[0].materials, (std::array<std::uint16_t, 2>{1, 2}));
   EXPECT_EQ(d.insert[0].third, 0);
   EXPECT_TRUE(d.remove.empty());
+  ball.mesh.points[3] = {0, -0.1, 0};
+  ball.order[3] = 1;
+  EXPECT_EQ(ball.defects(rule).insert.size(), 1u) << "flat triangles on both sides share the new point";
+  ball.mesh.points[3] = {0, -1, 0};
+  ball.order[3] = 2;
   ball.order[2] = 0;
   EXPECT_TRUE(ball.defects(rule).insert.empty()) << "the curve ends there";
   ball.order[2] = 1;
