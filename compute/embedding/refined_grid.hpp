@@ -65,10 +65,8 @@ struct RefinedGridView {
   NACRE_HD Int3 cell(std::uint32_t s) const { return texel_cell(position[s]); }
 
   NACRE_HD Int3 texel_cell(std::uint32_t at) const {
-    const std::uint32_t b = at / cells_per_block();
-    const int rest = int(at - b * cells_per_block());
-    return grid.cell(block_cell[b]) * Int3(refine) +
-           Int3(rest % refine, (rest / refine) % refine, rest / (refine * refine));
+    const std::uint32_t b = divide.cubes(at);
+    return grid.cell(block_cell[b]) * Int3(refine) + divide.cell_of_cube(int(at - b * cells_per_block()));
   }
 
   /// Closest point on the surface to the centre of surface cell `s`.

@@ -6,7 +6,7 @@ namespace nacre {
 /// In bricks, counted along every axis from the bricks that a process owns.
 struct HaloDepths {
   int deposits = 1;  ///< where particles of its own bricks leave deposits
-  int beside = 1;    ///< where a cell that nothing reached looks for paths that crossed
+  int beside = 1;    ///< where a cell that nothing reached looks for paths that crossed, and smoothing for streaks
   int detail = 1;    ///< where sharpening asks for values
   int whole = 5;     ///< all that is kept: what streaks see, a brick around `detail` for local contrast, pixels
 

@@ -1,92 +1,12 @@
 // Nacre: streaks for the eye: the moving texture convolved along the flow of the frame (Cabral & Leedom 1993, Okada &
-// Kao 1997). What particles carry is not touched by it, so the texture moves as before; its
-// direction is that of the present flow, also where the flow is slow and particles leave no lines.
+// Kao 1997). What particles carry is not touched by it, so the texture moves as before; its direction is that of the
+// present flow, also where the flow is slow and particles leave no lines. Cells share pieces of streamlines, as in a
+// fast line integral convolution (Stalling & Hege 1995).
 #pragma once
 
-#include "compute/flow/filter.hpp"
-#include "compute/flow/surface_cells.hpp"
+#include "compute/flow/streak_cells.hpp"
 
 namespace nacre {
-
-/// What a streamline reads of a surface cell: unit vectors whose components have 10 bits (exact to 0.1 degrees) or 8.
-struct StreakCell {
-  std::uint32_t direction;  ///< of the flow, tangential, 10 bits for each component; 0 where nothing flows
-  std::uint32_t surface;    ///< normal, 8 bits for each component, and plane, 8 bits
-  float value;
-
-  static constexpr int direction_bits = 10, normal_bits = 8, plane_bits = 8;
-  static constexpr float direction_scale = 511, normal_scale = 127, plane_scale = 127 / 0.87f;
-
-  /// `plane`: height of the closest point above the cell's centre along the normal, in cells; at most 0.87.
-  NACRE_HD_INLINE static StreakCell of(const Vec3f& direction, const Vec3f& normal, float plane) {
-    return {packed(direction, direction_bits, direction_scale),
-            packed(normal, normal_bits, normal_scale) | bits(plane * plane_scale, plane_bits) << 3 * normal_bits, 0};
-  }
-
-  NACRE_HD_INLINE static std::uint32_t bits(float a, int count) {
-    return std::uint32_t(int(std::floor(a + 0.5f))) & ((1u << count) - 1);
-  }
-  NACRE_HD_INLINE static std::uint32_t packed(const Vec3f& v, int count, float scale) {
-    return bits(v.x * scale, count) | bits(v.y * scale, count) << count | bits(v.z * scale, count) << 2 * count;
-  }
-};
-
-/// The same, unpacked, of one cell or several.
-template <class Wide>
-struct StreakCells {
-  using Float = typename Wide::Float;
-  using Int = typename Wide::Int;
-  Int direction_word, surface_word;
-  Float value;
-
-  NACRE_HD_INLINE Vec3<Float> direction() const {
-    return vector(direction_word, StreakCell::direction_bits, 1 / StreakCell::direction_scale);
-  }
-  NACRE_HD_INLINE Vec3<Float> normal() const {
-    return vector(surface_word, StreakCell::normal_bits, 1 / StreakCell::normal_scale);
-  }
-  NACRE_HD_INLINE Float plane() const {
-    return to_float(signed_bits(surface_word, 3 * StreakCell::normal_bits, StreakCell::plane_bits)) *
-           (1 / StreakCell::plane_scale);
-  }
-
- private:
-  NACRE_HD_INLINE static Vec3<Float> vector(const Int& word, int bits, float scale) {
-    return {to_float(signed_bits(word, 0, bits)) * scale, to_float(signed_bits(word, bits, bits)) * scale,
-            to_float(signed_bits(word, 2 * bits, bits)) * scale};
-  }
-};
-
-NACRE_HD_INLINE StreakCells<Single> load_streak_cells(const StreakCell* cells, CellIndex s, bool mask) {
-  if (!mask) return {};
-  return {std::int32_t(cells[s].direction), std::int32_t(cells[s].surface), cells[s].value};
-}
-
-#if defined(NACRE_PACKETS)
-/// Reads four bytes behind the last cell.
-template <class Index>
-NACRE_HD_INLINE StreakCells<Packet> load_streak_cells(const StreakCell* cells, const Index& s, Packet::Mask mask) {
-  static_assert(sizeof(StreakCell) == 12);
-  Packet::Int word[3];
-  gather_triples(reinterpret_cast<const std::uint32_t*>(cells), s, mask, word);
-  return {word[0], word[1], Packet::Float(word[2])};
-}
-#endif
-
-/// Vectors of one or several cells, fused in one way.
-template <class Float>
-NACRE_HD_INLINE Vec3<Float> multiply_add(const Vec3<Float>& a, const Float& b, const Vec3<Float>& c) {
-  return {multiply_add(a.x, b, c.x), multiply_add(a.y, b, c.y), multiply_add(a.z, b, c.z)};
-}
-template <class Float>
-NACRE_HD_INLINE Float fused_dot(const Vec3<Float>& a, const Vec3<Float>& b) {
-  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
-}
-template <class Float>
-NACRE_HD_INLINE Vec3<Float> fused_cross(const Vec3<Float>& a, const Vec3<Float>& b) {
-  return {multiply_add(a.y, b.z, -(a.z * b.y)), multiply_add(a.z, b.x, -(a.x * b.z)),
-          multiply_add(a.x, b.y, -(a.y * b.x))};
-}
 
 /// The cells that positions lie in.
 template <class Float>
@@ -106,12 +26,6 @@ NACRE_HD_INLINE Packet::Float load_values(const float* values, const Index& s, P
 }
 #endif
 
-/// Where a value of a surface cell is stored.
-struct ToStreakCell {
-  StreakCell* cells;
-  NACRE_HD_INLINE void operator()(CellIndex s, float value) const { cells[s].value = value; }
-};
-
 /// Fills in the flow and the surface of each surface cell, from the triangle of its closest point: exact where vectors
 /// kept on a coarser grid are blurred, and at creases.
 template <class Surface>
@@ -125,33 +39,188 @@ struct MarkStreakCells {
 
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
     const SurfaceFoot foot = surface.foot(s, position);
-    const Vec3f w(barycentric(mesh.corners(foot.triangle), (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * cell));
+    const Vec3f w =
+        barycentric_in_float(mesh.corners(foot.triangle), (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * cell);
     const Vec3f n = mesh.normal(foot.triangle, w), v = mesh.tangential(vectors, foot.triangle, w);
     const float speed = length(v);
     cells[s] = StreakCell::of(speed > least ? v * (1 / speed) : Vec3f{}, n, dot(n, foot.offset));
   }
 };
 
-/// What streaks are made of, one value for each surface cell. Along the flow, a mean over five cells that weighs even
-/// and odd ones alike: it takes out what alternates from cell to cell, which would leave chequers. Across, the values
-/// beside are taken away a little, which makes streaks as narrow as those of white noise.
-template <class Surface>
-struct SmoothAlongAndSharpenAcross {
-  Surface surface;
+/// Gives the cells the values of the moving texture.
+struct GiveStreakValues {
   const float* value;  ///< 0..1
+  StreakCell* cells;
+  NACRE_HD void operator()(std::int64_t s) const { cells[s].value = value[s] - 0.5f; }
+};
+
+/// How much farther than it is long, in cells on an axis, a streak may come: it is pulled back onto the surface again
+/// and again.
+inline constexpr int streak_slack = 3;
+
+/// Segments either side of a cell's own that a streak of `cells` cells each way has. So streaks are 2, 7, 12, ... long.
+NACRE_HD_INLINE constexpr int streak_segments(int cells) { return cells / segment_length; }
+
+/// A streamline of one cell or several, one way.
+template <class Surface>
+struct Streamline {
+  using Wide = typename Surface::Wide;
+  using Float = typename Wide::Float;
+  using Int = typename Wide::Int;
+  using Mask = typename Wide::Mask;
+
+  typename Surface::WideCursor cursor;
+  Vec3<Float> position;                                  ///< from the lower corner of the home cell
+  Vec3<Float> step;                                      ///< from here on
+  Mask runs;                                             ///< it has not ended
+  Float sum = Wide::all(0.0f), count = Wide::all(0.0f);  ///< of the values on it
+
+  NACRE_HD_INLINE Streamline(const Surface& surface, const Vec3<Float>& start, const Vec3<Float>& first, Mask runs)
+      : cursor(surface), position(start), step(first), runs(runs) {}
+
+  /// Goes to `next`, at most `far` cells away on each axis: ends, or calls `take(cell, there)` with what was found and
+  /// the surface cell's number, which returns the surface there; then the position is moved onto it.
+  template <class Take>
+  NACRE_HD_INLINE void go(const Vec3<Int>& home, const Vec3<Float>& next, int far, const Take& take) {
+    const Float most = Wide::all(float(far)), zero = Wide::all(0.0f);
+    const auto near = [&](const Float& x) { return (x >= zero - most) & (x <= most); };
+    const Vec3<Int> in = cells_of(next);
+    const auto there = cursor.find(home + in, runs & near(next.x) & near(next.y) & near(next.z));
+    runs = there.found;
+    const StreakSurface<Wide> surface = take(there.cell);
+    const Vec3<Float> middle{to_float(in.x) + 0.5f, to_float(in.y) + 0.5f, to_float(in.z) + 0.5f};
+    const Vec3<Float> normal = surface.normal();
+    const Float off = select(there.direct, surface.plane() - fused_dot(normal, next - middle), zero);
+    position = multiply_add(normal, off, next);
+  }
+
+  /// Goes on by `next`, if that does not turn back.
+  NACRE_HD_INLINE void turn(const Vec3<Float>& next) {
+    runs = runs & (fused_dot(next, step) > 0.0f);
+    step = next;
+  }
+
+  NACRE_HD_INLINE void add(const Float& values, const Float& number, Mask where) {
+    sum = sum + select(where, values, Wide::all(0.0f));
+    count = count + select(where, number, Wide::all(0.0f));
+  }
+};
+
+/// The segment of a surface cell: one cell a step, by Adams and Bashforth's second order, which asks for one direction
+/// a step.
+template <class Surface>
+struct FollowSegments {
+  Surface surface;
   const StreakCell* cells;
 
   using Wide = typename Surface::Wide;
   using Float = typename Wide::Float;
   using Int = typename Wide::Int;
-  static constexpr float across = 1.0f / 12;  ///< share of either neighbour; docs/method/chapter-5.md
+  using Line = Streamline<Surface>;
+
+  NACRE_HD_INLINE StreakSegments<Wide> operator()(const typename Surface::Index& home,
+                                                  const Vec3<Int>& position) const {
+    const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
+    const Vec3<Float> start = own.surface.foot(), along = own.direction(), against = along * Wide::all(-1.0f);
+    const auto flows = own.direction_word != 0;
+    Line up(surface, start, along, flows), down(surface, start, against, flows);
+    Vec3<Float> before_up = along, before_down = against;
+    // Both ways at a time: while one waits for memory, the other goes on.
+    for (int i = 0; i < segment_length && any(up.runs | down.runs); ++i) {
+      advance(up, before_up, position, 1, i < segment_half);
+      advance(down, before_down, position, -1, i < segment_half);
+    }
+    const auto end = [&](const Line& line) {
+      const Vec3<Float> way = line.position - start;
+      const Float zero = Wide::all(0.0f);
+      return Vec3<Float>{select(line.runs, way.x, zero), select(line.runs, way.y, zero),
+                         select(line.runs, way.z, zero)};
+    };
+    return StreakSegments<Wide>::of(end(up), end(down), own.value + up.sum + down.sum,
+                                    Wide::all(1.0f) + up.count + down.count, own.surface);
+  }
+
+ private:
+  NACRE_HD_INLINE void advance(Line& line, Vec3<Float>& before, const Vec3<Int>& home, int way, bool counts) const {
+    const Vec3<Float> next =
+        multiply_add(before, Wide::all(-0.5f), multiply_add(line.step, Wide::all(1.5f), line.position));
+    before = line.step;
+    line.go(home, next, segment_length + streak_slack, [&](const auto& at) {
+      const StreakCells<Wide> cell = load_streak_cells(cells, at, line.runs);
+      line.turn(cell.direction() * Wide::all(float(way)));
+      if (counts) line.add(cell.value, Wide::all(1.0f), line.runs);
+      return cell.surface;
+    });
+  }
+};
+
+/// The mean of the values along the streamline through the closest point of a surface cell, `reach` segments each way
+/// or to where the flow or the surface ends or turns back, or it strays; stretched, around 1/2. Each segment is that of
+/// the cell in which the one before ends, moved to that end. Streamlines of several cells run side by side where
+/// the surface allows.
+template <class Surface>
+struct ConvolveAlongFlow {
+  Surface surface;
+  const StreakSegment* segments;
+  int reach;
+
+  using Wide = typename Surface::Wide;
+  using Float = typename Wide::Float;
+  using Int = typename Wide::Int;
+  using Line = Streamline<Surface>;
+  using Segments = StreakSegments<Wide>;
+  static constexpr float gain = 4;  ///< a mean of so many values is small
+
+  NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
+    const Segments own = load_streak_segments(segments, home, Wide::nothing_masked());
+    const Vec3<Float> start = own.surface.foot();
+    Line up(surface, start, own.ahead(), own.goes_ahead()), down(surface, start, own.behind(), own.goes_behind());
+    for (int i = 1; i <= reach && any(up.runs | down.runs); ++i) {
+      advance(
+          up, position, i, [](const Segments& s) { return s.ahead(); }, [](const Segments& s) { return s.behind(); });
+      advance(
+          down, position, i, [](const Segments& s) { return s.behind(); }, [](const Segments& s) { return s.ahead(); });
+    }
+    return (own.sum() + up.sum + down.sum) / (own.count() + up.count + down.count) * gain + 0.5f;
+  }
+
+ private:
+  /// `onward`, `back`: where segments end that way, and the other way.
+  template <class Onward, class Back>
+  NACRE_HD_INLINE void advance(Line& line, const Vec3<Int>& home, int i, const Onward& onward, const Back& back) const {
+    line.go(home, line.position + line.step, segment_length * i + streak_slack, [&](const auto& at) {
+      const Segments there = load_streak_segments(segments, at, line.runs);
+      const Vec3<Float> next = onward(there);
+      // The last one counts, though nothing goes on from it, but not where the flow turns back.
+      const auto along = (fused_dot(next, line.step) >= 0.0f) & (fused_dot(back(there), line.step) <= 0.0f);
+      line.add(there.sum(), there.count(), line.runs & along);
+      line.runs = line.runs & along;
+      line.turn(next);
+      return there.surface;
+    });
+  }
+};
+
+/// What is shown of values that are convolved. Along the flow, a mean over five cells that weighs even and odd ones
+/// alike: the streamlines of cells beside each other meet other cells, and this takes out what then alternates from cell
+/// to cell. Across, the values beside are taken away a little, which makes streaks as narrow as those of white noise.
+template <class Surface>
+struct SmoothAlongAndSharpenAcross {
+  Surface surface;
+  const float* value;
+  const StreakCell* cells;
+
+  using Wide = typename Surface::Wide;
+  using Float = typename Wide::Float;
+  using Int = typename Wide::Int;
+  static constexpr float across = 1.0f / 10;  ///< share of either neighbour; docs/method/chapter-5.md
 
   NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
     const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
     const Float here = load_values(value, home, Wide::nothing_masked());
     const auto flows = own.direction_word != 0;
-    const Vec3<Float> normal = own.normal(), along = own.direction(), side = fused_cross(normal, along);
-    const Vec3<Float> start = multiply_add(normal, own.plane(), Vec3<Float>(Wide::all(0.5f)));
+    const Vec3<Float> along = own.direction(), side = fused_cross(own.surface.normal(), along);
+    const Vec3<Float> start = own.surface.foot();
     typename Surface::WideCursor cursor(surface);
     const auto at = [&](const Vec3<Float>& p) {
       const auto found = cursor.find(position + cells_of(p), flows);
@@ -159,78 +228,9 @@ struct SmoothAlongAndSharpenAcross {
     };
     const auto pair = [&](const Vec3<Float>& way) { return at(start + way) + at(start - way); };
     const Float mean = (here + pair(along)) * 0.25f + pair(along * Wide::all(2.0f)) * 0.125f;  // exact products
-    const Float sharp = multiply_add(mean + mean - pair(side), Wide::all(across), mean);
-    return select(flows, sharp, here) - 0.5f;
-  }
-};
-
-/// How much farther than its own length, in cells on an axis, a streak may come: it is pulled back onto the surface at
-/// every cell.
-inline constexpr int streak_slack = 6;
-
-/// The mean of the values along the streamline through the closest point of a surface cell, `reach` cells each way or
-/// to where the flow or the surface ends or turns back, or it strays; stretched, around 1/2. Streamlines of several
-/// cells run side by side where the surface allows.
-template <class Surface>
-struct ConvolveAlongFlow {
-  Surface surface;
-  const StreakCell* cells;
-  int reach;
-
-  using Wide = typename Surface::Wide;
-  using Float = typename Wide::Float;
-  using Int = typename Wide::Int;
-  using Mask = typename Wide::Mask;
-  static constexpr float gain = 4;  ///< a mean of so many values is small
-
-  NACRE_HD_INLINE Float operator()(const typename Surface::Index& home, const Vec3<Int>& position) const {
-    const Float shown = mean(home, position) * gain + 0.5f, black = Wide::all(0.0f), white = Wide::all(1.0f);
-    return select(shown < black, black, select(shown > white, white, shown));
-  }
-
-  NACRE_HD_INLINE Float mean(const typename Surface::Index& home, const Vec3<Int>& position) const {
-    const StreakCells<Wide> own = load_streak_cells(cells, home, Wide::nothing_masked());
-    const Vec3<Float> start = multiply_add(own.normal(), own.plane(), Vec3<Float>(Wide::all(0.5f)));
-    const Mask flows = own.direction_word != 0;
-    Half up(surface, 1, start, own.direction(), flows), down(surface, -1, start, own.direction(), flows);
-    // Both ways at a time: while one waits for memory, the other goes on.
-    for (int i = 0; i < reach && any(up.runs | down.runs); ++i) {
-      advance(up, position);
-      advance(down, position);
-    }
-    return (own.value + up.sum + down.sum) / (Wide::all(1.0f) + up.count + down.count);
-  }
-
- private:
-  /// A streamline one way.
-  struct Half {
-    typename Surface::WideCursor cursor;
-    Float sign;
-    Vec3<Float> p, d, before;  ///< from the lower corner of the home cell; direction of this step and of the last one
-    Mask runs;
-    Float sum = Wide::all(0.0f), count = Wide::all(0.0f);
-
-    NACRE_HD_INLINE Half(const Surface& surface, int side, const Vec3<Float>& start, const Vec3<Float>& along,
-                         Mask flows)
-        : cursor(surface), sign(Wide::all(float(side))), p(start), d(along * sign), before(d), runs(flows) {}
-  };
-
-  /// A cell by Adams and Bashforth's second order: one direction a step.
-  NACRE_HD_INLINE void advance(Half& line, const Vec3<Int>& home) const {
-    const Float far = Wide::all(float(reach + streak_slack)), zero = Wide::all(0.0f);
-    const auto within = [&](const Float& x) { return (x >= zero - far) & (x <= far); };
-    const Vec3<Float> p = multiply_add(line.before, Wide::all(-0.5f), multiply_add(line.d, Wide::all(1.5f), line.p));
-    const Vec3<Int> in = cells_of(p);
-    const auto found = line.cursor.find(home + in, line.runs & within(p.x) & within(p.y) & within(p.z));
-    const StreakCells<Wide> cell = load_streak_cells(cells, found.cell, found.found);
-    const Vec3<Float> next = cell.direction() * line.sign, normal = cell.normal();
-    line.runs = found.found & (fused_dot(next, line.d) > 0.0f);
-    line.before = line.d;
-    line.d = next;
-    const Vec3<Float> middle{to_float(in.x) + 0.5f, to_float(in.y) + 0.5f, to_float(in.z) + 0.5f};
-    line.p = multiply_add(normal, select(found.direct, cell.plane() - fused_dot(normal, p - middle), zero), p);
-    line.sum = line.sum + select(line.runs, cell.value, zero);
-    line.count = line.count + select(line.runs, Wide::all(1.0f), zero);
+    const Float sharp = select(flows, multiply_add(mean + mean - pair(side), Wide::all(across), mean), here);
+    const Float black = Wide::all(0.0f), white = Wide::all(1.0f);
+    return select(sharp < black, black, select(sharp > white, white, sharp));
   }
 };
 

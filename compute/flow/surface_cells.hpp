@@ -185,9 +185,10 @@ void for_each_surface_cell_of(Executor<Backend>& exec, const BrickSurfaceOf<Lane
 }
 
 /// Where `store_on_surface` puts its results: in an array.
+template <class Value>
 struct ToArray {
-  float* values;
-  NACRE_HD_INLINE void operator()(CellIndex s, float value) const { values[s] = value; }
+  Value* values;
+  NACRE_HD_INLINE void operator()(CellIndex s, const Value& value) const { values[s] = value; }
 };
 
 /// Calls `store(s, kernel(surface_cells, positions)[s])` for all surface cells, computing as many at a time as the
@@ -206,7 +207,7 @@ struct StoreOnGridSurface {
     if constexpr (Wide::lanes == 1) {
       home = std::int32_t(first);
       position = texture.cell(std::uint32_t(first));
-      store(CellIndex(first), kernel(home, position));
+      store(CellIndex(first), element(kernel(home, position), 0));
     } else {
       for (int lane = 0; lane < Wide::lanes; ++lane) {
         const auto s = std::uint32_t(first + (lane < count ? lane : count - 1));
@@ -214,8 +215,8 @@ struct StoreOnGridSurface {
         home[lane] = std::int32_t(s);
         position.x[lane] = cell.x, position.y[lane] = cell.y, position.z[lane] = cell.z;
       }
-      const typename Wide::Float value = kernel(home, position);
-      for (int lane = 0; lane < count; ++lane) store(CellIndex(first + lane), value[lane]);
+      const auto value = kernel(home, position);
+      for (int lane = 0; lane < count; ++lane) store(CellIndex(first + lane), element(value, lane));
     }
   }
 };
@@ -231,7 +232,7 @@ struct StoreOnBrickSurface {
   NACRE_HD void operator()(Team& team, std::int64_t item) const {
     if constexpr (Wide::lanes == 1) {
       view.each_surface_cell(team, item, [&](CellIndex s, CellIndex, const Int3& position, BrickOctreeView::Cursor&) {
-        store(s, kernel(s, position));
+        store(s, element(kernel(s, position), 0));
       });
     } else {
       CellIndices<Wide> home;
@@ -243,8 +244,8 @@ struct StoreOnBrickSurface {
           position.x[lane] = position.x[count - 1], position.y[lane] = position.y[count - 1];
           position.z[lane] = position.z[count - 1];
         }
-        const typename Wide::Float value = kernel(home, position);
-        for (int lane = 0; lane < count; ++lane) store(home.cell[lane], value[lane]);
+        const auto value = kernel(home, position);
+        for (int lane = 0; lane < count; ++lane) store(home.cell[lane], element(value, lane));
         count = 0;
       };
       view.each_surface_cell(team, item, [&](CellIndex s, CellIndex, const Int3& at, BrickOctreeView::Cursor&) {

@@ -28,6 +28,8 @@ struct Single {
 NACRE_HD_INLINE float select(bool which, float a, float b) { return which ? a : b; }
 NACRE_HD_INLINE std::int32_t select(bool which, std::int32_t a, std::int32_t b) { return which ? a : b; }
 NACRE_HD_INLINE bool any(bool mask) { return mask; }
+/// One of several numbers side by side.
+NACRE_HD_INLINE float element(float a, int) { return a; }
 NACRE_HD_INLINE float to_float(std::int32_t a) { return float(a); }
 NACRE_HD_INLINE std::int32_t floor_to_int(float a) { return std::int32_t(std::floor(a)); }
 /// a * b + c, rounded once where the processor can. If the compiler chooses what to fuse, the last bits of one element
@@ -65,6 +67,7 @@ struct Packet {
 
 NACRE_HD_INLINE Packet::Float select(Packet::Mask which, Packet::Float a, Packet::Float b) { return which ? a : b; }
 NACRE_HD_INLINE Packet::Int select(Packet::Mask which, Packet::Int a, Packet::Int b) { return which ? a : b; }
+NACRE_HD_INLINE float element(Packet::Float a, int lane) { return a[lane]; }
 NACRE_HD_INLINE Packet::Float to_float(Packet::Int a) { return __builtin_convertvector(a, Packet::Float); }
 NACRE_HD_INLINE Packet::Int floor_to_int(Packet::Float a) {
   const Packet::Int towards_zero = __builtin_convertvector(a, Packet::Int);

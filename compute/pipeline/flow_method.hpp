@@ -12,7 +12,6 @@
 
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/flow/filter.hpp"
-#include "compute/flow/streaks.hpp"
 #include "compute/pipeline/carry.hpp"
 #include "compute/pipeline/colour_scene.hpp"
 #include "compute/pipeline/describe_cells.hpp"
@@ -192,6 +191,9 @@ class FlowMethodOn : public FlowMethod {
   int slots() const { return sight_ == no_sight ? 0 : steady_ ? 1 : sight_ + 1; }
   int slot(int k) const { return steady_ ? 0 : (k - first_) % (sight_ + 1); }
 
+  /// Speed below which nothing flows, in the units of the data.
+  float least_speed() const { return 1e-6f * float(vectors_.reference_speed); }
+
   /// How displacements are rounded to whole cells in step `k`: -1/2..1/2 on each axis, spread evenly over few steps (an
   /// additive recurrence), so that slow particles move as far as fast ones in the mean. It is the same everywhere, so
   /// that a pattern keeps together.
@@ -266,24 +268,6 @@ class FlowMethodOn : public FlowMethod {
     if (steady_) return;
     if (k > first_ && sight_ != no_sight) fill(k + sight_);
     load_present(k);
-  }
-
-  /// Streaks, in three steps. `cell`: edge of a texture cell in cells of the domain; `streaks`: values around 1/2.
-  template <class Surface>
-  void mark_streaks(const Surface& surface, std::int64_t n, double cell, StreakCell* cells) {
-    const float least = 1e-6f * float(vectors_.reference_speed);
-    const MarkStreakCells<Surface> mark{surface, mesh_, cell, present_vectors_.data(), least, cells};
-    for_each_surface_cell_of(exec_, surface, n, mark);
-  }
-  template <class Surface>
-  void smooth_streaks(const Surface& surface, std::int64_t n, const float* value, StreakCell* cells) {
-    const SmoothAlongAndSharpenAcross<Surface> smooth{surface, value, cells};
-    store_on_surface(exec_, surface, n, smooth, ToStreakCell{cells});
-  }
-  template <class Surface>
-  void draw_streaks(const Surface& surface, std::int64_t n, const StreakCell* cells, float* streaks) {
-    const ConvolveAlongFlow<Surface> convolve{surface, cells, parameters_.streaks};
-    store_on_surface(exec_, surface, n, convolve, ToArray{streaks});
   }
 
   /// Draws the surface, where it has moved to if it has. `shown`: its texture; null: none.

@@ -53,7 +53,7 @@ struct FlowParameters {
   double sharpen = 0.05;   ///< strength of the Laplacian between steps
   double jitter = 0.4;     ///< share of fresh noise between steps
   double equalise = 0.5;   ///< share of local contrast against that of the whole texture
-  int streaks = 26;        ///< cells that shown streaks are drawn along the flow, each way; 0: what particles leave
+  int streaks = 27;        ///< cells that shown streaks are drawn along the flow, each way; 0: what particles leave
   double contrast = 0.55;  ///< shown standard deviation
   std::uint32_t seed = 1;
 };

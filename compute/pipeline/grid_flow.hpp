@@ -3,9 +3,9 @@
 
 #include "compute/flow/advect.hpp"
 #include "compute/flow/filter.hpp"
-#include "compute/flow/streaks.hpp"
 #include "compute/flow/velocity.hpp"
 #include "compute/pipeline/grid_method.hpp"
+#include "compute/pipeline/streak_drawing.hpp"
 
 namespace nacre {
 
@@ -51,7 +51,7 @@ class GridFlow final : public GridMethod<Backend> {
     carried_ = arena.permanent<float>(n);
     value_ = arena.permanent<float>(n);
     streaks_ = arena.permanent<float>(n);
-    streak_cells_ = arena.permanent<StreakCell>(n + 1);  // the last one is read as four words
+    drawing_.make(n);
     this->make_frame_arrays();
     for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
   }
@@ -112,11 +112,12 @@ class GridFlow final : public GridMethod<Backend> {
                                        seed_, std::uint32_t(launched_ + 1), carried_.data()});
     if (!this->shows_) return;
     if (parameters_.streaks > 0) {
-      auto streaks = exec_.stage("streaks");
       const GridSurface surface{texture};
-      this->mark_streaks(surface, n, 1.0 / refine_, streak_cells_.data());
-      this->smooth_streaks(surface, n, value_.data(), streak_cells_.data());
-      this->draw_streaks(surface, n, streak_cells_.data(), streaks_.data());
+      drawing_.mark(surface, mesh_, 1.0 / refine_, this->present_vectors_.data(), this->least_speed());
+      drawing_.follow(surface, value_.data());
+      float* means = detail_.data();  // until the frame is equalised
+      drawing_.convolve(surface, parameters_.streaks, means);
+      drawing_.smooth(surface, means, streaks_.data());
     }
     this->show_frame(parameters_.streaks > 0 ? streaks_.data() : value_.data());
   }
@@ -124,7 +125,7 @@ class GridFlow final : public GridMethod<Backend> {
   Array<Float4> slots_[2];
   Array<std::uint64_t> crossed_, arrived_[2];
   Array<float> carried_, value_, streaks_;
-  Array<StreakCell> streak_cells_;
+  StreakDrawing<Backend> drawing_{exec_};
   Steps steps_, unseen_steps_;
 };
 

@@ -14,6 +14,7 @@
 #include "compute/pipeline/flow_method.hpp"
 #include "compute/pipeline/octree_bands.hpp"
 #include "compute/pipeline/octree_share.hpp"
+#include "compute/pipeline/streak_drawing.hpp"
 #include "compute/raycast/octree_cast.hpp"
 #include "compute/raycast/render.hpp"
 
@@ -120,7 +121,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     } else {
       moments_ = arena.permanent<Float4>(view.items());
       streaks_ = arena.permanent<float>(n);
-      streak_cells_ = arena.permanent<StreakCell>(n + 1);  // the last one is read as four words
+      drawing_.make(n);
     }
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
@@ -271,36 +272,33 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     const bool streaks = !Band::as_thesis && this->shows_ && parameters_.streaks > 0;
     refresh(value_, [&] {
       if constexpr (!Band::as_thesis)
-        if (streaks) {
-          auto stage = exec_.stage("streaks");
-          this->mark_streaks(BrickSurface{view}, n, 1.0, streak_cells_.data());
-        }
+        if (streaks)
+          drawing_.mark(BrickSurface{view}, this->mesh_, 1.0, this->present_vectors_.data(), this->least_speed());
     });
     auto filter = exec_.stage("filter");
     Arena::Scope scope(exec_.arena());
-    float* detail = exec_.arena().template temporary<float>(n).data();
-    equalise(Band::as_thesis ? ahead_.data() : value_.data(), detail, around_own());
+    const Array<float> detail = exec_.arena().template temporary<float>(n);
+    equalise(Band::as_thesis ? ahead_.data() : value_.data(), detail.data(), around_own());
     for_each_surface_cell(exec_, own(),
-                          SharpenBand<View>{view, detail, float(parameters_.sharpen), float(parameters_.jitter), seed_,
-                                            std::uint32_t(launched_ + 1), carried_.data()});
+                          SharpenBand<View>{view, detail.data(), float(parameters_.sharpen), float(parameters_.jitter),
+                                            seed_, std::uint32_t(launched_ + 1), carried_.data()});
     frame_ = value_.data();
     if (!this->shows_) return;
     if constexpr (!Band::as_thesis) {
       if (streaks) {
-        const auto draw = [&](const View& on) {
-          auto stage = exec_.stage("streaks");
-          this->draw_streaks(BrickSurface{on}, n, streak_cells_.data(), streaks_.data());
+        const Array<float>& means = detail;  // until the frame is equalised
+        const auto convolve = [&](const View& on) {
+          drawing_.convolve(BrickSurface{on}, parameters_.streaks, means.data());
         };
-        {
-          auto stage = exec_.stage("streaks");
-          this->smooth_streaks(BrickSurface{view}, n, value_.data(), streak_cells_.data());
-        }
-        share_ ? share_->refresh_beside_of(streaks_, view, draw) : draw(view);
+        const auto smooth = [&](const View& on) { drawing_.smooth(BrickSurface{on}, means.data(), streaks_.data()); };
+        drawing_.follow(BrickSurface{view}, value_.data());
+        share_ ? share_->refresh_beside_of(means, view, convolve) : convolve(view);
+        share_ ? share_->refresh_beside_of(streaks_, view, smooth) : smooth(view);
         frame_ = streaks_.data();
       }
     }
-    equalise(frame_, detail, own());
-    exec_.for_each(n, Show{detail, float(parameters_.contrast), shown_.data(), output_});
+    equalise(frame_, detail.data(), own());
+    exec_.for_each(n, Show{detail.data(), float(parameters_.contrast), shown_.data(), output_});
     if (this->output_means_) find_means(view, this->output_means_);
   }
 
@@ -357,7 +355,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   Array<std::uint32_t> slots_[max_ttl + 1];
   Array<std::uint64_t> sums_[max_ttl];
   Array<float> carried_, value_, ahead_, shown_, streaks_;
-  Array<StreakCell> streak_cells_;
+  StreakDrawing<Backend> drawing_{exec_};
   const float* frame_ = nullptr;  ///< what is shown, before its contrast is stretched
   Array<Float4> moments_;
   Steps steps_, unseen_steps_;

@@ -75,7 +75,7 @@ class FlowKnobs(TypedDict, total=False):
     sharpen: float  #: strength of the Laplacian sharpening between steps
     jitter: float  #: share of fresh noise that is mixed in between steps
     equalise: float  #: weight of the local contrast against that of the whole texture
-    streaks: int  #: half-length of the streaks drawn along the present flow; 0 shows the moving texture itself [cells]
+    streaks: int  #: half-length of the streaks drawn along the present flow, one of 2, 7, 12, ...; 0 shows the moving texture itself [cells]
     seed: int  #: seed of the random numbers: the same seed gives the same result
     contrast: float  #: standard deviation of the texture's grey values
     color: str  #: array that colours the surface, or speed or none

@@ -107,8 +107,8 @@ loose='const auto loose = [](int n, const auto& body) { for (int k = threadIdx.x
 mutant "no barrier before local moments are used" contrast '*' compute/flow/filter.hpp \
   'team.each(27, [&](int k) { near[k]' "$loose loose(27, [&](int k) { near[k]"
 mutant "streaks of values that neighbours write" streaks '*' compute/flow/streaks.hpp \
-  'return value[found.cell == no_cell ? s : found.cell];' \
-  'return cells[found.cell == no_cell ? s : found.cell].value + 0.5f;'
+  'const StreakCells<Wide> cell = load_streak_cells(cells, at, line.runs);' \
+  'const_cast<StreakCell*>(cells)[at].value += 1; const StreakCells<Wide> cell = load_streak_cells(cells, at, line.runs);'
 mutant "bounds of distances used before all lanes have lowered them" brick_octree '*' \
   compute/embedding/closest_in_brick.hpp \
   $'    team.each(count, [&](int k) {\n      Eight squared;\n      const auto slack' \

@@ -175,7 +175,8 @@ std::vector<Knob> flow_knobs(Settings& s) {
       {.name = "streaks",
        .group = group,
        .unit = "cells",
-       .help = "half-length of the streaks drawn along the present flow; 0 shows the moving texture itself",
+       .help = "half-length of the streaks drawn along the present flow, one of 2, 7, 12, ...; 0 shows the moving "
+               "texture itself",
        .value = &f.streaks,
        .min = 0,
        .max = 64},

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "compute/device/executor_cpu.hpp"
+#include "compute/device/random.hpp"
 #include "tests/compute/flow/streaks_body.hpp"
 
 namespace nacre::test {
@@ -13,7 +14,7 @@ TEST(StreakCell, ZeroStaysZero) {
   const StreakCell cell = StreakCell::of({}, {}, 0);
   EXPECT_EQ(cell.direction, 0u);
   EXPECT_EQ(unpacked(cell).direction(), Vec3f());
-  EXPECT_EQ(unpacked(cell).plane(), 0);
+  EXPECT_EQ(unpacked(cell).surface.plane(), 0);
 }
 
 TEST(StreakCell, AxesAreExact) {
@@ -22,7 +23,7 @@ TEST(StreakCell, AxesAreExact) {
       Vec3f v{};
       v[axis] = side;
       EXPECT_EQ(unpacked(StreakCell::of(v, v, 0)).direction(), v);
-      EXPECT_EQ(unpacked(StreakCell::of(v, v, 0)).normal(), v);
+      EXPECT_EQ(unpacked(StreakCell::of(v, v, 0)).surface.normal(), v);
     }
 }
 
@@ -39,12 +40,35 @@ TEST(StreakCell, HoldsDirectionsToATenthOfADegreeAndNormalsToAHalf) {
     const float h = plane(random);
     const StreakCells<Single> back = unpacked(StreakCell::of(Vec3f(v), Vec3f(n), h));
     flow = std::max(flow, degrees_between(v, Vec3d(back.direction())));
-    surface = std::max(surface, degrees_between(n, Vec3d(back.normal())));
-    height = std::max<double>(height, std::fabs(back.plane() - h));
+    surface = std::max(surface, degrees_between(n, Vec3d(back.surface.normal())));
+    height = std::max<double>(height, std::fabs(back.surface.plane() - h));
   }
   EXPECT_LT(flow, 0.1);
   EXPECT_LT(surface, 0.5);
   EXPECT_LT(height, 0.004) << "of a cell";
+}
+
+TEST(StreakSegment, HoldsItsEndsToAFortiethOfACellAndItsSum) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> place(-6, 6), value(-3.3f, 3.3f);
+  for (int k = 0; k < 100000; ++k) {
+    const Vec3f ahead{place(random), place(random), place(random)}, behind{place(random), place(random), place(random)};
+    const float sum = value(random), count = float(1 + k % 5);
+    const std::uint32_t surface = random();
+    const auto segment = element(StreakSegments<Single>::of(ahead, behind, sum, count, {std::int32_t(surface)}), 0);
+    const StreakSegments<Single> back = load_streak_segments(&segment, 0, true);
+    for (int axis = 0; axis < 3; ++axis) {
+      ASSERT_NEAR(back.ahead()[axis], ahead[axis], 0.02501f);
+      ASSERT_NEAR(back.behind()[axis], behind[axis], 0.02501f);
+    }
+    ASSERT_NEAR(back.sum(), sum, 0.0005);
+    ASSERT_EQ(back.count(), count);
+    ASSERT_EQ(std::uint32_t(back.surface.word), surface);
+    ASSERT_TRUE(back.goes_ahead() && back.goes_behind());
+  }
+  const auto ended = StreakSegments<Single>::of({}, {}, -1.5f, 3, {});
+  EXPECT_FALSE(ended.goes_ahead() || ended.goes_behind());
+  EXPECT_EQ(ended.sum(), -1.5f);
 }
 
 /// Noise on a ball that turns about a slanted axis.
