@@ -109,7 +109,8 @@ struct StreakSegment {
   std::uint32_t surface;  ///< as in StreakCell
 
   static constexpr int end_bits = 8, count_bits = 3;
-  static constexpr float end_scale = 20, sum_scale = 1024;  ///< up to 6.35 cells on an axis; sums up to 4
+  static constexpr float farthest = 6.35f, end_scale = 127 / farthest;  ///< of an end, on each axis, in cells
+  static constexpr float sum_scale = 1024;                              ///< sums of up to 4
 };
 
 /// The same, unpacked, of one cell or several.

@@ -78,8 +78,8 @@ struct Streamline {
   NACRE_HD_INLINE Streamline(const Surface& surface, const Vec3<Float>& start, const Vec3<Float>& first, Mask runs)
       : cursor(surface), position(start), step(first), runs(runs) {}
 
-  /// Goes to `next`, at most `far` cells away on each axis: ends, or calls `take(cell, there)` with what was found and
-  /// the surface cell's number, which returns the surface there; then the position is moved onto it.
+  /// Goes to `next`, at most `far` cells away on each axis, or ends. `take(cell)` is called with the number of the
+  /// surface cell there and returns its surface; then the position is moved onto that.
   template <class Take>
   NACRE_HD_INLINE void go(const Vec3<Int>& home, const Vec3<Float>& next, int far, const Take& take) {
     const Float most = Wide::all(float(far)), zero = Wide::all(0.0f);
@@ -130,11 +130,12 @@ struct FollowSegments {
       advance(up, before_up, position, 1, i < segment_half);
       advance(down, before_down, position, -1, i < segment_half);
     }
+    const Float zero = Wide::all(0.0f), most = Wide::all(StreakSegment::farthest);
+    const auto fits = [&](const Float& x) { return (x >= zero - most) & (x <= most); };
     const auto end = [&](const Line& line) {
       const Vec3<Float> way = line.position - start;
-      const Float zero = Wide::all(0.0f);
-      return Vec3<Float>{select(line.runs, way.x, zero), select(line.runs, way.y, zero),
-                         select(line.runs, way.z, zero)};
+      const auto goes = line.runs & fits(way.x) & fits(way.y) & fits(way.z);
+      return Vec3<Float>{select(goes, way.x, zero), select(goes, way.y, zero), select(goes, way.z, zero)};
     };
     return StreakSegments<Wide>::of(end(up), end(down), own.value + up.sum + down.sum,
                                     Wide::all(1.0f) + up.count + down.count, own.surface);
@@ -202,8 +203,8 @@ struct ConvolveAlongFlow {
 };
 
 /// What is shown of values that are convolved. Along the flow, a mean over five cells that weighs even and odd ones
-/// alike: the streamlines of cells beside each other meet other cells, and this takes out what then alternates from cell
-/// to cell. Across, the values beside are taken away a little, which makes streaks as narrow as those of white noise.
+/// alike: streamlines of cells beside each other meet other cells, and this takes out what then alternates from cell to
+/// cell. Across, the values beside are taken away a little, which makes streaks as narrow as those of white noise.
 template <class Surface>
 struct SmoothAlongAndSharpenAcross {
   Surface surface;
