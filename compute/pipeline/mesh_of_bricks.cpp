@@ -11,9 +11,10 @@ namespace nacre {
 namespace {
 
 constexpr double brick_width = BrickOctreeView::width;
-/// The octree is built from clusters of triangles, around which it looks for bricks as far as this beyond the band: so
-/// each brick that it looks at has all triangles. No cluster's ball is larger, but for that of one triangle.
-constexpr double beyond_band = 9;
+// Cells beyond the band. A triangle may be the closest of a cell within the first of them. The octree is built from
+// clusters of triangles, around which it looks for bricks as far as the second (a ball around several triangles is
+// smaller, and so is that of one that is not looked at exactly): each brick that it looks at has to have its triangles.
+constexpr double triangle_margin = 1, brick_margin = 9;
 
 template <class Item>
 void sort_unique(std::vector<Item>& items) {
@@ -38,7 +39,7 @@ struct SentTriangle {
 /// Which bricks are near which triangles of a share.
 class NearBricks {
  public:
-  NearBricks(const FlowMesh& share, const FlowDomain& domain, int levels)
+  NearBricks(const FlowMesh& share, const FlowDomain& domain, int levels, double beyond_band)
       : share_(share), domain_(domain), bricks_(1 << levels), margin_((domain.radius + beyond_band) / brick_width) {}
 
   /// Calls `visit(code)` for all that have a cell in the band of triangle `t`, and some more.
@@ -123,8 +124,9 @@ ForEachRank<std::uint32_t> triangles_for(Ranks& ranks, const FlowMesh& share, co
 MeshOfBricks::MeshOfBricks(Ranks& ranks, const FlowMesh& share, const FlowDomain& domain, int levels,
                            std::span<const std::uint64_t> begin, int depth)
     : ranks_(ranks), share_points_(share.points.size()), lent_(for_each_rank<std::uint32_t>(ranks)) {
-  const NearBricks near(share, domain, levels);
-  ForEachRank<std::uint32_t> chosen = triangles_for(ranks, share, near, find_wishes(ranks, near, levels, begin, depth));
+  const NearBricks bricks(share, domain, levels, brick_margin), near(share, domain, levels, triangle_margin);
+  const std::vector<BrickRank> wishes = find_wishes(ranks, bricks, levels, begin, depth);
+  ForEachRank<std::uint32_t> chosen = triangles_for(ranks, share, near, wishes);
   const std::vector<std::uint64_t> counts = values_of_all(&ranks, share.triangles.size());
   std::uint64_t first = 0;
   for (int q = 0; q < ranks.rank(); ++q) first += counts[std::size_t(q)];

@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double rounding = 1e-6;   // of the surface's size: a smaller difference between steps is no motion
-constexpr double least_part = 0.1;  // of a share: less of a piece is left to the process that has the rest
+constexpr double least_motion = 1e-6;  // of the surface's size, between two steps
+constexpr double least_part = 0.1;     // of a share: less of a piece is left to the process that has the rest
 constexpr std::uint64_t hash_begin = 0xcbf29ce484222325;
 
 /// FNV-1a.
@@ -310,7 +310,7 @@ Surface SharedFiles::build_like_first(const Piece& first, const Print& print, Ra
   }
   if (points_of(mesh) != print.points) {
     std::vector<Vec3d> points = read(first).points;
-    moved = points.size() != mesh.points.size() || differ(points, mesh.points, rounding * size_);
+    moved = points.size() != mesh.points.size() || differ(points, mesh.points, least_motion * size_);
     if (moved) return {};
     mesh.points = std::move(points);
   }
