@@ -22,7 +22,8 @@ ForEachRank<Item> for_each_rank(const Ranks& ranks) {
   return ForEachRank<Item>(static_cast<std::size_t>(ranks.count()));
 }
 
-/// Sends `send[q]` to process q, for all q, and empties it; returns what came from each. Collective, as all that follow.
+/// Sends `send[q]` to process q, for all q, and empties it; returns what came from each. Collective, as all that
+/// follow.
 template <class Item>
 ForEachRank<Item> exchange_items(Ranks& ranks, ForEachRank<Item>& send) {
   static_assert(std::is_trivially_copyable_v<Item>);

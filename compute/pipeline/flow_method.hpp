@@ -374,9 +374,9 @@ class FlowMethodOn : public FlowMethod {
 
   Executor<Backend>& exec_;
   const FlowParameters& parameters_;
-  Ranks* ranks_;             ///< null: this process is alone
+  Ranks* ranks_;                          ///< null: this process is alone
   std::optional<MeshOfBricks> gathered_;  ///< of a mesh that came in shares
-  double known_around_ = 0;  ///< else: cells around its own in which this one knows the values
+  double known_around_ = 0;               ///< else: cells around its own in which this one knows the values
   FlowDomain domain_;
   EmbeddingInfo info_;
   FlowVectors vectors_;
@@ -394,7 +394,7 @@ class FlowMethodOn : public FlowMethod {
   Array<Triangle> corners_;
   Array<Vec3f> normals_;
   Array<std::uint32_t> numbers_;  ///< of the triangles among those of all processes; empty: as here
-  MovedShape<Backend> shape_;  ///< of a surface that moves
+  MovedShape<Backend> shape_;     ///< of a surface that moves
 
   /// Values come from no farther, in texture cells: as far as the band of the grid knows the surface.
   static constexpr double carry_reach = 18;

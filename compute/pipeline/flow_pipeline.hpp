@@ -229,8 +229,8 @@ class FlowPipeline {
   /// The processes that share the flow; null: this one alone. Only on the octree of bricks, on CPUs, and where the
   /// surface does not move. Each has the whole surface, or a share of it (FlowMesh::shared): then vectors and scalars
   /// are those of its points, and it gets from the others what lies near its bricks. All processes make the same
-  /// calls; pictures are complete on the first; `values`, `shown` and `lookup` are those of its own bricks, and there is
-  /// no `sample_shown`.
+  /// calls; pictures are complete on the first; `values`, `shown` and `lookup` are those of its own bricks, and there
+  /// is no `sample_shown`.
   Ranks* ranks = nullptr;
 
   virtual void embed(const FlowMesh& mesh) = 0;  ///< chooses the method; the surface and flow before it are gone

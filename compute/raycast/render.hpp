@@ -171,12 +171,12 @@ struct RenderPixel {
   double reach;  ///< radius of a ball around the target that contains the surface
   std::uint32_t* pixels;
   // Among several processes, each finds what there is to see of its own, and one shades what is nearest.
-  std::int64_t first = 0;             ///< pixel of index 0
-  SeenSample* seen = nullptr;         ///< samples^2 entries for each index; null: nothing is recorded
-  const SeenSample* given = nullptr;  ///< null: rays are cast
+  std::int64_t first = 0;                 ///< pixel of index 0
+  SeenSample* seen = nullptr;             ///< samples^2 entries for each index; null: nothing is recorded
+  const SeenSample* given = nullptr;      ///< null: rays are cast
   const std::uint32_t* number = nullptr;  ///< of each triangle among those of all processes; null: as here
-  float most = 0;                     ///< cells around a hit in which this process knows the values
-  std::uint32_t* too_wide = nullptr;  ///< set where a footprint goes farther
+  float most = 0;                         ///< cells around a hit in which this process knows the values
+  std::uint32_t* too_wide = nullptr;      ///< set where a footprint goes farther
 
   NACRE_HD void operator()(std::int64_t index) const {
     const std::int64_t i = first + index;

@@ -297,7 +297,14 @@ Surface SharedFiles::load_later(std::size_t k, bool& moved) const {
     std::vector<std::uint32_t> used;
     append_part(share, cut(part, whole, used));
   }
-  if (k == 0 || share.points.empty()) only_agreed(share);
+  if (k == 0 || share.points.empty()) {
+    only_agreed(share);
+    return share;
+  }
+  std::erase_if(share.arrays, [&](const PointArray& array) {
+    return std::none_of(arrays_.begin(), arrays_.end(),
+                        [&](const PointArray& agreed) { return agreed.name == array.name; });
+  });
   return share;
 }
 
