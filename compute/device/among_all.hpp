@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "compute/device/exact_sum.hpp"
 #include "compute/device/ranks.hpp"
-#include "compute/math/exact_sum.hpp"
 
 namespace nacre {
 

@@ -1,5 +1,5 @@
 // Nacre: sums that do not depend on the order of their terms.
-#include "compute/math/exact_sum.hpp"
+#include "compute/device/exact_sum.hpp"
 
 #include <gtest/gtest.h>
 
