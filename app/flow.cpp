@@ -32,6 +32,8 @@
 #include "engine/scene/settings/ranges.hpp"
 #include "engine/scene/surface/flow_input.hpp"
 #include "engine/scene/surface/flow_motion.hpp"
+#include "engine/scene/surface/haemodynamics.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 #include "engine/system/extension.hpp"
 
 namespace nacre {
@@ -84,36 +86,58 @@ void check_options(const FlowOptions& options, const Settings& settings) {
   warn(options.common, "nothing will be written: give --image, --frames, --video, --out or --report");
 }
 
-VectorsInTime read_input(const FlowOptions& options, const Session& session, StageTimers& timers) {
+/// Whether what is asked for needs the whole surface in each of several processes.
+bool needs_whole_surface(const FlowOptions& options, const Settings& settings) {
+  for (const std::string& output : {options.haemodynamics, options.topology_out, options.streamlines_out,
+                                    options.ftle_out, options.tracks_out, settings.dye, settings.probe})
+    if (!output.empty()) return true;
+  return settings.topology || settings.streamlines || settings.tracks || is_ftle(settings.color) ||
+         is_haemodynamic(settings.color);
+}
+
+/// `ranks`: of a run whose processes have shares of the surface, where that is possible; null: all of it.
+VectorsInTime read_input(const FlowOptions& options, const Session& session, StageTimers& timers, Ranks* ranks) {
   StageTimers::Scope scope(timers, "read");
-  SurfaceSeries series = session.sample.empty()
-                             ? open_surface(session.inputs, session.settings.patch)
-                             : with_usage_errors([&] { return make_sample(session.sample, session.detail); });
   FlowLog log;
   log.warn = [&](const std::string& sentence) { warn(options.common, sentence); };
   log.note = [&](const std::string& sentence) { say(options.common, sentence); };
   log.chosen = [&](const VectorChoice& choice) {
     say(options.common, fmt::format("vectors: {} ({})", choice.name, choice.reason));
   };
+  const auto sample = [&] { return with_usage_errors([&] { return make_sample(session.sample, session.detail); }); };
+  if (ranks && !needs_whole_surface(options, session.settings)) {
+    SharedSeries shared = session.sample.empty() ? open_surface(session.inputs, session.settings.patch, *ranks)
+                                                 : share_series(sample(), *ranks);
+    std::string why;
+    std::optional<VectorsInTime> input =
+        make_flow_input(std::move(shared), *ranks, session.settings, log, why, &interrupt_flag());
+    if (input) return std::move(*input);
+    say(options.common, "each process has the whole surface: " + why);
+  }
+  SurfaceSeries series = session.sample.empty() ? open_surface(session.inputs, session.settings.patch) : sample();
   return make_flow_input(std::move(series), session.settings, log, &interrupt_flag());
 }
 
 /// What the knob `resolution` leaves to the picture.
-int choose_resolution(const FlowOptions& options, const FlowView& view, const PreparedSurface& surface,
+int choose_resolution(const FlowOptions& options, const FlowView& view, const VectorsInTime& input,
                       const FlowParameters& parameters, std::size_t available) {
-  const int resolution = picture_resolution(view, surface, parameters, available);
+  const int resolution = picture_resolution(view, input, parameters, available);
   if (parameters.resolution == 0)
     say(options.common, fmt::format("resolution: {} cells along the longest side, for a picture of {} x {} pixels",
                                     resolution, view.width, view.height));
   return resolution;
 }
 
+/// Whether a close-up is computed on what is in view.
+bool may_focus(const FlowOptions& options, const Settings& settings) {
+  const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
+  if (!settings.focus || !pictures || settings.orbit != 0) return false;
+  return settings.flow.method != EmbeddingKind::octree || settings.flow.octree != OctreeKind::thesis;
+}
+
 /// What a close-up is computed on; none: the whole surface.
 std::optional<Focus> choose_focus(const FlowOptions& options, const Settings& settings, const FlowView& view,
                                   const PreparedSurface& surface, bool moves, std::size_t available) {
-  const bool pictures = !options.image.empty() || !options.frames.empty() || !options.video.empty();
-  if (!settings.focus || !pictures || settings.orbit != 0) return {};
-  if (settings.flow.method == EmbeddingKind::octree && settings.flow.octree == OctreeKind::thesis) return {};
   std::optional<Focus> focus = focus_on(view, surface, settings.flow, available, picture_budget(view));
   if (!focus) return {};
   if (moves) {
@@ -264,7 +288,8 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   InputWatch watch(session.inputs);
   const bool whole_film = options.chunk.empty() && left.first == steps.first;
   Films films = open_films(options, left, whole_film, settings.fps, progress);  // complains before what may be long
-  VectorsInTime input = read_input(options, session, pipeline->timers());
+  if (ranks) require_same_text(*ranks, session_text(session));
+  VectorsInTime input = read_input(options, session, pipeline->timers(), ranks);
   const bool pattern = settings.flow.texture != FlowTexture::streaks;
   if (!options.chunk.empty() && pattern)
     throw Error("--chunk needs --texture streaks", "spots and stripes remember all steps before a part");
@@ -286,7 +311,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
   }
   const PreparedSurface& surface = input.surface();
   const FlowSpan span = flow_span(settings, {input.start(), input.end()});
-  if (ranks) require_same_input(*ranks, input, span.start, knob_values(settings).dump());
+  if (ranks && !input.share()) require_same_input(*ranks, input, span.start, knob_values(settings).dump());
   const json map_report = make_flow_map(options, pipeline->timers(), input, span, settings, origin, first_outputs);
   FlowPainter painter(*pipeline, input, session,
                       span.frame_time);  // complains about camera and colours before the work
@@ -295,9 +320,13 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
 
   const FlowView view{painter.camera(), settings.width, settings.height};
   const std::size_t available = checkpoint.available(first_ones(ranks, device->available_bytes()));
-  settings.flow.resolution = choose_resolution(options, view, surface, settings.flow, available);
+  settings.flow.resolution = choose_resolution(options, view, input, settings.flow, available);
   pipeline->parameters.resolution = settings.flow.resolution;
-  const std::optional<Focus> focus = choose_focus(options, settings, view, surface, input.moves(), available);
+  std::optional<Focus> focus;
+  if (may_focus(options, settings) && !(input.share() && (!options.out.empty() || sees_all(view, input)))) {
+    if (input.share()) input = read_input(options, session, pipeline->timers(), nullptr);
+    focus = choose_focus(options, settings, view, surface, input.moves(), available);
+  }
   const SurfacePart* part = focus ? &focus->part : nullptr;
   if (focus) {
     pipeline->parameters.resolution = focus->resolution;
@@ -339,7 +368,7 @@ void run_flow(FlowOptions options, const KnobOptions& knob_options) {
     add_flow_report(report, input, vectors, settings, pipeline->flow().embedding(), seconds, focus ? &*focus : nullptr,
                     steps.first);
     if (!options.checkpoint.empty()) report["checkpoint"] = checkpoint.report();
-    if (ranks) report["processes"] = ranks_report(*ranks, pipeline->flow().embedding(), report, seconds);
+    if (ranks) report["processes"] = ranks_report(*ranks, pipeline->flow().embedding(), report, seconds, input.share());
     report.update(lines);
     report.update(map_report);
     if (dye) report["dye"] = dye->report();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
 #include "compute/flow/surface_diffusion.hpp"
 
@@ -142,9 +143,10 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
          surface * (4 + 16 + 4 + 24 + 28 + 8 * 3 + 4 * 5) + pairs * 24 + triangles * 220 + pattern + 64e6;
 }
 
-int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain) {
-  if (mesh.triangles.empty()) throw Error("no triangles", "", "give a surface");
-  const Bounds b = bounds_of(mesh);
+int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain, Ranks* sharers) {
+  if (sum_of_all(sharers, mesh.triangles.size()) == 0) throw Error("no triangles", "", "give a surface");
+  Bounds b = bounds_of(mesh);
+  extremes_of_all(sharers, {&b.lower.x, 3}, {&b.upper.x, 3});
   const double longest = largest(b.upper - b.lower);
   if (!(longest > 0) || !std::isfinite(longest)) throw Error("the surface has no extent");
   domain.radius = parameters.radius > 0 ? parameters.radius : octree_radius;
@@ -175,21 +177,36 @@ int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, F
   return levels;
 }
 
+MeshMeasure measure_mesh(const FlowMesh& mesh, Ranks* sharers) {
+  MeshMeasure measure;
+  ExactSum area, edges;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3d a = mesh.points[t.a], b = mesh.points[t.b], c = mesh.points[t.c];
+    area.add(0.5 * length(cross(b - a, c - a)));
+    edges.add(length(b - a) + length(c - a));
+    measure.lower = min(measure.lower, min(a, min(b, c)));
+    measure.upper = max(measure.upper, max(a, max(b, c)));
+  }
+  extremes_of_all(sharers, {&measure.lower.x, 3}, {&measure.upper.x, 3});
+  sum_of_all(sharers, area);
+  sum_of_all(sharers, edges);
+  measure.area = area.value();
+  measure.edges = edges.value();
+  measure.triangles = sum_of_all(sharers, mesh.triangles.size());
+  return measure;
+}
+
 double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& parameters) {
-  const Bounds b = bounds_of(mesh);
-  const double h = texture_cell(mesh, parameters, std::max(largest(b.upper - b.lower), 1e-300));
+  return estimate_octree_bytes(measure_mesh(mesh), mesh, parameters);
+}
+
+double estimate_octree_bytes(const MeshMeasure& measure, const FlowMesh& mesh, const FlowParameters& parameters) {
+  const double h = texture_cell(mesh, parameters, std::max(largest(measure.upper - measure.lower), 1e-300));
   const double radius = parameters.radius > 0 ? parameters.radius : octree_radius;
   const bool brick = parameters.octree == OctreeKind::brick;
-  double cells = 0, surface = 0, edges = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d ab = mesh.points[t.b] - mesh.points[t.a], ac = mesh.points[t.c] - mesh.points[t.a];
-    const double area = 0.5 * length(cross(ab, ac)) / (h * h);
-    cells += area * 2 * radius;
-    surface += area * 1.5;
-    edges += (length(ab) + length(ac)) / h;
-  }
-  cells += 4.2 * radius * radius * radius;  // around a speck
-  const double triangles = double(mesh.triangles.size());
+  const double area = measure.area / (h * h);
+  const double cells = area * 2 * radius + 4.2 * radius * radius * radius;  // at the end: around a speck
+  const double surface = area * 1.5, edges = measure.edges / h, triangles = double(measure.triangles);
   const double ttl = parameters.ttl;
   const double bricks = std::min(surface / 40 + 8, cells / 8 + 8);
   const double lists = (edges / 8 + triangles * 2 + bricks * 2) * 4;
@@ -226,7 +243,9 @@ void require_memory(const FlowMesh& mesh, const FlowParameters& parameters, cons
 }
 
 void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena) {
-  require(mesh, parameters, arena, estimate_octree_bytes);
+  const MeshMeasure measure = measure_mesh(mesh);
+  require(mesh, parameters, arena,
+          [&](const FlowMesh& of, const FlowParameters& with) { return estimate_octree_bytes(measure, of, with); });
 }
 
 }  // namespace nacre

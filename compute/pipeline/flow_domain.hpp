@@ -37,8 +37,9 @@ inline constexpr double octree_radius = 2.24;
 
 /// The cube of `resolution` cells per axis around the surface, which leaves room for the band on all sides. Returns the
 /// levels of the octree that covers it (of bricks of 8^3 cells). Throws Error where the resolution is out of the key
-/// range.
-int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain);
+/// range. `sharers`: of a mesh that is shared; then it is collective.
+int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain,
+                       Ranks* sharers = nullptr);
 void require_octree_memory(const FlowMesh& mesh, const FlowParameters& parameters, const Arena& arena);
 
 /// Throws Error, naming the largest resolution that fits, where the estimate is over the room in `arena`.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
@@ -18,6 +19,7 @@
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/pipeline/kept_arrays.hpp"
+#include "compute/pipeline/mesh_of_bricks.hpp"
 #include "compute/pipeline/moved_shape.hpp"
 #include "compute/pipeline/separate_sheets.hpp"
 #include "compute/raycast/build_triangle_boxes.hpp"
@@ -134,6 +136,8 @@ class FlowMethodOn : public FlowMethod {
     normals_ = arena.permanent_copy<Vec3f>(embedded.corner_normals);
     mesh_ = seen_ = {device_points_.data(), corners_.data(), normals_.data()};
     triangles_ = std::uint32_t(embedded.triangles.size());
+    numbers_ = {};
+    if (gathered_) numbers_ = arena.permanent_copy<std::uint32_t>(gathered_->numbers());
     boxes_ = {};
     second_sheet_.assign(seen.second_sheet.begin(), seen.second_sheet.end());
     if (seen.moves) shape_.make(exec_, mesh_, points_, seen.triangles, seen.corner_normals);
@@ -293,9 +297,12 @@ class FlowMethodOn : public FlowMethod {
     Arena& arena = exec_.arena();
     Arena::Scope scope(arena);
     auto& scene = pixel.scene;
-    colour_scene(arena, options, scene);
+    std::vector<float> scalar(options.scalar.begin(), options.scalar.end());
+    if (gathered_) gathered_->take_scalar(scalar);
+    colour_scene(arena, options, scalar, scene);
     scene.mesh = shape_.moved() ? shape_.mesh(corners_.data()) : seen_;
-    place_camera(pixel, options, dims);
+    place_camera(options, domain_, dims, pixel);
+    pixel.number = numbers_.size() ? numbers_.data() : nullptr;
     if (shape_.moved()) {  // perhaps out of the domain
       const Vec3d target = domain_.to_grid(options.camera.target);
       for (const Vec3d& p : shape_.points()) pixel.reach = std::max(pixel.reach, 1 + length(p - target));
@@ -351,8 +358,9 @@ class FlowMethodOn : public FlowMethod {
 
   Executor<Backend>& exec_;
   const FlowParameters& parameters_;
-  Ranks* ranks_;             ///< null: this process is alone
-  double known_around_ = 0;  ///< else: cells around its own in which this one knows the values
+  Ranks* ranks_;                          ///< null: this process is alone
+  std::optional<MeshOfBricks> gathered_;  ///< of a mesh that came in shares
+  double known_around_ = 0;               ///< else: cells around its own in which this one knows the values
   FlowDomain domain_;
   EmbeddingInfo info_;
   FlowVectors vectors_;
@@ -369,7 +377,8 @@ class FlowMethodOn : public FlowMethod {
   Array<Vec3d> device_points_;
   Array<Triangle> corners_;
   Array<Vec3f> normals_;
-  MovedShape<Backend> shape_;  ///< of a surface that moves
+  Array<std::uint32_t> numbers_;  ///< of the triangles among those of all processes; empty: as here
+  MovedShape<Backend> shape_;     ///< of a surface that moves
 
   /// Values come from no farther, in texture cells: as far as the band of the grid knows the surface.
   static constexpr double carry_reach = 18;
@@ -382,26 +391,12 @@ class FlowMethodOn : public FlowMethod {
   Array<Vec3f> present_vectors_;   ///< of the frame, one for each embedded point
 
  private:
-  template <class Pixel>
-  void place_camera(Pixel& pixel, const RenderOptions& options, const Vec3d& dims) const {
-    const Camera& camera = options.camera;
-    GridCamera& view = pixel.camera;
-    const Vec3d right = camera.right(), up = cross(right, camera.forward());
-    const double half = 0.5 * camera.height / domain_.cell_size;
-    view.eye = domain_.to_grid(camera.eye);
-    view.forward = camera.forward();
-    view.right = right * (half * options.width / options.height);
-    view.up = up * half;
-    view.distance = length(camera.target - camera.eye) / domain_.cell_size, view.orthographic = camera.orthographic;
-    pixel.scene.light = Vec3f(normalized(-view.forward + right * 0.35 + up * 0.55));
-    // A ball around the target that holds the domain, and what the camera sees of it.
-    pixel.reach = length(dims) + length(domain_.to_grid(camera.target) - dims * 0.5) + half * 2;
-    pixel.width = options.width;
-    pixel.height = options.height;
-    pixel.samples = std::max(1, options.samples);
-  }
-
   void fill_vectors(double time, std::vector<Vec3f>& vectors) const {
+    if (gathered_) {
+      std::vector<Vec3f> of_share(gathered_->share_points());
+      vectors_.at(time, of_share);
+      return gathered_->take(std::span<const Vec3f>(of_share), std::span<Vec3f>(vectors));
+    }
     const std::size_t own = points_.size() - sheets_.source.size();
     vectors_.at(time, std::span(vectors).first(own));
     for (std::size_t i = own; i < vectors.size(); ++i) vectors[i] = vectors[sheets_.source[i - own]];

@@ -66,6 +66,7 @@ struct FlowMesh {
   /// Per triangle: 1 for those of a second sheet, which lie where others do and face the other way; empty: none.
   std::span<const std::uint8_t> second_sheet{};
   bool moves = false;    ///< FlowMethod::move will be called: memory for other shapes
+  bool shared = false;   ///< the triangles are a share of those of all processes, in whose order they follow each other
   double cell_size = 0;  ///< edge of a texture cell, world units; 0: by `resolution`
 };
 
@@ -101,8 +102,9 @@ struct EmbeddingInfo {
   std::uint64_t dense_bytes = 0;  ///< the same payload for every texture cell of the box
   std::uint64_t flow_bytes = 0;   ///< on an octree: values, deposits and vectors of its cells, made by `start`
   double cell_size = 0;           ///< edge of a texture cell, world units
-  /// Of this process, where several share the octree; the numbers above are those of all.
-  std::uint64_t own_bricks = 0, own_surface_cells = 0, halo_bricks = 0;
+  /// Of this process, where several share the octree; the numbers above are those of all. The mesh is what is near its
+  /// bricks, where the surface came in shares.
+  std::uint64_t own_bricks = 0, own_surface_cells = 0, halo_bricks = 0, mesh_triangles = 0, mesh_bytes = 0;
 };
 
 /// One value per surface cell and what belongs to it; world coordinates.
@@ -224,9 +226,11 @@ class FlowPipeline {
   virtual ~FlowPipeline() = default;
 
   FlowParameters parameters;
-  /// The processes that share the flow, each with the whole surface; null: this one alone. Only on the octree of
-  /// bricks, on CPUs, and where the surface does not move. All processes make the same calls; pictures are
-  /// complete on the first; `values`, `shown` and `lookup` are those of its own bricks, and there is no `sample_shown`.
+  /// The processes that share the flow; null: this one alone. Only on the octree of bricks, on CPUs, and where the
+  /// surface does not move. Each has the whole surface, or a share of it (FlowMesh::shared): then vectors and scalars
+  /// are those of its points, and it gets from the others what lies near its bricks. All processes make the same
+  /// calls; pictures are complete on the first; `values`, `shown` and `lookup` are those of its own bricks, and there
+  /// is no `sample_shown`.
   Ranks* ranks = nullptr;
 
   virtual void embed(const FlowMesh& mesh) = 0;  ///< chooses the method; the surface and flow before it are gone
@@ -252,5 +256,14 @@ std::unique_ptr<FlowPipeline> make_flow_pipeline(Device& device);
 /// of percent.
 double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
 double estimate_octree_bytes(const FlowMesh& mesh, const FlowParameters& parameters);
+
+/// How large a surface is, of all processes where it is shared: `sharers` are those, and it is collective.
+struct MeshMeasure {
+  Vec3d lower{1e300}, upper{-1e300};
+  double area = 0, edges = 0;  ///< edges: the length of two of each triangle's
+  std::uint64_t triangles = 0;
+};
+MeshMeasure measure_mesh(const FlowMesh& mesh, Ranks* sharers = nullptr);
+double estimate_octree_bytes(const MeshMeasure& measure, const FlowMesh& mesh, const FlowParameters& parameters);
 
 }  // namespace nacre

@@ -27,18 +27,20 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
   using View = decltype(std::declval<typename Band::Octree>().view());
 
   void embed(const FlowMesh& mesh) override {
-    levels_ = make_octree_domain(mesh, parameters_, domain_);
+    levels_ = make_octree_domain(mesh, parameters_, domain_, mesh.shared ? ranks_ : nullptr);
     const FlowMesh embedded = this->separate(mesh, domain_.cell_size, domain_.radius);
     if (this->sheets_) levels_ = make_octree_domain(embedded, parameters_, domain_);
     if (!ranks_) require_octree_memory(embedded, parameters_, exec_.arena());
     if (ranks_ && mesh.moves) throw Error("several processes cannot share a surface that moves", "", "use one process");
     auto stage = exec_.stage("embed");
-    this->begin_embedding(embedded, mesh);
     if (ranks_) {
-      const MeshView on_host{this->points_.data(), embedded.triangles.data(), nullptr};
-      share_.emplace(exec_, *ranks_, cut_octree(*ranks_, on_host, triangles_, levels_),
-                     HaloDepths::of(domain_.radius, parameters_.step_cells, parameters_.streaks));
+      const std::vector<std::uint64_t> begin = cut_octree(*ranks_, embedded, domain_, levels_);
+      const HaloDepths depths = HaloDepths::of(domain_.radius, parameters_.step_cells, parameters_.streaks);
+      share_.emplace(exec_, *ranks_, begin, depths);
+      if (mesh.shared) this->gathered_.emplace(*ranks_, mesh, domain_, levels_, begin, depths.whole);
     }
+    const std::optional<MeshOfBricks>& near = this->gathered_;
+    this->begin_embedding(near ? near->mesh() : embedded, near ? near->mesh() : mesh);
     const OctreePart part = share_ ? share_->part() : OctreePart{};
     octree_ = Band::build(exec_, mesh_, triangles_, levels_, domain_, parameters_, share_ ? &part : nullptr);
     if constexpr (!Band::as_thesis)
@@ -165,6 +167,8 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     info_.own_bricks = share_->own_bricks();
     info_.own_surface_cells = share_->surface_count();
     info_.halo_bricks = share_->halo_bricks();
+    info_.mesh_triangles = triangles_;
+    if (this->gathered_) info_.mesh_bytes = this->gathered_->bytes();
     std::uint64_t all[] = {share_->own_cells(), share_->surface_count(), info_.bytes, share_->own_bricks(),
                            share_->own_lists(octree_)};
     ranks_->sum(all);

@@ -36,9 +36,13 @@ void add_bricks(const Corners& c, int levels, std::vector<TouchedBrick>& bricks)
 }
 
 /// Of the triangles first .. last - 1; ascending, each brick once.
-std::vector<TouchedBrick> touched_bricks(const MeshView& mesh, std::uint32_t first, std::uint32_t last, int levels) {
+std::vector<TouchedBrick> touched_bricks(const FlowMesh& mesh, const FlowDomain& domain, std::size_t first,
+                                         std::size_t last, int levels) {
   std::vector<TouchedBrick> all;
-  for (std::uint32_t t = first; t < last; ++t) add_bricks(mesh.corners(t), levels, all);
+  for (std::size_t t = first; t < last; ++t) {
+    const auto corner = [&](int k) { return domain.to_grid(mesh.points[mesh.triangles[t][k]]); };
+    add_bricks({corner(0), corner(1), corner(2)}, levels, all);
+  }
   std::sort(all.begin(), all.end(), [](const TouchedBrick& a, const TouchedBrick& b) { return a.code < b.code; });
   std::size_t kept = 0;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -53,10 +57,11 @@ std::vector<TouchedBrick> touched_bricks(const MeshView& mesh, std::uint32_t fir
 
 }  // namespace
 
-std::vector<std::uint64_t> cut_octree(Ranks& ranks, const MeshView& mesh, std::uint32_t triangles, int levels) {
+std::vector<std::uint64_t> cut_octree(Ranks& ranks, const FlowMesh& mesh, const FlowDomain& domain, int levels) {
   const auto parts = static_cast<std::size_t>(ranks.count()), own = static_cast<std::size_t>(ranks.rank());
-  const auto share = [&](std::size_t r) { return std::uint32_t(std::uint64_t(triangles) * r / parts); };
-  const std::vector<TouchedBrick> bricks = touched_bricks(mesh, share(own), share(own + 1), levels);
+  const std::size_t triangles = mesh.triangles.size();
+  const auto share = [&](std::size_t r) { return mesh.shared ? triangles * (r - own) : triangles * r / parts; };
+  const std::vector<TouchedBrick> bricks = touched_bricks(mesh, domain, share(own), share(own + 1), levels);
   std::vector<std::uint64_t> before{0};  // the work in the bricks before each
   for (const TouchedBrick& brick : bricks) before.push_back(before.back() + brick.work);
   std::uint64_t whole = before.back();

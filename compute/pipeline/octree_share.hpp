@@ -12,13 +12,14 @@
 #include "compute/device/ranks.hpp"
 #include "compute/embedding/build_brick_octree.hpp"
 #include "compute/flow/halo_depths.hpp"
+#include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 
 namespace nacre {
 
 /// Where each process's range of Morton codes of bricks begins, and the end of the last: ranges of about equal work,
-/// the same on all processes. `mesh`: as for the octree, on the host, in cells. Collective.
-std::vector<std::uint64_t> cut_octree(Ranks& ranks, const MeshView& mesh, std::uint32_t triangles, int levels);
+/// the same on all processes, which look at a part of the triangles each. Collective.
+std::vector<std::uint64_t> cut_octree(Ranks& ranks, const FlowMesh& mesh, const FlowDomain& domain, int levels);
 
 namespace detail {
 

@@ -25,20 +25,38 @@ struct Extent {
   double left = 0, right = 0, bottom = 0, top = 0;
 };
 
-Extent extent_of(std::span<const Vec3d> points, const Camera& camera) {
-  if (points.empty()) return {};
+/// Calls visit(p, where the camera sees it), from its target to the right and up, at the target's distance.
+template <class Visit>
+void each_seen(std::span<const Vec3d> points, const Camera& camera, const Visit& visit) {
   const Vec3d forward = camera.forward(), right = camera.right(), up = cross(right, forward);
   const double distance = length(camera.target - camera.eye);
-  Extent seen{1e300, -1e300, 1e300, -1e300};
   for (const Vec3d& p : points) {
     const Vec3d d = p - camera.target;
     const double nearer = camera.orthographic ? 1 : distance / (distance + dot(d, forward));
-    seen.left = std::min(seen.left, dot(d, right) * nearer);
-    seen.right = std::max(seen.right, dot(d, right) * nearer);
-    seen.bottom = std::min(seen.bottom, dot(d, up) * nearer);
-    seen.top = std::max(seen.top, dot(d, up) * nearer);
+    visit(p, dot(d, right) * nearer, dot(d, up) * nearer);
   }
+}
+
+Extent extent_of(std::span<const Vec3d> points, const Camera& camera) {
+  if (points.empty()) return {};
+  Extent seen{1e300, -1e300, 1e300, -1e300};
+  each_seen(points, camera, [&](const Vec3d&, double x, double y) {
+    seen.left = std::min(seen.left, x);
+    seen.right = std::max(seen.right, x);
+    seen.bottom = std::min(seen.bottom, y);
+    seen.top = std::max(seen.top, y);
+  });
   return seen;
+}
+
+double radius_of(const Vec3d& lower, const Vec3d& upper) { return std::max(0.5 * length(upper - lower), 1e-30); }
+
+/// Far from a box, its middle in the picture's.
+Camera before_box(const Camera& from, const Vec3d& lower, const Vec3d& upper) {
+  Camera camera = from;
+  camera.target = (lower + upper) * 0.5;
+  camera.eye = camera.target - from.forward() * (9 * radius_of(lower, upper));
+  return camera;
 }
 
 /// Moves the centre of `seen` into the middle of the left `share` of the picture, and scales it to fill that part.
@@ -68,21 +86,39 @@ Camera fit_camera(const Camera& from, std::span<const Vec3d> points, int width, 
     upper = max(upper, p);
   }
   if (points.empty()) lower = upper = Vec3d(0.0);
-  const double radius = std::max(0.5 * length(upper - lower), 1e-30), aspect = double(width) / std::max(height, 1);
-  Camera camera = from;
-  camera.target = (lower + upper) * 0.5;
-  camera.eye = camera.target - from.forward() * (9 * radius);
+  const double radius = radius_of(lower, upper), aspect = double(width) / std::max(height, 1);
+  const Camera camera = before_box(from, lower, upper);
   const Extent seen = extent_of(points, camera);
   const Camera whole = centred(camera, seen, aspect, 1, 1e-6 * radius);
   return reaches(seen, whole, aspect, kept) ? centred(camera, seen, aspect, kept.left, 1e-6 * radius) : whole;
 }
 
-Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height, const KeptFree& kept) {
+std::vector<Vec3d> outermost(const Camera& from, std::span<const Vec3d> points, const Vec3d& lower,
+                             const Vec3d& upper) {
+  std::vector<Vec3d> chosen;
+  if (points.empty()) return chosen;
+  std::array<double, 10> best;
+  std::array<Vec3d, 10> at;
+  best.fill(1e300);
+  each_seen(points, before_box(from, lower, upper), [&](const Vec3d& p, double x, double y) {
+    const std::array<double, 10> value{x, -x, y, -y, p.x, -p.x, p.y, -p.y, p.z, -p.z};
+    for (std::size_t k = 0; k < value.size(); ++k)
+      if (value[k] < best[k]) best[k] = value[k], at[k] = p;
+  });
+  chosen.assign(at.begin(), at.end());
+  return chosen;
+}
+
+Camera preset_camera(const std::string& view) {
   Camera from;
   const Vec3d direction = view_direction(view);
   from.up = std::fabs(direction.z) > 0.99 ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
   from.eye = direction;
-  return fit_camera(from, points, width, height, kept);
+  return from;
+}
+
+Camera fit_camera(const std::string& view, std::span<const Vec3d> points, int width, int height, const KeptFree& kept) {
+  return fit_camera(preset_camera(view), points, width, height, kept);
 }
 
 Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& upper, int width, int height) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "compute/math/vec.hpp"
 
@@ -46,6 +47,13 @@ Camera fit_camera(const Camera& from, std::span<const Vec3d> points, int width, 
 
 /// The same for the corners of a box.
 Camera fit_camera(const std::string& view, const Vec3d& lower, const Vec3d& upper, int width, int height);
+
+/// Of `points`, those that decide what `fit_camera(from, ...)` gives for them and any others; `lower`, `upper`: the box
+/// around all of them.
+std::vector<Vec3d> outermost(const Camera& from, std::span<const Vec3d> points, const Vec3d& lower, const Vec3d& upper);
+
+/// The direction of such a view.
+Camera preset_camera(const std::string& view);
 
 /// Turns the camera about the vertical axis through its target.
 Camera orbit(const Camera& camera, double degrees);

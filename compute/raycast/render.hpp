@@ -44,6 +44,16 @@ struct Shading {
   float background_alpha = 1;
 };
 
+/// What a ray sees: all that is needed to shade it, for a process that may not have the triangle.
+struct SeenSample {
+  double t = 1e300;
+  std::uint32_t triangle = none;  ///< its number among those of all processes; none: nothing is seen
+  float value = 0;                ///< of the texture
+  float scalar = 0;               ///< to colour by
+  Vec3f normal{};
+  std::uint32_t away = 0;  ///< 1: the face looks away
+};
+
 // What rays traverse. A target has find(mesh, ray, hit), which returns whether the ray meets the surface, and
 // texture(shown, ray, hit, footprint), the shown value at a hit. `at` of the targets below gives it at a position of
 // the embedded surface, in cells. `nearest` holds the tree of triangles, where there is one, and the sheets.
@@ -96,14 +106,6 @@ struct BandTarget {
   }
 };
 
-/// What a ray sees of a flow that several processes share.
-struct SeenSample {
-  double t = 1e300;
-  std::uint32_t triangle = none;  ///< none: nothing
-  Vec3f weights{};
-  float value = 0;  ///< of the texture
-};
-
 /// Whether a hit is in what this process has to show: always, unless it shares an octree with others.
 template <class Target>
 NACRE_HD_INLINE bool is_own(const Target&, const Ray&, const Hit&) {
@@ -136,21 +138,27 @@ NACRE_HD inline Vec3f colour_of(const Shading& shading, float scalar) {
   return {a.x + (b.x - a.x) * f, a.y + (b.y - a.y) * f, a.z + (b.z - a.z) * f};
 }
 
-/// Colour of a point of the surface in linear light. `value` is that of the texture, if there is one.
-NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const Hit& hit, float value) {
-  Vec3f base(0.62f, 0.62f, 0.62f);
-  const Vec3f n = shading.mesh.normal(hit.triangle, hit.weights);
-  const float facing = dot(n, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
-  const bool neutral = shading.neutral_backs && faces_away(shading.mesh, hit.triangle, ray);
-  if (shading.scalar && !neutral) {
+/// What a hit shows; `value` is that of the texture, if there is one.
+NACRE_HD inline SeenSample seen_at(const Shading& shading, const Ray& ray, const Hit& hit, float value) {
+  SeenSample sample{hit.t, hit.triangle, value};
+  sample.normal = shading.mesh.normal(hit.triangle, hit.weights);
+  sample.away = shading.neutral_backs && faces_away(shading.mesh, hit.triangle, ray) ? 1 : 0;
+  if (shading.scalar && !sample.away) {
     const Triangle t = shading.mesh.triangles[hit.triangle];
-    const float s =
+    sample.scalar =
         shading.scalar[t.a] * hit.weights.x + shading.scalar[t.b] * hit.weights.y + shading.scalar[t.c] * hit.weights.z;
-    base = colour_of(shading, s);
   }
-  const float diffuse = dot(n, shading.light) * facing;
+  return sample;
+}
+
+/// Colour of a point of the surface in linear light.
+NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const SeenSample& sample) {
+  Vec3f base(0.62f, 0.62f, 0.62f);
+  const float facing = dot(sample.normal, Vec3f(ray.direction)) > 0 ? -1.0f : 1.0f;  // surfaces have two sides
+  if (shading.scalar && !sample.away) base = colour_of(shading, sample.scalar);
+  const float diffuse = dot(sample.normal, shading.light) * facing;
   float brightness = shading.ambient + (1 - shading.ambient) * (diffuse > 0 ? diffuse : 0);
-  if (shading.shown && !neutral) brightness *= 0.04f + 1.52f * value;
+  if (shading.shown && !sample.away) brightness *= 0.04f + 1.52f * sample.value;
   return base * brightness;
 }
 
@@ -163,11 +171,12 @@ struct RenderPixel {
   double reach;  ///< radius of a ball around the target that contains the surface
   std::uint32_t* pixels;
   // Among several processes, each finds what there is to see of its own, and one shades what is nearest.
-  std::int64_t first = 0;             ///< pixel of index 0
-  SeenSample* seen = nullptr;         ///< samples^2 entries for each index; null: nothing is recorded
-  const SeenSample* given = nullptr;  ///< null: rays are cast
-  float most = 0;                     ///< cells around a hit in which this process knows the values
-  std::uint32_t* too_wide = nullptr;  ///< set where a footprint goes farther
+  std::int64_t first = 0;                 ///< pixel of index 0
+  SeenSample* seen = nullptr;             ///< samples^2 entries for each index; null: nothing is recorded
+  const SeenSample* given = nullptr;      ///< null: rays are cast
+  const std::uint32_t* number = nullptr;  ///< of each triangle among those of all processes; null: as here
+  float most = 0;                         ///< cells around a hit in which this process knows the values
+  std::uint32_t* too_wide = nullptr;      ///< set where a footprint goes farther
 
   NACRE_HD void operator()(std::int64_t index) const {
     const std::int64_t i = first + index;
@@ -180,35 +189,29 @@ struct RenderPixel {
       const double y = 1 - (py + (k / samples + 0.5) / samples) / height * 2;
       Ray ray = camera.ray(x, y, reach);
       ray.fronts_only = shading.hidden_backs;
-      Hit hit;
-      float value = 0;
-      bool met;
+      SeenSample sample;
       if (given) {
-        const SeenSample& sample = given[index * (samples * samples) + k];
-        met = sample.triangle != none;
-        hit = {sample.t, sample.triangle, sample.weights};
-        value = sample.value;
+        sample = given[index * (samples * samples) + k];
       } else {
-        met = scene.target.find(shading.mesh, ray, hit);
-        const bool own = !seen || (met && is_own(scene.target, ray, hit));
-        if (met && own && shading.shown) value = scene.target.texture(shading.shown, ray, hit, footprint(ray, hit));
+        Hit hit;
+        if (scene.target.find(shading.mesh, ray, hit) && (!seen || is_own(scene.target, ray, hit))) {
+          const Footprint f = footprint(ray, hit);
+          const float value = shading.shown ? scene.target.texture(shading.shown, ray, hit, f) : 0;
+          sample = seen_at(shading, ray, hit, value);
+          if (seen && shading.shown && !(length(f.across) + length(f.up) <= 2 * most)) relaxed_store(too_wide, 1);
+          if (number) sample.triangle = number[hit.triangle];
+        }
         if (seen) {
-          SeenSample sample;
-          if (own) {
-            sample = {hit.t, hit.triangle, hit.weights, value};
-            const Footprint f = footprint(ray, hit);
-            if (shading.shown && !(length(f.across) + length(f.up) <= 2 * most)) relaxed_store(too_wide, 1);
-          }
           seen[index * (samples * samples) + k] = sample;
           continue;
         }
       }
-      if (!met) {
+      if (sample.triangle == none) {
         sum += shading.background;
         alpha += shading.background_alpha;
         continue;
       }
-      sum += shade(shading, ray, hit, value);
+      sum += shade(shading, ray, sample);
       alpha += 1;
     }
     if (seen) return;

@@ -237,9 +237,9 @@ std::string with_commas(std::size_t number) {
 }
 
 Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings,
-                      const std::vector<Vec3d>* moved) {
+                      const std::vector<Vec3d>* moved, bool part) {
   Triangulation kept = triangulate_all(mesh);
-  if (kept.triangles.empty()) fail_without_triangles(mesh, kept.losses, name);
+  if (kept.triangles.empty() && !part) fail_without_triangles(mesh, kept.losses, name);
   for (const std::string& warning : mesh.warnings) warnings.push_back(name + ": " + warning);
   kept.losses.report(warnings, name);
   gather_arrays(mesh, kept, name, warnings);

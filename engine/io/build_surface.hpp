@@ -15,9 +15,9 @@ namespace nacre {
 /// area), sets NaN and infinite values to 0, and drops points that no triangle uses. Each loss adds one sentence with
 /// counts to `warnings`. Throws Error with `name` (the file) if no triangle is left.
 /// `moved`: positions of the same points at another time; null: none. They become the points of the result, everything
-/// else follows from the mesh's own.
+/// else follows from the mesh's own. `part`: of a larger mesh; it may have no triangle.
 Surface build_surface(RawMesh mesh, const std::string& name, std::vector<std::string>& warnings,
-                      const std::vector<Vec3d>* moved = nullptr);
+                      const std::vector<Vec3d>* moved = nullptr, bool part = false);
 
 /// 1234567 as "1,234,567".
 std::string with_commas(std::size_t number);

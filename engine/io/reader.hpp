@@ -11,6 +11,7 @@
 
 #include "engine/io/volume_reader.hpp"
 #include "engine/scene/surface/surface.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 #include "engine/scene/volume/volume.hpp"
 
 namespace nacre {
@@ -60,6 +61,10 @@ struct FileInfo {
 /// others are read on demand. Throws Error if a file is missing, unreadable or not a surface. `patches`: names of the
 /// parts to take of a file that VTK reads, as `convert_with_vtk` takes them; empty: all.
 SurfaceSeries open_surface(const std::vector<std::filesystem::path>& paths, const std::string& patches = {});
+
+/// The same in shares of several processes, which read the pieces of a step as far as their shares lie in them.
+/// Collective.
+SharedSeries open_surface(const std::vector<std::filesystem::path>& paths, const std::string& patches, Ranks& ranks);
 
 /// Describes the contents of a file, even if it is not a surface; `choice` for volumes, `patches` for surfaces. Throws
 /// Error if it cannot be read.

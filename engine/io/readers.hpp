@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "engine/io/raw_mesh.hpp"
 
@@ -16,5 +17,15 @@ RawMesh read_stl(std::string bytes, const std::filesystem::path& path);
 RawMesh read_off(std::string bytes, const std::filesystem::path& path);
 RawMesh read_gifti(std::string bytes, const std::filesystem::path& path);
 RawMesh read_vtk_xml(std::string bytes, const std::filesystem::path& path);
+
+/// A file that a .pvtp or .pvtu names.
+struct VtkPiece {
+  std::filesystem::path file, list;
+  std::string list_type;  ///< what the list says it holds
+};
+std::vector<VtkPiece> vtk_pieces(const std::filesystem::path& list);
+RawMesh read_vtk_piece(const VtkPiece& piece);
+inline constexpr const char* faces_between_pieces =
+    "Faces between the pieces of the volume are kept as part of its surface.";
 
 }  // namespace nacre

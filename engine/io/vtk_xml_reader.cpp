@@ -250,26 +250,35 @@ RawMesh read_pieces(const VtkXmlFile& file) {
   return mesh;
 }
 
-RawMesh read_parallel(const VtkXmlFile& file) {
-  RawMesh mesh;
-  std::size_t pieces = 0;
+std::vector<VtkPiece> pieces_of(const VtkXmlFile& file) {
+  std::vector<VtkPiece> pieces;
   for (const pugi::xml_node piece : file.dataset().children("Piece")) {
     const std::string source = piece.attribute("Source").value();
     if (source.empty()) fail_reading(file.path(), "one of its pieces names no file");
-    const auto path = file.path().parent_path() / source;
-    const VtkXmlFile part(read_file(path), path);
-    if ("P" + part.type() != file.type())
-      fail_reading(path, fmt::format("it holds {}, {} says {}", part.type(), file.path().string(), file.type()));
-    append(mesh, read_pieces(part));
-    ++pieces;
+    pieces.push_back({file.path().parent_path() / source, file.path(), file.type()});
   }
-  if (pieces == 0) fail_reading(file.path(), "it names no pieces");
-  if (pieces > 1 && mesh.volume_cells > 0)
-    mesh.warnings.push_back("Faces between the pieces of the volume are kept as part of its surface.");
+  if (pieces.empty()) fail_reading(file.path(), "it names no pieces");
+  return pieces;
+}
+
+RawMesh read_parallel(const VtkXmlFile& file) {
+  RawMesh mesh;
+  const std::vector<VtkPiece> pieces = pieces_of(file);
+  for (const VtkPiece& piece : pieces) append(mesh, read_vtk_piece(piece));
+  if (pieces.size() > 1 && mesh.volume_cells > 0) mesh.warnings.push_back(faces_between_pieces);
   return mesh;
 }
 
 }  // namespace
+
+std::vector<VtkPiece> vtk_pieces(const std::filesystem::path& list) { return pieces_of({read_file(list), list}); }
+
+RawMesh read_vtk_piece(const VtkPiece& piece) {
+  const VtkXmlFile part(read_file(piece.file), piece.file);
+  if ("P" + part.type() != piece.list_type)
+    fail_reading(piece.file, fmt::format("it holds {}, {} says {}", part.type(), piece.list.string(), piece.list_type));
+  return read_pieces(part);
+}
 
 RawMesh read_vtk_xml(std::string bytes, const std::filesystem::path& path) {
   const VtkXmlFile file(std::move(bytes), path);

@@ -77,24 +77,31 @@ void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const 
   hash = hash_of(hash, std::span<const Triangle>(surface.triangles));
   hash = hash_of(hash, std::span<const Vec3f>(vectors));
   hash = hash_of(hash, std::span<const char>(knobs));
-  std::uint64_t different = first_ones(&ranks, hash) != hash;
-  ranks.sum({&different, 1});
-  if (different > 0)
-    throw Error(std::to_string(different) + " of " + std::to_string(ranks.count()) +
-                    " processes have another input than the first",
-                "the files or the options differ", "give all of them the same");
+  require_same(ranks, hash);
+}
+
+void require_same_text(Ranks& ranks, const std::string& text) {
+  require_same(ranks, hash_of(0xcbf29ce484222325, std::span<const char>(text)));
 }
 
 nlohmann::json ranks_report(Ranks& ranks, const EmbeddingInfo& embedding, const nlohmann::json& own_report,
-                            std::vector<double> seconds_per_step) {
-  nlohmann::json all = gather_reports(ranks, {{"bricks", embedding.own_bricks},
-                                              {"surface_cells", embedding.own_surface_cells},
-                                              {"halo_bricks", embedding.halo_bricks},
-                                              {"memory", own_report["memory"]},
-                                              {"stages", own_report["stages"]},
-                                              {"seconds_per_step", median(std::move(seconds_per_step))},
-                                              {"sent_bytes", ranks.sent_bytes()},
-                                              {"waited_seconds", ranks.waited_seconds()}});
+                            std::vector<double> seconds_per_step, const Share* share) {
+  nlohmann::json own = {{"bricks", embedding.own_bricks},
+                        {"surface_cells", embedding.own_surface_cells},
+                        {"halo_bricks", embedding.halo_bricks},
+                        {"triangles", embedding.mesh_triangles},
+                        {"memory", own_report["memory"]},
+                        {"stages", own_report["stages"]},
+                        {"seconds_per_step", median(std::move(seconds_per_step))},
+                        {"sent_bytes", ranks.sent_bytes()},
+                        {"waited_seconds", ranks.waited_seconds()}};
+  if (share)
+    own["share"] = {{"triangles", share->triangles},
+                    {"peak_bytes", share->peak_bytes},
+                    {"halo_bytes", share->halo_bytes},
+                    {"kept_bytes", share->kept_bytes},
+                    {"near_bricks_bytes", embedding.mesh_bytes}};
+  nlohmann::json all = gather_reports(ranks, own);
   double most = 0, sum = 0;
   for (const nlohmann::json& each : all) {
     most = std::max(most, each["surface_cells"].get<double>());

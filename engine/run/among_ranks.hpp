@@ -9,6 +9,7 @@
 
 #include "compute/device/ranks.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 #include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
@@ -26,9 +27,12 @@ void broadcast(Ranks& ranks, std::vector<std::byte>& bytes);
 /// different knobs.
 void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const std::string& knobs);
 
+/// Throws Error where the processes were given different texts: what they are to do.
+void require_same_text(Ranks& ranks, const std::string& text);
+
 /// What each process did, on the first: its share, memory and stages (from `own_report`), bytes sent, and time spent
-/// waiting.
+/// waiting; of a surface in shares also what it had of that.
 nlohmann::json ranks_report(Ranks& ranks, const EmbeddingInfo& embedding, const nlohmann::json& own_report,
-                            std::vector<double> seconds_per_step);
+                            std::vector<double> seconds_per_step, const Share* share = nullptr);
 
 }  // namespace nacre

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/scene/settings/knobs.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 
 namespace nacre {
 namespace {
@@ -34,10 +35,11 @@ nlohmann::json embedding_report(const EmbeddingInfo& e) {
 void add_flow_report(nlohmann::json& report, const VectorsInTime& input, const FlowVectors& vectors,
                      const Settings& settings, const EmbeddingInfo& embedding, const std::vector<double>& seconds,
                      const Focus* focus, int first_step) {
+  const Share* share = input.share();
   report["input"] = {{"name", input.series().name},
                      {"vectors", input.array()},
-                     {"points", input.surface().points.size()},
-                     {"triangles", input.surface().triangles.size()},
+                     {"points", share ? share->all_points : input.surface().points.size()},
+                     {"triangles", share ? share->all_triangles : input.surface().triangles.size()},
                      {"time", {vectors.start, vectors.end}},
                      {"reference_speed", vectors.reference_speed},
                      {"normal_share", input.statistics().normal_share},

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
 #include "engine/scene/surface/extent.hpp"
 #include "engine/scene/surface/flow_input.hpp"
@@ -137,34 +138,65 @@ int most_cells(const FlowParameters& parameters) {
 }
 
 /// The finest resolution, at most `wanted`, that the method can number and the memory holds; 0: none does.
-int affordable(const PreparedSurface& part, FlowParameters parameters, double wanted, double available) {
+int affordable(const FlowMesh& mesh, const MeshMeasure& measure, FlowParameters parameters, double wanted,
+               double available) {
   const bool grid = parameters.method == EmbeddingKind::grid;
-  const FlowMesh mesh = flow_mesh(part);
   parameters.resolution = int(std::min<double>(wanted, most_cells(parameters)));
   while (parameters.resolution >= least_resolution) {
-    const double bytes = grid ? estimate_flow_bytes(mesh, parameters) : estimate_octree_bytes(mesh, parameters);
+    const double bytes =
+        grid ? estimate_flow_bytes(mesh, parameters) : estimate_octree_bytes(measure, mesh, parameters);
     if (bytes <= available) return parameters.resolution;
     parameters.resolution = parameters.resolution * 15 / 16;
   }
   return 0;
 }
 
+/// `corners`: what decides on a camera in the direction of the view's.
+int resolution_for(const FlowView& view, const FlowMesh& mesh, const MeshMeasure& measure,
+                   std::span<const Vec3d> corners, const FlowParameters& parameters, std::size_t available) {
+  const Camera fitted = fit_camera(view.camera, corners, view.width, view.height);
+  const Vec3d side = measure.triangles > 0 ? measure.upper - measure.lower : Vec3d{};
+  const double longest = std::max({side.x, side.y, side.z}), pixels = double(view.width) * view.height;
+  const double cell = std::max(std::max(fitted.height, view.camera.height) / view.height / cells_along_pixel,
+                               std::sqrt(measure.area / (picture_cells * pixels)));
+  if (!(longest > 0) || !(cell > 0)) return least_resolution;
+  return std::max(least_resolution,
+                  affordable(mesh, measure, parameters, std::ceil(longest / cell), 0.5 * double(available)));
+}
+
+/// What the knob says; 0: nothing.
+int asked_resolution(const FlowParameters& parameters) {
+  if (parameters.resolution > 0 && parameters.resolution < least_resolution)
+    throw Error("`resolution` " + std::to_string(parameters.resolution) + " is too coarse", "",
+                "use " + std::to_string(least_resolution) + " or more, or 0");
+  return std::max(0, parameters.resolution);
+}
+
 }  // namespace
 
 int picture_resolution(const FlowView& view, const PreparedSurface& surface, const FlowParameters& parameters,
                        std::size_t available) {
-  if (parameters.resolution >= least_resolution) return parameters.resolution;
-  if (parameters.resolution > 0)
-    throw Error("`resolution` " + std::to_string(parameters.resolution) + " is too coarse", "",
-                "use " + std::to_string(least_resolution) + " or more, or 0");
-  const Camera fitted = fit_camera(view.camera, triangle_corners(surface), view.width, view.height);
-  const double longest = Extent(surface.points, surface.triangles).longest_side(),
-               pixels = double(view.width) * view.height;
-  const double cell = std::max(std::max(fitted.height, view.camera.height) / view.height / cells_along_pixel,
-                               std::sqrt(area_of(surface) / (picture_cells * pixels)));
-  if (!(longest > 0) || !(cell > 0)) return least_resolution;
-  return std::max(least_resolution,
-                  affordable(surface, parameters, std::ceil(longest / cell), 0.5 * double(available)));
+  if (const int asked = asked_resolution(parameters); asked > 0) return asked;
+  const FlowMesh mesh = flow_mesh(surface);
+  return resolution_for(view, mesh, measure_mesh(mesh), triangle_corners(surface), parameters, available);
+}
+
+int picture_resolution(const FlowView& view, const VectorsInTime& input, const FlowParameters& parameters,
+                       std::size_t available) {
+  if (!input.share()) return picture_resolution(view, input.surface(), parameters, available);
+  if (const int asked = asked_resolution(parameters); asked > 0) return asked;
+  const FlowMesh mesh = flow_mesh(input.surface(), input.share());
+  const std::vector<Vec3d> corners = outermost_corners(input, {&view.camera, 1});
+  return resolution_for(view, mesh, measure_mesh(mesh, input.share()->ranks), corners, parameters, available);
+}
+
+bool sees_all(const FlowView& view, const VectorsInTime& input) {
+  const std::vector<HalfSpace> sides = Projection(view).sides(0);
+  std::uint64_t beyond = 0;
+  for (const Triangle& t : own_triangles(input.surface(), input.share()))
+    for (int k = 0; k < 3; ++k)
+      for (const HalfSpace& side : sides) beyond += dot(side.normal, input.surface().points[t[k]]) - side.offset > 0;
+  return sum_of_all(input.share() ? input.share()->ranks : nullptr, beyond) == 0;
 }
 
 double picture_budget(const FlowView& view) { return picture_cells * view.width * view.height; }
@@ -201,7 +233,8 @@ std::optional<Focus> focus_on(const FlowView& view, const PreparedSurface& whole
   const double longest = Extent(focus.part.surface.points, focus.part.surface.triangles).longest_side();
   if (!(longest > 0)) return {};
   focus.wanted = int(std::min<double>(std::ceil(longest / cell), most_cells(parameters)));
-  focus.resolution = affordable(focus.part.surface, parameters, focus.wanted, double(available));
+  const FlowMesh mesh = flow_mesh(focus.part.surface);
+  focus.resolution = affordable(mesh, measure_mesh(mesh), parameters, focus.wanted, double(available));
   if (focus.resolution == 0) return {};
   focus.cell_size = longest / focus.resolution;
   if (focus.cell_size * coarsest_cell > coarse) return {};  // no finer than the whole

@@ -10,6 +10,7 @@
 #include "compute/pipeline/flow_pipeline.hpp"
 #include "compute/raycast/camera.hpp"
 #include "engine/scene/surface/surface_part.hpp"
+#include "engine/scene/surface/vectors_in_time.hpp"
 
 namespace nacre {
 
@@ -39,6 +40,12 @@ inline constexpr double coarsest_cell = 1.5;
 /// returned as it is; below 16, Error.
 int picture_resolution(const FlowView& view, const PreparedSurface& surface, const FlowParameters& parameters,
                        std::size_t available);
+/// The same for the surface of `input`, which may be in shares; then it is collective.
+int picture_resolution(const FlowView& view, const VectorsInTime& input, const FlowParameters& parameters,
+                       std::size_t available);
+
+/// Whether the view shows every triangle completely; of a surface in shares collective.
+bool sees_all(const FlowView& view, const VectorsInTime& input);
 
 /// Surface cells of a close-up, at most: in a picture, and in a window, where the user waits for it.
 double picture_budget(const FlowView& view);

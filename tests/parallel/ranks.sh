@@ -5,6 +5,7 @@ set -euo pipefail
 program=$(readlink -f "$1")
 mpirun=$2
 what=${3:-all}
+write_pieces=$(readlink -f "$(dirname "${BASH_SOURCE[0]}")/write_pieces.py")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -49,6 +50,25 @@ PY
   done
 }
 
+# bounded P: of a surface in pieces no process has more than 1.3 times its part and what touches that, by its own count.
+bounded() {
+  local p
+  mkdir -p many && python3 "$write_pieces" many/s 11 1 100
+  for p in 1 "$1"; do
+    launch "$p" "$program" flow many/s.pvd --method octree --resolution 500 --steps 1 --warmup 0 --streaks 0 --quiet \
+      --report "many/$p.json" >/dev/null || complain "no run of $p processes on many pieces"
+  done
+  python3 - "$1" many/1.json "many/$1.json" <<'PY' || complain "a process has more than its part of the surface"
+import json, sys
+whole, parts = ([e["share"] for e in json.load(open(f))["processes"]["each"]] for f in sys.argv[2:])
+for own in parts:
+    bound = 1.3 * (whole[0]["peak_bytes"] / int(sys.argv[1]) + own["halo_bytes"])
+    assert own["peak_bytes"] <= bound, (own, bound)
+    assert own["near_bricks_bytes"] < 0.8 * whole[0]["near_bricks_bytes"], own
+assert sum(own["triangles"] for own in parts) == whole[0]["triangles"]
+PY
+}
+
 # refused STATUS TEXT P WORDS...: all processes end with this status, and one line of ours that has this text.
 refused() {
   local wanted=$1 text=$2 status=0
@@ -87,14 +107,34 @@ resumed() {
 }
 
 if [[ $what != faults ]]; then
+  cat >near.json <<'JSON'
+{"eye": [6, -8, 5], "target": [2.2, 0, 0], "up": [0, 0, 1], "height": 0.8}
+JSON
   pieces 1 3
   resumed stopped --sample train --detail 96 --resolution 160 --steps 5 --warmup 2
   same train "1 2 3 4 7" --sample train --detail 96 --resolution 200 --steps 2
   same vortex "3" --sample delta-wing --detail 200 --resolution 300 --steps 1 --step-cells 12 --streaks 40
   same particles "3" --sample cylinder --detail 140 --resolution 160 --steps 2 --streaks 0 --camera +x
   same few "7" --sample sphere --resolution 20 --steps 1 # some have next to no bricks
+  mkdir in && python3 "$write_pieces" in/s 5 3 && python3 "$write_pieces" in/lone 1 2 12
+  same split "1 2 3 4 7" in/s.pvd --resolution 200 --steps 3 --color pressure --color-range 2%:98% # triangles of 50 cells
+  same cells "3" in/s.pvd --resolution 160 --steps 1 --color density --camera=-y # means of cells at borders of pieces
+  same swirl "4" in/s_0.pvtp --resolution 160 --steps 2 --vectors @swirl
+  same lone "3" in/lone_0.pvtp in/lone_1.pvtp --resolution 100 --steps 2
+  same near "2" in/s.pvd --resolution 60 --steps 1 --camera near.json # a close-up: each has the whole surface
+  same lines "2" in/s.pvd --resolution 100 --steps 1 --topology # the same
+  bounded 4
 fi
 [[ $what == bytes ]] && exit $bad
+
+# Pieces that are not there, that cannot be read, or that differ.
+mkdir gone && python3 "$write_pieces" gone/s && rm gone/s_1_3.vtp
+mkdir cut && python3 "$write_pieces" cut/s && truncate -s 3000 cut/s_0_4.vtp
+mkdir a b && python3 "$write_pieces" a/s && python3 "$write_pieces" b/s 5 3 26
+split=(flow s.pvd --method octree --resolution 100 --steps 1 --image no.png --quiet)
+refused 1 's_1_3.vtp cannot be opened' 3 -wdir gone "$program" "${split[@]}"
+refused 1 's_0_4.vtp' 3 -wdir cut "$program" "${split[@]}"
+refused 1 'another input' 1 -wdir a "$program" "${split[@]}" : -n 1 -wdir b "$program" "${split[@]}"
 
 train=(flow --sample train --detail 96 --method octree --resolution 160 --size 160x120 --quiet)
 refused 1 'share only an octree' 2 "$program" flow --sample sphere --method grid --resolution 64 --steps 1 --image no.png

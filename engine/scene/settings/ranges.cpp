@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
 
 namespace nacre {
@@ -68,6 +69,20 @@ void ColourSurvey::add(float value, bool sampled) {
   high_ = std::max(high_, double(value));
   if (value > 0 && (spread_.least_positive == 0 || value < spread_.least_positive)) spread_.least_positive = value;
   if (sampled) spread_.sample.push_back(value);
+}
+
+void ColourSurvey::join(Ranks& ranks) {
+  constexpr double no_positive = 1e300;
+  double positive = spread_.least_positive > 0 ? spread_.least_positive : no_positive, gaps = spread_.gaps ? 1 : 0;
+  double least[] = {low_, positive}, largest[] = {high_, gaps};
+  extremes_of_all(&ranks, least, largest);
+  low_ = least[0], high_ = largest[0];
+  spread_.least_positive = least[1] < no_positive ? least[1] : 0;
+  spread_.gaps = largest[1] > 0;
+  ForEachRank<float> send(static_cast<std::size_t>(ranks.count()), spread_.sample);
+  spread_.sample.clear();
+  for (const std::vector<float>& from : exchange_items(ranks, send))
+    spread_.sample.insert(spread_.sample.end(), from.begin(), from.end());
 }
 
 ColourSpread ColourSurvey::spread() && {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/device/ranks.hpp"
 #include "engine/scene/settings/settings.hpp"
 
 namespace nacre {
@@ -33,8 +34,10 @@ struct ColourSpread {
 /// Collects a spread.
 class ColourSurvey {
  public:
-  /// Of the values, every `stride`-th from the first on goes into the sample; all count for the ends.
+  /// All values count for the ends, those `sampled` for percentiles, too.
   void add(float value, bool sampled);
+  /// Takes up what other processes have collected. Collective.
+  void join(Ranks& ranks);
   /// With ends 0 and 1 where there was no number, and an end above the other where all are the same.
   ColourSpread spread() &&;
 

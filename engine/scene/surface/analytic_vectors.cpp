@@ -4,8 +4,9 @@
 #include <limits>
 #include <numbers>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
-#include "engine/scene/surface/prepare.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 
 namespace nacre {
 namespace {
@@ -56,11 +57,14 @@ Vec3d swirl(const Vec3d& q, double t) {
 
 std::vector<std::string> analytic_vector_names() { return {"@swirl", "@rotation"}; }
 
-std::vector<Vec3f> analytic_vectors(const std::string& name, const PreparedSurface& surface, double t) {
+std::vector<Vec3f> analytic_vectors(const std::string& name, const PreparedSurface& surface, double t,
+                                    const Share* share) {
   const bool is_swirl = name == "@swirl";
   if (!is_swirl && name != "@rotation")
     throw Error("there is no analytic field " + name, "", "the fields are @swirl and @rotation");
-  const Box box = bounding_box(surface);
+  Ranks* ranks = share ? share->ranks : nullptr;
+  Box box = bounding_box(surface);
+  extremes_of_all(ranks, {&box.low.x, 3}, {&box.high.x, 3});
   const Vec3d centre = box.centre(), size = box.high - box.low;
   const double half = 0.5 * std::max({size.x, size.y, size.z});
   const std::vector<Vec3d> normals = normals_of_points(surface);
@@ -68,8 +72,9 @@ std::vector<Vec3f> analytic_vectors(const std::string& name, const PreparedSurfa
   std::vector<Vec3f> vectors(surface.points.size());
   double radius = 0;
   for (std::size_t p = 0; p < vectors.size(); ++p)
-    if (dot(normals[p], normals[p]) > 0)
+    if (is_counted(share, p) && dot(normals[p], normals[p]) > 0)
       radius = std::max(radius, std::hypot(surface.points[p].x - centre.x, surface.points[p].y - centre.y));
+  extremes_of_all(ranks, {}, {&radius, 1});
   for (std::size_t p = 0; p < vectors.size(); ++p) {
     const Vec3d n = normals[p];
     if (dot(n, n) == 0) continue;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
 #include "engine/scene/surface/series_motion.hpp"
 
@@ -32,6 +33,27 @@ VectorsInTime make_flow_input(SurfaceSeries series, const Settings& settings, co
   }
   MotionChoice motion = choose_motion(series, first, choice.name, settings, log);
   VectorsInTime vectors(std::move(series), std::move(surface), choice.name, settings.color, stop, std::move(motion));
+  warn_of_vectors(vectors, settings, log);
+  return vectors;
+}
+
+std::optional<VectorsInTime> make_flow_input(SharedSeries shared, Ranks& ranks, const Settings& settings,
+                                             const FlowLog& log, std::string& why, const std::atomic<bool>* stop) {
+  SurfaceSeries& series = shared.series;
+  if (series.moves) throw Error("a surface that moves needs one process", "", "leave mpirun away");
+  std::vector<std::string> warnings;
+  Surface first = series.load(0);
+  PreparedShare prepared = prepare_share(ranks, first, shared.point_id, settings.crease_angle, &warnings);
+  why = prepared.whole_needed;
+  if (!why.empty()) return {};
+  for (const std::string& warning : series.warnings) log.warn(warning);
+  for (const std::string& warning : warnings) log.warn(warning);
+  const VectorChoice choice = choose_vectors(first, settings.vectors, &prepared.share);
+  log.chosen(choice);
+  MotionChoice motion = choose_motion(series, first, choice.name, settings, log);
+  first = {};
+  VectorsInTime vectors(std::move(series), std::move(prepared.surface), choice.name, settings.color, stop,
+                        std::move(motion), std::make_shared<const Share>(std::move(prepared.share)));
   warn_of_vectors(vectors, settings, log);
   return vectors;
 }
@@ -119,6 +141,11 @@ FlowVectors flow_vectors(VectorsInTime& input, double start, double end, const S
 }
 
 std::vector<Vec3d> corners_of_all_steps(const VectorsInTime& input) {
+  if (input.share()) {
+    std::vector<Camera> views;
+    for (const char* view : {"iso", "+x", "-x", "+y", "-y", "+z", "-z"}) views.push_back(preset_camera(view));
+    return outermost_corners(input, views);
+  }
   std::vector<Vec3d> corners = triangle_corners(input.surface());
   if (!input.moves()) return corners;
   const SeriesMotion& motion = *input.series().motion;
@@ -129,6 +156,28 @@ std::vector<Vec3d> corners_of_all_steps(const VectorsInTime& input) {
         if (corner >> axis & 1) p[axis] = motion.high[k][axis];
       corners.push_back(p);
     }
+  return corners;
+}
+
+std::vector<Vec3d> outermost_corners(const VectorsInTime& input, std::span<const Camera> cameras) {
+  const PreparedSurface& surface = input.surface();
+  Ranks& ranks = *input.share()->ranks;
+  std::vector<Vec3d> corners;
+  Vec3d low(1e300), high(-1e300);
+  for (const Triangle& t : own_triangles(surface, input.share()))
+    for (int k = 0; k < 3; ++k) {
+      corners.push_back(surface.points[t[k]]);
+      low = min(low, corners.back());
+      high = max(high, corners.back());
+    }
+  extremes_of_all(&ranks, {&low.x, 3}, {&high.x, 3});
+  std::vector<Vec3d> own;
+  for (const Camera& camera : cameras)
+    for (const Vec3d& p : outermost(camera, corners, low, high)) own.push_back(p);
+  ForEachRank<Vec3d> send(static_cast<std::size_t>(ranks.count()), own);
+  corners.clear();
+  for (const std::vector<Vec3d>& from : exchange_items(ranks, send))
+    corners.insert(corners.end(), from.begin(), from.end());
   return corners;
 }
 

@@ -90,7 +90,7 @@ bool FlowMotion::is_stretched(double t) {
 /// texture is as fine everywhere in time.
 FlowMesh FlowMotion::mesh() const {
   const PreparedSurface& surface = input_.surface();
-  FlowMesh mesh = flow_mesh(surface);
+  FlowMesh mesh = flow_mesh(surface, input_.share());
   mesh.moves = input_.moves();
   if (cell_size_ > 0) {
     const double growth = Extent(surface.points, surface.triangles).longest_side() / longest_;

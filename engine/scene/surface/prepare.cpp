@@ -26,7 +26,8 @@ struct Shape {
   double flatness = 0;  // height over longest side, about
 };
 
-Shape shape_of(const std::vector<Vec3d>& points, const Triangle& t) {
+/// Not inlined: all who ask get the same rounding.
+[[gnu::noinline]] Shape shape_of(const std::vector<Vec3d>& points, const Triangle& t) {
   const Vec3d ab = points[t.b] - points[t.a], bc = points[t.c] - points[t.b], ca = points[t.a] - points[t.c];
   const double longest = std::sqrt(std::max({dot(ab, ab), dot(bc, bc), dot(ca, ca)}));
   if (!(longest > 0) || !std::isfinite(longest)) return {};
@@ -208,6 +209,15 @@ void require_triangles(const PreparedSurface& surface, std::string_view why) {
 }
 
 }  // namespace
+
+bool has_no_area(const std::vector<Vec3d>& points, const Triangle& triangle) {
+  return !(shape_of(points, triangle).flatness > zero_height);
+}
+
+void tell_repairs(const WindingReport& winding, std::size_t flat, std::vector<std::string>* warnings) {
+  say(warnings, winding);
+  say(warnings, flat, "triangle", "dropped because they have no area");
+}
 
 void update_normals(PreparedSurface& surface, std::span<const std::uint32_t> same, double crease_degrees) {
   add_corner_normals(surface, same, shapes_of(surface), crease_degrees);

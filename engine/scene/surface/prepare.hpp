@@ -10,6 +10,8 @@
 
 namespace nacre {
 
+struct Share;  // engine/scene/surface/surface_share.hpp
+
 /// What the numerics take: clean triangles with consistent winding, and normals that respect creases.
 struct PreparedSurface {
   std::vector<Vec3d> points;          ///< as in the file, one to one with its arrays (unused where not finite: moved)
@@ -36,6 +38,13 @@ PreparedSurface prepare(const Surface& surface, double crease_degrees = 40.0,
 /// position in the shape that was prepared (first_at_position), so that parts which only touch stay apart.
 void update_normals(PreparedSurface& surface, std::span<const std::uint32_t> same, double crease_degrees);
 
+/// Whether a triangle has no area, and is dropped for that.
+bool has_no_area(const std::vector<Vec3d>& points, const Triangle& triangle);
+
+struct WindingReport;
+/// The sentences on what was done to a surface; `flat`: triangles dropped that have no area.
+void tell_repairs(const WindingReport& winding, std::size_t flat, std::vector<std::string>* warnings);
+
 /// What a name says about the motion of a surface.
 enum class VectorKind { other, wall_shear, velocity };
 VectorKind vector_kind(const std::string& name);
@@ -49,8 +58,9 @@ struct VectorChoice {
 /// Which vectors to show. `request` names an array (exactly, else up to case) or an analytic field ("@swirl"). Empty:
 /// the only 3-component array, else the most likely by name (wall shear, velocity, momentum, others, displacement last)
 /// and content (not all zero, not mostly normal to the surface); never normals, colours or coordinates.
-/// Throws Error that lists the arrays there are.
-VectorChoice choose_vectors(const Surface& surface, const std::string& request);
+/// Throws Error that lists the arrays there are. `share`: `surface` is what a process has before it is prepared, and
+/// this says which of its points count; collective.
+VectorChoice choose_vectors(const Surface& surface, const std::string& request, const Share* share = nullptr);
 
 /// How much of a vector field lies in the surface. Means and percentile are weighted by area.
 struct VectorStatistics {
@@ -60,15 +70,18 @@ struct VectorStatistics {
   double percentile_98 = 0;  ///< 98 % of the area that moves at all is no faster than this (tangential speed)
 };
 
-/// Statistics of `vectors` (one per point of `surface`, else Error).
-VectorStatistics vector_statistics(const PreparedSurface& surface, std::span<const Vec3f> vectors);
+/// Statistics of `vectors` (one per point of `surface`, else Error); `share`: with those of the other processes,
+/// collective. All sums are exact, and do not depend on who adds what.
+VectorStatistics vector_statistics(const PreparedSurface& surface, std::span<const Vec3f> vectors,
+                                   const Share* share = nullptr);
 
 /// A tangential field for surfaces without vectors, one vector per point (zero on points without triangle).
 /// "@swirl": a smooth unsteady field with nodes, saddles and vortices, period 1 in `t` (seconds), root mean square
 /// speed about 1. "@rotation": steady rigid rotation about the z axis through the bounding box's centre, speed 1 at the
 /// largest radius. Both depend on positions relative to the bounding box only, so scale does not matter. Error for
-/// other names.
-std::vector<Vec3f> analytic_vectors(const std::string& name, const PreparedSurface& surface, double t);
+/// other names. `share`: of the whole surface, on the points of a share; collective.
+std::vector<Vec3f> analytic_vectors(const std::string& name, const PreparedSurface& surface, double t,
+                                    const Share* share = nullptr);
 
 /// The names that `analytic_vectors` takes, each beginning with '@'.
 std::vector<std::string> analytic_vector_names();

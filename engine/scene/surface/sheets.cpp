@@ -38,6 +38,7 @@ class SheetFinder {
     if (!find_doubled_positions()) return found;
     list_candidates();
     find_pairs();
+    found.suspected = !pairs_.empty();
     for (const auto& [t, u] : pairs_)
       for (const std::uint32_t triangle : {t, u}) join_points(triangle);
     choose_sides();

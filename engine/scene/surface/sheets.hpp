@@ -14,6 +14,7 @@ namespace nacre {
 struct SecondSheets {
   std::vector<std::uint32_t> triangles;  ///< ascending
   std::vector<std::uint32_t> backing;    ///< for each a triangle of the first sheet that it lies on
+  bool suspected = false;                ///< some triangles lie on others and face the other way, of whatever sheet
 };
 
 /// Finds them among `triangles`, however either sheet's polygons were divided into triangles. Of two sheets the one

@@ -9,8 +9,9 @@
 #include <set>
 #include <span>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
-#include "engine/scene/surface/prepare.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 
 namespace nacre {
 namespace {
@@ -85,8 +86,9 @@ Vec3d vector_at(const PointArray& array, std::size_t point) {
   return is_finite(result) ? result : Vec3d{};
 }
 
-Content content_of(const Surface& surface, const PointArray& array) {
-  double normal = 0, all = 0;
+Content content_of(const Surface& surface, const PointArray& array, const Share* share) {
+  Ranks* ranks = share ? share->ranks : nullptr;
+  ExactSum normal, all;
   for (const Triangle& t : surface.triangles) {
     if (std::max({t.a, t.b, t.c}) >= std::min(array.size(), surface.points.size())) continue;
     const Vec3d a = surface.points[t.a];
@@ -95,20 +97,27 @@ Content content_of(const Surface& surface, const PointArray& array) {
     if (!(area > 0) || !std::isfinite(area)) continue;
     for (int k = 0; k < 3; ++k) {
       const Vec3d v = vector_at(array, t[k]);
-      normal += std::abs(dot(v, n));
-      all += length(v) * area;
+      normal.add(std::abs(dot(v, n)));
+      all.add(length(v) * area);
     }
   }
   Content content;
-  std::size_t zero = 0, unit = 0;
+  std::uint64_t zero = 0, unit = 0, items = 0;
   for (std::size_t p = 0; p < array.size(); ++p) {
+    if (!is_counted(share, p)) continue;
     const double size = length(vector_at(array, p));
+    ++items;
     zero += size == 0;
     unit += std::abs(size - 1) < 1e-3;
   }
-  content.zero_share = array.size() > 0 ? double(zero) / double(array.size()) : 1.0;
-  content.unit_length = array.size() > 0 && unit == array.size();
-  content.normal_share = all > 0 ? normal / all : 0.0;
+  sum_of_all(ranks, normal);
+  sum_of_all(ranks, all);
+  zero = sum_of_all(ranks, zero);
+  unit = sum_of_all(ranks, unit);
+  items = sum_of_all(ranks, items);
+  content.zero_share = items > 0 ? double(zero) / double(items) : 1.0;
+  content.unit_length = items > 0 && unit == items;
+  content.normal_share = all.value() > 0 ? normal.value() / all.value() : 0.0;
   return content;
 }
 
@@ -126,11 +135,11 @@ struct Candidate {
   }
 };
 
-std::vector<Candidate> candidates(const Surface& surface) {
+std::vector<Candidate> candidates(const Surface& surface, const Share* share) {
   std::vector<Candidate> result;
   for (const PointArray& array : surface.arrays) {
     if (array.components != 3 || kind_of(array.name) == Kind::never) continue;
-    const Candidate candidate{&array, kind_of(array.name), content_of(surface, array)};
+    const Candidate candidate{&array, kind_of(array.name), content_of(surface, array, share)};
     const bool normals =
         candidate.kind == Kind::other && candidate.content.unit_length && candidate.content.normal_share > 0.9;
     if (!normals) result.push_back(candidate);
@@ -196,9 +205,9 @@ VectorKind vector_kind(const std::string& name) {
                                   : VectorKind::other;
 }
 
-VectorChoice choose_vectors(const Surface& surface, const std::string& request) {
+VectorChoice choose_vectors(const Surface& surface, const std::string& request, const Share* share) {
   if (!request.empty()) return request[0] == '@' ? choose_analytic(request) : choose_named(surface, request);
-  const std::vector<Candidate> all = candidates(surface);
+  const std::vector<Candidate> all = candidates(surface, share);
   if (all.empty()) throw Error("the surface has no vectors to show", list_arrays(surface), analytic_advice);
   const auto best = std::max_element(all.begin(), all.end(),
                                      [](const Candidate& a, const Candidate& b) { return a.score() < b.score(); });

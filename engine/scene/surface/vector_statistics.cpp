@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <utility>
 
+#include "compute/device/among_all.hpp"
 #include "compute/device/error.hpp"
-#include "engine/scene/surface/prepare.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 
 namespace nacre {
 namespace {
@@ -37,53 +39,97 @@ std::vector<PointShare> share_out(const PreparedSurface& surface, std::span<cons
   return shares;
 }
 
-/// The smallest speed such that `fraction` of the weight is no faster. (speed, weight) pairs, reordered: halves are
-/// left out until one pair remains.
-double weighted_percentile(std::vector<std::pair<double, double>>& speeds, double fraction) {
+/// A speed and a whole number that says how much it weighs.
+struct Weighted {
+  double speed;
+  std::uint64_t weight;
+};
+
+/// The smallest speed such that `wanted` of the weight is no faster: halves are left out until one is left. Reorders.
+double weighted_percentile(std::vector<Weighted>& speeds, std::uint64_t wanted) {
   if (speeds.empty()) return 0;
-  const auto weight = [](auto from, auto to) {
-    return std::accumulate(from, to, 0.0, [](double sum, const auto& pair) { return sum + pair.second; });
-  };
   auto first = speeds.begin(), last = speeds.end();
-  double wanted = fraction * weight(first, last);
+  const auto slower = [](const Weighted& a, const Weighted& b) { return a.speed < b.speed; };
   while (last - first > 1) {
     const auto middle = first + (last - first) / 2;
-    std::nth_element(first, middle, last);
-    const double below = weight(first, middle);
+    std::nth_element(first, middle, last, slower);
+    std::uint64_t below = 0;
+    for (auto each = first; each != middle; ++each) below += each->weight;
     if (below >= wanted)
       last = middle;
     else
       wanted -= below, first = middle;
   }
-  return first->first;
+  return first->speed;
+}
+
+/// The same of the speeds of all processes: bisection over all numbers above 0, whose bits are in their order.
+double weighted_percentile(Ranks& ranks, std::vector<Weighted>& speeds, std::uint64_t wanted) {
+  std::sort(speeds.begin(), speeds.end(), [](const Weighted& a, const Weighted& b) { return a.speed < b.speed; });
+  std::vector<std::uint64_t> before{0};  // the weight of those before each
+  for (const Weighted& each : speeds) before.push_back(before.back() + each.weight);
+  std::uint64_t low = 0, high = std::bit_cast<std::uint64_t>(std::numeric_limits<double>::infinity());
+  while (high - low > 1) {
+    const std::uint64_t middle = low + (high - low) / 2;
+    const auto faster = std::upper_bound(speeds.begin(), speeds.end(), std::bit_cast<double>(middle),
+                                         [](double speed, const Weighted& each) { return speed < each.speed; });
+    const std::uint64_t weight = sum_of_all(&ranks, before[std::size_t(faster - speeds.begin())]);
+    (weight >= wanted ? high : low) = middle;
+  }
+  return std::bit_cast<double>(high);
+}
+
+/// `fraction` of the area moves no faster. Areas weigh as parts of their sum, in 2^52nds.
+double percentile(Ranks* ranks, const std::vector<std::pair<double, double>>& moving, double fraction) {
+  ExactSum area;
+  for (const auto& each : moving) area.add(each.second);
+  sum_of_all(ranks, area);
+  const double all = area.value();
+  std::vector<Weighted> speeds;
+  speeds.reserve(moving.size());
+  std::uint64_t weight = 0;
+  for (const auto& [speed, own] : moving) {
+    speeds.push_back({speed, std::uint64_t(std::llround(own / all * 0x1p52))});
+    weight += speeds.back().weight;
+  }
+  weight = sum_of_all(ranks, weight);
+  if (weight == 0) return 0;
+  const auto wanted = std::uint64_t(std::ceil(fraction * double(weight)));
+  return ranks ? weighted_percentile(*ranks, speeds, wanted) : weighted_percentile(speeds, wanted);
 }
 
 }  // namespace
 
-VectorStatistics vector_statistics(const PreparedSurface& surface, std::span<const Vec3f> vectors) {
+VectorStatistics vector_statistics(const PreparedSurface& surface, std::span<const Vec3f> vectors, const Share* share) {
   if (vectors.size() != surface.points.size())
     throw Error("the vectors do not fit the surface",
                 fmt::format("{} vectors, {} points", vectors.size(), surface.points.size()));
+  Ranks* ranks = share ? share->ranks : nullptr;
   const std::vector<PointShare> shares = share_out(surface, vectors);
   VectorStatistics result;
   std::vector<std::pair<double, double>> moving;
-  std::size_t used = 0, zero = 0;
-  double normal = 0, all = 0;
+  std::uint64_t used = 0, zero = 0;
+  ExactSum normal, all;
   for (std::size_t p = 0; p < shares.size(); ++p) {
-    const PointShare& share = shares[p];
-    if (share.area <= 0) continue;
+    const PointShare& at = shares[p];
+    if (at.area <= 0 || !is_counted(share, p)) continue;
     ++used;
     const double size = is_finite(vectors[p]) ? length(Vec3d(vectors[p])) : 0.0;
     zero += size == 0;
-    normal += share.normal;
-    all += share.area * size;
-    const double speed = share.tangential / share.area;
+    normal.add(at.normal);
+    all.add(at.area * size);
+    const double speed = at.tangential / at.area;
     result.max_speed = std::max(result.max_speed, speed);
-    if (speed > 0) moving.emplace_back(speed, share.area);
+    if (speed > 0) moving.emplace_back(speed, at.area);
   }
-  if (all > 0) result.normal_share = normal / all;
+  sum_of_all(ranks, normal);
+  sum_of_all(ranks, all);
+  used = sum_of_all(ranks, used);
+  zero = sum_of_all(ranks, zero);
+  extremes_of_all(ranks, {}, {&result.max_speed, 1});
+  if (all.value() > 0) result.normal_share = normal.value() / all.value();
   if (used > 0) result.zero_share = double(zero) / double(used);
-  result.percentile_98 = weighted_percentile(moving, 0.98);
+  result.percentile_98 = percentile(ranks, moving, 0.98);
   return result;
 }
 

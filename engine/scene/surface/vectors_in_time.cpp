@@ -11,10 +11,17 @@
 #include "compute/device/error.hpp"
 #include "engine/scene/surface/haemodynamics.hpp"
 #include "engine/scene/surface/material_map.hpp"
+#include "engine/scene/surface/surface_share.hpp"
 #include "engine/scene/surface/winding.hpp"
 
 namespace nacre {
 namespace {
+
+/// Whether a value is among those that percentiles are taken of. It depends on the position alone, so that all
+/// processes agree.
+bool is_sampled(const Vec3d& point, std::size_t step, std::size_t stride) {
+  return (position_hash(point) + step) % stride == 0;
+}
 
 const PointArray& array_of(const Surface& surface, const std::string& name, std::size_t points, std::size_t step) {
   const PointArray* array = surface.find(name);
@@ -45,13 +52,14 @@ bool is_ftle(const std::string& color) {
 }
 
 VectorsInTime::VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color,
-                             const std::atomic<bool>* stop, MotionChoice motion)
+                             const std::atomic<bool>* stop, MotionChoice motion, std::shared_ptr<const Share> share)
     : series_(std::move(series)),
       start_(series_.times.front()),
       base_(start_),
       steps_(std::size_t(series_.motion ? 4 : 2)),
       motion_(std::move(motion)),
-      stop_(stop) {
+      stop_(stop),
+      share_(std::move(share)) {
   check_period();
   begin_group(std::move(surface));
   choose(vectors, color);
@@ -154,14 +162,14 @@ void VectorsInTime::show_scalar(const std::string& name, std::vector<float> valu
 VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
   Step step;
   step.number = number;
-  const std::size_t n = surface_.points.size();
+  const std::size_t n = surface_.points.size(), known = share_ ? share_->points : n;
   const bool needs_file = moves() || !analytic_ || colours_by_array();
   const Surface surface = needs_file ? series_.load(number) : Surface{};
   const auto vectors_of = [&](const std::string& name) {
-    const PointArray& array = array_of(surface, name, n, number);
+    const PointArray& array = array_of(surface, name, known, number);
     if (array.components != 3) throw Error("array '" + name + "' does not have three components");
     std::vector<Vec3f> vectors(n);
-    for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t i = 0; i < known; ++i)
       vectors[i] = {array.values[3 * i], array.values[3 * i + 1], array.values[3 * i + 2]};
     return vectors;
   };
@@ -170,9 +178,9 @@ VectorsInTime::Step VectorsInTime::load(std::size_t number) const {
     step.surface_velocity = vectors_of(motion_.surface_velocity);
   if (moves()) step.points = surface.points;
   if (colours_by_array()) {
-    const PointArray& array = array_of(surface, color_, n, number);
+    const PointArray& array = array_of(surface, color_, known, number);
     step.scalar.resize(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = 0; i < known; ++i) {
       double squares = 0;
       for (int k = 0; k < array.components; ++k) squares += std::pow(array.values[i * array.components + k], 2);
       step.scalar[i] = array.components == 1 ? array.values[i] : float(std::sqrt(squares));
@@ -219,7 +227,7 @@ void VectorsInTime::vectors(double t, std::span<Vec3f> out) {
     return transfer_vectors(began_.points, points(t), surface_.triangles, values, out);
   }
   if (analytic_) {
-    const std::vector<Vec3f> values = analytic_vectors(vectors_, surface_, t);
+    const std::vector<Vec3f> values = analytic_vectors(vectors_, surface_, t, share());
     std::copy(values.begin(), values.end(), out.begin());
     return;
   }
@@ -260,29 +268,34 @@ void VectorsInTime::survey(bool vectors_too) {
   VectorStatistics all = statistics_;
   const std::size_t moments = analytic_ && series_.steps() == 1 && end_ > start_ ? 8 : series_.steps();
   std::vector<Vec3f> now(surface_.points.size()), next = now;
-  const std::size_t stride = now.size() * moments / largest_sample | 1;  // odd: rows of a surface are even at times
+  const std::size_t stride = (share_ ? share_->all_points : now.size()) * moments / largest_sample | 1;
   const auto look_at = [&](std::size_t k) {
     check_stop(stop_);
     const double t = moments == series_.steps() ? series_.times[k] : start_ + (end_ - start_) * double(k) / 8;
     if (vectors_too) vectors(t, next);
     if (!scalars) return;
     const std::vector<float> all_values = scalar(t);
-    for (std::size_t i = 0; i < all_values.size(); ++i) values.add(all_values[i], i % stride == k % stride);
+    for (std::size_t i = 0; i < all_values.size(); ++i)
+      if (is_counted(share(), i)) values.add(all_values[i], is_sampled(surface_.points[i], k, stride));
   };
   const bool any = vectors_too || scalars;
   if (any) look_at(0);
   for (std::size_t k = 0; any && k < moments; ++k) {  // the next one is read while this one is judged
     std::swap(now, next);
     VectorStatistics s;
-    tbb::parallel_invoke(
-        [&] {
-          if (!vectors_too) return;
-          s = vector_statistics(surface_, now);
-          for (std::size_t i = k % stride; i < now.size(); i += stride) speeds.add(speed_of(now[i], i), true);
-        },
-        [&] {
-          if (k + 1 < moments) look_at(k + 1);
-        });
+    const auto judge = [&] {
+      if (!vectors_too) return;
+      s = vector_statistics(surface_, now, share());
+      for (std::size_t i = 0; i < now.size(); ++i)
+        if (is_counted(share(), i) && is_sampled(surface_.points[i], k, stride)) speeds.add(speed_of(now[i], i), true);
+    };
+    const auto look_ahead = [&] {
+      if (k + 1 < moments) look_at(k + 1);
+    };
+    if (share_)
+      judge(), look_ahead();  // both may talk to other processes
+    else
+      tbb::parallel_invoke(judge, look_ahead);
     if (!vectors_too) continue;
     if (k == 0)
       all = s;
@@ -293,6 +306,7 @@ void VectorsInTime::survey(bool vectors_too) {
   }
   if (vectors_too) all.percentile_98 /= double(moments);
   statistics_ = all;
+  if (share_) speeds.join(*share_->ranks), values.join(*share_->ranks);
   if (vectors_too) {
     speeds_ = std::move(speeds).spread();
     speeds_.low = 0;

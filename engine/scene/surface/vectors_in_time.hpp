@@ -38,9 +38,13 @@ class VectorsInTime {
   /// `vectors`: an array of the series or an analytic field; `color`: an array, "speed", "none", or TAWSS, OSI or RRT
   /// (haemodynamics.hpp) of the vectors, where no array has that name. Looks at every step
   /// once for the reference speed and the range of the colours. Throws Error where an array is missing in a step.
-  /// Interrupted where `stop` is set.
+  /// Interrupted where `stop` is set. `share`: the surface is what this process has of one; statistics and ranges are
+  /// those of all, and this and `vectors` and `scalar` are collective. Numbers at points of others are 0.
   VectorsInTime(SurfaceSeries series, PreparedSurface surface, std::string vectors, std::string color,
-                const std::atomic<bool>* stop = nullptr, MotionChoice motion = {});
+                const std::atomic<bool>* stop = nullptr, MotionChoice motion = {},
+                std::shared_ptr<const Share> share = nullptr);
+
+  const Share* share() const { return share_.get(); }
 
   // Other choices, without reading again what they do not concern. Where one throws, all is as it was.
 
@@ -140,6 +144,7 @@ class VectorsInTime {
   std::vector<std::uint32_t> same_;               ///< first_at_position of its first shape
   PreparedSurface began_;                         ///< that shape, for analytic fields
   const std::atomic<bool>* stop_;
+  std::shared_ptr<const Share> share_;  ///< null: the surface is whole
 };
 
 /// Mean corner normal of each point: what speed on the surface is measured against.

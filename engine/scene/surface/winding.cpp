@@ -10,19 +10,7 @@
 namespace nacre {
 namespace {
 
-constexpr std::uint32_t no_twin =
-    0xffffffffu;  // four, six, ... triangles share the edge, or the triangle is a duplicate
-constexpr std::uint32_t open_edge = 0xfffffffeu;  // an odd number of triangles: the part is not closed
-
-std::uint64_t position_hash(const Vec3d& p) {
-  std::uint64_t h = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    h ^= std::bit_cast<std::uint64_t>(p[axis] + 0.0);  // -0 becomes +0
-    h *= 0x9e3779b97f4a7c15u;
-    h ^= h >> 32;
-  }
-  return h;
-}
+constexpr std::uint32_t no_twin = SidePairs::no_twin, open_edge = SidePairs::open_edge;
 
 /// One side of one triangle, listed under the smaller of its two points.
 struct Side {
@@ -44,7 +32,7 @@ struct SideTable {
   std::vector<Side> sides;
 };
 
-SideTable list_sides(std::span<const std::uint32_t> same, const std::vector<Triangle>& triangles) {
+SideTable list_sides(std::span<const std::uint32_t> same, std::span<const Triangle> triangles) {
   SideTable table;
   table.first.assign(same.size() + 2, 0);
   for (const Triangle& t : triangles)
@@ -86,7 +74,7 @@ std::vector<char> find_duplicates(const SideTable& table, std::size_t triangles)
 }
 
 /// For each side the one across the edge, or no_twin or open_edge. Duplicates have no neighbours.
-std::vector<std::uint32_t> pair_sides(const SideTable& table, const std::vector<char>& duplicate) {
+std::vector<std::uint32_t> find_twins(const SideTable& table, const std::vector<char>& duplicate) {
   std::vector<std::uint32_t> twin(table.sides.size(), no_twin);
   for_each_edge(table, [&](const Side* begin, const Side* end) {
     std::uint32_t found[2] = {};
@@ -145,8 +133,8 @@ class Orientation {
   }
 
   void step_across(std::uint32_t side, std::uint32_t other) {
-    const bool same_direction = start_of(side) == start_of(other);
-    const State wanted = (state_[side / 3] == State::flipped) != same_direction ? State::flipped : State::kept;
+    const bool turned = opposed(same_, triangles_, side, other);
+    const State wanted = (state_[side / 3] == State::flipped) != turned ? State::flipped : State::kept;
     State& state = state_[other / 3];
     if (state == State::unseen) {
       state = wanted;
@@ -163,7 +151,7 @@ class Orientation {
         std::count_if(part_.begin(), part_.end(), [&](auto t) { return state_[t] == State::flipped; });
     const bool majority_flipped = 2 * flipped > part_.size();
     bool turn = majority_flipped;
-    if (const double volume = closed_ ? signed_volume() : 0.0; volume != 0) {
+    if (const int volume = closed_ ? volume_sign() : 0; volume != 0) {
       turn = volume < 0;
       report_.closed_triangles += part_.size();
       if (turn != majority_flipped) report_.turned_triangles += part_.size();
@@ -175,19 +163,19 @@ class Orientation {
       if ((state_[t] == State::flipped) != turn) std::swap(triangles_[t].b, triangles_[t].c);
   }
 
-  /// Six times the volume, measured from a point of the part so that a far origin costs no digits.
-  double signed_volume() const {
+  /// Of the volume, measured from a point of the part so that a far origin costs no digits.
+  int volume_sign() const {
     const Vec3d origin = points_[triangles_[part_[0]].a];
-    double sum = 0;
+    double extent = 0;
+    for (const std::uint32_t i : part_)
+      for (int k = 0; k < 3; ++k) extent = std::fmax(extent, axis_distance(origin, points_[triangles_[i][k]]));
+    WholeVolume sum;
     for (const std::uint32_t i : part_) {
       const Triangle& t = triangles_[i];
-      const double six = dot(points_[t.a] - origin, cross(points_[t.b] - origin, points_[t.c] - origin));
-      sum += state_[i] == State::flipped ? -six : six;
+      sum.add(origin, extent, points_[t.a], points_[t.b], points_[t.c], state_[i] == State::flipped);
     }
-    return sum;
+    return sum.sign();
   }
-
-  std::uint32_t start_of(std::uint32_t side) const { return same_[triangles_[side / 3][int(side % 3)]]; }
 
   std::span<const Vec3d> points_;
   std::span<const std::uint32_t> same_;
@@ -201,6 +189,16 @@ class Orientation {
 };
 
 }  // namespace
+
+std::uint64_t position_hash(const Vec3d& p) {
+  std::uint64_t h = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    h ^= std::bit_cast<std::uint64_t>(p[axis] + 0.0);  // -0 becomes +0
+    h *= 0x9e3779b97f4a7c15u;
+    h ^= h >> 32;
+  }
+  return h;
+}
 
 std::vector<std::uint32_t> first_at_position(std::span<const Vec3d> points) {
   std::vector<std::uint32_t> same(points.size());
@@ -219,13 +217,30 @@ std::vector<std::uint32_t> first_at_position(std::span<const Vec3d> points) {
   return same;
 }
 
+void WholeVolume::add(const Vec3d& origin, double extent, const Vec3d& a, const Vec3d& b, const Vec3d& c,
+                      bool flipped) {
+  if (!(extent > 0)) return;
+  const Vec3d p = (a - origin) / extent, q = (b - origin) / extent, r = (c - origin) / extent;
+  const auto whole = std::int64_t(std::llrint(dot(p, cross(q, r)) * 0x1p60));  // the product is below 5.2
+  const std::int64_t added = flipped ? -whole : whole;
+  high += added >> 32;
+  low += added & 0xffffffff;
+}
+
+SidePairs pair_sides(std::span<const std::uint32_t> same, std::span<const Triangle> triangles) {
+  const SideTable table = list_sides(same, triangles);
+  SidePairs pairs;
+  pairs.duplicate = find_duplicates(table, triangles.size());
+  pairs.twin = find_twins(table, pairs.duplicate);
+  return pairs;
+}
+
 WindingReport make_winding_consistent(std::span<const Vec3d> points, std::span<const std::uint32_t> same,
                                       std::vector<Triangle>& triangles, std::vector<std::uint8_t>* open) {
   WindingReport report;
-  const SideTable table = list_sides(same, triangles);
-  const std::vector<char> duplicate = find_duplicates(table, triangles.size());
-  const std::vector<std::uint32_t> twin = pair_sides(table, duplicate);
-  Orientation orientation(points, same, triangles, twin, report);
+  const SidePairs pairs = pair_sides(same, triangles);
+  const std::vector<char>& duplicate = pairs.duplicate;
+  Orientation orientation(points, same, triangles, pairs.twin, report);
   orientation.run(duplicate);
   if (open) open->clear();
   std::size_t kept = 0;

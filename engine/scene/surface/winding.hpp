@@ -1,6 +1,7 @@
 // Nacre: which points coincide, and triangles wound alike.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,8 +11,48 @@
 
 namespace nacre {
 
+/// The same for equal positions.
+std::uint64_t position_hash(const Vec3d& p);
+
 /// For each point the smallest index of a point at exactly the same position (itself, where there is none before it).
 std::vector<std::uint32_t> first_at_position(std::span<const Vec3d> points);
+
+/// What lies across the three sides of each triangle. Entry 3 * triangle + corner is the side that starts there.
+struct SidePairs {
+  static constexpr std::uint32_t no_twin = 0xffffffffu;    ///< 4, 6, ... triangles share the edge, or it is a duplicate
+  static constexpr std::uint32_t open_edge = 0xfffffffeu;  ///< an odd number: the part is not closed
+  std::vector<std::uint32_t> twin;                         ///< the side across, or one of these
+  std::vector<char> duplicate;                             ///< per triangle: an earlier one has the same three points
+};
+
+/// `same`, `triangles`: as below.
+SidePairs pair_sides(std::span<const std::uint32_t> same, std::span<const Triangle> triangles);
+
+/// Whether the triangles on two sides of an edge are wound in opposite ways.
+inline bool opposed(std::span<const std::uint32_t> same, std::span<const Triangle> triangles, std::uint32_t side,
+                    std::uint32_t other) {
+  return same[triangles[side / 3][int(side % 3)]] == same[triangles[other / 3][int(other % 3)]];
+}
+
+/// Six times the volume between triangles and a point, in whole numbers: the same sum in any order.
+struct WholeVolume {
+  std::int64_t high = 0, low = 0;  ///< high * 2^32 + low
+
+  /// `extent`: no corner is farther from `origin`, along any axis.
+  [[gnu::noinline]] void add(const Vec3d& origin, double extent, const Vec3d& a, const Vec3d& b, const Vec3d& c,
+                             bool flipped);
+  void add(const WholeVolume& other) { high += other.high, low += other.low; }
+  int sign() const {
+    const std::int64_t all = high + (low >> 32), rest = low & 0xffffffff;
+    return all < 0 ? -1 : all > 0 || rest > 0 ? 1 : 0;
+  }
+};
+
+/// How far `p` is from `origin`, along the axis where it is farthest.
+inline double axis_distance(const Vec3d& origin, const Vec3d& p) {
+  const Vec3d d = p - origin;
+  return std::fmax(std::fabs(d.x), std::fmax(std::fabs(d.y), std::fabs(d.z)));
+}
 
 /// What `make_winding_consistent` did.
 struct WindingReport {

@@ -35,8 +35,7 @@ std::uint64_t border(const std::vector<int>& bricks) {
   }
   triangles.resize(2 * triangles.size(), triangles[0]);
   FirstOfTwo ranks;
-  const MeshView mesh{points.data(), triangles.data(), nullptr};
-  const auto begin = cut_octree(ranks, mesh, std::uint32_t(triangles.size()), levels);
+  const auto begin = cut_octree(ranks, {points, triangles, {}}, FlowDomain(), levels);
   EXPECT_EQ(begin.size(), 3u);
   EXPECT_EQ(begin.front(), 0u);
   EXPECT_EQ(begin.back(), std::uint64_t(1) << (3 * levels));
@@ -55,8 +54,7 @@ std::uint64_t border_of(const std::vector<Vec3d>& points, const std::vector<Tria
   std::vector<Triangle> twice = triangles;
   twice.resize(2 * triangles.size(), triangles[0]);
   FirstOfTwo ranks;
-  const MeshView mesh{points.data(), twice.data(), nullptr};
-  return cut_octree(ranks, mesh, std::uint32_t(twice.size()), levels)[1];
+  return cut_octree(ranks, {points, twice, {}}, FlowDomain(), levels)[1];
 }
 
 TEST(CutOctree, MeasuresWhatLiesInEachBrick) {

@@ -110,5 +110,19 @@ TEST(FitCamera, OfNothingOrAPointIsFinite) {
   }
 }
 
+TEST(Camera, IsDecidedByItsOutermostPoints) {
+  std::vector<Vec3d> points;
+  for (int k = 0; k < 500; ++k) points.emplace_back(std::sin(3.1 * k), 2 * std::cos(1.7 * k), std::sin(0.9 * k * k));
+  Vec3d lower(1e300), upper(-1e300);
+  for (const Vec3d& p : points) lower = min(lower, p), upper = max(upper, p);
+  for (const char* view : {"iso", "+x", "-z"}) {
+    std::vector<Vec3d> few;  // of either half of the points
+    for (const auto& half : {std::span(points).first(200), std::span(points).subspan(200)})
+      for (const Vec3d& p : outermost(preset_camera(view), half, lower, upper)) few.push_back(p);
+    EXPECT_LT(few.size(), 30u);
+    EXPECT_EQ(fit_camera(view, few, 300, 200), fit_camera(view, points, 300, 200)) << view;
+  }
+}
+
 }  // namespace
 }  // namespace nacre
