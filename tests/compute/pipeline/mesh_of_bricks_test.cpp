@@ -93,7 +93,9 @@ TEST_P(NearBricks, HaveAllTrianglesOfTheirCellsInOrder) {
     for (std::uint32_t t = 0; t < whole.triangles.size(); ++t) {
       bool needed = false;
       bricks_of(whole.triangles[t], domain.radius, [&](std::uint64_t code) { needed |= in_reach.count(code) > 0; });
-      if (needed) EXPECT_TRUE(numbers.count(t)) << "triangle " << t << " in process " << ranks.rank();
+      if (needed) {
+        EXPECT_TRUE(numbers.count(t)) << "triangle " << t << " in process " << ranks.rank();
+      }
     }
     for (std::size_t k = 0; k < near.numbers().size(); ++k)
       for (int c = 0; c < 3; ++c) {
