@@ -67,12 +67,12 @@ struct Machine {
   double surface_cell, halo_cell, latency, bandwidth;
 };
 
-// One core: train at 4096 in docs/performance/flow.md, 5.18 s a step on two threads, is 1.3e-6 s of a core for a
-// surface cell; the halo has a quarter of that (neither particles nor convolution). 96 cores: as 82, an assumption.
-// H200: the floor of tests/gpu/check.sh, 25 ms for 66 million cells. The network: 400 Gb/s a node.
-constexpr std::array<Machine, 3> machines{{{"core", 1.3e-6, 3.3e-7, 2e-6, 50e9 / 96},
-                                           {"96 cores", 1.3e-6 / 82, 3.3e-7 / 82, 5e-6, 50e9},
-                                           {"H200", 1.2e-9, 3e-10, 1e-5, 50e9}}};
+// One core: train at 4096, 4.58 s a step on two threads (2026-11-26), is 1.15e-6 s of a core for a surface cell. The
+// halo has a third of that (vectors and segments of streamlines, neither particles nor streaks). 96 cores: as 82, an
+// assumption. H200: the floor of tests/gpu/check.sh, 25 ms for 66 million cells. The network: 400 Gb/s a node.
+constexpr std::array<Machine, 3> machines{{{"core", 1.15e-6, 3.8e-7, 2e-6, 50e9 / 96},
+                                           {"96 cores", 1.15e-6 / 82, 3.8e-7 / 82, 5e-6, 50e9},
+                                           {"H200", 1.2e-9, 4e-10, 1e-5, 50e9}}};
 
 Bricks build(const Settings& settings) {
   Surface surface = load_surface(settings.mesh);
