@@ -1,10 +1,7 @@
 // Nacre: threads that act as the processes of a run, for tests of what these do together.
 #pragma once
 
-#include <cstring>
 #include <functional>
-#include <thread>
-#include <utility>
 #include <vector>
 
 #include "compute/device/exchange_bytes.hpp"
@@ -43,16 +40,7 @@ class ThreadRanks final : public Ranks {
   std::vector<Part> coming_;
 };
 
-/// Runs `job(ranks)` as `count` processes, and returns when all have ended. `job` must not throw.
-inline void on_ranks(int count, const std::function<void(Ranks&)>& job) {
-  Post post(count);
-  std::vector<std::thread> threads;
-  for (int rank = 0; rank < count; ++rank)
-    threads.emplace_back([&post, &job, rank] {
-      ThreadRanks own(post, rank);
-      job(own);
-    });
-  for (std::thread& thread : threads) thread.join();
-}
+/// Runs `job(ranks)` as `count` processes.
+inline void on_ranks(int count, const std::function<void(Ranks&)>& job) { on_threads<ThreadRanks>(count, job); }
 
 }  // namespace nacre

@@ -9,12 +9,10 @@
 
 #include "compute/device/error.hpp"
 #include "engine/io/build_surface.hpp"
+#include "engine/io/same_points.hpp"
 
 namespace nacre {
 namespace {
-
-// Fraction of the surface's size below which a difference between two steps is rounding, not motion.
-constexpr double rounding = 1e-6;
 
 std::string name_of(const FileStep& step) { return step.parts.front().string(); }
 
@@ -23,13 +21,6 @@ double size_of(const std::vector<Vec3d>& points) {
   for (const Vec3d& p : points)
     if (is_finite(p)) lower = min(lower, p), upper = max(upper, p);
   return length(upper - lower);
-}
-
-bool differ(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b) {
-  const double tolerance = rounding * size_of(a);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (!(a[i] == b[i]) && is_finite(a[i]) && !(length(a[i] - b[i]) <= tolerance)) return true;
-  return false;
 }
 
 }  // namespace
@@ -88,7 +79,7 @@ Surface FileSeries::load_file(std::size_t k, bool& moved) const {
     if (mesh.polygons() == 0) return {};  // for those who look at the motion: it vanishes
     return build_surface(std::move(mesh), name_of(step), warnings);
   }
-  moved = differ(file_points_, mesh.points);
+  moved = differ(file_points_, mesh.points, size_of(file_points_));
   // With the points of the first step, the polygons are also triangulated as in the first step.
   const std::vector<Vec3d> points = std::exchange(mesh.points, file_points_);
   return build_surface(std::move(mesh), name_of(step), warnings, moved ? &points : nullptr);

@@ -9,27 +9,20 @@
 #include <utility>
 
 #include "compute/device/among_all.hpp"
+#include "compute/device/byte_hash.hpp"
 #include "compute/device/error.hpp"
 #include "engine/io/build_surface.hpp"
 #include "engine/io/file_bytes.hpp"
 #include "engine/io/reader.hpp"
 #include "engine/io/registry.hpp"
+#include "engine/io/same_points.hpp"
 
 namespace nacre {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double least_motion = 1e-6;  // of the surface's size, between two steps
-constexpr double least_part = 0.1;     // of a share: less of a piece is left to the process that has the rest
-constexpr std::uint64_t hash_begin = 0xcbf29ce484222325;
-
-/// FNV-1a.
-template <class Value>
-std::uint64_t hash_of(std::uint64_t hash, std::span<const Value> values) {
-  for (const std::byte byte : std::as_bytes(values)) hash = (hash ^ std::uint64_t(byte)) * 0x100000001b3;
-  return hash;
-}
+constexpr double least_part = 0.1;  // of a share: less of a piece is left to the process that has the rest
 
 bool is_piece_list(const fs::path& path) {
   const std::string extension = format_extension(path);
@@ -42,12 +35,6 @@ std::uint64_t polygons_of(const RawMesh& mesh) {
 }
 
 std::uint64_t points_of(const RawMesh& mesh) { return hash_of(hash_begin, std::span<const Vec3d>(mesh.points)); }
-
-bool differ(const std::vector<Vec3d>& a, const std::vector<Vec3d>& b, double tolerance) {
-  for (std::size_t i = 0; i < a.size(); ++i)
-    if (!(a[i] == b[i]) && is_finite(a[i]) && !(length(a[i] - b[i]) <= tolerance)) return true;
-  return false;
-}
 
 /// Appends a part to a share: of the arrays those that both have. A part without points does not decide which.
 void append_part(Surface& share, Surface&& part) {
@@ -317,7 +304,7 @@ Surface SharedFiles::build_like_first(const Piece& first, const Print& print, Ra
   }
   if (points_of(mesh) != print.points) {
     std::vector<Vec3d> points = read(first).points;
-    moved = points.size() != mesh.points.size() || differ(points, mesh.points, least_motion * size_);
+    moved = points.size() != mesh.points.size() || differ(points, mesh.points, size_);
     if (moved) return {};
     mesh.points = std::move(points);
   }

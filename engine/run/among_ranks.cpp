@@ -6,18 +6,11 @@
 #include <span>
 #include <utility>
 
+#include "compute/device/byte_hash.hpp"
 #include "compute/device/error.hpp"
 
 namespace nacre {
 namespace {
-
-/// FNV-1a over the bytes of an array.
-template <class Value>
-std::uint64_t hash_of(std::uint64_t hash, std::span<const Value> values) {
-  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
-  for (std::size_t k = 0; k < values.size_bytes(); ++k) hash = (hash ^ bytes[k]) * 0x100000001b3;
-  return hash;
-}
 
 double median(std::vector<double> seconds) {
   std::sort(seconds.begin(), seconds.end());
@@ -72,7 +65,7 @@ void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const 
   const PreparedSurface& surface = input.surface();
   std::vector<Vec3f> vectors(surface.points.size());
   input.vectors(start, vectors);
-  std::uint64_t hash = 0xcbf29ce484222325;
+  std::uint64_t hash = hash_begin;
   hash = hash_of(hash, std::span<const Vec3d>(surface.points));
   hash = hash_of(hash, std::span<const Triangle>(surface.triangles));
   hash = hash_of(hash, std::span<const Vec3f>(vectors));
@@ -81,7 +74,7 @@ void require_same_input(Ranks& ranks, VectorsInTime& input, double start, const 
 }
 
 void require_same_text(Ranks& ranks, const std::string& text) {
-  require_same(ranks, hash_of(0xcbf29ce484222325, std::span<const char>(text)));
+  require_same(ranks, hash_of(hash_begin, std::span<const char>(text)));
 }
 
 nlohmann::json ranks_report(Ranks& ranks, const EmbeddingInfo& embedding, const nlohmann::json& own_report,

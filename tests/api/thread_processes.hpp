@@ -78,16 +78,23 @@ class ThreadProcesses final : public Processes {
   int rank_;
 };
 
-/// Runs `job(processes)` as `count` processes, and returns when all have ended. `job` must not throw.
-inline void on_processes(int count, const std::function<void(Processes&)>& job) {
+/// Runs `job(own)` on `count` threads, each with an `Own` of its number, and returns when all have ended. `job` must
+/// not throw.
+template <class Own, class Job>
+void on_threads(int count, const Job& job) {
   Post post(count);
   std::vector<std::thread> threads;
   for (int rank = 0; rank < count; ++rank)
     threads.emplace_back([&post, &job, rank] {
-      ThreadProcesses own(post, rank);
+      Own own(post, rank);
       job(own);
     });
   for (std::thread& thread : threads) thread.join();
+}
+
+/// Runs `job(processes)` as `count` processes.
+inline void on_processes(int count, const std::function<void(Processes&)>& job) {
+  on_threads<ThreadProcesses>(count, job);
 }
 
 }  // namespace nacre

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "compute/device/among_all.hpp"
+#include "compute/device/byte_hash.hpp"
 #include "compute/device/error.hpp"
 #include "engine/scene/surface/sheets.hpp"
 #include "engine/scene/surface/winding.hpp"
@@ -13,13 +14,6 @@
 
 namespace nacre {
 namespace {
-
-/// FNV-1a.
-template <class Value>
-std::uint64_t hash_of(std::uint64_t hash, std::span<const Value> values) {
-  for (const std::byte byte : std::as_bytes(values)) hash = (hash ^ std::uint64_t(byte)) * 0x100000001b3;
-  return hash;
-}
 
 /// A triangle on its way to a process whose share it touches.
 struct SentTriangle {
@@ -321,7 +315,7 @@ SharedSeries share_series(const SurfaceSeries& whole, Ranks& ranks) {
     return cut_share(surface, begin(rank), begin(rank + 1), used);
   };
   const Surface first = whole.load(0);
-  std::uint64_t hash = hash_of(0xcbf29ce484222325, std::span<const Vec3d>(first.points));
+  std::uint64_t hash = hash_of(hash_begin, std::span<const Vec3d>(first.points));
   hash = hash_of(hash, std::span<const Triangle>(first.triangles));
   require_same(ranks, hash);
   SharedSeries shared{whole, {}};
