@@ -2,9 +2,11 @@
 #include "tests/fuzz/fuzz_target.hpp"
 
 #include <sanitizer/allocator_interface.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -40,6 +42,28 @@ class Bound {
   ~Bound() { allowed = SIZE_MAX; }
 };
 
+/// Ends the process once `read` has used this much of its processor time: a clock would blame a busy machine.
+class TimeLimit {
+ public:
+  explicit TimeLimit(int seconds) {
+    std::signal(SIGPROF, [](int) {
+      constexpr char line[] = "too slow: 10 s of processor time\n";
+      [[maybe_unused]] const auto written = write(STDERR_FILENO, line, sizeof line - 1);
+      std::abort();
+    });
+    set(seconds);
+  }
+  ~TimeLimit() { set(0); }
+  TimeLimit(const TimeLimit&) = delete;
+  TimeLimit& operator=(const TimeLimit&) = delete;
+
+ private:
+  static void set(int seconds) {
+    const itimerval limit{.it_interval = {}, .it_value = {.tv_sec = seconds, .tv_usec = 0}};
+    if (setitimer(ITIMER_PROF, &limit, nullptr) != 0) std::abort();
+  }
+};
+
 /// A folder of this process in memory, removed at its end.
 const fs::path& folder() {
   struct Folder {
@@ -55,9 +79,12 @@ const fs::path& folder() {
   return folder.path;
 }
 
+constexpr int seconds_allowed = 10;
+
 template <class Read>
 void survive(const Read& read) {
   try {
+    const TimeLimit limit(seconds_allowed);
     read();
   } catch (const Error&) {
   } catch (const std::bad_alloc&) {

@@ -2,7 +2,8 @@
 # Nacre: runs targets of libFuzzer one after the other. Usage: run.sh FOLDER SECONDS [CORPUS [TARGET...]]
 # FOLDER has the programs fuzz_*; each runs for so many seconds. CORPUS (default out/fuzz) keeps what was found, so that the
 # next run goes on from there; it begins with the small files of seeds.py and with those beside the project, where they
-# are. A crash, a run of more than 10 s, a leak or too much memory ends a target; its input is kept in CORPUS/found.
+# are. A crash, more than 10 s of processor time for one input, a leak or too much memory ends a target; its input is kept
+# in CORPUS/found.
 set -euo pipefail
 
 programs=$(readlink -f "$1")
@@ -33,14 +34,14 @@ for target in "$@"; do
     camera) cp -n "$root"/assets/*_camera.json "$corpus/camera" ;;
   esac
   status=0
-  "$programs/fuzz_$target" -max_total_time="$seconds" -timeout=10 -max_len=16384 -rss_limit_mb=3000 \
+  "$programs/fuzz_$target" -max_total_time="$seconds" -timeout=600 -max_len=16384 -rss_limit_mb=3000 \
     -print_final_stats=1 -artifact_prefix="$corpus/found/$target-" "$corpus/$target" \
     >"$corpus/$target.log" 2>&1 || status=$?
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$corpus/$target.log")
   echo "$target: ${runs:-no} runs in $seconds s, $(find "$corpus/$target" -type f | wc -l) files in its corpus, status $status"
   if ((status != 0)); then
     bad=1
-    grep -aE 'ERROR|SUMMARY|too much memory|memory was asked|runtime error|Test unit written' "$corpus/$target.log" |
+    grep -aE 'ERROR|SUMMARY|too much memory|too slow|memory was asked|runtime error|Test unit written' "$corpus/$target.log" |
       head -n 5
   fi
 done
