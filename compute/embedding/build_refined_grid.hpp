@@ -14,7 +14,7 @@ struct RefinedGrid {
   int refine = 4;
   std::uint64_t cells = 0;          ///< stored: blocks * R^3
   std::uint32_t surface_cells = 0;  ///< those that the surface passes through
-  Array<std::uint32_t> block, texel, position, block_cell, seed_triangle, neighbour;
+  Array<std::uint32_t> block, texel, position, block_cell, first_surface_cell, seed_triangle, neighbour;
   Array<Float4> seed;
 
   RefinedGridView view(const ClosestPointGridView& grid) const {
@@ -26,14 +26,15 @@ struct RefinedGrid {
             texel.data(),
             position.data(),
             block_cell.data(),
+            first_surface_cell.data(),
             seed.data(),
             seed_triangle.data(),
             neighbour.data()};
   }
 
   std::uint64_t bytes() const {
-    return block.bytes() + texel.bytes() + position.bytes() + block_cell.bytes() + seed_triangle.bytes() +
-           neighbour.bytes() + seed.bytes();
+    return block.bytes() + texel.bytes() + position.bytes() + block_cell.bytes() + first_surface_cell.bytes() +
+           seed_triangle.bytes() + neighbour.bytes() + seed.bytes();
   }
 };
 
@@ -94,7 +95,6 @@ struct CountSurface {
 struct NumberSurface {
   MeshView mesh;
   RefinedGridView texture;
-  const std::uint32_t* first;  // per block: number of its first surface cell
   std::uint32_t* texel;
   std::uint32_t* position;
   Float4* seed;
@@ -115,7 +115,7 @@ struct NumberSurface {
       const std::uint64_t own = mask[k / 64], bit = std::uint64_t(1) << k % 64;
       texel[begin + k] = none;
       if (!(own & bit)) return;
-      std::uint32_t s = first[b] + count_bits(own & (bit - 1));
+      std::uint32_t s = texture.first_surface_cell[b] + count_bits(own & (bit - 1));
       for (int w = 0; w < k / 64; ++w) s += count_bits(mask[w]);
       texel[begin + k] = s;
       position[s] = begin + k;
@@ -291,16 +291,17 @@ RefinedGrid build_refined_grid(Executor<Backend>& exec, const MeshView& mesh, st
   fine.texel.fill_bytes(0);
   exec.next_is(0.35, 0.5);
   exec.for_each(triangles, detail::MarkSurface{mesh, fine.view(grid), fine.texel.data()});
-  Arena::Scope scope(arena);
-  Array<std::uint32_t> first = arena.temporary<std::uint32_t>(blocks);
-  exec.for_each_team(blocks, detail::CountSurface{refine * refine * refine, fine.texel.data(), first.data()});
-  fine.surface_cells = exec.exclusive_scan(first.data(), first.data(), blocks);
+  fine.first_surface_cell = arena.permanent<std::uint32_t>(blocks + 1);
+  std::uint32_t* const first = fine.first_surface_cell.data();
+  fine.first_surface_cell.fill_bytes(0);
+  exec.for_each_team(blocks, detail::CountSurface{refine * refine * refine, fine.texel.data(), first});
+  fine.surface_cells = exec.exclusive_scan(first, first, blocks + 1);
   fine.position = arena.permanent<std::uint32_t>(fine.surface_cells);
   fine.seed = arena.permanent<Float4>(fine.surface_cells);
   fine.seed_triangle = arena.permanent<std::uint32_t>(fine.surface_cells);
   exec.next_is(0.5, 0.75);
-  exec.for_each_team(blocks, detail::NumberSurface{mesh, fine.view(grid), first.data(), fine.texel.data(),
-                                                   fine.position.data(), fine.seed.data(), fine.seed_triangle.data()});
+  exec.for_each_team(blocks, detail::NumberSurface{mesh, fine.view(grid), fine.texel.data(), fine.position.data(),
+                                                   fine.seed.data(), fine.seed_triangle.data()});
   exec.next_is(0.75, 0.9);
   exec.for_each_team(blocks, detail::ExtendSurface{fine.view(grid), fine.texel.data()});
   fine.neighbour = arena.permanent<std::uint32_t>(6 * std::size_t(fine.surface_cells));

@@ -215,6 +215,38 @@ struct LinearCells {
   }
 };
 
+#if defined(NACRE_PACKETS)
+/// The same around several points at a time.
+struct LinearCellsOfPacket {
+  Packet::Int at[8];
+  Vec3<Packet::Float> f;
+  Packet::Mask found;  ///< where all eight exist
+
+  LinearCellsOfPacket(const ClosestPointGridView& grid, const Vec3<Packet::Float>& p, Packet::Mask mask) : found(mask) {
+    const Vec3<Packet::Float> half(Packet::all(0.5f));
+    const Vec3<Packet::Int> first = cells_of(p - half);
+    f = p - (corners_of(first) + half);
+    for (int k = 0; k < 8; ++k) {
+      at[k] = grid.addresses<Packet>({first.x + (k & 1), first.y + (k >> 1 & 1), first.z + (k >> 2)}, found);
+      found = found & (at[k] != -1);
+    }
+  }
+
+  Vec3<Packet::Float> interpolate(const Float4* values) const {
+    Vec3<Packet::Float> result;
+    for (int lane = 0; lane < Packet::lanes; ++lane) {
+      if (!found[lane]) continue;
+      LinearCells cells;
+      for (int k = 0; k < 8; ++k) cells.at[k] = std::uint32_t(at[k][lane]);
+      cells.f = {f.x[lane], f.y[lane], f.z[lane]};
+      const Lanes value = cells.interpolate(values);
+      result.x[lane] = value[0], result.y[lane] = value[1], result.z[lane] = value[2];
+    }
+    return result;
+  }
+};
+#endif
+
 /// `values` interpolated linearly at `p`. False if the surface is too far away for the eight cells to exist.
 NACRE_HD_INLINE bool interpolate_linear(const ClosestPointGridView& grid, const Float4* values, const Vec3f& p,
                                         Lanes& result) {

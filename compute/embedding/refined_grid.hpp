@@ -17,14 +17,15 @@ struct RefinedGridView {
   ClosestPointGridView grid;
   int refine = 4;  ///< R, 1..8
   float inverse_refine = 0.25f;
-  Divider divide{4};                             ///< by refine
-  const std::uint32_t* block = nullptr;          ///< per closest-point cell: its block of R^3 texture cells, or `none`
-  const std::uint32_t* texel = nullptr;          ///< per texture cell of a block: surface cell number, or `none`
-  const std::uint32_t* position = nullptr;       ///< per surface cell: index of its texture cell in `texel`
-  const std::uint32_t* block_cell = nullptr;     ///< per block: address of its closest-point cell
-  const Float4* seed = nullptr;                  ///< per surface cell: closest point minus centre; w unused
-  const std::uint32_t* seed_triangle = nullptr;  ///< per surface cell: the triangle of its closest point
-  const std::uint32_t* neighbour = nullptr;      ///< 6 per surface cell, -x +x -y +y -z +z; itself if there is none
+  Divider divide{4};                          ///< by refine
+  const std::uint32_t* block = nullptr;       ///< per closest-point cell: its block of R^3 texture cells, or `none`
+  const std::uint32_t* texel = nullptr;       ///< per texture cell of a block: surface cell number, or `none`
+  const std::uint32_t* position = nullptr;    ///< per surface cell: index of its texture cell in `texel`
+  const std::uint32_t* block_cell = nullptr;  ///< per block: address of its closest-point cell
+  const std::uint32_t* first_surface_cell = nullptr;  ///< per block, and behind the last; its others follow
+  const Float4* seed = nullptr;                       ///< per surface cell: closest point minus centre; w unused
+  const std::uint32_t* seed_triangle = nullptr;       ///< per surface cell: the triangle of its closest point
+  const std::uint32_t* neighbour = nullptr;  ///< 6 per surface cell, -x +x -y +y -z +z; itself if there is none
 
   NACRE_HD int cells_per_block() const { return refine * refine * refine; }
 
@@ -35,6 +36,9 @@ struct RefinedGridView {
     const std::uint32_t at = grid.address(outer_cell);
     return at == none ? none : block[at];
   }
+
+  /// How many surface cells a block has.
+  NACRE_HD int surface_cells_in(std::int64_t b) const { return int(first_surface_cell[b + 1] - first_surface_cell[b]); }
 
   /// Entry of `texel` of a texture cell whose block is known.
   NACRE_HD std::uint32_t entry_in(std::uint32_t b, const Int3& cell, const Int3& outer_cell) const {
@@ -66,8 +70,11 @@ struct RefinedGridView {
 
   NACRE_HD Int3 texel_cell(std::uint32_t at) const {
     const std::uint32_t b = divide.cubes(at);
-    return grid.cell(block_cell[b]) * Int3(refine) + divide.cell_of_cube(int(at - b * cells_per_block()));
+    return corner(b) + divide.cell_of_cube(int(at - b * cells_per_block()));
   }
+
+  /// First cell of a block.
+  NACRE_HD Int3 corner(std::uint32_t b) const { return grid.cell(block_cell[b]) * Int3(refine); }
 
   /// Closest point on the surface to the centre of surface cell `s`.
   NACRE_HD Vec3f seed_point(std::uint32_t s) const {

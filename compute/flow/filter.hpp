@@ -5,6 +5,7 @@
 #include "compute/device/random.hpp"
 #include "compute/device/ranks.hpp"
 #include "compute/flow/deposit.hpp"
+#include "compute/math/packet.hpp"
 
 namespace nacre {
 
@@ -94,11 +95,9 @@ struct LocalMoments {
   NACRE_HD void operator()(std::int64_t cell) const {
     const std::uint32_t b = texture.block[cell];
     Float4 m{0, 0, 0, 0};
-    const int n = b == none ? 0 : texture.cells_per_block();
+    const int n = b == none ? 0 : texture.surface_cells_in(b);
     for (int k = 0; k < n; ++k) {
-      const std::uint32_t s = texture.texel[b * n + k];
-      if (s & RefinedGridView::extended) continue;  // beside the surface, or nothing
-      const float v = value[s];
+      const float v = value[texture.first_surface_cell[b] + k];
       m = {m.x + 1, m.y + v, m.z + v * v, 0};
     }
     moments[cell] = m;
@@ -144,17 +143,19 @@ struct BlurMoments {
 
 /// How far `value` is from the mean, in standard deviations; mean and deviation are the local ones (`around`: number,
 /// sum and sum of squares of the values around) to the share `local`, else those of the whole texture. Otherwise what a
-/// diverging flow stretches would grow into blotches, step by step.
-NACRE_HD_INLINE float equalised(float value, const Vec3f& around, const TextureSpread& whole, float local) {
-  float mean = whole.mean, deviation = whole.deviation;
-  if (around.x > 0) {
-    const float local_mean = around.y / around.x, variance = around.z / around.x - local_mean * local_mean;
-    const float local_deviation = std::sqrt(variance > 0 ? variance : 0);
-    const float least = 0.25f * whole.deviation;  // a plain region stays plain
-    mean += local * (local_mean - whole.mean);
-    deviation += local * ((local_deviation > least ? local_deviation : least) - whole.deviation);
-  }
-  return (value - mean) / deviation;
+/// diverging flow stretches would grow into blotches, step by step. Of one value or several.
+template <class Float>
+NACRE_HD_INLINE Float equalised(const Float& value, const Vec3<Float>& around, const TextureSpread& whole,
+                                float local) {
+  const Float zero = around.x * 0.0f, one = zero + 1.0f;
+  const auto values = around.x > 0.0f;
+  const Float share = select(values, zero + local, zero), inverse = one / select(values, around.x, one);
+  const Float mean = around.y * inverse, variance = multiply_add(-mean, mean, around.z * inverse);
+  const Float deviation = square_root(select(variance > 0.0f, variance, zero));
+  const Float least = zero + 0.25f * whole.deviation;  // a plain region stays plain
+  const Float spread = select(deviation > least, deviation, least);
+  return (value - multiply_add(share, mean - whole.mean, zero + whole.mean)) /
+         multiply_add(share, spread - whole.deviation, zero + whole.deviation);
 }
 
 /// `equalised` on the grid: a team per block, with the moments in the closest-point cells around it.
@@ -166,35 +167,61 @@ struct Equalise {
   float local;
   float* detail;
 
-  static constexpr std::size_t scratch_bytes() { return 27 * sizeof(Float4); }
+  using Wide = Widest;
+  using Float = Wide::Float;
+  using Int = Wide::Int;
+
+  struct Near {
+    float number[32], sum[32], squares[32];  ///< 27 each
+  };
+  static constexpr std::size_t scratch_bytes() { return sizeof(Near); }
 
   NACRE_HD void operator()(Team& team, std::int64_t b) const {
-    auto* near = reinterpret_cast<Float4*>(team.scratch());
+    const int count = texture.surface_cells_in(b);
+    if (count == 0) return;
+    Near& near = *reinterpret_cast<Near*>(team.scratch());
     {
       const MomentsAround around(texture.grid, texture.grid.cell(texture.block_cell[b]), moments);
-      team.each(27, [&](int k) { near[k] = around.at(k % 3, k / 3 % 3, k / 9); });
+      team.each(27, [&](int k) {
+        const Float4 m = around.at(k % 3, k / 3 % 3, k / 9);
+        near.number[k] = m.x, near.sum[k] = m.y, near.squares[k] = m.z;
+      });
     }
-    const int refine = texture.refine, cells = texture.cells_per_block();
-    team.each(cells, [&](int k) {
-      const std::uint32_t s = texture.texel[b * cells + k];
-      if (s & RefinedGridView::extended) return;  // beside the surface, or nothing
-      const int row = texture.divide(k), layer = texture.divide(row);
-      const Int3 in{k - row * refine, row - layer * refine, layer};
-      detail[s] = equalised(value[s], interpolated(near, (cell_centre(in)) * texture.inverse_refine), *whole, local);
+    const std::uint32_t first = texture.first_surface_cell[b], corner = std::uint32_t(b) * texture.cells_per_block();
+    team.each((count + Wide::lanes - 1) / Wide::lanes, [&](int packet) {
+      const int begin = packet * Wide::lanes;
+      const Int s = counted<Wide>(begin, count - 1);
+      const Int in = gather(texture.position + first, s, Wide::nothing_masked()) - std::int32_t(corner);
+      const Int row = texture.divide(in), layer = texture.divide(row);
+      const Vec3<Float> p = Vec3<Float>{to_float(in - row * texture.refine) + 0.5f,
+                                        to_float(row - layer * texture.refine) + 0.5f, to_float(layer) + 0.5f} *
+                            Wide::all(texture.inverse_refine);
+      const Float result = equalised(gather(value + first, s), interpolated(near, p), *whole, local);
+      for (int lane = 0; lane < Wide::lanes && begin + lane < count; ++lane)
+        detail[first + begin + lane] = element(result, lane);
     });
   }
 
   /// Linear among the 27, at `p` from the lowest corner of the middle one.
-  NACRE_HD_INLINE static Vec3f interpolated(const Float4* near, const Vec3f& p) {
-    const Int3 first{p.x < 0.5f ? 0 : 1, p.y < 0.5f ? 0 : 1, p.z < 0.5f ? 0 : 1};
-    const Vec3f f = p + Vec3f(0.5f) - Vec3f(first);
-    const Float4* low = near + (first.z * 3 + first.y) * 3 + first.x;
-    const auto row = [&](int y, int z) {
-      const Float4* two = low + (z * 3 + y) * 3;
-      return load(two[0]) + (load(two[1]) - load(two[0])) * f.x;
+  NACRE_HD_INLINE static Vec3<Float> interpolated(const Near& near, const Vec3<Float>& p) {
+    const auto low = [](const Float& x) { return select(x < 0.5f, Wide::all(0), Wide::all(1)); };
+    const Vec3<Int> first{low(p.x), low(p.y), low(p.z)};
+    const auto part = [](const Float& x, const Int& i) { return x + 0.5f - to_float(i); };
+    const Vec3<Float> f{part(p.x, first.x), part(p.y, first.y), part(p.z, first.z)};
+    const Int at = (first.z * 3 + first.y) * 3 + first.x;
+    const auto of = [&](const float* moment) {
+      const auto row = [&](int k) {
+        const Float a = gather_of_32(moment, at + k);
+        return multiply_add(gather_of_32(moment, at + (k + 1)) - a, f.x, a);
+      };
+      const auto layer = [&](int k) {
+        const Float a = row(k);
+        return multiply_add(row(k + 3) - a, f.y, a);
+      };
+      const Float a = layer(0);
+      return multiply_add(layer(9) - a, f.z, a);
     };
-    const auto layer = [&](int z) { return row(0, z) + (row(1, z) - row(0, z)) * f.y; };
-    return xyz(layer(0) + (layer(1) - layer(0)) * f.z);
+    return {of(near.number), of(near.sum), of(near.squares)};
   }
 };
 

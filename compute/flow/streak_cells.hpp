@@ -19,20 +19,19 @@ NACRE_HD_INLINE auto packed_vector(const Vec3<Float>& v, int bits, float scale) 
   return component(v.x) | component(v.y) << bits | component(v.z) << 2 * bits;
 }
 
-/// Vectors of one or several cells, fused in one way.
-template <class Float>
-NACRE_HD_INLINE Vec3<Float> multiply_add(const Vec3<Float>& a, const Float& b, const Vec3<Float>& c) {
-  return {multiply_add(a.x, b, c.x), multiply_add(a.y, b, c.y), multiply_add(a.z, b, c.z)};
-}
-template <class Float>
-NACRE_HD_INLINE Float fused_dot(const Vec3<Float>& a, const Vec3<Float>& b) {
-  return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
-}
-template <class Float>
-NACRE_HD_INLINE Vec3<Float> fused_cross(const Vec3<Float>& a, const Vec3<Float>& b) {
-  return {multiply_add(a.y, b.z, -(a.z * b.y)), multiply_add(a.z, b.x, -(a.x * b.z)),
-          multiply_add(a.x, b.y, -(a.y * b.x))};
-}
+/// Barycentric coordinates of a point of a triangle, those of its first two corners in 16 bits each.
+struct PackedWeights {
+  std::uint32_t word;
+  static constexpr float scale = 65535;
+
+  NACRE_HD_INLINE static PackedWeights of(const Vec3f& w) {
+    return {std::uint32_t(w.x * scale + 0.5f) | std::uint32_t(w.y * scale + 0.5f) << 16};
+  }
+  NACRE_HD_INLINE Vec3f unpacked() const {
+    const float x = float(word & 65535) * (1 / scale), y = float(word >> 16) * (1 / scale);
+    return {x, y, 1 - x - y};
+  }
+};
 
 /// What a streamline reads of a surface cell: unit vectors whose components have 10 bits (exact to 0.1 degrees) or 8.
 struct StreakCell {
@@ -43,9 +42,12 @@ struct StreakCell {
   static constexpr int direction_bits = 10, normal_bits = 8, plane_bits = 8;
   static constexpr float direction_scale = 511, normal_scale = 127, plane_scale = 127 / 0.87f;
 
+  NACRE_HD_INLINE static std::uint32_t packed_direction(const Vec3f& direction) {
+    return std::uint32_t(packed_vector(direction, direction_bits, direction_scale));
+  }
   /// `plane`: height of the closest point above the cell's centre along the normal, in cells; at most 0.87.
   NACRE_HD_INLINE static StreakCell of(const Vec3f& direction, const Vec3f& normal, float plane) {
-    return {std::uint32_t(packed_vector(direction, direction_bits, direction_scale)),
+    return {packed_direction(direction),
             std::uint32_t(packed_vector(normal, normal_bits, normal_scale)) |
                 std::uint32_t(floor_to_int(plane * plane_scale + 0.5f)) << 3 * normal_bits,
             0};

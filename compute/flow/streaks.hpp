@@ -8,12 +8,6 @@
 
 namespace nacre {
 
-/// The cells that positions lie in.
-template <class Float>
-NACRE_HD_INLINE auto cells_of(const Vec3<Float>& p) {
-  return Vec3<decltype(floor_to_int(p.x))>{floor_to_int(p.x), floor_to_int(p.y), floor_to_int(p.z)};
-}
-
 /// `values` of surface cells, 0 where they are masked out.
 NACRE_HD_INLINE float load_values(const float* values, CellIndex s, bool mask) { return mask ? values[s] : 0; }
 
@@ -26,24 +20,44 @@ NACRE_HD_INLINE Packet::Float load_values(const float* values, const Index& s, P
 }
 #endif
 
-/// Fills in the flow and the surface of each surface cell, from the triangle of its closest point: exact where vectors
-/// kept on a coarser grid are blurred, and at creases.
+/// Fills in the surface of each surface cell, and where on its triangle its closest point is: exact at creases.
 template <class Surface>
-struct MarkStreakCells {
+struct DescribeStreakCells {
   Surface surface;
   MeshView mesh;
-  double cell;           ///< edge of a texture cell in units of the mesh's points
-  const Vec3f* vectors;  ///< one per point of the mesh, at the time of the frame
-  float least;           ///< speed below which nothing flows
+  double cell;  ///< edge of a texture cell in units of the mesh's points
   StreakCell* cells;
+  PackedWeights* weights;
 
   NACRE_HD void operator()(CellIndex s, const Int3& position) const {
     const SurfaceFoot foot = surface.foot(s, position);
     const Vec3f w =
         barycentric_in_float(mesh.corners(foot.triangle), (Vec3d(position) + Vec3d(0.5) + Vec3d(foot.offset)) * cell);
-    const Vec3f n = mesh.normal(foot.triangle, w), v = mesh.tangential(vectors, foot.triangle, w);
+    const Vec3f n = mesh.normal(foot.triangle, w);
+    cells[s] = StreakCell::of({}, n, dot(n, foot.offset));
+    weights[s] = PackedWeights::of(w);
+  }
+};
+
+/// Fills in the flow of each surface cell, from the triangle of its closest point: exact where vectors kept on a
+/// coarser grid are blurred.
+template <class Surface>
+struct MarkStreakCells {
+  Surface surface;
+  const Triangle* triangles;
+  const Vec3f* vectors;  ///< one per point of the mesh, at the time of the frame
+  float least;           ///< speed below which nothing flows
+  const PackedWeights* weights;
+  StreakCell* cells;
+
+  NACRE_HD void operator()(CellIndex s, const Int3& position) const {
+    const Triangle corner = triangles[surface.foot(s, position).triangle];
+    const Vec3f w = weights[s].unpacked(), n = StreakSurface<Single>{std::int32_t(cells[s].surface)}.normal();
+    const Vec3f flow = vectors[corner.a] * w.x + vectors[corner.b] * w.y + vectors[corner.c] * w.z;
+    const float squared = dot(n, n);
+    const Vec3f v = squared > 0 ? flow - n * (dot(n, flow) / squared) : flow;
     const float speed = length(v);
-    cells[s] = StreakCell::of(speed > least ? v * (1 / speed) : Vec3f{}, n, dot(n, foot.offset));
+    cells[s].direction = StreakCell::packed_direction(speed > least ? v * (1 / speed) : Vec3f{});
   }
 };
 

@@ -191,6 +191,34 @@ struct ToArray {
   NACRE_HD_INLINE void operator()(CellIndex s, const Value& value) const { values[s] = value; }
 };
 
+/// As many surface cells of the grid as `Wide` has lanes, in the order of their numbers.
+template <class Wide>
+struct GridCells {
+  typename Wide::Int number;
+  Vec3<typename Wide::Int> position;
+  int count;  ///< those behind are the last one again
+
+  /// The cells from `first` on, of `n` in all.
+  NACRE_HD_INLINE GridCells(const RefinedGridView& texture, std::int64_t first, std::int64_t n)
+      : count(int(n - first < Wide::lanes ? n - first : Wide::lanes)) {
+    if constexpr (Wide::lanes == 1) {
+      number = std::int32_t(first);
+      position = texture.cell(std::uint32_t(first));
+    } else {
+      std::uint32_t block = none;
+      Int3 corner;
+      for (int lane = 0; lane < Wide::lanes; ++lane) {
+        const auto s = std::uint32_t(first + (lane < count ? lane : count - 1));
+        const std::uint32_t at = texture.position[s], b = texture.divide.cubes(at);
+        if (b != block) block = b, corner = texture.corner(b);  // most have the one of the cell before
+        const Int3 cell = corner + texture.divide.cell_of_cube(int(at - b * texture.cells_per_block()));
+        number[lane] = std::int32_t(s);
+        position.x[lane] = cell.x, position.y[lane] = cell.y, position.z[lane] = cell.z;
+      }
+    }
+  }
+};
+
 /// Calls `store(s, kernel(surface_cells, positions)[s])` for all surface cells, computing as many at a time as the
 /// surface allows.
 template <class Wide, class Kernel, class Store>
@@ -201,23 +229,9 @@ struct StoreOnGridSurface {
   Store store;
 
   NACRE_HD void operator()(std::int64_t packet) const {
-    typename Wide::Int home;
-    Vec3<typename Wide::Int> position;
-    const std::int64_t first = packet * Wide::lanes, count = n - first < Wide::lanes ? n - first : Wide::lanes;
-    if constexpr (Wide::lanes == 1) {
-      home = std::int32_t(first);
-      position = texture.cell(std::uint32_t(first));
-      store(CellIndex(first), element(kernel(home, position), 0));
-    } else {
-      for (int lane = 0; lane < Wide::lanes; ++lane) {
-        const auto s = std::uint32_t(first + (lane < count ? lane : count - 1));
-        const Int3 cell = texture.cell(s);
-        home[lane] = std::int32_t(s);
-        position.x[lane] = cell.x, position.y[lane] = cell.y, position.z[lane] = cell.z;
-      }
-      const auto value = kernel(home, position);
-      for (int lane = 0; lane < count; ++lane) store(CellIndex(first + lane), element(value, lane));
-    }
+    const GridCells<Wide> cells(texture, packet * Wide::lanes, n);
+    const auto value = kernel(cells.number, cells.position);
+    for (int lane = 0; lane < cells.count; ++lane) store(CellIndex(packet * Wide::lanes + lane), element(value, lane));
   }
 };
 

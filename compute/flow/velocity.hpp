@@ -26,6 +26,18 @@ struct FlowField {
   }
 };
 
+#if defined(NACRE_PACKETS)
+/// The same of several points at a time; `found` loses those out of the band.
+inline Vec3<Packet::Float> velocities(const FlowField& field, const Vec3<Packet::Float>& p, float u,
+                                      Packet::Mask& found) {
+  const LinearCellsOfPacket cells(field.grid, p, found);
+  found = cells.found;
+  const Vec3<Packet::Float> first = cells.interpolate(field.slot[!field.steady && u >= 1 ? 1 : 0]);
+  if (field.steady || u <= 0 || u >= 1) return first;
+  return multiply_add(cells.interpolate(field.slot[1]) - first, Packet::all(u), first);
+}
+#endif
+
 /// How a speed becomes a displacement.
 struct SpeedScale {
   float reference;     ///< the speed that moves `displacement` cells a step (98th percentile of the data)

@@ -176,6 +176,7 @@ class FlowMethodOn : public FlowMethod {
     require_embedded();
     started_ = false;
     vectors_ = vectors;
+    host_time_.reset();
     seed_ = parameters_.seed;
     texel_ = texel;
     ttl_ = std::clamp(parameters_.ttl, 1, max_ttl);
@@ -402,19 +403,25 @@ class FlowMethodOn : public FlowMethod {
     for (std::size_t i = own; i < vectors.size(); ++i) vectors[i] = vectors[sheets_.source[i - own]];
   }
 
+  /// The same of all embedded points; those of the last time are kept, since a slot and a frame ask for them.
+  std::span<const Vec3f> vectors_at(double time) {
+    if (host_time_ != time) {
+      host_vectors_.resize(points_.size());
+      fill_vectors(time, host_vectors_);
+      host_time_ = time;
+    }
+    return host_vectors_;
+  }
+
   /// The vectors at the time of the frame that step `k` makes.
   void load_present(int k) {
     auto stage = exec_.stage("velocity");
-    host_vectors_.resize(points_.size());
-    fill_vectors(time_of(k + 1), host_vectors_);
-    present_vectors_.upload(host_vectors_);
+    present_vectors_.upload(vectors_at(time_of(k + 1)));
   }
 
   void fill(int k) {
     auto stage = exec_.stage("velocity");
-    host_vectors_.resize(points_.size());
-    fill_vectors(time_of(k), host_vectors_);
-    point_vectors_.upload(host_vectors_);
+    point_vectors_.upload(vectors_at(time_of(k)));
     const SpeedScale scale{float(vectors_.reference_speed), float(parameters_.step_cells * texel_),
                            float(parameters_.speed_power), 2.0f};
     fill_slot(point_vectors_, scale, slot(k));
@@ -424,6 +431,7 @@ class FlowMethodOn : public FlowMethod {
   Array<std::uint8_t> device_second_sheet_;
   Array<Vec3f> point_vectors_;
   std::vector<Vec3f> host_vectors_;
+  std::optional<double> host_time_;  ///< of `host_vectors_`
 };
 
 }  // namespace nacre

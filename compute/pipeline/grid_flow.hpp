@@ -51,7 +51,7 @@ class GridFlow final : public GridMethod<Backend> {
     carried_ = arena.permanent<float>(n);
     value_ = arena.permanent<float>(n);
     streaks_ = arena.permanent<float>(n);
-    drawing_.make(n);
+    drawing_.make(GridSurface{fine_.view(coarse_.view())}, n, mesh_, 1.0 / refine_);
     this->make_frame_arrays();
     for (Array<float>* noise : {&carried_, &value_}) exec_.for_each(n, FillNoise{seed_, noise->data()});
   }
@@ -85,11 +85,12 @@ class GridFlow final : public GridMethod<Backend> {
     particles.arrived = arrived.data();
     particles.crossed = crossed_.data();
     particles.ended = ended.data();
+    particles.n = fine_.surface_cells;
     particles.ttl = ttl_;
     particles.rounding = this->rounding_of(launched_);
     {
       auto stage = exec_.stage("advect");  // with the deposits: a particle draws while it moves
-      exec_.for_each(fine_.surface_cells, particles);
+      exec_.for_each((particles.n + Widest::lanes - 1) / Widest::lanes, particles);
     }
     {
       auto stage = exec_.stage("deposit");
@@ -113,7 +114,7 @@ class GridFlow final : public GridMethod<Backend> {
     if (!this->shows_) return;
     if (parameters_.streaks > 0) {
       const GridSurface surface{texture};
-      drawing_.mark(surface, mesh_, 1.0 / refine_, this->present_vectors_.data(), this->least_speed());
+      drawing_.mark(surface, this->present_vectors_.data(), this->least_speed());
       drawing_.follow(surface, value_.data());
       float* means = detail_.data();  // until the frame is equalised
       drawing_.convolve(surface, parameters_.streaks, means);

@@ -123,7 +123,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     } else {
       moments_ = arena.permanent<Float4>(view.items());
       streaks_ = arena.permanent<float>(n);
-      drawing_.make(n);
+      drawing_.make(BrickSurface{view}, n, this->mesh_, 1.0);
     }
     info_.flow_bytes = arena.mark() - mark;
     for_each_surface_cell(exec_, view, FillBandNoise<View>{view, seed_, value_.data(), carried_.data()});
@@ -276,8 +276,7 @@ class OctreeFlow final : public FlowMethodOn<Backend> {
     const bool streaks = !Band::as_thesis && this->shows_ && parameters_.streaks > 0;
     refresh(value_, [&] {
       if constexpr (!Band::as_thesis)
-        if (streaks)
-          drawing_.mark(BrickSurface{view}, this->mesh_, 1.0, this->present_vectors_.data(), this->least_speed());
+        if (streaks) drawing_.mark(BrickSurface{view}, this->present_vectors_.data(), this->least_speed());
     });
     auto filter = exec_.stage("filter");
     Arena::Scope scope(exec_.arena());

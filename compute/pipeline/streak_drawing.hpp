@@ -14,20 +14,26 @@ class StreakDrawing {
  public:
   explicit StreakDrawing(Executor<Backend>& exec) : exec_(exec) {}
 
-  /// Room for the streaks of `n` surface cells, permanent.
-  void make(std::size_t n) {
+  /// Room for the streaks of all `n` surface cells, permanent, and what cells know of the surface. `cell`: edge of a
+  /// texture cell in units of the points of the mesh.
+  template <class Surface>
+  void make(const Surface& surface, std::size_t n, const MeshView& mesh, double cell) {
     n_ = std::int64_t(n);
+    triangles_ = mesh.triangles;
     cells_ = exec_.arena().template permanent<StreakCell>(n + 1);  // the last one is read as four words
     segments_ = exec_.arena().template permanent<StreakSegment>(n + 1);
+    weights_ = exec_.arena().template permanent<PackedWeights>(n);
+    const DescribeStreakCells<Surface> describe{surface, mesh, cell, cells_.data(), weights_.data()};
+    for_each_surface_cell_of(exec_, surface, n_, describe);
   }
 
-  /// First what cells know of the flow. `vectors`: of the points of the mesh, at the time of the frame; `cell`: edge of
-  /// a texture cell in units of these points; `least`: speed below which nothing flows.
+  /// First what cells know of the flow. `vectors`: of the points of the mesh, at the time of the frame; `least`: speed
+  /// below which nothing flows.
   template <class Surface>
-  void mark(const Surface& surface, const MeshView& mesh, double cell, const Vec3f* vectors, float least) {
+  void mark(const Surface& surface, const Vec3f* vectors, float least) {
     auto stage = exec_.stage("streaks");
-    for_each_surface_cell_of(exec_, surface, n_,
-                             MarkStreakCells<Surface>{surface, mesh, cell, vectors, least, cells_.data()});
+    const MarkStreakCells<Surface> mark{surface, triangles_, vectors, least, weights_.data(), cells_.data()};
+    for_each_surface_cell_of(exec_, surface, n_, mark);
   }
 
   /// Then their segments of streamlines, with the values of the moving texture, 0..1.
@@ -59,6 +65,8 @@ class StreakDrawing {
   std::int64_t n_ = 0;
   Array<StreakCell> cells_;
   Array<StreakSegment> segments_;
+  Array<PackedWeights> weights_;
+  const Triangle* triangles_ = nullptr;
 };
 
 }  // namespace nacre

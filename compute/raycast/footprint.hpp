@@ -75,15 +75,10 @@ struct BlockMeans {
   const float* value;
   float* mean;
   NACRE_HD void operator()(std::int64_t b) const {
-    const int cells = texture.cells_per_block();
+    const int count = texture.surface_cells_in(b);
+    const float* values = value + texture.first_surface_cell[b];
     float sum = 0;
-    int count = 0;
-    for (int k = 0; k < cells; ++k) {
-      const std::uint32_t s = texture.texel[b * cells + k];
-      if (s & RefinedGridView::extended) continue;  // beside the surface, or nothing
-      sum += value[s];
-      ++count;
-    }
+    for (int k = 0; k < count; ++k) sum += values[k];
     mean[b] = count ? sum / float(count) : no_value;
   }
 };

@@ -49,7 +49,7 @@ struct HostGrid {
 
 /// A refined grid on the host.
 struct HostTexture {
-  std::vector<std::uint32_t> block, texel, position, block_cell, seed_triangle, neighbour;
+  std::vector<std::uint32_t> block, texel, position, block_cell, first_surface_cell, seed_triangle, neighbour;
   std::vector<Float4> seed;
   RefinedGridView view;
 
@@ -58,6 +58,7 @@ struct HostTexture {
         texel(fine.texel.download()),
         position(fine.position.download()),
         block_cell(fine.block_cell.download()),
+        first_surface_cell(fine.first_surface_cell.download()),
         seed_triangle(fine.seed_triangle.download()),
         neighbour(fine.neighbour.download()),
         seed(fine.seed.download()),
@@ -66,6 +67,7 @@ struct HostTexture {
     view.texel = texel.data();
     view.position = position.data();
     view.block_cell = block_cell.data();
+    view.first_surface_cell = first_surface_cell.data();
     view.seed_triangle = seed_triangle.data();
     view.neighbour = neighbour.data();
     view.seed = seed.data();

@@ -69,7 +69,11 @@ DrawnStreaks draw_on(Executor<Backend>& exec, const Marked& marked, const Surfac
   for (const Int3& p : drawn.position) drawn.value.push_back(0.5f + recipe.value(p));
   const Array<float> value = arena.permanent_copy<float>(drawn.value), streaks = arena.permanent<float>(n);
   const Array<StreakCell> cells = arena.permanent<StreakCell>(n + 1);
-  for_each_surface_cell_of(exec, marked, n, MarkStreakCells<Marked>{marked, mesh, cell, vectors, 1e-6f, cells.data()});
+  const Array<PackedWeights> weights = arena.permanent<PackedWeights>(n);
+  for_each_surface_cell_of(exec, marked, n,
+                           DescribeStreakCells<Marked>{marked, mesh, cell, cells.data(), weights.data()});
+  for_each_surface_cell_of(
+      exec, marked, n, MarkStreakCells<Marked>{marked, mesh.triangles, vectors, 1e-6f, weights.data(), cells.data()});
   exec.for_each(n, GiveStreakValues{value.data(), cells.data()});
   const Array<StreakSegment> segments = arena.permanent<StreakSegment>(n + 1);
   store_on_surface(exec, on, n, FollowSegments<Surface>{on, cells.data()}, ToArray{segments.data()});
