@@ -131,7 +131,7 @@ class Filling {
     if (!hole_.within.empty()) improve();
     if (n_ == 3 && triangles_.size() == 1 && stars_has_backwards()) return {};
     if (n_ > plain_loop && any_above(fold * 0.1)) return {};
-    if (!at_rim() && any_above(poor)) return {};
+    if ((n_ > plain_loop || !hole_.within.empty()) && !at_rim() && any_above(poor)) return {};
     return triangles_;
   }
 

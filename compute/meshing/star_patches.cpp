@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -18,57 +17,17 @@
 #include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
-#include "compute/meshing/vertex_fans.hpp"
+#include "compute/meshing/star_seams.hpp"
 
 namespace nacre {
 namespace {
 
 constexpr int patch_rounds = 100;
-constexpr int slow_rounds = 8;       // then a patch grows by whole rings
-constexpr double around = 3;         // sizes: as far as the particles are that a patch is made of
-constexpr double wider = 3;          // times as far, where that does not suffice
-constexpr double most_wider = 8;     // as far in the end, nearly
-constexpr double label_reach = 1.5;  // sizes: as far from a facet the material of its cell is looked up
-constexpr double most_work = 0.3;      // particles triangulated, by those that there are: beyond, cells of all cost less
-
-/// The circumcentre of a triangle.
-Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d u = b - a, v = c - a, n = cross(u, v);
-  const double n2 = dot(n, n);
-  if (!(n2 > 0)) return (a + b + c) / 3;
-  return a + cross(dot(u, u) * v - dot(v, v) * u, n) / (2 * n2);
-}
-
-/// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
-/// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
-std::vector<Vec3d> label_points(const PatchCells::Made& made) {
-  std::vector<Vec3d> at(made.cells.circumcentres);
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto& cell = made.cells.vertices[i];
-    double least = 0;
-    Vec3d foot;
-    double size = 0;
-    for (const auto& [a, b, c] : facet_corners) {
-      const Vec3d centre = circumcentre(made.places[cell[a]], made.places[cell[b]], made.places[cell[c]]);
-      const double radius = length(centre - made.places[cell[a]]);
-      if (size > 0 && radius >= least) continue;
-      least = radius, foot = centre;
-      size = std::max({made.size[cell[a]], made.size[cell[b]], made.size[cell[c]]});
-    }
-    const Vec3d away = at[i] - foot;
-    const double far = length(away);
-    if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
-  }
-  return at;
-}
-
-std::uint64_t key_of(std::span<const Vec3d> places) {
-  std::uint64_t key = places.size();
-  for (const Vec3d& p : places)
-    for (int a = 0; a < 3; ++a)
-      key = (std::rotl(key, 21) ^ std::bit_cast<std::uint64_t>(p[a])) * 0x9e3779b97f4a7c15u, key ^= key >> 32;
-  return key;
-}
+constexpr int slow_rounds = 8;     // then a patch grows by whole rings
+constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
+constexpr double wider = 3;        // times as far, where that does not suffice
+constexpr double most_wider = 8;   // as far in the end, nearly
+constexpr double most_work = 1;  // particles triangulated, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
 class Guards {
@@ -139,66 +98,6 @@ class Patch {
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
 
-/// One side of a triangle as a material passes it.
-struct Pass {
-  std::uint32_t low, high;
-  std::uint16_t material;
-  std::int8_t sign;
-  friend bool operator<(const Pass& s, const Pass& t) {
-    return std::tie(s.low, s.high, s.material) < std::tie(t.low, t.high, t.material);
-  }
-};
-
-/// Ends of edges, both marked, that a material passes more often one way than the other, or that have more than two
-/// triangles between the same two materials.
-std::vector<std::uint32_t> at_open_edges(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
-  std::vector<Pass> passes;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[i][k], to = mesh.triangles[i][(k + 1) % 3];
-      if (!marked[from] || !marked[to]) continue;
-      const auto sign = std::int8_t(from < to ? 1 : -1);
-      passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][0], sign});
-      passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][1], std::int8_t(-sign)});
-    }
-  std::sort(passes.begin(), passes.end());
-  std::vector<std::uint32_t> open;
-  for (std::size_t i = 0, k = 0; i < passes.size(); i = k) {
-    int sum = 0;
-    for (k = i; k < passes.size() && !(passes[i] < passes[k]); ++k) sum += passes[k].sign;
-    if (sum != 0 || k - i > 2) open.push_back(passes[i].low), open.push_back(passes[i].high);
-  }
-  return open;
-}
-
-/// Marked particles off the junctions that the surface of a material passes more than once.
-std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
-  struct Use {
-    std::uint32_t vertex;
-    VertexFanCounter::Facet facet;
-  };
-  std::vector<Use> uses;
-  for (const std::uint32_t i : select_where(mesh.triangles.size(), [&](std::size_t i) {
-         const Triangle& t = mesh.triangles[i];
-         return marked[t.a] || marked[t.b] || marked[t.c];
-       })) {
-    const Triangle& t = mesh.triangles[i];
-    for (int k = 0; k < 3; ++k)
-      if (marked[t[k]]) uses.push_back({t[k], {t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[i]}});
-  }
-  std::stable_sort(uses.begin(), uses.end(), [](const Use& s, const Use& t) { return s.vertex < t.vertex; });
-  std::vector<std::uint32_t> pinched;
-  std::vector<VertexFanCounter::Facet> facets;
-  VertexFanCounter counter;
-  for (std::size_t i = 0, k = 0; i < uses.size(); i = k) {
-    facets.clear();
-    for (k = i; k < uses.size() && uses[k].vertex == uses[i].vertex; ++k) facets.push_back(uses[k].facet);
-    const std::vector<MaterialCount>& fans = counter.vertex_fans(facets);
-    if (fans.size() == 2 && (fans[0].count > 1 || fans[1].count > 1)) pinched.push_back(uses[i].vertex);
-  }
-  return pinched;
-}
-
 /// Particles where surfaces are pinched are unsettled, too.
 void add_pinched(StarMesh& mesh, std::size_t particles) {
   std::vector<std::uint8_t> marked(particles, 0);
@@ -225,8 +124,8 @@ class Settling {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
   }
 
-  /// Parts of the patch that have no particle within reach in common. Returns how many particles those have that are new
-  /// or have grown since they were asked for last: these are to be made again.
+  /// Parts of the patch that have no particle within reach in common. Returns how many particles those have that are
+  /// new or have grown since they were asked for last: these are to be made again.
   std::size_t regroup() {
     std::vector<std::uint32_t> all = select_where(bad_.size(), [&](std::size_t i) { return bad_[i] != 0; });
     std::vector<std::uint32_t> more;
@@ -319,8 +218,8 @@ class Settling {
     return joined;
   }
 
-  /// Adds what lies at edges of the mesh joined last that do not match; false where all do. Where all is of cells there,
-  /// whose labels were repaired already, what is around them is added, too.
+  /// Adds what lies at edges of the mesh joined last that do not match; false where all do. Where all is of cells
+  /// there, whose labels were repaired already, what is around them is added, too.
   bool grow(const StarMesh& joined, bool repaired) {
     const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
     bool any = false;
@@ -478,31 +377,6 @@ class Settling {
 };
 
 }  // namespace
-
-void PatchCells::begin() {
-  before_ = std::move(now_);
-  now_.clear();
-}
-
-std::shared_ptr<const PatchCells::Made> PatchCells::make(std::vector<Vec3d> places, std::vector<double> size,
-                                                         const PatchWorld& world, const std::atomic<bool>* stop) {
-  const std::uint64_t key = key_of(places);
-  for (Kept* kept : {&now_, &before_}) {
-    const auto [first, last] = kept->equal_range(key);
-    const auto same = std::find_if(
-        first, last, [&](const auto& made) { return made.second->places == places && made.second->size == size; });
-    if (same == last) continue;
-    const std::shared_ptr<const Made> made = same->second;
-    if (kept == &before_) now_.insert(before_.extract(same));
-    return made;
-  }
-  const auto made = std::make_shared<Made>();
-  made->places = std::move(places), made->size = std::move(size);
-  made->cells = delaunay_.cells(made->places, stop);
-  made->label = world.material_at(label_points(*made));
-  now_.insert({key, made});
-  return made;
-}
 
 bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
