@@ -2,32 +2,11 @@
 #include "compute/meshing/patches.hpp"
 
 #include <algorithm>
-#include <numeric>
 
+#include "compute/meshing/disjoint_sets.hpp"
 #include "compute/meshing/incidence.hpp"
 
 namespace nacre {
-namespace {
-
-/// Sets that are joined; each is known by its smallest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t members) : parent_(members) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) {
-    i = find(i), j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
-}  // namespace
 
 Patches patches_around(const SurfaceMesh& mesh, std::span<const std::uint8_t> marked) {
   DisjointSets sets(mesh.points.size());

@@ -9,6 +9,8 @@
 #include <iterator>
 #include <span>
 
+#include "compute/meshing/disjoint_sets.hpp"
+#include "compute/meshing/quality.hpp"
 #include "compute/meshing/small_hull.hpp"
 #include "compute/meshing/star_holes.hpp"
 
@@ -18,6 +20,7 @@ namespace {
 constexpr int widenings = 5;
 constexpr std::size_t most_in_body = 24, most_in_speck = 6;  // particles
 constexpr double least_facing = 0.3;  // mean cosine between triangles of a small body and the normals at their corners
+constexpr double least_ratio = 0.2;   // of these triangles
 constexpr std::size_t most_opened = 50;  // items for each hole: beyond, it is no hole but something else
 
 void sort_unique(std::vector<std::uint32_t>& some) {
@@ -49,20 +52,35 @@ std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vecto
   return odd;
 }
 
-/// Fills what can be filled; returns the items of the other holes.
-std::vector<std::uint32_t> fill(const StarItems& items, const std::vector<Star>& stars,
-                                const std::vector<StarHole>& holes, std::vector<Triangle>& triangles) {
+/// Items of holes that could not be filled.
+struct Failed {
+  std::vector<std::uint32_t> wider;     ///< of those that are worth widening
+  std::vector<std::uint32_t> hopeless;  ///< of the others
+};
+
+/// Fills what can be filled. Holes that have one of the items `hopeless`, which ascend, are not worth widening.
+Failed fill(const StarItems& items, const std::vector<Star>& stars, const std::vector<StarHole>& holes,
+            std::span<const std::uint32_t> hopeless, std::vector<Triangle>& triangles) {
   std::vector<std::vector<Triangle>> fillings(holes.size());
   tbb::parallel_for(std::size_t(0), holes.size(),
                     [&](std::size_t i) { fillings[i] = fill_hole(items, stars, holes[i]); });
-  std::vector<std::uint32_t> open;
+  const auto is_hopeless = [&](std::uint32_t i) { return std::binary_search(hopeless.begin(), hopeless.end(), i); };
+  Failed failed;
   for (std::size_t i = 0; i < holes.size(); ++i) {
+    const auto &loop = holes[i].loop, &within = holes[i].within;
     triangles.insert(triangles.end(), fillings[i].begin(), fillings[i].end());
     if (!fillings[i].empty()) continue;
-    open.insert(open.end(), holes[i].loop.begin(), holes[i].loop.end());
-    open.insert(open.end(), holes[i].within.begin(), holes[i].within.end());
+    const bool no_hope =
+        std::any_of(loop.begin(), loop.end(), is_hopeless) || std::any_of(within.begin(), within.end(), is_hopeless);
+    for (const auto* some : {&loop, &within}) {
+      auto& list = no_hope ? failed.hopeless : failed.wider;
+      list.insert(list.end(), some->begin(), some->end());
+    }
   }
-  return open;
+  for (const std::uint32_t i : at_odd_edges(items, stars, triangles))
+    (is_hopeless(i) ? failed.hopeless : failed.wider).push_back(i);
+  sort_unique(failed.wider), sort_unique(failed.hopeless);
+  return failed;
 }
 
 /// The convex hull of items as a surface that faces as they do; none where they do not face out of it, or into it.
@@ -77,31 +95,50 @@ std::vector<Triangle> hull_of(const StarItems& items, std::span<const std::uint3
     facing += dot(n, items.normal[t.a] + items.normal[t.b] + items.normal[t.c]) / 3;
   }
   if (!(std::abs(facing) > least_facing * double(hull.size()))) return {};
+  const auto is_poor = [&](const Triangle& t) {
+    return radius_ratio(items.position[t.a], items.position[t.b], items.position[t.c]) < least_ratio;
+  };
+  if (std::any_of(hull.begin(), hull.end(), is_poor)) return {};
   if (facing < 0)
     for (Triangle& t : hull) std::swap(t.b, t.c);
   return hull;
 }
 
+/// Items that are neighbours of each other, one of the other at least, in groups; all of `alone`, which ascends.
+std::vector<std::vector<std::uint32_t>> group_neighbours(const std::vector<Star>& stars,
+                                                         std::span<const std::uint32_t> alone) {
+  DisjointSets sets(alone.size());
+  std::vector<std::uint8_t> is_among(alone.size(), 0);  // several such
+  for (std::uint32_t k = 0; k < alone.size(); ++k) {
+    const Star& star = stars[alone[k]];
+    int neighbours = 0;
+    for (int r = 0; r < star.count; ++r) {
+      const auto at = std::lower_bound(alone.begin(), alone.end(), star.ring[std::size_t(r)]);
+      if (at == alone.end() || *at != star.ring[std::size_t(r)]) continue;
+      sets.join(k, std::uint32_t(at - alone.begin()));
+      ++neighbours;
+    }
+    is_among[k] = neighbours >= 3;
+  }
+  std::vector<std::vector<std::uint32_t>> groups(alone.size());
+  std::vector<std::uint8_t> any(alone.size(), 0);
+  for (std::uint32_t k = 0; k < alone.size(); ++k) {
+    groups[sets.find(k)].push_back(alone[k]);
+    any[sets.find(k)] |= is_among[k];
+  }
+  for (std::size_t k = 0; k < groups.size(); ++k)
+    if (!any[k]) groups[k].clear();
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
 /// Items that have no triangle and neighbours of which this is true, too, are a body of a few particles: it gets the
-/// hull of these. A smaller one without such a hull bounds nothing, and is left out. Returns the items of larger ones.
+/// hull of these. A smaller one without such a hull bounds nothing, and is left out, as are items beside a surface that
+/// does without them. Returns the items of larger ones.
 std::vector<std::uint32_t> close_bodies(const StarItems& items, const std::vector<Star>& stars,
                                         std::span<const std::uint32_t> alone, std::vector<Triangle>& triangles) {
-  std::vector<std::uint32_t> done, left;  // ascending
-  for (const std::uint32_t first : alone) {
-    if (std::binary_search(done.begin(), done.end(), first)) continue;
-    std::vector<std::uint32_t> body = {first};
-    for (std::size_t k = 0; k < body.size() && body.size() <= most_in_body; ++k) {
-      const Star& star = stars[body[k]];
-      for (int r = 0; r < star.count; ++r) {
-        const std::uint32_t q = star.ring[std::size_t(r)];
-        const bool is_new = std::find(body.begin(), body.end(), q) == body.end();
-        if (is_new && stars[q].agreed == 0 && items.next[q] == none) body.push_back(q);
-      }
-    }
-    std::sort(body.begin(), body.end());
-    std::vector<std::uint32_t> both;
-    std::set_union(done.begin(), done.end(), body.begin(), body.end(), std::back_inserter(both));
-    done.swap(both);
+  std::vector<std::uint32_t> left;
+  for (const std::vector<std::uint32_t>& body : group_neighbours(stars, alone)) {
     if (body.size() > most_in_body) {
       left.insert(left.end(), body.begin(), body.end());
       continue;
@@ -113,9 +150,10 @@ std::vector<std::uint32_t> close_bodies(const StarItems& items, const std::vecto
   return left;
 }
 
-}  // namespace
-
-StarFilling fill_holes(StarFinder& finder, std::vector<std::uint32_t> incomplete) {
+/// Fills holes, and widens those that cannot be filled, `hopeless` ones excepted. `failed` receives the items of those
+/// that were widened in vain.
+StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomplete,
+                           std::span<const std::uint32_t> hopeless, std::vector<std::uint32_t>& failed) {
   const StarItems& items = finder.items();
   const std::vector<Star>& stars = finder.stars();
   StarFilling filling;
@@ -123,25 +161,37 @@ StarFilling fill_holes(StarFinder& finder, std::vector<std::uint32_t> incomplete
     const StarHoles holes = find_holes(items, stars, incomplete);
     filling.holes = std::int64_t(holes.holes.size());
     filling.triangles.clear();
-    std::vector<std::uint32_t> failed = fill(items, stars, holes.holes, filling.triangles);
-    const std::vector<std::uint32_t> odd = at_odd_edges(items, stars, filling.triangles);
-    failed.insert(failed.end(), odd.begin(), odd.end());
-    sort_unique(failed);
-    if (failed.empty() || round == widenings || failed.size() > most_opened * holes.holes.size()) {
+    Failed now = fill(items, stars, holes.holes, hopeless, filling.triangles);
+    if (now.wider.empty() || round == widenings || now.wider.size() > most_opened * holes.holes.size()) {
+      failed = std::move(now.wider);
       for (const StarHole& hole : holes.holes)
         filling.around.insert(filling.around.end(), hole.loop.begin(), hole.loop.end());
-      filling.unsettled = std::move(failed);
+      filling.unsettled = failed;
       const std::vector<std::uint32_t> left = close_bodies(items, stars, holes.alone, filling.triangles);
-      for (const auto* more : {&left, &holes.open})
-        filling.unsettled.insert(filling.unsettled.end(), more->begin(), more->end());
+      for (const std::span<const std::uint32_t> more :
+           {std::span<const std::uint32_t>(now.hopeless), std::span<const std::uint32_t>(left),
+            std::span<const std::uint32_t>(holes.open)})
+        filling.unsettled.insert(filling.unsettled.end(), more.begin(), more.end());
       sort_unique(filling.opened);
       return filling;
     }
-    const std::vector<std::uint32_t> changed = finder.open(failed);
+    const std::vector<std::uint32_t> changed = finder.open(now.wider);
     incomplete.insert(incomplete.end(), changed.begin(), changed.end());
     sort_unique(incomplete);
-    filling.opened.insert(filling.opened.end(), failed.begin(), failed.end());
+    filling.opened.insert(filling.opened.end(), now.wider.begin(), now.wider.end());
   }
+}
+
+}  // namespace
+
+StarFilling fill_holes(StarFinder& finder, std::vector<std::uint32_t> incomplete) {
+  std::vector<std::uint32_t> failed;
+  StarFilling filling = widen_and_fill(finder, incomplete, {}, failed);
+  if (failed.empty()) return filling;
+  // What was widened in vain stays as small as it was.
+  finder.close();
+  std::vector<std::uint32_t> again;
+  return widen_and_fill(finder, std::move(incomplete), failed, again);
 }
 
 }  // namespace nacre

@@ -85,6 +85,13 @@ void mark_reaching(const ItemTree& tree, std::uint32_t surface, const Vec3d& at,
 
 }  // namespace
 
+void StarFinder::take_back(std::size_t first) {
+  for (std::size_t k = unsettled_.size(); k-- > first;) stars_[unsettled_[k].first] = unsettled_[k].second;
+  unsettled_.resize(first);
+}
+
+void StarFinder::close() { take_back(settled_); }
+
 /// Copies the stars that are still right; marks the others.
 std::vector<std::uint8_t> StarFinder::take_over(const StarItems& items) {
   std::vector<std::uint8_t> stale(items.count(), 1);
@@ -142,7 +149,7 @@ std::vector<std::uint8_t> StarFinder::take_over(const StarItems& items) {
 }
 
 void StarFinder::find(StarItems items) {
-  for (auto known = unsettled_.rbegin(); known != unsettled_.rend(); ++known) stars_[known->first] = known->second;
+  take_back(0);
   const std::vector<std::uint8_t> stale = take_over(items);
   cut_ = std::count(stale.begin(), stale.end(), 1);
   items_ = std::move(items);
@@ -161,6 +168,7 @@ void StarFinder::find(StarItems items) {
       },
       2048);
   unsettled_ = settle_stars(items_, stars_, std::move(open));
+  settled_ = unsettled_.size();
 }
 
 std::vector<std::uint32_t> StarFinder::open(std::span<const std::uint32_t> some) {

@@ -21,6 +21,7 @@ class StarFinder {
 
   /// Takes back what is agreed on at `some` items, until the next call of `find`. Returns the items whose stars change.
   std::vector<std::uint32_t> open(std::span<const std::uint32_t> some);
+  void close();  ///< undoes all that `open` has done
 
   const StarItems& items() const { return items_; }          ///< of the last call
   const std::vector<Star>& stars() const { return stars_; }  ///< of each
@@ -28,10 +29,12 @@ class StarFinder {
 
  private:
   std::vector<std::uint8_t> take_over(const StarItems& items);
+  void take_back(std::size_t first);
 
   StarItems items_;
   std::vector<Star> stars_, spare_;
   std::vector<std::pair<std::uint32_t, Star>> unsettled_;  // stars that have changed since, as they were
+  std::size_t settled_ = 0;                                // of these, before anything was opened
   ItemTree tree_;
   std::int64_t cut_ = 0;
 };

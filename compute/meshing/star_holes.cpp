@@ -11,8 +11,11 @@
 namespace nacre {
 namespace {
 
-constexpr std::size_t longest_loop = 80;   // the time to fill one grows with its cube
-constexpr std::size_t plain_loop = 12;     // beyond, its shape need not be given by what is around it
+constexpr std::size_t longest_loop = 80;  // the time to fill one grows with its cube
+constexpr std::size_t plain_loop = 12;    // beyond, its shape need not be given by what is around it
+
+constexpr double poor = 3;  // price of a triangle with a ratio of about 0.2: too poor for a larger hole off the rims
+constexpr double aside_reach = 1.5;        // sizes: as far from a filling are the items that it leaves out
 constexpr double fold = 1e3, taken = 1e9;  // prices of a triangle that faces aside, and of an edge that there is
 
 /// An edge of a hole: a triangle that has it is wanted.
@@ -69,32 +72,48 @@ Side* follow(std::vector<Side>& sides, const Side& side, const StarItems& items)
   return best;
 }
 
-std::ptrdiff_t unused_neighbours(const std::vector<Star>& stars, const Star& star) {
-  return std::count_if(star.ring.begin(), star.ring.begin() + star.count,
-                       [&](std::uint32_t r) { return !is_used(stars[r]); });
-}
+/// Items that no triangle has go to the hole that most of their neighbours are at or within: those at its rim first, so
+/// that a wide hole gets all that is in its middle.
+class Orphans {
+ public:
+  Orphans(const StarItems& items, const std::vector<Star>& stars, std::span<const std::uint32_t> incomplete)
+      : stars_(stars) {
+    for (const std::uint32_t i : incomplete)
+      if (!is_used(stars[i]) && !stars[i].hidden && items.next[i] == none) waiting_.push_back(i);
+  }
 
-/// Items that no triangle has go to the hole that most of their neighbours are at.
-void add_orphans(StarHoles& found, const StarItems& items, const std::vector<Star>& stars,
-                 std::span<const std::uint32_t> incomplete) {
-  std::map<std::uint32_t, std::vector<std::uint32_t>> holes_at;
-  for (std::uint32_t h = 0; h < found.holes.size(); ++h)
-    for (const std::uint32_t v : found.holes[h].loop) holes_at[v].push_back(h);
-  for (const std::uint32_t i : incomplete) {
-    const Star& star = stars[i];
-    if (is_used(star) || star.hidden || items.next[i] != none) continue;
+  void distribute(StarHoles& found) {
+    for (std::uint32_t h = 0; h < found.holes.size(); ++h)
+      for (const std::uint32_t v : found.holes[h].loop) holes_at_[v].push_back(h);
+    for (bool any = true; any;) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> joining;  // item, hole
+      std::erase_if(waiting_, [&](std::uint32_t i) {
+        const std::uint32_t hole = hole_around(i);
+        if (hole != none) joining.push_back({i, hole});
+        return hole != none;
+      });
+      for (const auto& [i, hole] : joining) found.holes[hole].within.push_back(i), holes_at_[i].push_back(hole);
+      any = !joining.empty();
+    }
+    found.alone = std::move(waiting_);
+  }
+
+ private:
+  std::uint32_t hole_around(std::uint32_t i) const {
     std::map<std::uint32_t, int> votes;
+    const Star& star = stars_[i];
     for (int k = 0; k < star.count; ++k)
-      if (const auto at = holes_at.find(star.ring[std::size_t(k)]); at != holes_at.end())
+      if (const auto at = holes_at_.find(star.ring[std::size_t(k)]); at != holes_at_.end())
         for (const std::uint32_t h : at->second) ++votes[h];
     const auto best =
         std::max_element(votes.begin(), votes.end(), [](const auto& s, const auto& t) { return s.second < t.second; });
-    if (best != votes.end() && best->second >= 2)
-      found.holes[best->first].within.push_back(i);
-    else if (unused_neighbours(stars, star) >= 3)
-      found.alone.push_back(i);  // else it stands beside a surface that does without it, or for a speck of one
+    return best != votes.end() && best->second >= 2 ? best->first : none;
   }
-}
+
+  const std::vector<Star>& stars_;
+  std::vector<std::uint32_t> waiting_;                            // ascending
+  std::map<std::uint32_t, std::vector<std::uint32_t>> holes_at_;  // of items at a hole or within it
+};
 
 /// Fills one hole: the cheapest triangulation of its loop, then its inner items, then flips.
 class Filling {
@@ -104,10 +123,15 @@ class Filling {
 
   std::vector<Triangle> run() {
     if (n_ < 3 || n_ > longest_loop || !triangulate_loop()) return {};
-    for (const std::uint32_t v : hole_.within) insert(v);
+    used_ = hole_.loop;
+    std::vector<std::uint32_t> aside;
+    for (const std::uint32_t v : hole_.within)
+      if (!insert(v)) aside.push_back(v);
+    if (std::any_of(aside.begin(), aside.end(), [&](std::uint32_t v) { return is_far(v); })) return {};
     if (!hole_.within.empty()) improve();
     if (n_ == 3 && triangles_.size() == 1 && stars_has_backwards()) return {};
-    if (n_ > plain_loop && any_folded()) return {};
+    if (n_ > plain_loop && any_above(fold * 0.1)) return {};
+    if ((n_ > plain_loop || !hole_.within.empty()) && !at_rim() && any_above(poor)) return {};
     return triangles_;
   }
 
@@ -163,9 +187,13 @@ class Filling {
     return true;
   }
 
-  bool any_folded() const {
+  bool at_rim() const {
+    return std::any_of(hole_.loop.begin(), hole_.loop.end(), [&](std::uint32_t v) { return items_.next[v] != none; });
+  }
+
+  bool any_above(double limit) const {
     return std::any_of(triangles_.begin(), triangles_.end(),
-                       [&](const Triangle& t) { return price(t.a, t.b, t.c) >= fold * 0.1; });
+                       [&](const Triangle& t) { return price(t.a, t.b, t.c) >= limit; });
   }
 
   bool stars_has_backwards() const {
@@ -185,8 +213,15 @@ class Filling {
     emit(k, j, apex);
   }
 
-  /// Divides the triangle that an item is in or next to.
-  void insert(std::uint32_t v) {
+  /// Whether what stays out is part of a surface that the triangles do not follow, as of a fin that they would cut off.
+  bool is_far(std::uint32_t v) const {
+    const double reach = aside_reach * items_.size[v];
+    return std::none_of(used_.begin(), used_.end(),
+                        [&](std::uint32_t w) { return length(position(w) - position(v)) <= reach; });
+  }
+
+  /// Divides the triangle that an item is in or next to; false where it lies aside, and stays out.
+  bool insert(std::uint32_t v) {
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
@@ -194,11 +229,13 @@ class Filling {
       const double worst = std::max({price(a, b, v), price(b, c, v), price(c, a, v)});
       if (worst < least) least = worst, best = t;
     }
-    if (least >= fold) return;  // it lies aside, and stays out
+    if (least >= fold) return false;
+    used_.push_back(v);
     const Triangle t = triangles_[best];
     triangles_[best] = {t.a, t.b, v};
     triangles_.push_back({t.b, t.c, v});
     triangles_.push_back({t.c, t.a, v});
+    return true;
   }
 
   /// Exchanges diagonals while that is cheaper.
@@ -235,6 +272,7 @@ class Filling {
   const StarHole& hole_;
   std::size_t n_;
   std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> used_;  // items of these
 };
 
 }  // namespace
@@ -259,7 +297,7 @@ StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars,
     else
       found.holes.push_back(std::move(hole));
   }
-  add_orphans(found, items, stars, incomplete);
+  Orphans(items, stars, incomplete).distribute(found);
   return found;
 }
 

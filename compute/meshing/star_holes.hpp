@@ -17,9 +17,8 @@ struct StarHole {
 
 struct StarHoles {
   std::vector<StarHole> holes;
-  std::vector<std::uint32_t>
-      alone;                        ///< items in no hole without a triangle, among others such: maybe a body of its own
-  std::vector<std::uint32_t> open;  ///< items of chains of edges that do not close: a rim is broken there
+  std::vector<std::uint32_t> alone;  ///< items in no hole without a triangle, ascending: maybe bodies of their own
+  std::vector<std::uint32_t> open;   ///< items of chains of edges that do not close: a rim is broken there
 };
 
 /// All holes, ascending by their smallest items. `incomplete` are the items, ascending, that may be at or within one.

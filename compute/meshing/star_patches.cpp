@@ -5,61 +5,34 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 
+#include "compute/meshing/disjoint_sets.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/near_points.hpp"
+#include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
-#include "compute/meshing/vertex_fans.hpp"
+#include "compute/meshing/star_seams.hpp"
 
 namespace nacre {
 namespace {
 
-constexpr int patch_rounds = 40;
-constexpr int slow_rounds = 8;         // then a patch grows by whole rings
-constexpr double around = 3;           // sizes: as far as the particles are that a patch is made of
-constexpr double label_reach = 1.5;    // sizes: as far from a facet the material of its cell is looked up
-constexpr std::size_t most_made = 16;  // patches that are kept
-constexpr double most_work = 0.3;  // particles of all rounds, by those that there are: beyond, cells of all cost less
+constexpr int patch_rounds = 100;
+constexpr int slow_rounds = 8;     // then a patch grows by whole rings
+constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
+constexpr double wider = 3;        // times as far, where that does not suffice
+constexpr double most_wider = 8;   // as far in the end, nearly
+constexpr double most_work = 1;  // particles triangulated, by those that there are
 
-/// The circumcentre of a triangle.
-Vec3d circumcentre(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
-  const Vec3d u = b - a, v = c - a, n = cross(u, v);
-  const double n2 = dot(n, n);
-  if (!(n2 > 0)) return (a + b + c) / 3;
-  return a + cross(dot(u, u) * v - dot(v, v) * u, n) / (2 * n2);
-}
-
-/// Where the material of each cell is looked up: at its circumcentre, where that is near its smallest facet. Of a
-/// farther one, whose ball would hold particles that are not in the patch, only the direction is used.
-std::vector<Vec3d> label_points(const PatchCells::Made& made) {
-  std::vector<Vec3d> at(made.cells.circumcentres);
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const auto& cell = made.cells.vertices[i];
-    double least = 0;
-    Vec3d foot;
-    double size = 0;
-    for (const auto& [a, b, c] : facet_corners) {
-      const Vec3d centre = circumcentre(made.places[cell[a]], made.places[cell[b]], made.places[cell[c]]);
-      const double radius = length(centre - made.places[cell[a]]);
-      if (size > 0 && radius >= least) continue;
-      least = radius, foot = centre;
-      size = std::max({made.size[cell[a]], made.size[cell[b]], made.size[cell[c]]});
-    }
-    const Vec3d away = at[i] - foot;
-    const double far = length(away);
-    if (far > label_reach * size) at[i] = foot + away * (label_reach * size / far);
-  }
-  return at;
-}
-
-/// Delaunay cells of some of the particles, and the facets between materials.
-class Patch {
+/// Corners of a box far around all particles: no facet at a particle is on the hull.
+class Guards {
  public:
-  Patch(const PatchWorld& world, const std::atomic<bool>* stop) : world_(world), stop_(stop) {
+  explicit Guards(const PatchWorld& world) {
     Vec3d low = world.points[0], high = world.points[0];
     for (const Vec3d& p : world.points) low = min(low, p), high = max(high, p);
     // In steps, so that guards are in the same places as a rule, and the triangulation has less to do again.
@@ -69,14 +42,34 @@ class Patch {
     for (int a = 0; a < 3; ++a) middle_[a] = step * std::round((low[a] + high[a]) / (2 * step));
   }
 
+  void add(std::vector<Vec3d>& places, std::vector<double>& size) const {
+    for (int k = 0; k < 8; ++k) {
+      // At no corner of a cube exactly, so that no four lie in a plane with others.
+      const double far = (6 + 0.37 * k) * half_;
+      places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
+      size.push_back(half_);
+    }
+  }
+
+ private:
+  Vec3d middle_;  // of a ball around all particles
+  double half_ = 0;
+};
+
+/// Delaunay cells of some of the particles, and the facets between materials.
+class Patch {
+ public:
+  Patch(const Guards& guards, const PatchWorld& world, const std::atomic<bool>* stop)
+      : guards_(&guards), world_(&world), stop_(stop) {}
+
   /// Of `members`, ascending. `kept` are triangles that stay, corners as numbers of members: the cells beside them have
   /// the materials on their sides, wherever the centres are.
   void make(std::span<const std::uint32_t> members, const StarMesh& kept, PatchCells& cells) {
     std::vector<Vec3d> places;
     std::vector<double> size;
-    for (const std::uint32_t i : members) places.push_back(world_.points[i]), size.push_back(world_.size[i]);
-    add_guards(places, size);
-    made_ = cells.make(std::move(places), std::move(size), world_, stop_);
+    for (const std::uint32_t i : members) places.push_back(world_->points[i]), size.push_back(world_->size[i]);
+    guards_->add(places, size);
+    made_ = cells.make(std::move(places), std::move(size), *world_, stop_);
     label_ = made_->label;
     label_beside(made_->cells, kept.triangles, kept.materials, label_);
     facets_ = interface_facets(made_->cells, label_);
@@ -96,85 +89,14 @@ class Patch {
   const std::vector<std::array<std::uint32_t, 2>>& defects() const { return defects_; }
 
  private:
-  /// Corners of a box far around: no facet at a particle is on the hull.
-  void add_guards(std::vector<Vec3d>& places, std::vector<double>& size) const {
-    for (int k = 0; k < 8; ++k) {
-      // At no corner of a cube exactly, so that no four lie in a plane with others.
-      const double far = (6 + 0.37 * k) * half_;
-      places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
-      size.push_back(half_);
-    }
-  }
-
-  const PatchWorld& world_;
+  const Guards* guards_;
+  const PatchWorld* world_;
   const std::atomic<bool>* stop_;
-  Vec3d middle_;  // of a ball around all particles
-  double half_ = 0;
   std::shared_ptr<const PatchCells::Made> made_;
   std::vector<std::uint16_t> label_;  // per cell
   InterfaceFacets facets_;
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
-
-/// One side of a triangle as a material passes it.
-struct Pass {
-  std::uint32_t low, high;
-  std::uint16_t material;
-  std::int8_t sign;
-  friend bool operator<(const Pass& s, const Pass& t) {
-    return std::tie(s.low, s.high, s.material) < std::tie(t.low, t.high, t.material);
-  }
-};
-
-/// Ends of edges, both marked, that a material passes more often one way than the other, or that have more than two
-/// triangles between the same two materials.
-std::vector<std::uint32_t> at_open_edges(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
-  std::vector<Pass> passes;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[i][k], to = mesh.triangles[i][(k + 1) % 3];
-      if (!marked[from] || !marked[to]) continue;
-      const auto sign = std::int8_t(from < to ? 1 : -1);
-      passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][0], sign});
-      passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][1], std::int8_t(-sign)});
-    }
-  std::sort(passes.begin(), passes.end());
-  std::vector<std::uint32_t> open;
-  for (std::size_t i = 0, k = 0; i < passes.size(); i = k) {
-    int sum = 0;
-    for (k = i; k < passes.size() && !(passes[i] < passes[k]); ++k) sum += passes[k].sign;
-    if (sum != 0 || k - i > 2) open.push_back(passes[i].low), open.push_back(passes[i].high);
-  }
-  return open;
-}
-
-/// Marked particles off the junctions that the surface of a material passes more than once.
-std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
-  struct Use {
-    std::uint32_t vertex;
-    VertexFanCounter::Facet facet;
-  };
-  std::vector<Use> uses;
-  for (const std::uint32_t i : select_where(mesh.triangles.size(), [&](std::size_t i) {
-         const Triangle& t = mesh.triangles[i];
-         return marked[t.a] || marked[t.b] || marked[t.c];
-       })) {
-    const Triangle& t = mesh.triangles[i];
-    for (int k = 0; k < 3; ++k)
-      if (marked[t[k]]) uses.push_back({t[k], {t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[i]}});
-  }
-  std::stable_sort(uses.begin(), uses.end(), [](const Use& s, const Use& t) { return s.vertex < t.vertex; });
-  std::vector<std::uint32_t> pinched;
-  std::vector<VertexFanCounter::Facet> facets;
-  VertexFanCounter counter;
-  for (std::size_t i = 0, k = 0; i < uses.size(); i = k) {
-    facets.clear();
-    for (k = i; k < uses.size() && uses[k].vertex == uses[i].vertex; ++k) facets.push_back(uses[k].facet);
-    const std::vector<MaterialCount>& fans = counter.vertex_fans(facets);
-    if (fans.size() == 2 && (fans[0].count > 1 || fans[1].count > 1)) pinched.push_back(uses[i].vertex);
-  }
-  return pinched;
-}
 
 /// Particles where surfaces are pinched are unsettled, too.
 void add_pinched(StarMesh& mesh, std::size_t particles) {
@@ -189,45 +111,98 @@ void add_pinched(StarMesh& mesh, std::size_t particles) {
 class Settling {
  public:
   Settling(const StarMesh& stars, const PatchWorld& world)
-      : stars_(stars), world_(world), bad_(world.points.size(), 0), near_(bad_), wide_(bad_) {
+      : stars_(stars),
+        world_(world),
+        guards_(world),
+        bad_(world.points.size(), 0),
+        extent_(world.size.begin(), world.size.end()),
+        near_(bad_),
+        sets_(bad_.size()),
+        group_of_(bad_.size(), none),
+        number_(group_of_),
+        wide_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
   }
 
-  /// The particles within reach of bad ones, ascending.
-  std::vector<std::uint32_t> members() {
-    const std::vector<std::uint32_t> all = select_where(bad_.size(), [&](std::size_t i) { return bad_[i] != 0; });
+  /// Parts of the patch that have no particle within reach in common. Returns how many particles those have that are
+  /// new or have grown since they were asked for last: these are to be made again.
+  std::size_t regroup() {
+    std::vector<std::uint32_t> all = select_where(bad_.size(), [&](std::size_t i) { return bad_[i] != 0; });
     std::vector<std::uint32_t> more;
     std::set_difference(all.begin(), all.end(), all_bad_.begin(), all_bad_.end(), std::back_inserter(more));
-    mark_near(world_.points, more, world_.size, around, near_);
-    all_bad_ = all;
-    return select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
+    all_bad_ = std::move(all);
+    more.insert(more.end(), widened_.begin(), widened_.end());
+    widened_.clear();
+    mark_near(world_.points, more, extent_, around, near_);
+    const std::vector<std::uint32_t> members = select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
+    join_around(more, members);
+    std::vector<std::uint32_t> roots;
+    for (const std::uint32_t i : members) roots.push_back(sets_.find(i));
+    std::vector<Group> groups;
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      if (roots[k] == members[k]) group_of_[members[k]] = std::uint32_t(groups.size()), groups.emplace_back();
+      Group& group = groups[group_of_[roots[k]]];
+      group_of_[members[k]] = group_of_[roots[k]];
+      number_[members[k]] = std::uint32_t(group.members.size());
+      group.members.push_back(members[k]);
+      group.bad += bad_[members[k]];
+    }
+    std::size_t changed = 0;
+    std::map<std::uint32_t, std::size_t> known;  // by the first member
+    for (std::size_t k = 0; k < groups_.size(); ++k) known[groups_[k].members[0]] = k;
+    for (Group& group : groups) {
+      const auto at = known.find(group.members[0]);
+      // Groups only grow: as many are the same.
+      if (at != known.end() && groups_[at->second].bad == group.bad &&
+          groups_[at->second].members.size() == group.members.size())
+        group = std::move(groups_[at->second]);
+      else
+        changed += group.members.size();
+    }
+    groups_ = std::move(groups);
+    return changed;
   }
 
-  /// Triangles of stars between members none of which is bad, corners as numbers of members.
-  StarMesh kept(std::span<const std::uint32_t> members) const {
-    std::vector<std::uint32_t> number(bad_.size(), none);
-    for (std::uint32_t k = 0; k < members.size(); ++k)
-      if (!bad_[members[k]]) number[members[k]] = k;
-    StarMesh kept;
-    for (const std::uint32_t i : select_where(stars_.triangles.size(), [&](std::size_t i) {
-           const Triangle& t = stars_.triangles[i];
-           return number[t.a] != none && number[t.b] != none && number[t.c] != none;
-         })) {
-      const Triangle& t = stars_.triangles[i];
-      kept.triangles.push_back({number[t.a], number[t.b], number[t.c]});
-      kept.materials.push_back(stars_.materials[i]);
+  /// Makes the cells of groups that have none.
+  void make(PatchCells& cells, const std::atomic<bool>* stop, bool repairs) {
+    std::vector<StarMesh> kept(groups_.size());
+    list_kept(kept);
+    for (std::size_t k = 0; k < groups_.size(); ++k) {
+      Group& group = groups_[k];
+      if (group.patch) continue;
+      group.patch.emplace(guards_, world_, stop);
+      group.patch->make(group.members, kept[k], cells);
+      if (repairs) group.patch->repair(marks(group.members));
+      list_at_bad(group);
     }
-    return kept;
+  }
+
+  void repair() {
+    for (Group& group : groups_) {
+      group.patch->repair(marks(group.members));
+      list_at_bad(group);
+    }
+  }
+
+  /// Edges and vertices at bad particles where the surface still touches itself.
+  std::vector<std::array<std::uint32_t, 2>> touching() const {
+    std::vector<std::array<std::uint32_t, 2>> touching;
+    for (const Group& group : groups_)
+      for (const auto& defect : group.patch->defects()) {
+        if (std::max(defect[0], defect[1]) >= group.members.size()) continue;
+        const std::array<std::uint32_t, 2> particles = {group.members[defect[0]], group.members[defect[1]]};
+        if (bad_[particles[0]] || bad_[particles[1]]) touching.push_back(particles);
+      }
+    std::sort(touching.begin(), touching.end());
+    return touching;
   }
 
   /// Facets at bad particles, and the triangles of stars beside them.
-  StarMesh join(std::span<const std::uint32_t> members, const InterfaceFacets& facets) {
+  StarMesh join() {
     StarMesh at_bad;
-    for (std::size_t i = 0; i < facets.triangles.size(); ++i) {
-      const Triangle& f = facets.triangles[i];
-      if (std::max({f.a, f.b, f.c}) >= members.size()) continue;  // a guard
-      const Triangle t{members[f.a], members[f.b], members[f.c]};
-      if (at_bad_one(t)) at_bad.triangles.push_back(t), at_bad.materials.push_back(facets.materials[i]);
+    for (const Group& group : groups_) {
+      at_bad.triangles.insert(at_bad.triangles.end(), group.at_bad.triangles.begin(), group.at_bad.triangles.end());
+      at_bad.materials.insert(at_bad.materials.end(), group.at_bad.materials.begin(), group.at_bad.materials.end());
     }
     while (!mark_corners(at_bad)) look_around();
     StarMesh joined;
@@ -243,14 +218,15 @@ class Settling {
     return joined;
   }
 
-  /// Adds what lies at edges of the mesh joined last that do not match; false where all do.
-  bool grow(const StarMesh& joined) {
+  /// Adds what lies at edges of the mesh joined last that do not match; false where all do. Where all is of cells
+  /// there, whose labels were repaired already, what is around them is added, too.
+  bool grow(const StarMesh& joined, bool repaired) {
     const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
-    if (++grown_ > slow_rounds) add_around(joined, open);
     stuck_ = !open.empty() && !any;
-    if (!open.empty()) return any;
+    if (++grown_ > slow_rounds || (stuck_ && repaired)) any = add_around(joined, open) || any;
+    if (!open.empty()) return any || (repaired && widen(open));
     pinched_ = false;
     for (const std::uint32_t i : at_pinched_vertices(joined, marked_)) {
       pinched_ = pinched_ || bad_[i];
@@ -259,12 +235,23 @@ class Settling {
     return any;
   }
 
-  /// The neighbours of `some`, too.
-  void add_around(const StarMesh& joined, std::span<const std::uint32_t> some) {
+  /// The neighbours of `some`, too; whether that are any.
+  bool add_around(const StarMesh& joined, std::span<const std::uint32_t> some) {
     std::vector<std::uint8_t> there(bad_.size(), 0);
     for (const std::uint32_t i : some) there[i] = 1;
-    for (const Triangle& t : joined.triangles)
-      if (there[t.a] || there[t.b] || there[t.c]) bad_[t.a] = bad_[t.b] = bad_[t.c] = 1;
+    bool any = false;
+    for (const Triangle& t : joined.triangles) {
+      if (!there[t.a] && !there[t.b] && !there[t.c]) continue;
+      for (int k = 0; k < 3; ++k) any = any || !bad_[t[k]], bad_[t[k]] = 1;
+    }
+    return any;
+  }
+
+  /// Particles farther around these, too, are to be in the patch; false where it reaches far already.
+  bool widen(std::span<const std::uint32_t> some) {
+    for (const std::uint32_t i : some)
+      if (extent_[i] < most_wider * world_.size[i] && bad_[i]) extent_[i] *= wider, widened_.push_back(i);
+    return !widened_.empty();
   }
 
   /// In `stars`, facets of the mesh joined last in place of the triangles at bad particles.
@@ -283,15 +270,65 @@ class Settling {
 
   bool stuck() const { return stuck_; }  ///< edges do not match where all is of cells
   bool touches() const { return stuck_ || pinched_; }
+  bool is_bad(std::uint32_t i) const { return bad_[i]; }
+  std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
+
+ private:
+  /// Bad particles whose reaches overlap, with all that is within these.
+  struct Group {
+    std::vector<std::uint32_t> members;  // ascending
+    std::int64_t bad = 0;                // of these
+    std::optional<Patch> patch;
+    StarMesh at_bad;  // facets at bad ones; corners are particles
+  };
+
+  /// Joins what is within reach of each of `more`; all of that is among `members`.
+  void join_around(std::span<const std::uint32_t> more, std::span<const std::uint32_t> members) {
+    if (more.empty()) return;
+    std::vector<Vec3d> places;
+    for (const std::uint32_t i : members) places.push_back(world_.points[i]);
+    const std::uint32_t first[2] = {0, std::uint32_t(places.size())};
+    const PointTree tree(places, first);
+    std::vector<PointTree::Found> found;
+    for (const std::uint32_t i : more) {
+      found.clear();
+      tree.within(0, world_.points[i], around * extent_[i], found);
+      for (const PointTree::Found& f : found) sets_.join(i, members[f.point]);
+    }
+  }
+
+  /// Triangles of stars within each group that has no cells yet, none of whose corners is bad.
+  void list_kept(std::vector<StarMesh>& kept) const {
+    const auto is_kept = [&](std::uint32_t i) { return near_[i] && !bad_[i] && !groups_[group_of_[i]].patch; };
+    for (const std::uint32_t i : select_where(stars_.triangles.size(), [&](std::size_t i) {
+           const Triangle& t = stars_.triangles[i];
+           return is_kept(t.a) && is_kept(t.b) && is_kept(t.c) && group_of_[t.a] == group_of_[t.b] &&
+                  group_of_[t.a] == group_of_[t.c];
+         })) {
+      const Triangle& t = stars_.triangles[i];
+      StarMesh& of_group = kept[group_of_[t.a]];
+      of_group.triangles.push_back({number_[t.a], number_[t.b], number_[t.c]});
+      of_group.materials.push_back(stars_.materials[i]);
+    }
+  }
+
+  void list_at_bad(Group& group) const {
+    group.at_bad = {};
+    const InterfaceFacets& facets = group.patch->facets();
+    for (std::size_t i = 0; i < facets.triangles.size(); ++i) {
+      const Triangle& f = facets.triangles[i];
+      if (std::max({f.a, f.b, f.c}) >= group.members.size()) continue;  // a guard
+      const Triangle t{group.members[f.a], group.members[f.b], group.members[f.c]};
+      if (at_bad_one(t)) group.at_bad.triangles.push_back(t), group.at_bad.materials.push_back(facets.materials[i]);
+    }
+  }
+
   std::vector<std::uint8_t> marks(std::span<const std::uint32_t> members) const {
     std::vector<std::uint8_t> marks;
     for (const std::uint32_t i : members) marks.push_back(bad_[i]);
     return marks;
   }
-  bool is_bad(std::uint32_t i) const { return bad_[i]; }
-  std::int64_t count() const { return std::count(bad_.begin(), bad_.end(), 1); }
 
- private:
   /// Marks what the triangles at bad particles have for corners; false where `around_` lacks triangles at one of them.
   bool mark_corners(const StarMesh& at_bad) {
     marked_ = bad_;
@@ -321,36 +358,25 @@ class Settling {
 
   const StarMesh& stars_;
   const PatchWorld& world_;
+  Guards guards_;
   std::vector<std::uint8_t> bad_;
   std::vector<std::uint32_t> all_bad_;  // when members were asked for last
+  std::vector<double> extent_;          // sizes that tell how far is within reach
+  std::vector<std::uint32_t> widened_;  // particles whose extents have changed since
   std::vector<std::uint8_t> near_;      // within reach of these
-  std::vector<std::uint8_t> marked_;    // corners of triangles at bad ones, of stars or facets
-  std::vector<std::uint8_t> wide_;      // particles whose triangles are listed:
-  std::vector<std::uint32_t> around_;   // triangles of stars
-  double wide_reach_ = 0;               // sizes; 0: none are listed yet
-  std::size_t beside_ = 0;              // triangles of stars in the mesh joined last
+  DisjointSets sets_;                   // particles within reach of the same ones
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> group_of_, number_;  // per particle near: its group, and its place in the list of this
+  std::vector<std::uint8_t> marked_;              // corners of triangles at bad ones, of stars or facets
+  std::vector<std::uint8_t> wide_;                // particles whose triangles are listed:
+  std::vector<std::uint32_t> around_;             // triangles of stars
+  double wide_reach_ = 0;                         // sizes; 0: none are listed yet
+  std::size_t beside_ = 0;                        // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
   int grown_ = 0;
 };
 
 }  // namespace
-
-std::shared_ptr<const PatchCells::Made> PatchCells::make(std::vector<Vec3d> places, std::vector<double> size,
-                                                         const PatchWorld& world, const std::atomic<bool>* stop) {
-  const auto same = std::find_if(made_.begin(), made_.end(),
-                                 [&](const auto& made) { return made->places == places && made->size == size; });
-  if (same != made_.end()) {
-    std::rotate(made_.begin(), same, same + 1);
-    return made_.front();
-  }
-  const auto made = std::make_shared<Made>();
-  made->places = std::move(places), made->size = std::move(size);
-  made->cells = delaunay_.cells(made->places, stop);
-  made->label = world.material_at(label_points(*made));
-  made_.insert(made_.begin(), made);
-  if (made_.size() > most_made) made_.pop_back();
-  return made;
-}
 
 bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
@@ -360,29 +386,24 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
   add_pinched(mesh, world.points.size());
   if (mesh.unsettled.empty()) return !mesh.triangles.empty();
   Settling settling(mesh, world);
-  Patch patch(world, stop);
+  cells.begin();
   bool repairs = false;
-  double work = 0;  // particles of all rounds
+  double work = 0;  // particles triangulated
   for (int round = 0; round < patch_rounds; ++round) {
-    const std::vector<std::uint32_t> members = settling.members();
-    work += double(members.size());
-    if (work > most_work * double(world.points.size()) && world.points.size() > 1000) return false;
-    patch.make(members, settling.kept(members), cells);
-    if (repairs) patch.repair(settling.marks(members));
-    StarMesh joined = settling.join(members, patch.facets());
-    if (settling.grow(joined)) continue;
+    const std::size_t changed = settling.regroup();
+    work += double(changed);
+    if (work >= most_work * double(world.points.size()) && world.points.size() > 1000) return false;
+    settling.make(cells, stop, repairs);
+    StarMesh joined = settling.join();
+    if (settling.grow(joined, repairs)) continue;
     if (settling.touches() && !repairs) {
       repairs = true;
-      patch.repair(settling.marks(members));
-      joined = settling.join(members, patch.facets());
-      if (settling.grow(joined)) continue;
+      settling.repair();
+      joined = settling.join();
+      if (settling.grow(joined, repairs)) continue;
     }
     if (settling.stuck()) return false;
-    for (const auto& defect : patch.defects()) {
-      if (std::max(defect[0], defect[1]) >= members.size()) continue;
-      const std::array<std::uint32_t, 2> particles = {members[defect[0]], members[defect[1]]};
-      if (settling.is_bad(particles[0]) || settling.is_bad(particles[1])) touching.push_back(particles);
-    }
+    touching = settling.touching();
     settling.replace(mesh, joined);
     if (mesh.triangles.empty()) return false;
     mesh.counts.in_patches = settling.count();

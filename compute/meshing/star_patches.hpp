@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "compute/meshing/delaunay.hpp"
@@ -23,7 +24,7 @@ struct PatchWorld {
   std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)> material_at;
 };
 
-/// Cells of patches, from one mesh to the next: those of the latest ones are used again where they have the same
+/// Cells of patches, from one mesh to the next: those of the mesh before are used again where they have the same
 /// particles and, as is asked, the same materials around them.
 class PatchCells {
  public:
@@ -35,12 +36,15 @@ class PatchCells {
     DelaunayCells cells;
     std::vector<std::uint16_t> label;  ///< per cell, where it is looked up
   };
+  void begin();  ///< a new mesh
   std::shared_ptr<const Made> make(std::vector<Vec3d> places, std::vector<double> size, const PatchWorld& world,
                                    const std::atomic<bool>* stop);
 
  private:
+  using Kept = std::unordered_multimap<std::uint64_t, std::shared_ptr<const Made>>;
+
   Delaunay delaunay_;
-  std::vector<std::shared_ptr<const Made>> made_;  // the latest first
+  Kept now_, before_;  // of this mesh, and of the one before what this has not asked for, by their places
 };
 
 /// Replaces the triangles at the mesh's unsettled particles by the facets that the Delaunay triangulation of the

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "compute/meshing/quality.hpp"
 #include "compute/meshing/star_chords.hpp"
+#include "compute/meshing/star_holes.hpp"
 #include "tests/compute/meshing/star_clouds.hpp"
 
 namespace nacre::test {
@@ -31,6 +33,45 @@ TEST(StarFilling, WideHolesAreFilledWhereTheyAreFlat) {
     if (gap > 2.5) {
       EXPECT_GT(made.counts.filled, 0) << gap;
     }
+  }
+}
+
+std::vector<std::uint32_t> incomplete_of(const StarFinder& finder) {
+  std::vector<std::uint32_t> incomplete;
+  for (std::uint32_t i = 0; i < finder.stars().size(); ++i)
+    if (is_incomplete(finder.items(), finder.stars()[i], i)) incomplete.push_back(i);
+  return incomplete;
+}
+
+TEST(StarFilling, AHoleHasAllParticlesInItsMiddle) {
+  const Cloud cloud = sphere(spiral(2000), 10);
+  StarFinder finder;
+  finder.find(star_items(cloud.view()));
+  std::vector<std::uint32_t> near_top;
+  for (std::uint32_t i = 0; i < finder.items().count(); ++i)
+    if (length(finder.items().position[i] - Vec3d(0, 0, 10)) < 5 * finder.items().size[i]) near_top.push_back(i);
+  finder.open(near_top);
+  const StarHoles holes = find_holes(finder.items(), finder.stars(), incomplete_of(finder));
+  ASSERT_EQ(holes.holes.size(), 1U);
+  EXPECT_TRUE(holes.alone.empty());
+  std::vector<std::uint32_t> within = holes.holes[0].within;
+  std::sort(within.begin(), within.end());
+  EXPECT_EQ(within, near_top);
+  EXPECT_EQ(fill_hole(finder.items(), finder.stars(), holes.holes[0]).size(),
+            holes.holes[0].loop.size() + 2 * within.size() - 2);
+}
+
+/// A square hole, and a particle beside it, which no triangle of the filling can have.
+TEST(StarFilling, AHoleIsNotFilledWhereThatWouldCutOffWhatGoesOn) {
+  for (const double aside : {0.5, 4.0}) {
+    StarItems items;
+    items.materials = {{0, 1}};
+    for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0), Vec3d(1 + aside, 0.5, 0)}) {
+      items.position.push_back(p), items.normal.push_back({0, 0, 1}), items.size.push_back(1);
+      items.next.push_back(none), items.previous.push_back(none);
+    }
+    const std::vector<Triangle> filling = fill_hole(items, std::vector<Star>(5), {{0, 1, 2, 3}, {4}});
+    EXPECT_EQ(filling.size(), aside > 1 ? 0U : 2U) << aside;
   }
 }
 
@@ -65,6 +106,38 @@ TEST(StarFilling, BodiesOfAFewParticlesAreClosedOrLeftOut) {
   }
   EXPECT_GT(closed, 150);
   EXPECT_GT(closed + left_out, 190);
+}
+
+/// The neighbours of a particle need not have it for one of theirs: each particle is in one body all the same.
+TEST(StarFilling, NoParticleIsInTwoBodies) {
+  std::mt19937 generator(9);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 100; ++round) {
+    Cloud cloud = sphere(spiral(300), 4);
+    for (int k = 0; k < 10 + round % 30; ++k) {
+      const Vec3d p(normal(generator), normal(generator), 0.2 * normal(generator));
+      const Vec3d n(normal(generator), normal(generator), normal(generator));
+      cloud.add(Vec3d(20, 0, 0) + p, 0.7, normalized(n));
+    }
+    const StarMesh made = mesh_from_stars(cloud.view());
+    if (!made.sound()) continue;
+    ASSERT_TRUE(cloud.topology(made).sound()) << round;
+    const SurfaceMesh mesh = cloud.mesh(made);
+    for (const Triangle& t : made.triangles) {
+      const double ratio = radius_ratio(mesh.points[t.a], mesh.points[t.b], mesh.points[t.c]);
+      EXPECT_TRUE(mesh.points[t.a].x < 10 || ratio >= 0.2) << round;
+    }
+  }
+}
+
+TEST(StarFilling, ClosingUndoesAllThatWasOpened) {
+  const Cloud cloud = sphere(random_directions(800, 3), 6);
+  StarFinder finder;
+  finder.find(star_items(cloud.view()));
+  const std::vector<Star> before = finder.stars();
+  for (const std::uint32_t i : {5U, 6U, 5U, 90U}) finder.open(std::vector<std::uint32_t>{i});
+  finder.close();
+  for (std::size_t i = 0; i < before.size(); ++i) ASSERT_EQ(finder.stars()[i].agreed, before[i].agreed) << i;
 }
 
 TEST(StarFilling, WhatWasOpenedIsThereAgainTheNextTime) {

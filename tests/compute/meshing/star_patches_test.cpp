@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "tests/compute/meshing/star_clouds.hpp"
 
 namespace nacre::test {
@@ -65,6 +68,59 @@ TEST(StarPatches, CellsAndStarsMeetEdgeToEdge) {
     EXPECT_GT(settled.mesh.counts.in_patches, 0);
     EXPECT_LT(settled.mesh.counts.in_patches, 20);
   }
+}
+
+/// What is far apart is settled as if each were alone.
+TEST(StarPatches, GroupsDoNotDependOnEachOther) {
+  const Cloud cloud = halves(9, 0.8);
+  const auto triangles = [&](const std::vector<std::uint32_t>& at) {
+    const Settled settled = settle(cloud, 9, at);
+    expect_halves(cloud, settled, 9);
+    std::vector<std::array<std::uint32_t, 3>> sorted;
+    for (Triangle t : settled.mesh.triangles) {
+      while (t.a > t.b || t.a > t.c) t = {t.b, t.c, t.a};
+      sorted.push_back({t.a, t.b, t.c});
+    }
+    std::sort(sorted.begin(), sorted.end());
+    return std::pair(sorted, settled.mesh.counts.in_patches);
+  };
+  const auto none_at = triangles({}).first;
+  const auto first = triangles({0}), second = triangles({900}), both = triangles({0, 900});
+  EXPECT_EQ(both.second, first.second + second.second);
+  std::vector<std::array<std::uint32_t, 3>> made_first, made_second, made_both, made;
+  const auto new_ones = [&](const auto& some, auto& list) {
+    std::set_difference(some.begin(), some.end(), none_at.begin(), none_at.end(), std::back_inserter(list));
+  };
+  new_ones(first.first, made_first), new_ones(second.first, made_second), new_ones(both.first, made_both);
+  std::set_union(made_first.begin(), made_first.end(), made_second.begin(), made_second.end(),
+                 std::back_inserter(made));
+  EXPECT_EQ(made, made_both);
+}
+
+TEST(StarPatches, CellsThatAreKeptGiveTheSameMesh) {
+  const Cloud cloud = halves(6, 0.8);
+  std::vector<Vec3d> points;
+  std::vector<double> size;
+  for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
+  int looked_up = 0;
+  const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) {
+                           ++looked_up;
+                           return material_in_halves(6, at);
+                         }};
+  PatchCells cells;
+  std::vector<std::vector<Triangle>> made;
+  std::vector<int> asked;
+  for (int round = 0; round < 3; ++round) {
+    StarMesh mesh = mesh_from_stars(cloud.view());
+    mesh.unsettled = {0, 200, 500};
+    std::vector<std::array<std::uint32_t, 2>> touching;
+    ASSERT_TRUE(settle_by_cells(mesh, world, cells, touching));
+    made.push_back(mesh.triangles), asked.push_back(looked_up);
+  }
+  EXPECT_GT(asked[0], 0);
+  EXPECT_EQ(asked[2], asked[0]);
+  EXPECT_EQ(made[1], made[0]);
+  EXPECT_EQ(made[2], made[0]);
 }
 
 /// A rim that lacks particles has no chain around it; the cells close it.
