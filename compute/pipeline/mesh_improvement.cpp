@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "compute/meshing/edge_edits.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
@@ -98,6 +99,7 @@ ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
   settle(best);
   if (rule_.deviation > 0) refine(*best);
+  if (rule_.stars) edit(best->made);
   particles_.upload(best->particles);
   return {std::move(best->made.mesh), count_by_order(best->particles.interface, table_), star_use_, deviation_};
 }
@@ -116,6 +118,19 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
       best = Kept{made, particles_.download(), {}, {}};
     again = improve(made);
   }
+}
+
+/// What particles could not be brought to: the last bad triangles of stars are changed by their edges.
+void MeshImprovement::edit(Triangulated& made) {
+  particles_.in_stage("remesh", [&] {
+    const EdgeEdits edits = edit_edges(made.mesh, made.order, worst_defects);
+    star_use_.flips += edits.flips, star_use_.contractions += edits.contractions;
+    const auto keep = [&](auto& of_points) {
+      for (std::size_t v = 0; v < edits.kept.size(); ++v) of_points[v] = of_points[edits.kept[v]];
+      of_points.resize(edits.kept.size());
+    };
+    keep(made.point_of), keep(made.order), keep(made.size);
+  });
 }
 
 double MeshImprovement::fraction() const {

@@ -85,6 +85,7 @@ class MeshImprovement {
 
   void settle(std::optional<Kept>& best);
   void refine(Kept& best);
+  void edit(Triangulated& made);
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
   static bool better(const Kept& a, const Kept& b);
   void measure(Kept& kept);

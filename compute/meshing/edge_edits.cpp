@@ -1,0 +1,284 @@
+// Nacre: bad triangles removed by changing edges, where the particles stay as they are.
+#include "compute/meshing/edge_edits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <set>
+#include <unordered_map>
+#include <utility>
+
+#include "compute/meshing/incidence.hpp"
+#include "compute/meshing/quality.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr double least_turn = 0.35;    // cosine between a triangle's normals before and after
+constexpr double most_bend = 0.25;     // of a curve where a point is contracted, in lengths of the side that is left
+constexpr double least_gain = 1e-6;    // of fitness
+constexpr std::size_t most_edits = 8;  // for each bad triangle, in the mean
+
+using Triangles = std::vector<std::uint32_t>;
+
+bool has(const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; }
+
+/// The corner of `t` that is neither `u` nor `v`.
+std::uint32_t opposite(const Triangle& t, std::uint32_t u, std::uint32_t v) {
+  for (int k = 0; k < 3; ++k)
+    if (t[k] != u && t[k] != v) return t[k];
+  return u;
+}
+
+class Editor {
+ public:
+  Editor(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule)
+      : mesh_(mesh), order_(order), rule_(rule), table_(mesh.triangles, mesh.points.size()) {}
+
+  EdgeEdits run() {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) note(t);
+    for (std::size_t left = most_edits * bad_.size(); !bad_.empty() && left > 0; --left) {
+      const std::uint32_t t = bad_.begin()->second;
+      bad_.erase(bad_.begin());
+      if (!gone(t)) edit(t);
+    }
+    compact();
+    return std::move(edits_);
+  }
+
+ private:
+  /// A change: triangles that go, and what stands in their place. `from` is the point that leaves, if one does.
+  struct Change {
+    Triangles old;
+    std::vector<std::pair<Triangle, std::uint32_t>> made;  ///< and the old one whose materials each has
+    std::uint32_t from = none;
+    double fitness = 0;  ///< the least of those made
+  };
+
+  bool gone(std::uint32_t t) const { return mesh_.triangles[t].a == mesh_.triangles[t].b; }
+  const Vec3d& point(std::uint32_t v) const { return mesh_.points[v]; }
+  Vec3d normal(const Triangle& t) const { return cross(point(t.b) - point(t.a), point(t.c) - point(t.a)); }
+
+  double fitness(const Triangle& t) const {
+    const bool near = order_[t.a] < 2 || order_[t.b] < 2 || order_[t.c] < 2;
+    const double ratio = radius_ratio(point(t.a), point(t.b), point(t.c));
+    return std::min(ratio / (near ? rule_.near : rule_.ratio), best_fitness(rule_));
+  }
+
+  /// Puts a bad triangle on the list.
+  void note(std::uint32_t t) {
+    const Triangle& corner = mesh_.triangles[t];
+    const double bound = std::max(rule_.ratio, rule_.near);
+    if (ratio_is_above(bound, point(corner.a), point(corner.b), point(corner.c))) return;
+    if (const double f = fitness(corner); f < 1) bad_.insert({f, t});
+  }
+
+  Triangles at(std::uint32_t v) const {
+    if (const auto changed = changed_.find(v); changed != changed_.end()) return changed->second;
+    Triangles result;
+    for (const std::uint32_t corner : table_.corners(v)) result.push_back(corner / 3);
+    return result;
+  }
+
+  Triangles at_edge(std::uint32_t u, std::uint32_t v) const {
+    Triangles all = at(u);
+    std::erase_if(all, [&](std::uint32_t t) { return !has(mesh_.triangles[t], v); });
+    return all;
+  }
+
+  std::vector<std::uint32_t> neighbours(std::uint32_t v) const {
+    std::vector<std::uint32_t> result;
+    for (const std::uint32_t t : at(v))
+      for (int k = 0; k < 3; ++k)
+        if (mesh_.triangles[t][k] != v) result.push_back(mesh_.triangles[t][k]);
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
+
+  /// Whether an edge is within one interface.
+  bool is_within(const Triangles& edge) const {
+    return edge.size() == 2 && mesh_.materials[edge[0]] == mesh_.materials[edge[1]];
+  }
+
+  /// Does the best that can be done about a bad triangle.
+  void edit(std::uint32_t t) {
+    std::optional<Change> best;
+    const auto consider = [&](std::optional<Change> change) {
+      if (change && (!best || change->fitness > best->fitness)) best = std::move(change);
+    };
+    const Triangle corner = mesh_.triangles[t];
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t u = corner[k], v = corner[(k + 1) % 3];
+      consider(flip(u, v));
+      consider(contraction(u, v));
+      consider(contraction(v, u));
+    }
+    if (best) make(*best);
+  }
+
+  /// The change, if the worst triangle becomes better and none turns.
+  std::optional<Change> judged(Change change) const {
+    double before = best_fitness(rule_);
+    for (const std::uint32_t t : change.old) before = std::min(before, fitness(mesh_.triangles[t]));
+    change.fitness = best_fitness(rule_);
+    for (const auto& [made, old] : change.made) change.fitness = std::min(change.fitness, fitness(made));
+    if (!(change.fitness > before + least_gain)) return {};
+    for (const auto& [made, old] : change.made) {
+      Vec3d around{};  // a bad triangle's own normal says little
+      for (const std::uint32_t t : change.old)
+        if (mesh_.materials[t] == mesh_.materials[old]) around += normal(mesh_.triangles[t]);
+      const Triangle& was = mesh_.triangles[old];
+      const Vec3d before_turn = change.from == none || fitness(was) < 1 ? around : normal(was), after = normal(made);
+      if (!(dot(before_turn, after) > least_turn * length(before_turn) * length(after))) return {};
+    }
+    return change;
+  }
+
+  std::optional<Change> flip(std::uint32_t u, std::uint32_t v) const {
+    const Triangles edge = at_edge(u, v);
+    if (!is_within(edge)) return {};
+    Triangle first = mesh_.triangles[edge[0]];
+    while (first.c == u || first.c == v) first = {first.b, first.c, first.a};
+    const std::uint32_t c = first.c, d = opposite(mesh_.triangles[edge[1]], u, v);
+    if (c == d || !at_edge(c, d).empty()) return {};
+    return judged({edge, {{{first.a, d, c}, edge[0]}, {{d, first.b, c}, edge[1]}}});
+  }
+
+  /// Moves point `u` onto its neighbour `v`.
+  std::optional<Change> contraction(std::uint32_t u, std::uint32_t v) const {
+    if (order_[u] == 0) return {};
+    const Triangles edge = at_edge(u, v);
+    if (!may_leave(u, v, edge)) return {};
+    const std::vector<std::uint32_t> of_u = neighbours(u), of_v = neighbours(v);
+    std::vector<std::uint32_t> common;
+    std::set_intersection(of_u.begin(), of_u.end(), of_v.begin(), of_v.end(), std::back_inserter(common));
+    if (common.size() != edge.size()) return {};
+    Change change{at(u), {}, u};
+    for (const std::uint32_t t : change.old) {
+      Triangle made = mesh_.triangles[t];
+      if (has(made, v)) continue;
+      (made.a == u ? made.a : made.b == u ? made.b : made.c) = v;
+      for (int k = 0; k < 3; ++k)  // the edge beyond u must not be beyond v, too
+        if (made[k] != v && made[(k + 1) % 3] != v)
+          for (const std::uint32_t other : at_edge(made[k], made[(k + 1) % 3]))
+            if (has(mesh_.triangles[other], v)) return {};
+      change.made.push_back({made, t});
+    }
+    if (change.made.empty()) return {};
+    return judged(std::move(change));
+  }
+
+  /// Whether `u` lies within a surface, whose triangles there are one fan, or between two points on a curve, of which
+  /// `v` is one.
+  bool may_leave(std::uint32_t u, std::uint32_t v, const Triangles& edge) const {
+    std::vector<std::uint32_t> along;  // its curve
+    for (const std::uint32_t w : neighbours(u)) {
+      const Triangles shared = at_edge(u, w);
+      if (!is_within(shared)) {
+        if (shared.size() < 3) return false;
+        along.push_back(w);
+      }
+    }
+    if (along.empty()) return is_one_fan(u);
+    if (along.size() != 2 || is_within(edge)) return false;
+    const std::uint32_t w = along[0] == v ? along[1] : along[0];
+    if (along[0] != v && along[1] != v) return false;
+    const Vec3d side = point(w) - point(v), away = point(u) - point(v);
+    const double along_side = dot(away, side) / dot(side, side);
+    if (!(along_side > 0 && along_side < 1)) return false;
+    return length(away - side * along_side) < most_bend * length(side) && sheets_are_fans(u, w, v);
+  }
+
+  bool is_one_fan(std::uint32_t u) const {
+    const Triangles all = at(u);
+    std::uint32_t from = opposite(mesh_.triangles[all[0]], u, u), before = none;
+    const std::uint32_t first = from;
+    for (std::size_t steps = 0; steps < all.size(); ++steps) {
+      const Triangles shared = at_edge(u, from);
+      if (shared.size() != 2) return false;
+      const std::uint32_t next = shared[0] == before ? shared[1] : shared[0];
+      before = next;
+      from = opposite(mesh_.triangles[next], u, from);
+      if (from == first) return steps + 1 == all.size();
+    }
+    return false;
+  }
+
+  /// Each sheet at the curve point `u` goes in one fan from one of its neighbours on the curve to the other.
+  bool sheets_are_fans(std::uint32_t u, std::uint32_t w, std::uint32_t v) const {
+    std::size_t seen = 0;
+    for (const std::uint32_t begin : at_edge(u, w)) {
+      std::uint32_t t = begin, from = w;
+      for (;;) {
+        ++seen;
+        from = opposite(mesh_.triangles[t], u, from);
+        if (from == v) break;
+        const Triangles shared = at_edge(u, from);
+        if (!is_within(shared) || seen > at(u).size()) return false;
+        t = shared[0] == t ? shared[1] : shared[0];
+      }
+    }
+    return seen == at(u).size();
+  }
+
+  void make(const Change& change) {
+    ++(change.from == none ? edits_.flips : edits_.contractions);
+    std::vector<std::uint32_t> touched;
+    for (const std::uint32_t t : change.old)
+      for (int k = 0; k < 3; ++k) touched.push_back(mesh_.triangles[t][k]);
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const std::uint32_t v : touched) {
+      Triangles& list = changed_.try_emplace(v, at(v)).first->second;
+      std::erase_if(list, [&](std::uint32_t t) {
+        return std::find(change.old.begin(), change.old.end(), t) != change.old.end();
+      });
+    }
+    for (const std::uint32_t t : change.old) mesh_.triangles[t] = {0, 0, 0};
+    for (const auto& [made, t] : change.made) {
+      mesh_.triangles[t] = made;
+      for (int k = 0; k < 3; ++k) changed_[made[k]].push_back(t);
+    }
+    for (const auto& [made, t] : change.made) note(t);
+  }
+
+  /// Leaves out triangles that are gone, and points that no triangle has any more.
+  void compact() {
+    const std::size_t points = mesh_.points.size();
+    std::vector<std::uint8_t> left(points, 1);
+    for (const auto& [v, list] : changed_) left[v] = !list.empty();
+    std::vector<std::uint32_t> number(points);
+    for (std::uint32_t v = 0; v < points; ++v) {
+      number[v] = std::uint32_t(edits_.kept.size());
+      if (!left[v]) continue;
+      mesh_.points[edits_.kept.size()] = mesh_.points[v];
+      edits_.kept.push_back(v);
+    }
+    mesh_.points.resize(edits_.kept.size());
+    std::size_t to = 0;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+      if (gone(t)) continue;
+      const Triangle& corner = mesh_.triangles[t];
+      mesh_.materials[to] = mesh_.materials[t];
+      mesh_.triangles[to++] = {number[corner.a], number[corner.b], number[corner.c]};
+    }
+    mesh_.triangles.resize(to), mesh_.materials.resize(to);
+  }
+
+  SurfaceMesh& mesh_;
+  std::span<const std::uint8_t> order_;
+  const DefectRule rule_;
+  const VertexTable table_;                               ///< of the triangles as they were
+  std::unordered_map<std::uint32_t, Triangles> changed_;  ///< those at the points that have others now
+  std::set<std::pair<double, std::uint32_t>> bad_;        ///< by fitness
+  EdgeEdits edits_;
+};
+
+}  // namespace
+
+EdgeEdits edit_edges(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule) {
+  return Editor(mesh, order, rule).run();
+}
+
+}  // namespace nacre

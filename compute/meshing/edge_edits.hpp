@@ -1,0 +1,27 @@
+// Nacre: bad triangles removed by changing edges, where the particles stay as they are.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compute/meshing/defects.hpp"
+#include "compute/meshing/surface_mesh.hpp"
+
+namespace nacre {
+
+/// What `edit_edges` did.
+struct EdgeEdits {
+  std::int64_t flips = 0, contractions = 0;
+  std::vector<std::uint32_t> kept;  ///< which of the points are left, ascending
+};
+
+/// Flips edges and contracts them at triangles that are bad by `rule`, the worst first, each time what leaves the best
+/// triangles, as long as the worst of those that change becomes better. Topology stays as it is: an edge is flipped
+/// between two triangles of one interface, if the mesh does not have the new one; it is contracted if the ends have no
+/// neighbours in common but those opposite it (the link condition), onto any neighbour from a point within a surface,
+/// along its curve from one on a curve that is nearly straight there. No triangle turns by more than about 70 degrees.
+/// `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are contracted leave the mesh.
+EdgeEdits edit_edges(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
+
+}  // namespace nacre
