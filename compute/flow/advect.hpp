@@ -134,8 +134,8 @@ struct MoveParticles {
   }
 
 #if defined(NACRE_PACKETS)
-  /// Moves the particles of a packet whose paths are one piece, most of them, as `walk` does: which ones, and where they
-  /// end.
+  /// Moves the particles of a packet whose paths are one piece, most of them, as `walk` does: which ones, and where
+  /// they end.
   Mask go_in_one_piece(const Vec3<Float>& start, const std::uint64_t* word, Mask own, Vec3<Float>& end) const {
     const Vec3<Float> p = start * Wide::all(texture.inverse_refine);
     Vec3<Float> there;
