@@ -15,6 +15,7 @@ namespace nacre {
 namespace {
 
 constexpr double least_turn = 0.35;    // cosine between a triangle's normals before and after
+constexpr double most_crossed = 0.5;   // of the mean edge at a point of a curve that crosses a surface
 constexpr double most_bend = 0.25;     // of a curve where a point is contracted, in lengths of the side that is left
 constexpr double least_gain = 1e-6;    // of fitness
 constexpr std::size_t most_edits = 8;  // for each bad triangle, in the mean
@@ -37,11 +38,23 @@ class Editor {
 
   EdgeEdits run() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) note(t);
-    for (std::size_t left = most_edits * bad_.size(); !bad_.empty() && left > 0; --left) {
-      const std::uint32_t t = bad_.begin()->second;
-      bad_.erase(bad_.begin());
-      if (!gone(t)) edit(t);
+    std::size_t left = most_edits * bad_.size();
+    for (bool again = true; again;) {  // what failed may succeed once something beside it has changed
+      again = false;
+      Triangles failed;
+      for (; !bad_.empty() && left > 0; --left) {
+        const std::uint32_t t = bad_.begin()->second;
+        bad_.erase(bad_.begin());
+        if (gone(t)) continue;
+        const bool changed = edit(t);
+        again |= changed;
+        if (!changed) failed.push_back(t);
+      }
+      for (const std::uint32_t t : failed)
+        if (!gone(t)) note(t);
+      again &= left > 0;
     }
+    edits_.bad = std::int64_t(bad_.size());
     compact();
     return std::move(edits_);
   }
@@ -101,8 +114,8 @@ class Editor {
     return edge.size() == 2 && mesh_.materials[edge[0]] == mesh_.materials[edge[1]];
   }
 
-  /// Does the best that can be done about a bad triangle.
-  void edit(std::uint32_t t) {
+  /// Does the best that can be done about a bad triangle, if something can.
+  bool edit(std::uint32_t t) {
     std::optional<Change> best;
     const auto consider = [&](std::optional<Change> change) {
       if (change && (!best || change->fitness > best->fitness)) best = std::move(change);
@@ -115,6 +128,7 @@ class Editor {
       consider(contraction(v, u));
     }
     if (best) make(*best);
+    return best.has_value();
   }
 
   /// The change, if the worst triangle becomes better and none turns.
@@ -169,8 +183,8 @@ class Editor {
     return judged(std::move(change));
   }
 
-  /// Whether `u` lies within a surface, whose triangles there are one fan, or between two points on a curve, of which
-  /// `v` is one.
+  /// Whether `u` may become `v`: it lies within a surface, whose triangles there are one fan, or between two points on a
+  /// curve, of which `v` is one, or across a narrow strip of surface from `v`.
   bool may_leave(std::uint32_t u, std::uint32_t v, const Triangles& edge) const {
     std::vector<std::uint32_t> along;  // its curve
     for (const std::uint32_t w : neighbours(u)) {
@@ -181,13 +195,38 @@ class Editor {
       }
     }
     if (along.empty()) return is_one_fan(u);
-    if (along.size() != 2 || is_within(edge)) return false;
+    if (along.size() != 2 || !sheets_are_fans(u, along[0], along[1])) return false;
+    if (is_within(edge)) return may_cross(u, v, edge);
     const std::uint32_t w = along[0] == v ? along[1] : along[0];
     if (along[0] != v && along[1] != v) return false;
     const Vec3d side = point(w) - point(v), away = point(u) - point(v);
     const double along_side = dot(away, side) / dot(side, side);
     if (!(along_side > 0 && along_side < 1)) return false;
-    return length(away - side * along_side) < most_bend * length(side) && sheets_are_fans(u, w, v);
+    return length(away - side * along_side) < most_bend * length(side);
+  }
+
+  /// Whether `u`, on a curve, is so near to `v` across a surface that the curve may go through `v`: two curves that leave
+  /// less than a particle's room then meet there. No other material may have both points, or it would be pinched.
+  bool may_cross(std::uint32_t u, std::uint32_t v, const Triangles& edge) const {
+    const std::vector<std::uint16_t> of_u = materials_at(u), of_v = materials_at(v);
+    std::vector<std::uint16_t> common;
+    std::set_intersection(of_u.begin(), of_u.end(), of_v.begin(), of_v.end(), std::back_inserter(common));
+    const auto [low, high] = mesh_.materials[edge[0]];
+    if (of_u.size() != 3 || common != std::vector<std::uint16_t>{low, high}) return false;
+    const std::vector<std::uint32_t> around = neighbours(u);
+    double sum = 0;
+    for (const std::uint32_t w : around) sum += length(point(w) - point(u));
+    return length(point(u) - point(v)) < most_crossed * sum / double(around.size());
+  }
+
+  /// Ascending.
+  std::vector<std::uint16_t> materials_at(std::uint32_t v) const {
+    std::vector<std::uint16_t> result;
+    for (const std::uint32_t t : at(v))
+      for (const std::uint16_t m : mesh_.materials[t]) result.push_back(m);
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
   }
 
   bool is_one_fan(std::uint32_t u) const {

@@ -98,8 +98,13 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
   settle(best);
+  if (may_edit() && !edit(best->made)) {  // never less than what is asked: cells, once more
+    ++star_use_.fallbacks;
+    remeshed_ = 0, bad_ = most_bad;
+    best.reset();
+    settle(best);
+  }
   if (rule_.deviation > 0) refine(*best);
-  if (rule_.stars) edit(best->made);
   particles_.upload(best->particles);
   return {std::move(best->made.mesh), count_by_order(best->particles.interface, table_), star_use_, deviation_};
 }
@@ -116,14 +121,22 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
     }
     if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->made.fitness))
       best = Kept{made, particles_.download(), {}, {}};
+    if (best && rule_.hurries && may_edit() && edit(best->made)) return;
     again = improve(made);
   }
 }
 
-/// What particles could not be brought to: the last bad triangles of stars are changed by their edges.
-void MeshImprovement::edit(Triangulated& made) {
+/// Changes bad triangles by their edges. False, and nothing is changed, where some would be left, or the mesh touches
+/// itself.
+bool MeshImprovement::edit(Triangulated& made) {
+  if (!made.touching.empty()) return false;
+  bool good = false;
   particles_.in_stage("remesh", [&] {
-    const EdgeEdits edits = edit_edges(made.mesh, made.order, worst_defects);
+    SurfaceMesh mesh = made.mesh;
+    const EdgeEdits edits = edit_edges(mesh, made.order, worst_defects);
+    good = edits.bad == 0;
+    if (!good) return;
+    made.mesh = std::move(mesh);
     star_use_.flips += edits.flips, star_use_.contractions += edits.contractions;
     const auto keep = [&](auto& of_points) {
       for (std::size_t v = 0; v < edits.kept.size(); ++v) of_points[v] = of_points[edits.kept[v]];
@@ -131,6 +144,7 @@ void MeshImprovement::edit(Triangulated& made) {
     };
     keep(made.point_of), keep(made.order), keep(made.size);
   });
+  return good;
 }
 
 double MeshImprovement::fraction() const {
@@ -143,8 +157,7 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
     const HostParticles particles = particles_.download();
     const std::vector<Vec3d> points = world_positions(particles.position, frame_);
     // Once cells were needed, all later meshes are of cells, too: triangles good in one kind may be bad in the other.
-    const bool stars = rule_.stars && star_use_.fallbacks == 0;
-    if (!stars || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
+    if (!stars() || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
     check_stop(rule_.stop);
     for (const std::uint32_t i : made.point_of) {
       made.order.push_back(table_.order[particles.interface[i]]);

@@ -35,6 +35,7 @@ struct ImprovementRule {
   int smooth = 2;                           ///< rounds of smoothing all particles
   int remesh = 12;                          ///< rounds of remeshing, at most; each attempt counts as one
   bool stars = false;                       ///< triangles from the particles' stars, where these are sound
+  bool hurries = false;                     ///< the first mesh of stars without bad triangles is good enough
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
   const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
   double deviation = 0;                     ///< largest of triangles from their interface, voxels; 0: any
@@ -85,7 +86,9 @@ class MeshImprovement {
 
   void settle(std::optional<Kept>& best);
   void refine(Kept& best);
-  void edit(Triangulated& made);
+  bool edit(Triangulated& made);
+  bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
+  bool may_edit() const { return stars() && rule_.deviation == 0; }
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
   static bool better(const Kept& a, const Kept& b);
   void measure(Kept& kept);
@@ -110,12 +113,13 @@ class MeshImprovement {
   StarFinder star_finder_;
   PatchCells patch_cells_;  ///< and of those where stars do not settle
   StarUse star_use_;
-  int smoothed_ = 0, remeshed_ = 0;           ///< rounds so far
-  std::int64_t bad_ = std::int64_t(1) << 40;  ///< points at bad triangles when the last attempt began
-  std::uint32_t tried_ = 0;                   ///< kinds of attempts so far
-  std::optional<Attempt> attempt_;            ///< the one in progress,
-  HostParticles before_;                      ///< what was there before it,
-  int further_ = 0;                           ///< and its rounds after the first
+  int smoothed_ = 0, remeshed_ = 0;  ///< rounds so far
+  static constexpr std::int64_t most_bad = std::int64_t(1) << 40;
+  std::int64_t bad_ = most_bad;     ///< points at bad triangles when the last attempt began
+  std::uint32_t tried_ = 0;         ///< kinds of attempts so far
+  std::optional<Attempt> attempt_;  ///< the one in progress,
+  HostParticles before_;            ///< what was there before it,
+  int further_ = 0;                 ///< and its rounds after the first
   DeviationInfo deviation_;
 };
 

@@ -59,8 +59,14 @@ class MeshPipelineOf : public MeshPipeline {
       relaxed_ = particles_.download();
     exec_.arena().give_back();  // for the triangulation, which is on the host
     const bool stars = triangles_from_string(used.triangles) == TriangleSource::stars;
-    const ImprovementRule rule{used.smooth,        used.remesh,           stars, exec_.device().threads(), stop_,
-                               used.max_deviation, deviation_detail(used)};
+    const ImprovementRule rule{.smooth = used.smooth,
+                               .remesh = used.remesh,
+                               .stars = stars,
+                               .hurries = quality_from_string(used.quality) == MeshQuality::draft,
+                               .threads = exec_.device().threads(),
+                               .stop = stop_,
+                               .deviation = used.max_deviation,
+                               .detail = deviation_detail(used)};
     ImprovedMesh made = MeshImprovement(particles_, fields_.table(), fields_.frame(), rule, tell_).run();
     info_.points_final = made.particles[0], info_.curves_final = made.particles[1];
     info_.surfaces_final = made.particles[2];

@@ -103,19 +103,31 @@ TEST(EdgeEdits, AGoodMeshStaysAsItIs) {
   EXPECT_EQ(mesh.points, before.points);
 }
 
-/// Two triangles over a square whose diagonal makes them flat: the other diagonal is taken; not where an edge is there
-/// already, and not over a sharp edge.
-TEST(EdgeEdits, ADiagonalIsFlippedOnlyWhereTheSurfaceStaysThere) {
-  for (const double height : {0.0, 3.0}) {
-    SurfaceMesh mesh;
-    mesh.points = {{0, 0, 0}, {4, 0, 0}, {2, 0.3, 0}, {2, -0.3, height}, {2, 0, -3}};
-    mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}};
-    mesh.materials.assign(6, {0, 1});
-    ASSERT_TRUE(check_topology(mesh, 2).sound());
-    const std::vector<std::uint8_t> order(5, 0);  // none may leave
-    EXPECT_EQ(edit_edges(mesh, order, {0, 0.2, 0.2, false}).flips, height == 0 ? 1 : 0);
-    EXPECT_TRUE(check_topology(mesh, 2).sound());
-  }
+constexpr DefectRule flat{0, 0.2, 0.2, false};
+
+/// Two triangles that their common side makes flat get the other diagonal.
+TEST(EdgeEdits, ADiagonalIsFlipped) {
+  SurfaceMesh mesh;
+  mesh.points = {{0, 0, 0}, {4, 0, 0}, {2, 0.3, 0}, {2, -0.3, 0}, {2, 0, -3}};
+  mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}};
+  mesh.materials.assign(6, {0, 1});
+  ASSERT_TRUE(check_topology(mesh, 2).sound());
+  const EdgeEdits edits = edit_edges(mesh, std::vector<std::uint8_t>(5, 0), flat);  // no point may leave
+  EXPECT_EQ(edits.flips, 1);
+  EXPECT_TRUE(check_topology(mesh, 2).sound());
+}
+
+/// ... but not where the mesh has it.
+TEST(EdgeEdits, AFlatTetrahedronStaysAsItIs) {
+  SurfaceMesh mesh;
+  mesh.points = {{0, 0, 0}, {4, 0, 0}, {2, 0.3, 0}, {2, -0.3, 0.2}};
+  mesh.triangles = {{0, 2, 1}, {1, 3, 0}, {0, 3, 2}, {1, 2, 3}};
+  mesh.materials.assign(4, {0, 1});
+  ASSERT_TRUE(check_topology(mesh, 2).sound());
+  const SurfaceMesh before = mesh;
+  const EdgeEdits edits = edit_edges(mesh, std::vector<std::uint8_t>(4, 2), flat);
+  EXPECT_EQ(edits.flips + edits.contractions, 0);
+  EXPECT_EQ(mesh.triangles, before.triangles);
 }
 
 }  // namespace
