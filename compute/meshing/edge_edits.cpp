@@ -183,8 +183,8 @@ class Editor {
     return judged(std::move(change));
   }
 
-  /// Whether `u` may become `v`: it lies within a surface, whose triangles there are one fan, or between two points on a
-  /// curve, of which `v` is one, or across a narrow strip of surface from `v`.
+  /// Whether `u` may become `v`: it lies within a surface, whose triangles there are one fan, or between two points on
+  /// a curve, of which `v` is one, or across a narrow strip of surface from `v`.
   bool may_leave(std::uint32_t u, std::uint32_t v, const Triangles& edge) const {
     std::vector<std::uint32_t> along;  // its curve
     for (const std::uint32_t w : neighbours(u)) {
@@ -205,8 +205,8 @@ class Editor {
     return length(away - side * along_side) < most_bend * length(side);
   }
 
-  /// Whether `u`, on a curve, is so near to `v` across a surface that the curve may go through `v`: two curves that leave
-  /// less than a particle's room then meet there. No other material may have both points, or it would be pinched.
+  /// Whether `u`, on a curve, is so near to `v` across a surface that the curve may go through `v`: two curves that
+  /// leave less than a particle's room then meet there. No other material may have both points, or it would be pinched.
   bool may_cross(std::uint32_t u, std::uint32_t v, const Triangles& edge) const {
     const std::vector<std::uint16_t> of_u = materials_at(u), of_v = materials_at(v);
     std::vector<std::uint16_t> common;

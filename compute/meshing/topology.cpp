@@ -1,15 +1,29 @@
 // Nacre: whether a mesh of materials is closed, manifold off the junctions, and turned the same way everywhere.
 #include "compute/meshing/topology.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/incidence.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
 namespace {
+
+/// Whether three or more materials meet at one of the edges of a vertex that has these facets.
+bool has_junction_edge(std::span<const VertexFanCounter::Facet> facets) {
+  return std::any_of(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& f) {
+    return std::any_of(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& g) {
+      return (g.from == f.to || g.to == f.from || g.from == f.from || g.to == f.to) && g.materials != f.materials;
+    });
+  });
+}
 
 void check_mesh(const SurfaceMesh& mesh, int materials) {
   const char* what = "the mesh cannot be examined";
@@ -212,6 +226,27 @@ class Examination {
 TopologyReport check_topology(const SurfaceMesh& mesh, int materials) {
   check_mesh(mesh, materials);
   return Examination(mesh, materials).run();
+}
+
+std::vector<std::uint32_t> pinched_points(const SurfaceMesh& mesh) {
+  const VertexTable table(mesh.triangles, mesh.points.size());
+  std::vector<std::uint8_t> pinched(mesh.points.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pinched.size(), 1024), [&](const auto& range) {
+    VertexFanCounter counter;
+    std::vector<VertexFanCounter::Facet> facets;
+    for (std::size_t v = range.begin(); v < range.end(); ++v) {
+      facets.clear();
+      for (const std::uint32_t corner : table.corners(v)) {
+        const Triangle& t = mesh.triangles[corner / 3];
+        const int k = int(corner % 3);
+        facets.push_back({t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[corner / 3]});
+      }
+      const auto& fans = counter.vertex_fans(facets);
+      const bool twice = std::any_of(fans.begin(), fans.end(), [](const MaterialCount& c) { return c.count > 1; });
+      pinched[v] = twice && !has_junction_edge(facets);
+    }
+  });
+  return select_where(pinched.size(), [&](std::size_t v) { return pinched[v] != 0; });
 }
 
 }  // namespace nacre

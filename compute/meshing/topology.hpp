@@ -47,4 +47,7 @@ struct TopologyReport {
 /// point). Materials that no facet touches come out with zeros.
 TopologyReport check_topology(const SurfaceMesh& mesh, int materials);
 
+/// The points that check_topology counts as nonmanifold vertices, ascending.
+std::vector<std::uint32_t> pinched_points(const SurfaceMesh& mesh);
+
 }  // namespace nacre

@@ -9,6 +9,7 @@
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
+#include "compute/meshing/topology.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 
 namespace nacre {
@@ -194,6 +195,9 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
     });
   });
   made.touching = points_of_defects(std::move(touching), made.point_of);
+  for (const std::uint32_t v : pinched_points(made.mesh)) made.touching.push_back({v, v});
+  std::sort(made.touching.begin(), made.touching.end());
+  made.touching.erase(std::unique(made.touching.begin(), made.touching.end()), made.touching.end());
   return true;
 }
 

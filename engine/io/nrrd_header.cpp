@@ -22,6 +22,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t longest_line = 1 << 16;
 constexpr std::size_t longest_header = 1 << 22;
 constexpr std::size_t most_files = 100000;
+/// Teem 1.11 puts lines, values and paths into messages of a fixed size, about a thousand characters, without looking.
+constexpr std::size_t longest_in_message = 600;
 
 std::string trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
@@ -39,6 +41,21 @@ bool next_line(std::ifstream& file, std::string& line, std::size_t& read, const 
     line += char(c);
   }
   return !line.empty();
+}
+
+/// Keys with values and comments may be long: teem has no message with them.
+void require_printable(const std::string& line, int number, const fs::path& path) {
+  const std::size_t colon = line.find(':');
+  const bool is_key = colon != line.npos && line.compare(colon, 2, ":=") == 0;
+  if (line.size() > longest_in_message && !is_key && !line.starts_with('#'))
+    fail_reading(path, fmt::format("line {} of its header has {} characters", number, line.size()),
+                 fmt::format("write at most {}", longest_in_message));
+}
+
+void require_short_path(const fs::path& file, const fs::path& path) {
+  if (file.native().size() > longest_in_message)
+    fail_reading(path, fmt::format("a path of {} characters is too long for NRRD files", file.native().size()),
+                 "move them to a folder with a shorter path");
 }
 
 /// The text after "data file:", if this line is that field.
@@ -96,6 +113,7 @@ void add_file(NrrdStorage& storage, const std::string& name, const fs::path& pat
   std::error_code code;
   if (name == "-" || !fs::is_regular_file(file, code))
     fail_reading(path, fmt::format("its data file {} is missing", name), "put it beside the header");
+  require_short_path(file, path);
   storage.bytes += fs::file_size(file, code);
   storage.files.push_back(file);
 }
@@ -109,8 +127,11 @@ NrrdStorage look_into_nrrd(const fs::path& path) {
   if (!file) fail_reading(path, "access was denied", "check the file's permissions");
   if (!next_line(file, line, read, path)) fail_reading(path, "it is empty", "check how it was written");
   if (!line.starts_with("NRRD000")) fail_reading(path, "it does not begin with NRRD", "check that it is a NRRD file");
+  require_short_path(path, path);
+  require_printable(line, 1, path);
   NrrdStorage storage;
-  while (next_line(file, line, read, path) && !trimmed(line).empty()) {
+  for (int number = 2; next_line(file, line, read, path) && !trimmed(line).empty(); ++number) {
+    require_printable(line, number, path);
     std::string value;
     if (!data_file_field(line, value)) continue;
     std::vector<std::string> names;

@@ -87,6 +87,7 @@ TEST(Topology, BodiesOfOneMaterialThatTouch) {
   TopologyReport r = check_topology(mesh, 2);
   EXPECT_EQ(r.nonmanifold_edges, 1);
   EXPECT_EQ(r.nonmanifold_vertices, 0);  // the edge joins the two vertex fans
+  EXPECT_TRUE(pinched_points(mesh).empty());
   EXPECT_EQ(r.inconsistent_edges, 0);
   EXPECT_EQ(r.materials[1].euler, 3);
   EXPECT_EQ(r.materials[1].components, 1);
@@ -99,6 +100,7 @@ TEST(Topology, BodiesOfOneMaterialThatTouch) {
   r = check_topology(mesh, 2);
   EXPECT_EQ(r.nonmanifold_edges, 0);
   EXPECT_EQ(r.nonmanifold_vertices, 1);
+  EXPECT_EQ(pinched_points(mesh), std::vector<std::uint32_t>{0});
   EXPECT_EQ(r.materials[1].euler, 3);
   EXPECT_NEAR(r.materials[1].volume, 2. / 6, 1e-15);
   EXPECT_FALSE(r.sound());
@@ -122,6 +124,7 @@ TEST(Topology, JunctionOfThreeMaterials) {
   std::swap(mesh.triangles[6].b, mesh.triangles[6].c);  // seen from above, where 1 is
   TopologyReport r = check_topology(mesh, 3);
   EXPECT_TRUE(r.sound());
+  EXPECT_TRUE(pinched_points(mesh).empty());
   EXPECT_EQ(r.junction_edges, 3);
   EXPECT_EQ(r.pinched_edges, 0);
   for (const MaterialTopology& m : r.materials) EXPECT_EQ(m.euler, 2);

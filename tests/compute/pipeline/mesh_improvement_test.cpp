@@ -97,7 +97,7 @@ class SphereParticles : public MovableParticles {
 };
 
 ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0) {
-  const ImprovementRule rule{smooth, remesh, false, 1, nullptr, deviation, 0.25};
+  const ImprovementRule rule{.smooth = smooth, .remesh = remesh, .threads = 1, .deviation = deviation};
   const TellStage tell = [](std::string_view, double fraction, int, double) {
     EXPECT_GE(fraction, 0.85);
     EXPECT_LE(fraction, 0.94);
@@ -167,9 +167,8 @@ TEST(MeshImprovement, StopsWhenAsked) {
   SphereParticles particles(even_directions(even));
   const std::atomic<bool> stop = true;
   const TellStage tell = [](std::string_view, double, int, double) {};
-  EXPECT_THROW(
-      MeshImprovement(particles, particles.table, particles.frame, {2, 12, false, 1, &stop, 0, 0.25}, tell).run(),
-      Interrupted);
+  const ImprovementRule rule{.threads = 1, .stop = &stop};
+  EXPECT_THROW(MeshImprovement(particles, particles.table, particles.frame, rule, tell).run(), Interrupted);
 }
 
 }  // namespace

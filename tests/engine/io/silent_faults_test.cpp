@@ -167,6 +167,16 @@ TEST_F(SilentVolume, NiftiSizesThatDisagree) {
   EXPECT_TRUE(contains(said("raw.nii.gz", nifti({})), "raw.nii.gz is not packed with gzip, although its name says so"));
 }
 
+/// Teem would write beyond the buffer of a message.
+TEST_F(SilentVolume, NrrdLinesThatAreTooLongForMessages) {
+  const std::string begin = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: raw\n", end = "\n\nabcdefgh";
+  const std::string many(5000, 'y');
+  EXPECT_EQ(said("key.nrrd", begin + "key:=" + many + "\n# " + many + end), "");
+  for (const std::string& line : {many, "content: " + many, "kinds: " + many, many + ": 1", "a: b:=" + many})
+    EXPECT_TRUE(contains(said("long.nrrd", begin + line + end), "line 7 of its header has 50")) << line.substr(0, 20);
+  EXPECT_TRUE(contains(said("long.nrrd", "NRRD0004" + many + end), "line 1 of its header has 50"));
+}
+
 TEST_F(SilentVolume, NrrdThatSaysGzipOverRawData) {
   const auto nrrd = [](const std::string& encoding, const std::string& more) {
     return "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 2 2\nspacings: 1 1 1\nencoding: " + encoding + "\n" + more;
