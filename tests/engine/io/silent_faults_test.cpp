@@ -169,7 +169,8 @@ TEST_F(SilentVolume, NiftiSizesThatDisagree) {
 
 /// Teem would write beyond the buffer of a message.
 TEST_F(SilentVolume, NrrdLinesThatAreTooLongForMessages) {
-  const std::string begin = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: raw\n", end = "\n\nabcdefgh";
+  const std::string begin = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: raw\n";
+  const std::string end = "\n\nabcdefgh";
   const std::string many(5000, 'y');
   EXPECT_EQ(said("key.nrrd", begin + "key:=" + many + "\n# " + many + end), "");
   for (const std::string& line : {many, "content: " + many, "kinds: " + many, many + ": 1", "a: b:=" + many})
