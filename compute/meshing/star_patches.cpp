@@ -23,11 +23,13 @@ namespace nacre {
 namespace {
 
 constexpr int patch_rounds = 100;
-constexpr int slow_rounds = 8;     // then a patch grows by whole rings
-constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
-constexpr double wider = 3;        // times as far, where that does not suffice
-constexpr double most_wider = 8;   // as far in the end, nearly
-constexpr double most_work = 1;  // particles triangulated, by those that there are
+constexpr int slow_rounds = 8;    // then a patch grows by whole rings
+constexpr double around = 3;      // sizes: as far as the particles are that a patch is made of
+constexpr double wider = 3;       // times as far, where that does not suffice
+constexpr double most_wider = 8;  // as far in the end, nearly
+constexpr int early_round = 6, late_round = 12;
+constexpr double creeping = 1.5;  // growth between these two that does not end
+constexpr double most_work = 1;   // particles triangulated, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
 class Guards {
@@ -388,11 +390,17 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
   Settling settling(mesh, world);
   cells.begin();
   bool repairs = false;
-  double work = 0;  // particles triangulated
+  double work = 0;         // particles triangulated
+  std::int64_t early = 0;  // bad particles
+  std::size_t early_changed = 0;
   for (int round = 0; round < patch_rounds; ++round) {
     const std::size_t changed = settling.regroup();
     work += double(changed);
     if (work >= most_work * double(world.points.size()) && world.points.size() > 1000) return false;
+    // Along sheets that cells do not hold, patches creep on, as fast as before.
+    if (round == early_round) early = settling.count(), early_changed = changed;
+    if (round == late_round && changed > early_changed && double(settling.count()) > creeping * double(early))
+      return false;
     settling.make(cells, stop, repairs);
     StarMesh joined = settling.join();
     if (settling.grow(joined, repairs)) continue;
