@@ -5,6 +5,7 @@
 // - to remesh: particles that spoil triangles are removed, and missing ones are added;
 // - an attempt: smoothing or remeshing at bad triangles only, undone where the triangles are no better afterwards;
 // - to project: particles are brought onto their interfaces, on the fields themselves;
+// - to edit: edges of bad triangles are flipped or contracted (edge_edits.hpp); particles stay where they are;
 // - to repair: labels of Delaunay cells are changed (repair.hpp); particles are not;
 // - to improve: all of this together. (improve_cells.hpp improves tetrahedra, which have nothing to do with it.)
 #pragma once
