@@ -45,7 +45,7 @@ class Editor {
       for (; !bad_.empty() && left > 0; --left) {
         const std::uint32_t t = bad_.begin()->second;
         bad_.erase(bad_.begin());
-        if (gone(t)) continue;
+        if (gone(t) || fitness(mesh_.triangles[t]) >= 1) continue;  // something beside it has changed
         const bool changed = edit(t);
         again |= changed;
         if (!changed) failed.push_back(t);
@@ -54,7 +54,7 @@ class Editor {
         if (!gone(t)) note(t);
       again &= left > 0;
     }
-    edits_.bad = std::int64_t(bad_.size());
+    edits_.bad = std::count_if(bad_.begin(), bad_.end(), [&](const auto& entry) { return !gone(entry.second); });
     compact();
     return std::move(edits_);
   }

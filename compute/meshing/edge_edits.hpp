@@ -21,8 +21,9 @@ struct EdgeEdits {
 /// triangles, as long as the worst of those that change becomes better. Topology stays as it is: an edge is flipped
 /// between two triangles of one interface, if the mesh does not have the new one; it is contracted if the ends have no
 /// neighbours in common but those opposite it (the link condition), onto any neighbour from a point within a surface,
-/// along its curve from one on a curve that is nearly straight there. No triangle turns by more than about 70 degrees.
-/// `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are contracted leave the mesh.
+/// along its curve from one on a curve that is nearly straight there, or from there across a strip of surface narrower
+/// than half the mean edge, if only the two materials beside that have both ends. No triangle turns by more than about
+/// 70 degrees. `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are contracted leave it.
 EdgeEdits edit_edges(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
 
 }  // namespace nacre

@@ -29,6 +29,7 @@ constexpr double wider = 3;       // times as far, where that does not suffice
 constexpr double most_wider = 8;  // as far in the end, nearly
 constexpr int early_round = 6, late_round = 12;
 constexpr double creeping = 1.5;  // growth between these two that does not end
+constexpr double large = 0.005;   // share of the particles that are worth giving up
 constexpr double most_work = 1;   // particles triangulated, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
@@ -397,10 +398,11 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
     const std::size_t changed = settling.regroup();
     work += double(changed);
     if (work >= most_work * double(world.points.size()) && world.points.size() > 1000) return false;
-    // Along sheets that cells do not hold, patches creep on, as fast as before.
     if (round == early_round) early = settling.count(), early_changed = changed;
-    if (round == late_round && changed > early_changed && double(settling.count()) > creeping * double(early))
-      return false;
+    if (round == late_round && changed > early_changed) {  // along sheets that cells do not hold, patches creep on
+      const auto late = double(settling.count());
+      if (late > creeping * double(early) && late > large * double(world.points.size())) return false;
+    }
     settling.make(cells, stop, repairs);
     StarMesh joined = settling.join();
     if (settling.grow(joined, repairs)) continue;
