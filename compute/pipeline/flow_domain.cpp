@@ -140,7 +140,7 @@ double estimate_flow_bytes(const FlowMesh& mesh, const FlowParameters& parameter
   const double pattern = parameters.texture == FlowTexture::streaks ? 0 : sheet * (10 * 4 + 7 * 108) + cells * 13 * 4;
   const double pairs = std::min(triangles, sheet * 2) * 60 / parameters.subcells + cells / 16 + edges / H;
   return dense / std::pow(parameters.subcells, 3) * 4 + cells * (16 + 4 + 4 + 4 + 32 + 16 * slots) + texels * (4 + 4) +
-         surface * (4 + 16 + 4 + 24 + 28 + 8 * 3 + 4 * 5) + pairs * 24 + triangles * 220 + pattern + 64e6;
+         surface * (4 + 16 + 4 + 24 + 32 + 8 * 3 + 4 * 5) + pairs * 24 + triangles * 220 + pattern + 64e6;
 }
 
 int make_octree_domain(const FlowMesh& mesh, const FlowParameters& parameters, FlowDomain& domain, Ranks* sharers) {
@@ -213,7 +213,7 @@ double estimate_octree_bytes(const MeshMeasure& measure, const FlowMesh& mesh, c
   const double seeds = brick ? surface : cells;
   const double structure =
       brick ? bricks * 340 + lists * 4 : cells * (8 + 5 + (parameters.neighbour_index ? 24 : 0) + 24);
-  return cells * (12 + 4 * (brick ? 2 : ttl + 1)) + seeds * (8 * (brick ? 3 : ttl) + 16 + (brick ? 32 : 0)) +
+  return cells * (12 + 4 * (brick ? 2 : ttl + 1)) + seeds * (8 * (brick ? 3 : ttl) + 16 + (brick ? 36 : 0)) +
          structure + triangles * 300 + 256e6;
 }
 
