@@ -2,8 +2,9 @@
 # Nacre: what bounds the stages of the four main runs. Usage: bounds.sh NACRE CEILINGS
 # CEILINGS is the program bench_ceilings (cmake --build ... --target bench_ceilings). Prints a row for each stage that takes
 # 4% of its run or more: how long it took, what it works on, what it must move and compute, and which share that is of what
-# the machine does at most. NACRE_BENCH_SCALE divides the runs' resolutions, to try the script. Needs no hardware counters: how many elements there are is read from the reports, what one of them
-# takes stands in the table below.
+# the machine does at most. To try the script, NACRE_BENCH_SCALE divides the runs' resolutions, and NACRE_BENCH_SHARE takes
+# the place of 4. Needs no hardware counters: how many elements there are is read from the reports, what one of them takes
+# stands in the table below.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/begin.sh"
 begin_bench bounds "$@"
@@ -27,8 +28,8 @@ main_runs
 #   142 (torso) and one projection an iteration.
 # - Instructions, all of them, are what valgrind counted in the stage's kernels (--tool=callgrind, one thread, built with
 #   NACRE_MARCH=haswell since it knows no AVX-512; flow of 256 cells, the small meshes of profile.sh). 0: not counted, where
-#   such runs are unlike the large ones (few cells for a triangle, few voxels far from all boundaries). Of advection: the
-#   count of an older program by the ratio of both programs' times. Lines of the Delaunay
+#   such runs are unlike the large ones (few cells for a triangle, few voxels far from all boundaries). Of advection, and of
+#   filtering on the grid: the count of an older program by the ratio of both programs' times. Lines of the Delaunay
 #   triangulation are those of the 65 cells or so that an insertion looks at or makes.
 table() {
   cat <<'TABLE'
@@ -37,8 +38,8 @@ grid   read        24         points    220*points                            0 
 grid   embed       1          coarse    66*coarse,250*triangles               0   0     0     one by one
 grid   refine      1          cells     24*cells,48*surface,64*coarse         0   0     0     one by one
 grid   velocity    calls      coarse    36*coarse,84*triangles                0   0     190   one by one
-grid   advect      calls      surface   80*surface,68*coarse,4*cells          0   750   2200  one by one
-grid   filter      calls      surface   64*surface,68*coarse,4*cells          0   60    935   one by one
+grid   advect      calls      surface   80*surface,68*coarse,4*cells          0   750   1200  vectors, one by one
+grid   filter      calls      surface   64*surface,68*coarse,4*cells          0   60    650   vectors, one by one
 octree read        24         points    220*points                            0   0     2770  one by one
 octree velocity    calls      cells     16*cells,84*triangles                 0   0     300   one by one (divisions)
 octree advect      calls      surface   72*surface,12*cells,1*structure       0   350   2900  one by one
@@ -81,11 +82,11 @@ rows() {
   local output=(--out "$out/mesh.vtp")
   [[ $2 != flow ]] || output=(--image "$out/picture.png" --size 640x480)
   "$nacre" "${@:2}" "${output[@]}" --quiet --report "$out/$1.json" >"$out/log"
-  { cat "$out/ceilings"; values "$out/$1.json"; echo "pixels $((640 * 480))"; echo "table"; table; } | awk -v run="$1" '
+  { cat "$out/ceilings"; values "$out/$1.json"; echo "pixels $((640 * 480))"; echo "table"; table; } | awk -v run="$1" -v least="${NACRE_BENCH_SHARE:-4}" '
     !rows && $1 == "table" { v["structure"] = v["embedding"] - 12 * v["cells"]; rows = 1; next }
     !rows { v[$1] = $2; if ($1 ~ /^seconds/) all += $2; next }
     function share(amount, ceiling) { return 100 * amount / s / v[ceiling] }
-    $1 == run && (s = v["seconds." $2]) >= 0.04 * all {
+    $1 == run && (s = v["seconds." $2]) >= least / 100 * all && s > 0 {
       times = $3 in v ? v[$3] : ($3 "." $2) in v ? v[$3 "." $2] : $3
       n = times * v[$4]
       bytes = 0
