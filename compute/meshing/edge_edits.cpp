@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "compute/math/sort_unique.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
 
@@ -104,8 +105,7 @@ class Editor {
     for (const std::uint32_t t : at(v))
       for (int k = 0; k < 3; ++k)
         if (mesh_.triangles[t][k] != v) result.push_back(mesh_.triangles[t][k]);
-    std::sort(result.begin(), result.end());
-    result.erase(std::unique(result.begin(), result.end()), result.end());
+    sort_unique(result);
     return result;
   }
 
@@ -224,8 +224,7 @@ class Editor {
     std::vector<std::uint16_t> result;
     for (const std::uint32_t t : at(v))
       for (const std::uint16_t m : mesh_.materials[t]) result.push_back(m);
-    std::sort(result.begin(), result.end());
-    result.erase(std::unique(result.begin(), result.end()), result.end());
+    sort_unique(result);
     return result;
   }
 
@@ -266,8 +265,7 @@ class Editor {
     std::vector<std::uint32_t> touched;
     for (const std::uint32_t t : change.old)
       for (int k = 0; k < 3; ++k) touched.push_back(mesh_.triangles[t][k]);
-    std::sort(touched.begin(), touched.end());
-    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    sort_unique(touched);
     for (const std::uint32_t v : touched) {
       Triangles& list = changed_.try_emplace(v, at(v)).first->second;
       std::erase_if(list, [&](std::uint32_t t) {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "compute/meshing/disjoint_sets.hpp"
+#include "compute/math/disjoint_sets.hpp"
 #include "compute/meshing/incidence.hpp"
 
 namespace nacre {

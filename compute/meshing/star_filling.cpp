@@ -9,7 +9,8 @@
 #include <iterator>
 #include <span>
 
-#include "compute/meshing/disjoint_sets.hpp"
+#include "compute/math/disjoint_sets.hpp"
+#include "compute/math/sort_unique.hpp"
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/small_hull.hpp"
 #include "compute/meshing/star_holes.hpp"
@@ -22,11 +23,6 @@ constexpr std::size_t most_in_body = 24, most_in_speck = 6;  // particles
 constexpr double least_facing = 0.3;  // mean cosine between triangles of a small body and the normals at their corners
 constexpr double least_ratio = 0.2;   // of these triangles
 constexpr std::size_t most_opened = 50;  // items for each hole: beyond, it is no hole but something else
-
-void sort_unique(std::vector<std::uint32_t>& some) {
-  std::sort(some.begin(), some.end());
-  some.erase(std::unique(some.begin(), some.end()), some.end());
-}
 
 /// Items at edges of filled holes that are not passed once each way, counting the agreed triangles beside them.
 std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vector<Star>& stars,

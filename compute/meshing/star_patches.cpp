@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "compute/meshing/disjoint_sets.hpp"
+#include "compute/math/disjoint_sets.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/point_tree.hpp"

@@ -5,10 +5,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 
 #include "compute/device/error.hpp"
+#include "compute/math/disjoint_sets.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/vertex_fans.hpp"
@@ -35,24 +35,6 @@ void check_mesh(const SurfaceMesh& mesh, int materials) {
     if (low >= high || high >= materials)
       throw Error(what, "the materials of a triangle are not two, ascending and known");
 }
-
-/// Sets of numbers that grow together; the smallest stands for its set.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    for (; parent_[i] != i; i = parent_[i]) parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) {
-    i = find(i), j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-  bool is_first(std::uint32_t i) const { return parent_[i] == i; }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// One examination: what its steps share.
 class Examination {
@@ -195,7 +177,7 @@ class Examination {
   }
 
   void count_components() {
-    Sets whole(mesh_.points.size()), own(material_of_.size());
+    DisjointSets whole(mesh_.points.size()), own(material_of_.size());
     for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
       const Triangle& t = mesh_.triangles[i];
       for (const std::uint32_t corner : {t.b, t.c}) {
@@ -204,9 +186,9 @@ class Examination {
       }
     }
     for (std::size_t v = 0; v < mesh_.points.size(); ++v)
-      report_.components += first_[v] < first_[v + 1] && whole.is_first(std::uint32_t(v));
+      report_.components += first_[v] < first_[v + 1] && whole.find(std::uint32_t(v)) == v;
     for (std::size_t i = 0; i < material_of_.size(); ++i)
-      report_.materials[material_of_[i]].components += own.is_first(std::uint32_t(i));
+      report_.materials[material_of_[i]].components += own.find(std::uint32_t(i)) == i;
   }
 
   const SurfaceMesh& mesh_;

@@ -6,6 +6,7 @@
 #include "compute/embedding/brick_octree.hpp"
 #include "compute/embedding/brick_ranges.hpp"
 #include "compute/embedding/cells_near.hpp"
+#include "compute/math/sort_unique.hpp"
 
 namespace nacre {
 namespace {
@@ -15,12 +16,6 @@ constexpr double brick_width = BrickOctreeView::width;
 // clusters of triangles, around which it looks for bricks as far as the second (a ball around several triangles is
 // smaller, and so is that of one that is not looked at exactly): each brick that it looks at has to have its triangles.
 constexpr double triangle_margin = 1, brick_margin = 9;
-
-template <class Item>
-void sort_unique(std::vector<Item>& items) {
-  std::sort(items.begin(), items.end());
-  items.erase(std::unique(items.begin(), items.end()), items.end());
-}
 
 /// A brick and a process that has to do with it.
 struct BrickRank {

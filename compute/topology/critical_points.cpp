@@ -4,27 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
+#include "compute/math/disjoint_sets.hpp"
 #include "compute/topology/linear_fit.hpp"
 
 namespace nacre {
 namespace {
-
-/// Sets of triangles.
-class Sets {
- public:
-  explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  /// Joins two different roots; the smaller one remains.
-  std::uint32_t join(std::uint32_t a, std::uint32_t b) { return parent_[std::max(a, b)] = std::min(a, b); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 struct Crossing {
   double speed;  ///< from which on the two triangles belong together
@@ -56,9 +41,9 @@ std::vector<double> persistences(const TangentField& field, const std::vector<Cr
   std::vector<std::vector<std::uint32_t>> zeros(field.triangles());  // of each root, all of one sign
   for (std::uint32_t t = 0; t < field.triangles(); ++t)
     if (field.index(t) != 0) zeros[t].assign(std::size_t(std::abs(field.index(t))), t);
-  Sets sets(field.triangles());
+  DisjointSets sets(field.triangles());
   for (const Crossing& each : order) {
-    const std::uint32_t a = sets.root(each.half_edge / 3), b = sets.root(field.twin(each.half_edge) / 3);
+    const std::uint32_t a = sets.find(each.half_edge / 3), b = sets.find(field.twin(each.half_edge) / 3);
     if (a == b) continue;
     const std::uint32_t kept = sets.join(a, b);
     std::vector<std::uint32_t>& mine = zeros[kept];
@@ -84,7 +69,7 @@ std::vector<double> persistences(const TangentField& field, const std::vector<Cr
 
 /// The triangles of each set that speeds up to `limit` make, for those sets that `wanted` is in.
 struct SlowSets {
-  Sets sets;
+  DisjointSets sets;
   std::vector<std::vector<std::uint32_t>> members;  ///< by root; empty where it is not wanted
 
   SlowSets(const TangentField& field, const std::vector<Crossing>& order, double limit,
@@ -92,13 +77,13 @@ struct SlowSets {
       : sets(field.triangles()), members(field.triangles()) {
     for (const Crossing& each : order) {
       if (each.speed > limit) break;
-      const std::uint32_t a = sets.root(each.half_edge / 3), b = sets.root(field.twin(each.half_edge) / 3);
+      const std::uint32_t a = sets.find(each.half_edge / 3), b = sets.find(field.twin(each.half_edge) / 3);
       if (a != b) sets.join(a, b);
     }
     std::vector<bool> is_wanted(field.triangles());
-    for (const std::uint32_t t : wanted) is_wanted[sets.root(t)] = true;
+    for (const std::uint32_t t : wanted) is_wanted[sets.find(t)] = true;
     for (std::uint32_t t = 0; t < field.triangles(); ++t)
-      if (is_wanted[sets.root(t)]) members[sets.root(t)].push_back(t);
+      if (is_wanted[sets.find(t)]) members[sets.find(t)].push_back(t);
   }
 };
 
@@ -223,9 +208,9 @@ FlowTopology find_critical_points(const TangentField& field, double least_persis
   for (const ZeroRegion& region : all.zero_regions) all.region_index += region.index;
   SlowSets slow(field, order, least_persistence, kept);
   std::vector<int> in_set(field.triangles());
-  for (const std::uint32_t t : kept) ++in_set[slow.sets.root(t)];
+  for (const std::uint32_t t : kept) ++in_set[slow.sets.find(t)];
   for (const std::uint32_t t : kept) {
-    const std::uint32_t root = slow.sets.root(t);
+    const std::uint32_t root = slow.sets.find(t);
     CriticalPoint point = describe(field, t, in_set[root] == 1 ? slow.members[root] : std::vector<std::uint32_t>{t});
     point.persistence = persistence[t];
     all.point_index += point.index;

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "compute/math/disjoint_sets.hpp"
 
 namespace nacre {
 namespace {
@@ -12,21 +13,6 @@ constexpr std::size_t most_around = 256;  // triangles around a position, above 
 constexpr double opposite = -0.999;       // cosine between normals that face each other's back
 constexpr double near_corner = 0.01;      // share of the way from a corner to the middle of its triangle
 constexpr double in_plane = 1e-6;         // of a triangle's size
-
-/// Numbers that are joined step by step; each set is known by one of its members.
-class JoinedSets {
- public:
-  explicit JoinedSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 class SheetFinder {
  public:
@@ -206,7 +192,7 @@ class SheetFinder {
   std::vector<std::size_t> start_;
   std::vector<std::uint32_t> around_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;  ///< a triangle and one that it lies on, ascending
-  JoinedSets sheets_;
+  DisjointSets sheets_;
   std::vector<char> side_;  ///< per sheet, at its first point
 };
 

@@ -18,9 +18,10 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join(std::uint32_t i, std::uint32_t j) {
+  /// Returns the member by which the joined set is known.
+  std::uint32_t join(std::uint32_t i, std::uint32_t j) {
     i = find(i), j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
+    return parent_[std::max(i, j)] = std::min(i, j);
   }
 
  private:
