@@ -83,9 +83,9 @@ struct MoveParticles {
     }
     start = centre + start;
     Vec3<Float> end;
-    const Mask own = counted<Wide>(0, INT32_MAX) < cells.count, arrived_all = go_in_one_piece(start, word, own, end);
+    const Mask own = counted<Wide>(0, INT32_MAX) < cells.count, moved = go_in_one_piece(start, word, own, end);
     for (int lane = 0; lane < cells.count; ++lane) {
-      if (is_set(arrived_all, lane)) continue;
+      if (is_set(moved, lane)) continue;
       const Vec3f there = walk({element(start.x, lane), element(start.y, lane), element(start.z, lane)}, word[lane]);
       set_element(end.x, lane, there.x), set_element(end.y, lane, there.y), set_element(end.z, lane, there.z);
     }
