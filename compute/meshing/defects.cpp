@@ -32,14 +32,6 @@ std::array<Vec3d, 3> corners(const SurfaceMesh& mesh, std::size_t t) {
   return {mesh.points[c.a], mesh.points[c.b], mesh.points[c.c]};
 }
 
-/// Triangles with a radius ratio of `ratio` or less.
-std::vector<std::uint32_t> triangles_under(double ratio, const SurfaceMesh& mesh) {
-  return select_where(mesh.triangles.size(), [&](std::size_t t) {
-    const auto p = corners(mesh, t);
-    return !ratio_is_above(ratio, p[0], p[1], p[2]) && radius_ratio(p[0], p[1], p[2]) <= ratio;
-  });
-}
-
 bool at_junction(const Triangle& t, std::span<const std::uint8_t> order) {
   return std::min({order[t.a], order[t.b], order[t.c]}) < 2;
 }
@@ -229,6 +221,13 @@ void fill_before_rim(const SurfaceMesh& mesh, const VertexTable& facets_at, std:
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> triangles_under(double ratio, const SurfaceMesh& mesh) {
+  return select_where(mesh.triangles.size(), [&](std::size_t t) {
+    const auto p = corners(mesh, t);
+    return !ratio_is_above(ratio, p[0], p[1], p[2]) && radius_ratio(p[0], p[1], p[2]) <= ratio;
+  });
+}
 
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule) {

@@ -59,6 +59,9 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
 /// there for a cell of its own. So triangles are judged by what the mesh shows. `order` is per point of the mesh.
 void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order);
 
+/// Triangles with a radius ratio of `ratio` or less, ascending.
+std::vector<std::uint32_t> triangles_under(double ratio, const SurfaceMesh& mesh);
+
 /// How far a triangle is above the least ratio of `rule`, as a multiple of it; below 1 where it is bad.
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
                         const DefectRule& rule);

@@ -15,9 +15,13 @@
 namespace nacre {
 namespace {
 
-constexpr double least_turn = 0.35;    // cosine between a triangle's normals before and after
-constexpr double most_crossed = 0.5;   // of the mean edge at a point of a curve that crosses a surface
-constexpr double most_bend = 0.25;     // of a curve where a point is contracted, in lengths of the side that is left
+/// How far a change may bend surfaces and curves.
+struct Latitude {
+  double turn;   ///< least cosine between a triangle's normals before and after
+  double bend;   ///< most, of a curve where a point is contracted, in lengths of the side that is left
+  double cross;  ///< of the mean edge: across so wide a strip a point of a curve is contracted, at most
+};
+constexpr Latitude at_mediocre{0.8, -1, 0}, at_worst{0.35, 0.25, 0.5};
 constexpr double least_gain = 1e-6;    // of fitness
 constexpr std::size_t most_edits = 8;  // for each bad triangle, in the mean
 
@@ -66,18 +70,20 @@ class Editor {
     Triangles old;
     std::vector<std::pair<Triangle, std::uint32_t>> made;  ///< and the old one whose materials each has
     std::uint32_t from = none;
-    double fitness = 0;  ///< the least of those made
+    std::uint32_t crossed = none;  ///< ... from a curve, through this one, which is not on it
+    double fitness = 0;            ///< the least of those made
   };
 
   bool gone(std::uint32_t t) const { return mesh_.triangles[t].a == mesh_.triangles[t].b; }
   const Vec3d& point(std::uint32_t v) const { return mesh_.points[v]; }
   Vec3d normal(const Triangle& t) const { return cross(point(t.b) - point(t.a), point(t.c) - point(t.a)); }
 
-  double fitness(const Triangle& t) const {
+  double fitness(const Triangle& t, const DefectRule& rule) const {
     const bool near = order_[t.a] < 2 || order_[t.b] < 2 || order_[t.c] < 2;
     const double ratio = radius_ratio(point(t.a), point(t.b), point(t.c));
-    return std::min(ratio / (near ? rule_.near : rule_.ratio), best_fitness(rule_));
+    return std::min(ratio / (near ? rule.near : rule.ratio), best_fitness(rule));
   }
+  double fitness(const Triangle& t) const { return fitness(t, rule_); }
 
   /// Puts a bad triangle on the list.
   void note(std::uint32_t t) {
@@ -121,6 +127,7 @@ class Editor {
       if (change && (!best || change->fitness > best->fitness)) best = std::move(change);
     };
     const Triangle corner = mesh_.triangles[t];
+    latitude_ = fitness(corner, worst_defects) < 1 ? at_worst : at_mediocre;
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t u = corner[k], v = corner[(k + 1) % 3];
       consider(flip(u, v));
@@ -144,7 +151,7 @@ class Editor {
         if (mesh_.materials[t] == mesh_.materials[old]) around += normal(mesh_.triangles[t]);
       const Triangle& was = mesh_.triangles[old];
       const Vec3d before_turn = change.from == none || fitness(was) < 1 ? around : normal(was), after = normal(made);
-      if (!(dot(before_turn, after) > least_turn * length(before_turn) * length(after))) return {};
+      if (!(dot(before_turn, after) > latitude_.turn * length(before_turn) * length(after))) return {};
     }
     return change;
   }
@@ -168,7 +175,7 @@ class Editor {
     std::vector<std::uint32_t> common;
     std::set_intersection(of_u.begin(), of_u.end(), of_v.begin(), of_v.end(), std::back_inserter(common));
     if (common.size() != edge.size()) return {};
-    Change change{at(u), {}, u};
+    Change change{at(u), {}, u, order_[u] == 1 && is_within(edge) ? v : none};
     for (const std::uint32_t t : change.old) {
       Triangle made = mesh_.triangles[t];
       if (has(made, v)) continue;
@@ -200,9 +207,8 @@ class Editor {
     const std::uint32_t w = along[0] == v ? along[1] : along[0];
     if (along[0] != v && along[1] != v) return false;
     const Vec3d side = point(w) - point(v), away = point(u) - point(v);
-    const double along_side = dot(away, side) / dot(side, side);
-    if (!(along_side > 0 && along_side < 1)) return false;
-    return length(away - side * along_side) < most_bend * length(side);
+    const double along_side = std::clamp(dot(away, side) / dot(side, side), 0.0, 1.0);
+    return length(away - side * along_side) < latitude_.bend * length(side);
   }
 
   /// Whether `u`, on a curve, is so near to `v` across a surface that the curve may go through `v`: two curves that
@@ -216,7 +222,7 @@ class Editor {
     const std::vector<std::uint32_t> around = neighbours(u);
     double sum = 0;
     for (const std::uint32_t w : around) sum += length(point(w) - point(u));
-    return length(point(u) - point(v)) < most_crossed * sum / double(around.size());
+    return length(point(u) - point(v)) < latitude_.cross * sum / double(around.size());
   }
 
   /// Ascending.
@@ -278,6 +284,7 @@ class Editor {
       for (int k = 0; k < 3; ++k) changed_[made[k]].push_back(t);
     }
     for (const auto& [made, t] : change.made) note(t);
+    if (change.crossed != none) crossed_.push_back(change.crossed);
   }
 
   /// Leaves out triangles that are gone, and points that no triangle has any more.
@@ -293,6 +300,9 @@ class Editor {
       edits_.kept.push_back(v);
     }
     mesh_.points.resize(edits_.kept.size());
+    for (const std::uint32_t v : crossed_)
+      if (left[v]) edits_.crossed.push_back(number[v]);
+    sort_unique(edits_.crossed);
     std::size_t to = 0;
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       if (gone(t)) continue;
@@ -309,6 +319,8 @@ class Editor {
   const VertexTable table_;                               ///< of the triangles as they were
   std::unordered_map<std::uint32_t, Triangles> changed_;  ///< those at the points that have others now
   std::set<std::pair<double, std::uint32_t>> bad_;        ///< by fitness
+  Latitude latitude_ = at_worst;                          ///< of the edit that is considered
+  std::vector<std::uint32_t> crossed_;                    ///< points that curves were led through
   EdgeEdits edits_;
 };
 

@@ -13,17 +13,20 @@ namespace nacre {
 /// What `edit_edges` did.
 struct EdgeEdits {
   std::int64_t flips = 0, contractions = 0;
-  std::int64_t bad = 0;             ///< triangles that are still bad
-  std::vector<std::uint32_t> kept;  ///< which of the points are left, ascending
+  std::int64_t bad = 0;                ///< triangles that are still bad
+  std::vector<std::uint32_t> kept;     ///< which of the points are left, ascending
+  std::vector<std::uint32_t> crossed;  ///< of those left, by their new numbers: a curve was led through them
 };
 
 /// Flips edges and contracts them at triangles that are bad by `rule`, the worst first, each time what leaves the best
 /// triangles, as long as the worst of those that change becomes better. Topology stays as it is: an edge is flipped
 /// between two triangles of one interface, if the mesh does not have the new one; it is contracted if the ends have no
 /// neighbours in common but those opposite it (the link condition), onto any neighbour from a point within a surface,
-/// along its curve from one on a curve that is nearly straight there, or from there across a strip of surface narrower
-/// than half the mean edge, if only the two materials beside that have both ends. No triangle turns by more than about
-/// 70 degrees. `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are contracted leave it.
+/// or along its curve from one on a curve that is nearly straight there. No triangle turns by more than about 35
+/// degrees. At triangles that are also bad by `worst_defects` shape matters more: curves may bend more there,
+/// triangles may turn by up to 70 degrees, and a point of a curve is contracted across a strip of surface narrower
+/// than half the mean edge, if only the two materials beside that have both ends. `order` (2 surface, 1 curve, 0
+/// point) is per point of the mesh; points that are contracted leave it.
 EdgeEdits edit_edges(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
 
 }  // namespace nacre

@@ -34,6 +34,8 @@ std::vector<Vec3d> label_points(const PatchCells::Made& made) {
       if (size > 0 && radius >= least) continue;
       least = radius, foot = centre;
       size = std::max({made.size[cell[a]], made.size[cell[b]], made.size[cell[c]]});
+      // That of a needle is far from it.
+      if (radius > label_reach * size) foot = (made.places[cell[a]] + made.places[cell[b]] + made.places[cell[c]]) / 3;
     }
     const Vec3d away = at[i] - foot;
     const double far = length(away);

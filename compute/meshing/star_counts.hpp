@@ -17,10 +17,10 @@ struct StarCounts {
 
 /// Of all meshes that an improvement made.
 struct StarUse {
-  std::int64_t meshes = 0;                   ///< from stars
-  std::int64_t fallbacks = 0;                ///< by the Delaunay triangulation of all particles
-  std::int64_t flips = 0, contractions = 0;  ///< of edges, in the end
-  StarCounts last;                           ///< of the last mesh that was tried
+  std::int64_t meshes = 0;                               ///< from stars
+  std::int64_t fallbacks = 0;                            ///< by the Delaunay triangulation of all particles
+  std::int64_t flips = 0, contractions = 0, splits = 0;  ///< of edges, in the end
+  StarCounts last;                                       ///< of the last mesh that was tried
 };
 
 }  // namespace nacre

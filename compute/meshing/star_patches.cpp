@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "compute/math/disjoint_sets.hpp"
+#include "compute/math/sort_unique.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/point_tree.hpp"
@@ -23,14 +24,12 @@ namespace nacre {
 namespace {
 
 constexpr int patch_rounds = 100;
-constexpr int slow_rounds = 8;    // then a patch grows by whole rings
-constexpr double around = 3;      // sizes: as far as the particles are that a patch is made of
-constexpr double wider = 3;       // times as far, where that does not suffice
-constexpr double most_wider = 8;  // as far in the end, nearly
-constexpr int early_round = 6, late_round = 12;
-constexpr double creeping = 1.5;  // growth between these two that does not end
-constexpr double large = 0.005;   // share of the particles that are worth giving up
-constexpr double most_work = 1;   // particles triangulated, by those that there are
+constexpr int slow_rounds = 8;        // then a patch grows by whole rings
+constexpr double around = 3;          // sizes: as far as the particles are that a patch is made of
+constexpr double wider = 3;           // times as far, where that does not suffice
+constexpr double most_wider = 8;      // as far in the end, nearly
+constexpr double most_at_once = 0.5;  // particles triangulated in a round, and in all, by those that there are
+constexpr double most_work = 1.5;
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
 class Guards {
@@ -196,7 +195,8 @@ class Settling {
         const std::array<std::uint32_t, 2> particles = {group.members[defect[0]], group.members[defect[1]]};
         if (bad_[particles[0]] || bad_[particles[1]]) touching.push_back(particles);
       }
-    std::sort(touching.begin(), touching.end());
+    touching.insert(touching.end(), touching_.begin(), touching_.end());
+    sort_unique(touching);
     return touching;
   }
 
@@ -224,7 +224,16 @@ class Settling {
   /// Adds what lies at edges of the mesh joined last that do not match; false where all do. Where all is of cells
   /// there, whose labels were repaired already, what is around them is added, too.
   bool grow(const StarMesh& joined, bool repaired) {
-    const std::vector<std::uint32_t> open = at_open_edges(joined, marked_);
+    std::vector<std::uint32_t> open;
+    touching_.clear();
+    for (const EdgeFault& fault : edge_faults(joined, marked_)) {
+      // Cells alone may touch themselves, too: then that is how the particles are.
+      const bool stays = !fault.open && repaired && bad_[fault.ends[0]] && bad_[fault.ends[1]];
+      if (stays)
+        touching_.push_back(fault.ends);
+      else
+        open.insert(open.end(), fault.ends.begin(), fault.ends.end());
+    }
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
     stuck_ = !open.empty() && !any;
@@ -369,6 +378,7 @@ class Settling {
   std::vector<std::uint8_t> near_;      // within reach of these
   DisjointSets sets_;                   // particles within reach of the same ones
   std::vector<Group> groups_;
+  std::vector<std::array<std::uint32_t, 2>> touching_;  // edges where cells of the patch alone touch themselves
   std::vector<std::uint32_t> group_of_, number_;  // per particle near: its group, and its place in the list of this
   std::vector<std::uint8_t> marked_;              // corners of triangles at bad ones, of stars or facets
   std::vector<std::uint8_t> wide_;                // particles whose triangles are listed:
@@ -391,18 +401,11 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
   Settling settling(mesh, world);
   cells.begin();
   bool repairs = false;
-  double work = 0;         // particles triangulated
-  std::int64_t early = 0;  // bad particles
-  std::size_t early_changed = 0;
+  double work = 0;  // particles triangulated
   for (int round = 0; round < patch_rounds; ++round) {
-    const std::size_t changed = settling.regroup();
-    work += double(changed);
-    if (work >= most_work * double(world.points.size()) && world.points.size() > 1000) return false;
-    if (round == early_round) early = settling.count(), early_changed = changed;
-    if (round == late_round && changed > early_changed) {  // along sheets that cells do not hold, patches creep on
-      const auto late = double(settling.count());
-      if (late > creeping * double(early) && late > large * double(world.points.size())) return false;
-    }
+    const auto now = double(settling.regroup()), all = double(world.points.size());
+    work += now;
+    if ((now >= most_at_once * all || work >= most_work * all) && all > 1000) return false;
     settling.make(cells, stop, repairs);
     StarMesh joined = settling.join();
     if (settling.grow(joined, repairs)) continue;

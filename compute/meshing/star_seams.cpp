@@ -22,7 +22,7 @@ struct Pass {
 
 }  // namespace
 
-std::vector<std::uint32_t> at_open_edges(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
+std::vector<EdgeFault> edge_faults(const StarMesh& mesh, std::span<const std::uint8_t> marked) {
   std::vector<Pass> passes;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (int k = 0; k < 3; ++k) {
@@ -33,13 +33,13 @@ std::vector<std::uint32_t> at_open_edges(const StarMesh& mesh, std::span<const s
       passes.push_back({std::min(from, to), std::max(from, to), mesh.materials[i][1], std::int8_t(-sign)});
     }
   std::sort(passes.begin(), passes.end());
-  std::vector<std::uint32_t> open;
+  std::vector<EdgeFault> faults;
   for (std::size_t i = 0, k = 0; i < passes.size(); i = k) {
     int sum = 0;
     for (k = i; k < passes.size() && !(passes[i] < passes[k]); ++k) sum += passes[k].sign;
-    if (sum != 0 || k - i > 2) open.push_back(passes[i].low), open.push_back(passes[i].high);
+    if (sum != 0 || k - i > 2) faults.push_back({{passes[i].low, passes[i].high}, sum != 0});
   }
-  return open;
+  return faults;
 }
 
 std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<const std::uint8_t> marked) {

@@ -1,6 +1,7 @@
 // Nacre: where triangles of stars and facets of cells do not meet as they should.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,9 +10,14 @@
 
 namespace nacre {
 
-/// Ends of edges, both marked, that a material passes more often one way than the other, or that have more than two
-/// triangles between the same two materials.
-std::vector<std::uint32_t> at_open_edges(const StarMesh& mesh, std::span<const std::uint8_t> marked);
+/// An edge that is not as it should be.
+struct EdgeFault {
+  std::array<std::uint32_t, 2> ends;
+  bool open;  ///< a material passes it more often one way than the other; else the surface touches itself there
+};
+
+/// Faults at edges whose ends are both marked, ascending; one for each material.
+std::vector<EdgeFault> edge_faults(const StarMesh& mesh, std::span<const std::uint8_t> marked);
 
 /// Marked particles off the junctions that the surface of a material passes more than once.
 std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<const std::uint8_t> marked);

@@ -5,15 +5,17 @@
 
 namespace nacre {
 
-std::size_t replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
-                              std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
-                              const VolumeFrame& frame, std::size_t capacity) {
+std::vector<std::uint32_t> replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
+                                             std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
+                                             const VolumeFrame& frame, std::size_t capacity) {
   auto& [position, direction, interface] = particles;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < position.size(); ++i)
     if (!gone[i]) position[kept] = position[i], direction[kept] = direction[i], interface[kept++] = interface[i];
   position.resize(kept), direction.resize(kept), interface.resize(kept);
-  for (const MeshDefects::NewPoint& p : born) {
+  std::vector<std::uint32_t> taken;
+  for (std::uint32_t i = 0; i < born.size(); ++i) {
+    const MeshDefects::NewPoint& p = born[i];
     std::array<std::uint16_t, 3> met{p.materials[0], p.materials[1], p.third};
     std::sort(met.begin(), met.end());
     const auto number = table.find(Junction(met[0], met[1], met[2]));
@@ -22,8 +24,9 @@ std::size_t replace_particles(HostParticles& particles, std::span<const std::uin
     position.push_back({float(at.x), float(at.y), float(at.z), 0});
     direction.push_back({0, 0, 0, 0});
     interface.push_back(*number);
+    taken.push_back(i);
   }
-  return kept;
+  return taken;
 }
 
 HostParticles take_back(std::span<const Attempt::Source> sources, const HostParticles& before,
@@ -36,6 +39,16 @@ HostParticles take_back(std::span<const Attempt::Source> sources, const HostPart
     mixed.interface.push_back(from.interface[i]);
   }
   return mixed;
+}
+
+HostParticles select(const HostParticles& particles, std::span<const std::uint32_t> chosen) {
+  HostParticles selected;
+  for (const std::uint32_t i : chosen) {
+    selected.position.push_back(particles.position[i]);
+    selected.direction.push_back(particles.direction[i]);
+    selected.interface.push_back(particles.interface[i]);
+  }
+  return selected;
 }
 
 std::vector<Vec3d> world_positions(std::span<const Float4> position, const VolumeFrame& frame) {

@@ -24,14 +24,18 @@ struct HostParticles {
 };
 
 /// Takes out the particles that `gone` marks, and puts new ones behind those that stay, of size 0 and without
-/// direction: as many as there is room for in `capacity`, on interfaces that `table` has. Returns how many stay.
-std::size_t replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
-                              std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
-                              const VolumeFrame& frame, std::size_t capacity);
+/// direction: as many as there is room for in `capacity`, on interfaces that `table` has. Returns which of `born` these
+/// are, ascending.
+std::vector<std::uint32_t> replace_particles(HostParticles& particles, std::span<const std::uint8_t> gone,
+                                             std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
+                                             const VolumeFrame& frame, std::size_t capacity);
 
 /// The particles that an attempt has taken back: each from `before` or from `now`.
 HostParticles take_back(std::span<const Attempt::Source> sources, const HostParticles& before,
                         const HostParticles& now);
+
+/// Those of the numbers `chosen`, in that order.
+HostParticles select(const HostParticles& particles, std::span<const std::uint32_t> chosen);
 
 /// World coordinates.
 std::vector<Vec3d> world_positions(std::span<const Float4> position, const VolumeFrame& frame);

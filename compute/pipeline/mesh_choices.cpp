@@ -47,6 +47,7 @@ std::string name_of(std::span<const Named<Choice>> named, Choice choice) {
 }  // namespace
 
 std::string to_string(Solver solver) { return name_of<Solver>(solvers, solver); }
+std::string to_string(TriangleSource source) { return name_of<TriangleSource>(triangle_sources, source); }
 std::string to_string(CubicKernel kernel) { return name_of<CubicKernel>(kernels, kernel); }
 
 Solver solver_from_string(std::string_view text) { return choice_of<Solver>(solvers, "solver", text); }
@@ -72,7 +73,6 @@ MeshParameters at_quality(const MeshParameters& parameters) {
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);
       p.remesh = std::min(p.remesh, 12);
-      if (triangles_from_string(p.triangles) == TriangleSource::automatic) p.triangles = "stars";
       break;
     case MeshQuality::best:
       p.iterations = std::max(p.iterations, 120);
@@ -81,6 +81,8 @@ MeshParameters at_quality(const MeshParameters& parameters) {
       break;
     case MeshQuality::standard: break;
   }
+  if (triangles_from_string(p.triangles) == TriangleSource::automatic)
+    p.triangles = to_string(p.max_deviation > 0 ? TriangleSource::delaunay : TriangleSource::stars);
   return p;
 }
 

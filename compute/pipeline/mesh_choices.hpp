@@ -29,12 +29,13 @@ enum class MeshQuality {
 
 /// What triangles are made of.
 enum class TriangleSource {
-  automatic,  ///< stars for a draft, else delaunay
-  delaunay,   ///< facets between Delaunay cells of different materials
-  stars,      ///< each particle's neighbours on its surfaces
+  automatic,  ///< delaunay where the deviation is bounded, else stars
+  delaunay,   ///< facets between Delaunay cells of different materials, and nothing else
+  stars,      ///< each particle's neighbours on its surfaces, where these settle; polished
 };
 
 std::string to_string(Solver solver);
+std::string to_string(TriangleSource source);
 std::string to_string(CubicKernel kernel);
 
 /// Each throws Error, listing the valid values, for any other value.
@@ -47,8 +48,8 @@ SeedOrigin seeds_from_string(std::string_view text, Solver solver);
 
 /// The parameters that a run with these works with. A draft has one closest-point cell per voxel and axis, of which
 /// those alone are filled that seeds come from, 8 iterations, one round of smoothing and twelve of remeshing, or fewer
-/// where `parameters` say so, triangles of stars unless told otherwise, and does not measure the energy at the end; the
-/// best has at least 120 iterations, four rounds of smoothing and 40 of remeshing. Standard changes nothing.
+/// where `parameters` say so, and does not measure the energy at the end; the best has at least 120 iterations, four
+/// rounds of smoothing and 40 of remeshing. `auto` triangles are what they stand for.
 MeshParameters at_quality(const MeshParameters& parameters);
 
 /// All choices of a set of parameters.

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
-#include "compute/meshing/edge_edits.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
@@ -19,12 +18,10 @@ namespace {
 /// attempts help more.
 int most_further(const ImprovementRule& rule, const StarUse& use) { return rule.stars && use.fallbacks == 0 ? 1 : 4; }
 
-/// Rounds of remeshing: cells, which cost several times as much as stars, get fewer where stars were asked for, once no
-/// triangle is worse than what is asked; but not where the particles were smoothed for triangles of stars first.
-int most_rounds(const ImprovementRule& rule, const StarUse& use, double fitness) {
-  const bool cells_alone = use.fallbacks > 0 && use.meshes == 0;
-  return cells_alone && fitness >= 1 ? (rule.remesh + 1) / 2 : rule.remesh;
-}
+constexpr int most_in_vain = 3;  // attempts
+
+/// Cells are tried, too, rather than that triangles of stars are so bad.
+constexpr DefectRule unacceptable{0, worst_defects.near, worst_defects.near, false};
 
 /// What an attempt does to the particles around bad points.
 struct AttemptKind {
@@ -76,14 +73,6 @@ StarInput star_input(MovableParticles& fields, const HostParticles& particles, c
   return input;
 }
 
-/// Marks the points of the mesh at triangles that are worth further work, and where it touches itself.
-std::vector<std::uint8_t> bad_points(const SurfaceMesh& mesh, std::span<const std::array<std::uint32_t, 2>> touching) {
-  std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, mesh);
-  for (const auto& defect : touching)
-    for (const std::uint32_t point : defect) bad[point] = 1;
-  return bad;
-}
-
 }  // namespace
 
 MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTable& table, const VolumeFrame& frame,
@@ -99,19 +88,21 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
   settle(best);
-  if (may_edit() && !edit(best->made)) {  // never less than what is asked: cells, once more
+  const Triangulated& made = best->made;
+  if (stars() && polishes() && (!made.touching.empty() || fitness(made.mesh, made.order, unacceptable) < 1)) {
     ++star_use_.fallbacks;
-    remeshed_ = 0, bad_ = most_bad;
+    remeshed_ = 0, bad_ = most_bad, in_vain_ = 0;
     best.reset();
     settle(best);
   }
   if (rule_.deviation > 0) refine(*best);
+  star_use_.flips = best->flips, star_use_.contractions = best->contractions, star_use_.splits = best->splits;
   particles_.upload(best->particles);
   return {std::move(best->made.mesh), count_by_order(best->particles.interface, table_), star_use_, deviation_};
 }
 
-/// Triangulates and improves until nothing helps. `best` is replaced by what is better, where it is the first or no
-/// deviation is asked for.
+/// Triangulates and improves until the mesh is good or nothing helps. `best` is replaced by what is better, where it is
+/// the first or no deviation is asked for.
 void MeshImprovement::settle(std::optional<Kept>& best) {
   for (bool again = true; again;) {
     tell_("triangulate", fraction(), 0, 0);
@@ -120,32 +111,14 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
       if (continue_attempt(made)) continue;
       if (take_back_attempt()) made = triangulate();
     }
-    if (smoothed_ >= rule_.smooth && !(best && made.fitness < best->made.fitness))
-      best = Kept{made, particles_.download(), {}, {}};
-    if (best && rule_.hurries && may_edit() && edit(best->made)) return;
+    if (smoothed_ >= rule_.smooth) {
+      Kept now = polishes() ? polished(made) : Kept{made, particles_.download(), {}, {}, {}, {}, {}, {}};
+      in_vain_ = best && !better_shaped(now, *best) ? in_vain_ + 1 : 0;
+      if (!best || !better_shaped(*best, now)) best = std::move(now);
+      if (polishes() && (is_good(*best) || in_vain_ == most_in_vain)) return;
+    }
     again = improve(made);
   }
-}
-
-/// Changes bad triangles by their edges. False, and nothing is changed, where some would be left, or the mesh touches
-/// itself.
-bool MeshImprovement::edit(Triangulated& made) {
-  if (!made.touching.empty()) return false;
-  bool good = false;
-  particles_.in_stage("remesh", [&] {
-    SurfaceMesh mesh = made.mesh;
-    const EdgeEdits edits = edit_edges(mesh, made.order, worst_defects);
-    good = edits.bad == 0;
-    if (!good) return;
-    made.mesh = std::move(mesh);
-    star_use_.flips += edits.flips, star_use_.contractions += edits.contractions;
-    const auto keep = [&](auto& of_points) {
-      for (std::size_t v = 0; v < edits.kept.size(); ++v) of_points[v] = of_points[edits.kept[v]];
-      of_points.resize(edits.kept.size());
-    };
-    keep(made.point_of), keep(made.order), keep(made.size);
-  });
-  return good;
 }
 
 double MeshImprovement::fraction() const {
@@ -165,10 +138,13 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
       made.size.push_back(particles.position[i].w * float(frame_.unit));
     }
     lift_off_junctions(made.mesh, made.order);
-    made.fitness =
-        made.touching.empty() ? fitness(made.mesh, made.order, worst_defects) : -double(made.touching.size());
+    made.fitness = fitness_of(made);
   });
   return made;
+}
+
+double MeshImprovement::fitness_of(const Triangulated& made) {
+  return made.touching.empty() ? fitness(made.mesh, made.order, worst_defects) : -double(made.touching.size());
 }
 
 /// False where the stars do not give a sound mesh.
@@ -183,8 +159,9 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   const bool mirrored = dot(axes[0], cross(axes[1], axes[2])) < 0;
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
   std::vector<std::array<std::uint32_t, 2>> touching;
+  const bool may_settle = double(stars.counts.unsettled) <= rule_.most_unsettled * double(stars.counts.stars);
   const bool settled =
-      settle_by_cells(stars, {points, size, mirrored, material_at}, patch_cells_, touching, rule_.stop);
+      may_settle && settle_by_cells(stars, {points, size, mirrored, material_at}, patch_cells_, touching, rule_.stop);
   star_use_.last = stars.counts;
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;
@@ -221,10 +198,10 @@ bool MeshImprovement::improve(Triangulated& made) {
     if (smoothed_ == rule_.smooth && rule_.remesh > 0) remesh(made, worst_defects);
     return true;
   }
-  const std::vector<std::uint8_t> bad = bad_points(made.mesh, made.touching);
+  const std::vector<std::uint8_t> bad = bad_points(made);
   const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
   const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * bad_);
-  if (remeshed_ >= most_rounds(rule_, star_use_, made.fitness) || !worth) return false;
+  if (remeshed_ >= rule_.remesh || !worth) return false;
   ++remeshed_;
   bad_ = count;
   return begin_attempt(made, bad);
@@ -254,11 +231,9 @@ bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uin
 bool MeshImprovement::continue_attempt(Triangulated& made) {
   attempt_->judge(made.view());
   const std::vector<std::uint8_t> open = attempt_->open(made.view());
-  if (open.empty() || further_ == most_further(rule_, star_use_) ||
-      remeshed_ >= most_rounds(rule_, star_use_, made.fitness))
-    return false;
+  if (open.empty() || further_ == most_further(rule_, star_use_) || remeshed_ >= rule_.remesh) return false;
   ++further_, ++remeshed_;
-  std::vector<std::uint8_t> moving = bad_points(made.mesh, made.touching);
+  std::vector<std::uint8_t> moving = bad_points(made);
   for (std::size_t v = 0; v < moving.size(); ++v) moving[v] &= open[v];
   const bool moved = rule_.smooth > 0 && smooth(made, moving) > 0;
   return remesh(made, worst_defects, open) || moved;
@@ -308,8 +283,8 @@ bool MeshImprovement::remesh(const Triangulated& made, const DefectRule& rule, s
     if (!changed) return;
     std::vector<std::uint8_t> gone(std::size_t(particles_.count()), 0);
     for (const std::uint32_t v : defects.remove) gone[made.point_of[v]] = 1;
-    const std::size_t count = particles_.replace(gone, defects.insert);
-    if (attempt_) attempt_->change(gone, count);
+    particles_.replace(gone, defects.insert);
+    if (attempt_) attempt_->change(gone, std::size_t(particles_.count()));
   });
   return changed;
 }

@@ -6,6 +6,7 @@
 // - an attempt: smoothing or remeshing at bad triangles only, undone where the triangles are no better afterwards;
 // - to project: particles are brought onto their interfaces, on the fields themselves;
 // - to edit: edges of bad triangles are flipped or contracted (edge_edits.hpp); particles stay where they are;
+// - to polish: edits and smoothing at bad triangles in turn; nothing is triangulated again;
 // - to repair: labels of Delaunay cells are changed (repair.hpp); particles are not;
 // - to improve: all of this together. (improve_cells.hpp improves tetrahedra, which have nothing to do with it.)
 #pragma once
@@ -35,8 +36,9 @@ namespace nacre {
 struct ImprovementRule {
   int smooth = 2;                           ///< rounds of smoothing all particles
   int remesh = 12;                          ///< rounds of remeshing, at most; each attempt counts as one
-  bool stars = false;                       ///< triangles from the particles' stars, where these are sound
-  bool hurries = false;                     ///< the first mesh of stars without bad triangles is good enough
+  bool stars = false;                       ///< triangles from stars, where these are sound, and polished
+  double most_unsettled = 1;                ///< share of the stars: with more, cells are used from the start
+  bool thorough = false;                    ///< goes on until no triangle is below wanted_ratio, not worst_defects
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
   const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
   double deviation = 0;                     ///< largest of triangles from their interface, voxels; 0: any
@@ -51,10 +53,11 @@ struct ImprovedMesh {
   DeviationInfo deviation;
 };
 
-/// Triangulates particles and changes them until the triangles get no better. First the clear defects are remeshed,
-/// then all particles are smoothed, then there are attempts at what is still bad. The best mesh after smoothing is
-/// kept. Where the deviation is bounded, particles are added in the triangles above the bound, in turn with further
-/// attempts.
+/// Triangulates particles and changes them until the triangles are good, or get no better. First the clear defects are
+/// remeshed, then all particles are smoothed, then there are attempts at what is still bad. The best mesh after
+/// smoothing is kept. With `rule.stars`, each of these is polished, and no more is done once one is as good as is
+/// asked; without, all triangles are facets of Delaunay cells. Where the deviation is bounded, particles are added in
+/// the triangles above the bound, in turn with further attempts.
 class MeshImprovement {
  public:
   /// All arguments must outlive the object.
@@ -81,16 +84,24 @@ class MeshImprovement {
   struct Kept {
     Triangulated made;
     HostParticles particles;
-    DeviationRefinement further;  ///< what would bring it nearer to its interfaces
+    std::int64_t mediocre = 0;                             ///< of its points, at triangles below wanted_ratio
+    std::int64_t flips = 0, contractions = 0, splits = 0;  ///< of edges
+    DeviationRefinement further;                           ///< what would bring it nearer to its interfaces
     MeshDeviation deviation;
   };
 
   void settle(std::optional<Kept>& best);
   void refine(Kept& best);
-  bool edit(Triangulated& made);
+  Kept polished(const Triangulated& made);
+  std::int64_t edit(Kept& kept, std::vector<std::uint8_t>& fixed);
+  std::int64_t split(Kept& kept, std::vector<std::uint8_t>& fixed);
+  bool is_good(const Kept& kept) const;
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
-  bool may_edit() const { return stars() && rule_.deviation == 0; }
+  bool polishes() const { return rule_.stars && rule_.deviation == 0; }
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
+  static std::vector<std::uint8_t> bad_points(const Triangulated& made);
+  static double fitness_of(const Triangulated& made);
+  static bool better_shaped(const Kept& a, const Kept& b);
   static bool better(const Kept& a, const Kept& b);
   void measure(Kept& kept);
 
@@ -117,6 +128,7 @@ class MeshImprovement {
   int smoothed_ = 0, remeshed_ = 0;  ///< rounds so far
   static constexpr std::int64_t most_bad = std::int64_t(1) << 40;
   std::int64_t bad_ = most_bad;     ///< points at bad triangles when the last attempt began
+  int in_vain_ = 0;                 ///< polished meshes in a row that were no better
   std::uint32_t tried_ = 0;         ///< kinds of attempts so far
   std::optional<Attempt> attempt_;  ///< the one in progress,
   HostParticles before_;            ///< what was there before it,

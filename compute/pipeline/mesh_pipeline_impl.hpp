@@ -13,6 +13,9 @@
 
 namespace nacre {
 
+/// Above this share of unsettled stars, surfaces are sampled so coarsely that cells are quicker, and better.
+constexpr double most_unsettled_stars = 0.07;
+
 template <class Backend>
 class MeshPipelineOf : public MeshPipeline {
  public:
@@ -58,11 +61,13 @@ class MeshPipelineOf : public MeshPipeline {
     else
       relaxed_ = particles_.download();
     exec_.arena().give_back();  // for the triangulation, which is on the host
+    const MeshQuality quality = quality_from_string(used.quality);
     const bool stars = triangles_from_string(used.triangles) == TriangleSource::stars;
     const ImprovementRule rule{.smooth = used.smooth,
                                .remesh = used.remesh,
                                .stars = stars,
-                               .hurries = quality_from_string(used.quality) == MeshQuality::draft,
+                               .most_unsettled = quality == MeshQuality::draft ? 1 : most_unsettled_stars,
+                               .thorough = quality == MeshQuality::best,
                                .threads = exec_.device().threads(),
                                .stop = stop_,
                                .deviation = used.max_deviation,

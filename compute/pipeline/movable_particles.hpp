@@ -25,8 +25,9 @@ class MovableParticles {
   /// Instead of those that there are; all are then at rest.
   virtual void upload(const HostParticles& particles) = 0;
   /// As `replace_particles`; the new ones are brought onto their interfaces and get their sizes, and those that find
-  /// none are left out. Returns how many particles there are then.
-  virtual std::size_t replace(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born) = 0;
+  /// none are left out. Returns which of `born` there are then, ascending.
+  virtual std::vector<std::uint32_t> replace(std::span<const std::uint8_t> gone,
+                                             std::span<const MeshDefects::NewPoint> born) = 0;
   /// Moves the particles that have rings within them, `rule.turns` times; `turned(k)` is called after each second time.
   virtual void smooth(const TriangleRings& rings, const SmoothingRule& rule,
                       const std::function<void(int)>& turned) = 0;

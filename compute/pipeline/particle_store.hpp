@@ -62,7 +62,8 @@ class ParticleStore : public MovableParticles {
 
   HostParticles download() const override;
   void upload(const HostParticles& particles) override;
-  std::size_t replace(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born) override;
+  std::vector<std::uint32_t> replace(std::span<const std::uint8_t> gone,
+                                     std::span<const MeshDefects::NewPoint> born) override;
   void smooth(const TriangleRings& rings, const SmoothingRule& rule, const std::function<void(int)>& turned) override;
   std::vector<std::uint16_t> material_at(std::span<const Vec3d> points) override {
     return nacre::material_at(exec_, fields_, points);
@@ -81,14 +82,14 @@ class ParticleStore : public MovableParticles {
   }
 
   /// Brings the particles from number `first` on onto the fields. New ones get their size; those that have strayed from
-  /// their interface are taken out.
-  void project(std::size_t first = 0);
+  /// their interface are taken out: the marks returned, one for each from `first` on.
+  std::vector<std::uint8_t> project(std::size_t first = 0);
   /// All particles at rest.
   void rest() { solver_->velocity().upload(std::vector<Float4>(std::size_t(count()), Float4{0, 0, 0, 0})); }
 
  private:
-  /// As `replace`, but the new particles stay where they are put. Returns how many of the old ones stay.
-  std::size_t change(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
+  /// As `replace`, but the new particles stay where they are put.
+  std::vector<std::uint32_t> change(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born);
 
   Executor<Backend>& exec_;
   const MeshFields<Backend>& fields_;
@@ -113,24 +114,27 @@ void ParticleStore<Backend>::upload(const HostParticles& particles) {
 }
 
 template <class Backend>
-std::size_t ParticleStore<Backend>::change(std::span<const std::uint8_t> gone,
-                                           std::span<const MeshDefects::NewPoint> born) {
+std::vector<std::uint32_t> ParticleStore<Backend>::change(std::span<const std::uint8_t> gone,
+                                                          std::span<const MeshDefects::NewPoint> born) {
   HostParticles particles = download();
-  const std::size_t kept = replace_particles(particles, gone, born, fields_.table(), fields_.frame(),
-                                             std::size_t(solver_->particles().capacity()));
+  std::vector<std::uint32_t> taken = replace_particles(particles, gone, born, fields_.table(), fields_.frame(),
+                                                       std::size_t(solver_->particles().capacity()));
   upload(particles);
-  return kept;
+  return taken;
 }
 
 template <class Backend>
-std::size_t ParticleStore<Backend>::replace(std::span<const std::uint8_t> gone,
-                                            std::span<const MeshDefects::NewPoint> born) {
-  project(change(gone, born));  // the others lie on the fields
-  return std::size_t(count());
+std::vector<std::uint32_t> ParticleStore<Backend>::replace(std::span<const std::uint8_t> gone,
+                                                           std::span<const MeshDefects::NewPoint> born) {
+  std::vector<std::uint32_t> taken = change(gone, born);
+  const std::vector<std::uint8_t> lost = project(std::size_t(count()) - taken.size());  // the others lie on the fields
+  std::size_t k = 0;
+  std::erase_if(taken, [&](std::uint32_t) { return lost[k++] != 0; });
+  return taken;
 }
 
 template <class Backend>
-void ParticleStore<Backend>::project(std::size_t first) {
+std::vector<std::uint8_t> ParticleStore<Backend>::project(std::size_t first) {
   const ParticleSet& set = solver_->particles();
   const std::int64_t count = set.count - std::int64_t(first);
   Arena::Scope scope(exec_.arena());
@@ -139,9 +143,11 @@ void ParticleStore<Backend>::project(std::size_t first) {
                  detail::ProjectParticle{fields_.bricks().view(), fields_.size().view(), fields_.junctions().data(),
                                          set.interface.data() + first, set.position.data() + first,
                                          set.direction.data() + first, lost.data()});
-  std::vector<std::uint8_t> gone = lost.download();
-  gone.insert(gone.begin(), first, 0);
+  const std::vector<std::uint8_t> lost_ones = lost.download();
+  std::vector<std::uint8_t> gone(first, 0);
+  gone.insert(gone.end(), lost_ones.begin(), lost_ones.end());
   if (std::find(gone.begin(), gone.end(), 1) != gone.end()) change(gone, {});
+  return lost_ones;
 }
 
 template <class Backend>

@@ -229,8 +229,9 @@ std::vector<Knob> particle_knobs(Settings& s) {
       {.name = "triangulation",
        .group = group,
        .help =
-           "what triangles are made of: cells of the Delaunay triangulation, or each particle's neighbours (stars), "
-           "which is quicker; auto: stars for a draft of a surface, else cells",
+           "what triangles are made of: each particle's neighbours (stars), whose bad triangles are then changed edge "
+           "by edge, or cells of the Delaunay triangulation alone; auto: stars, but cells for tetrahedra and where "
+           "`max_deviation` is set",
        .value = &m.triangles,
        .choices = {"auto", "delaunay", "stars"}},
       {.name = "seeds",

@@ -41,7 +41,7 @@ TEST(HostParticles, SomeGoAndOthersCome) {
   const std::vector<MeshDefects::NewPoint> born{{frame.to_world({7, 8, 9}), {1, 2}, 0},
                                                 {frame.to_world({1, 1, 1}), {0, 2}, 0},
                                                 {frame.to_world({5, 5, 5}), {0, 1}, 0}};
-  EXPECT_EQ(replace_particles(particles, gone, born, table, frame, 3), 2u);
+  EXPECT_EQ(replace_particles(particles, gone, born, table, frame, 3), std::vector<std::uint32_t>{0});
   ASSERT_EQ(particles.count(), 3u) << "none on an interface that is not there, and no more than there is room for";
   EXPECT_EQ(particles.position[1].x, 2);
   EXPECT_EQ(particles.direction[1].w, 2);
@@ -50,6 +50,13 @@ TEST(HostParticles, SomeGoAndOthersCome) {
   EXPECT_EQ(particles.position[2].w, 0);
   EXPECT_EQ(particles.interface, (std::vector<std::uint32_t>{0, 0, 1}));
   EXPECT_EQ(count_by_order(particles.interface, table), (std::array<std::int64_t, 3>{0, 0, 3}));
+}
+
+TEST(HostParticles, SomeAreSelected) {
+  const HostParticles some = select(in_a_row(5), std::vector<std::uint32_t>{3, 0});
+  EXPECT_EQ(xs(some), (std::vector<float>{3, 0}));
+  EXPECT_EQ(some.direction[0].w, 3);
+  EXPECT_EQ(some.interface.size(), 2u);
 }
 
 TEST(HostParticles, AreTakenBackOneByOne) {

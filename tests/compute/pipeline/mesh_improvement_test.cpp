@@ -26,11 +26,13 @@ class SphereParticles : public MovableParticles {
   std::int64_t count() const override { return std::int64_t(particles_.count()); }
   HostParticles download() const override { return particles_; }
   void upload(const HostParticles& particles) override { particles_ = particles; }
-  std::size_t replace(std::span<const std::uint8_t> gone, std::span<const MeshDefects::NewPoint> born) override {
-    const std::size_t kept = replace_particles(particles_, gone, born, table, frame, 100000);
+  std::vector<std::uint32_t> replace(std::span<const std::uint8_t> gone,
+                                     std::span<const MeshDefects::NewPoint> born) override {
+    std::vector<std::uint32_t> taken = replace_particles(particles_, gone, born, table, frame, 100000);
+    const std::size_t kept = particles_.count() - taken.size();
     removed += gone.size() - kept;
     for (std::size_t i = kept; i < particles_.count(); ++i) put(i, world(i));
-    return particles_.count();
+    return taken;
   }
   /// Towards the middle of the corners around; enough for a sphere.
   void smooth(const TriangleRings& rings, const SmoothingRule& rule, const std::function<void(int)>& turned) override {
@@ -96,8 +98,8 @@ class SphereParticles : public MovableParticles {
   HostParticles particles_;
 };
 
-ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0) {
-  const ImprovementRule rule{.smooth = smooth, .remesh = remesh, .threads = 1, .deviation = deviation};
+ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0, bool stars = false) {
+  const ImprovementRule rule{.smooth = smooth, .remesh = remesh, .stars = stars, .threads = 1, .deviation = deviation};
   const TellStage tell = [](std::string_view, double fraction, int, double) {
     EXPECT_GE(fraction, 0.85);
     EXPECT_LE(fraction, 0.94);
@@ -139,6 +141,21 @@ TEST(MeshImprovement, MendingTakesOutWhatSpoilsTriangles) {
   EXPECT_GT(surface_quality(made.mesh).all.radius_ratio_min, worst_defects.ratio);
   EXPECT_EQ(std::size_t(particles.count()), made.mesh.points.size()) << "the particles are those of the mesh";
   EXPECT_TRUE(particles.stages.contains("remesh"));
+}
+
+/// The same particles, neither smoothed nor remeshed: their triangles go by edits alone.
+TEST(MeshImprovement, PolishingEditsEdgesInPlaceOfParticles) {
+  std::vector<Vec3d> directions = even_directions(even);
+  for (int k = 0; k < 5; ++k) directions.push_back(directions[std::size_t(40 + 70 * k)] + Vec3d(0.01, 0.01, 0));
+  SphereParticles particles(directions), cells(directions);
+  const ImprovedMesh made = improve(particles, 0, 0, 0, true);
+  EXPECT_EQ(made.stars.meshes, 1);
+  EXPECT_EQ(made.stars.fallbacks, 0);
+  EXPECT_EQ(made.stars.contractions, 5);
+  EXPECT_TRUE(check_topology(made.mesh, 2).sound());
+  EXPECT_GT(surface_quality(made.mesh).all.radius_ratio_min, wanted_ratio);
+  EXPECT_LT(surface_quality(improve(cells, 0, 0).mesh).all.radius_ratio_min, 0.1);
+  EXPECT_EQ(std::size_t(particles.count()), made.mesh.points.size()) << "the particles are those of the mesh";
 }
 
 /// A part of the sphere where particles are half as dense: there are more in the end, and nowhere else.

@@ -1,0 +1,124 @@
+// Nacre: a mesh made better without triangulating it again: edges are edited and points smoothed in turn.
+#include <algorithm>
+#include <numeric>
+
+#include "compute/meshing/edge_edits.hpp"
+#include "compute/meshing/edge_splits.hpp"
+#include "compute/pipeline/mesh_improvement.hpp"
+
+namespace nacre {
+namespace {
+
+constexpr int most_rounds = 8;
+/// What edits aim at, everywhere.
+constexpr DefectRule mediocre{0, wanted_ratio, wanted_ratio, false};
+
+/// The numbers that `defects` have where only the points `kept` are left; those of others are dropped.
+void renumber(std::vector<std::array<std::uint32_t, 2>>& defects, std::span<const std::uint32_t> kept) {
+  const auto number = [&](std::uint32_t& v) {
+    const auto at = std::lower_bound(kept.begin(), kept.end(), v);
+    if (at == kept.end() || *at != v) return false;
+    v = std::uint32_t(at - kept.begin());
+    return true;
+  };
+  std::erase_if(defects, [&](auto& defect) { return !(number(defect[0]) && number(defect[1])); });
+}
+
+}  // namespace
+
+/// Marks the points of a mesh at triangles that are worth further work, and where it touches itself.
+std::vector<std::uint8_t> MeshImprovement::bad_points(const Triangulated& made) {
+  std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, made.mesh);
+  for (const auto& defect : made.touching)
+    for (const std::uint32_t point : defect) bad[point] = 1;
+  return bad;
+}
+
+bool MeshImprovement::better_shaped(const Kept& a, const Kept& b) {
+  return a.made.fitness != b.made.fitness ? a.made.fitness > b.made.fitness : a.mediocre < b.mediocre;
+}
+
+bool MeshImprovement::is_good(const Kept& kept) const {
+  return kept.made.fitness >= 1 && (!rule_.thorough || kept.mediocre == 0);
+}
+
+/// Changes bad triangles by their edges. `fixed` marks points; those are added where a curve goes that their particles
+/// are not on. Returns how many changes it made.
+std::int64_t MeshImprovement::edit(Kept& kept, std::vector<std::uint8_t>& fixed) {
+  Triangulated& made = kept.made;
+  const EdgeEdits edits = edit_edges(made.mesh, made.order, mediocre);
+  const auto keep = [&](auto& of_points) {
+    for (std::size_t v = 0; v < edits.kept.size(); ++v) of_points[v] = of_points[edits.kept[v]];
+    of_points.resize(edits.kept.size());
+  };
+  keep(made.point_of), keep(made.order), keep(made.size), keep(fixed);
+  renumber(made.touching, edits.kept);
+  for (const std::uint32_t v : edits.crossed) fixed[v] = 1;
+  kept.flips += edits.flips, kept.contractions += edits.contractions;
+  return edits.flips + edits.contractions;
+}
+
+/// Splits long edges of bad triangles by new particles. Returns how many.
+std::int64_t MeshImprovement::split(Kept& kept, std::vector<std::uint8_t>& fixed) {
+  Triangulated& made = kept.made;
+  std::vector<EdgeSplit> splits = edges_to_split(made.mesh, made.order, made.size, mediocre);
+  if (splits.empty()) return 0;
+  std::vector<Vec3d> middle;
+  std::vector<Junction> junction;
+  for (const auto& [ends, point] : splits) {
+    middle.push_back(point.position);
+    junction.push_back(point.third == 0xffff ? Junction(point.materials[0], point.materials[1])
+                                             : Junction(point.materials[0], point.materials[1], point.third));
+  }
+  const std::vector<Vec3d> on = particles_.onto_junctions(middle, junction, true);
+  std::vector<MeshDefects::NewPoint> born;
+  for (std::size_t k = 0; k < splits.size(); ++k) {
+    born.push_back(splits[k].point);
+    if (is_finite(on[k])) born.back().position = on[k];
+  }
+  const auto before = std::size_t(particles_.count());
+  const std::vector<std::uint32_t> taken = particles_.replace(std::vector<std::uint8_t>(before, 0), born);
+  for (std::size_t k = 0; k < taken.size(); ++k) splits[k] = splits[taken[k]];
+  splits.resize(taken.size());
+  const std::vector<Float4> position = particles_.download().position;
+  std::vector<Vec3d> at;
+  for (std::size_t i = before; i < position.size(); ++i)
+    at.push_back(frame_.to_world({position[i].x, position[i].y, position[i].z}));
+  const std::vector<std::uint32_t> done = split_edges(made.mesh, made.order, splits, at, mediocre);
+  for (const std::uint32_t k : done) {
+    made.point_of.push_back(std::uint32_t(before + k));
+    made.order.push_back(splits[k].point.third == 0xffff ? 2 : 1);
+    made.size.push_back(position[before + k].w * float(frame_.unit));
+    fixed.push_back(0);
+  }
+  kept.splits += std::int64_t(done.size());
+  return std::int64_t(done.size());
+}
+
+/// The best that edits and smoothing make of a mesh of the particles, which stay as they are. What is kept has the
+/// particles of its mesh alone.
+MeshImprovement::Kept MeshImprovement::polished(const Triangulated& made) {
+  const HostParticles before = particles_.download();
+  Kept now, best;
+  now.made = made;
+  std::vector<std::uint8_t> fixed(made.mesh.points.size(), 0), bad;
+  for (int round = 0; round <= most_rounds; ++round) {
+    std::int64_t changes = 0;
+    particles_.in_stage("remesh", [&] {
+      changes = edit(now, fixed) + split(now, fixed);
+      bad = bad_points(now.made);
+      now.mediocre = std::count(bad.begin(), bad.end(), 1);
+      now.made.fitness = fitness_of(now.made);
+    });
+    const bool better = round == 0 || better_shaped(now, best);
+    if (better) best = now, best.particles = select(particles_.download(), now.made.point_of);
+    if (now.mediocre == 0 || rule_.smooth == 0 || !(better || changes > 0)) break;
+    for (std::size_t v = 0; v < bad.size(); ++v) bad[v] &= !fixed[v];
+    smooth(now.made, bad);
+  }
+  std::iota(best.made.point_of.begin(), best.made.point_of.end(), 0);
+  particles_.upload(before);
+  return best;
+}
+
+}  // namespace nacre
