@@ -145,9 +145,24 @@ struct Meshing::State {
     measured = filled = false;
   }
 
-  /// The mesh as the library gives it, of the order that the knob asks for.
-  void publish() {
-    const int order = settings().element_order;
+  /// Only facets of Delaunay cells can be filled: a mesh of stars is triangulated anew, from the same particles.
+  void require_facets() {
+    finish();
+    const StarUse& stars = pipeline->info().stars;
+    if (stars.meshes + stars.fallbacks == 0) return;
+    if (settings().mesh.triangles == "stars")
+      throw Error("tetrahedra need `triangulation` to be auto or delaunay", "it is stars", "leave it so");
+    const double started = seconds_now();
+    stage = Stage::particles;  // should it be interrupted
+    pipeline->parameters.triangles = "delaunay";
+    triangulate();
+    stage = Stage::triangles;
+    publish(mesh_order);
+    seconds += seconds_now() - started;
+  }
+
+  /// The mesh as the library gives it.
+  void publish(int order) {
     std::optional<SecondOrder> second;
     if (order == 2) second = mesh_nodes(result.mesh, nullptr, *pipeline, options.stop);
     mesh = public_mesh(result.mesh, second ? &*second : nullptr, input);
@@ -169,7 +184,7 @@ struct Meshing::State {
     }
     stage = Stage(int(stage) + 1);
     seconds += seconds_now() - started;
-    if (stage == Stage::triangles) publish();
+    if (stage == Stage::triangles) publish(settings().element_order);
     return true;
   }
 
@@ -201,6 +216,7 @@ struct Meshing::State {
   }
 
   void fill() {
+    require_facets();
     measure();
     const int order = settings().element_order;
     if (filled && used_max_cell == settings().max_cell && used_order == order) return;
@@ -307,7 +323,7 @@ const Mesh& Meshing::mesh() {
   return *library_call([&] {
     const Caller caller(state_->mutex, state_->options.threads);
     state_->finish();
-    if (state_->mesh_order != state_->settings().element_order) state_->publish();
+    if (state_->mesh_order != state_->settings().element_order) state_->publish(state_->settings().element_order);
     return &state_->mesh;
   });
 }

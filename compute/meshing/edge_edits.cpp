@@ -18,7 +18,7 @@ namespace {
 /// How far a change may bend surfaces and curves.
 struct Latitude {
   double turn;   ///< least cosine between a triangle's normals before and after
-  double bend;   ///< most, of a curve where a point is contracted, in lengths of the side that is left
+  double bend;   ///< most, of a curve where a point is contracted, in lengths of the side that is left; < 0: not at all
   double cross;  ///< of the mean edge: across so wide a strip a point of a curve is contracted, at most
 };
 constexpr Latitude at_mediocre{0.8, -1, 0}, at_worst{0.35, 0.25, 0.5};

@@ -20,13 +20,13 @@ struct EdgeEdits {
 
 /// Flips edges and contracts them at triangles that are bad by `rule`, the worst first, each time what leaves the best
 /// triangles, as long as the worst of those that change becomes better. Topology stays as it is: an edge is flipped
-/// between two triangles of one interface, if the mesh does not have the new one; it is contracted if the ends have no
-/// neighbours in common but those opposite it (the link condition), onto any neighbour from a point within a surface,
-/// or along its curve from one on a curve that is nearly straight there. No triangle turns by more than about 35
-/// degrees. At triangles that are also bad by `worst_defects` shape matters more: curves may bend more there,
-/// triangles may turn by up to 70 degrees, and a point of a curve is contracted across a strip of surface narrower
-/// than half the mean edge, if only the two materials beside that have both ends. `order` (2 surface, 1 curve, 0
-/// point) is per point of the mesh; points that are contracted leave it.
+/// between two triangles of one interface, if the mesh does not have the new one; a point within a surface is
+/// contracted onto a neighbour if the two have no neighbours in common but those opposite their edge (the link
+/// condition). No triangle turns by more than about 35 degrees. At triangles that are also bad by `worst_defects`
+/// triangles may turn by up to 70 degrees, and points of curves are contracted, too: along their curve where that is
+/// nearly straight, or across a strip of surface narrower than half the mean edge, if only the two materials beside
+/// that have both ends. `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are contracted
+/// leave it.
 EdgeEdits edit_edges(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
 
 }  // namespace nacre

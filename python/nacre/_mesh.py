@@ -140,6 +140,9 @@ class Mesh:
         self._run = run
         self._changes = 0 if run is None else run._changes
         self._kept: tuple[Quality, dict[str, Any]] | None = None  # of a pickled mesh
+        self._take(data)
+
+    def _take(self, data: dict[str, Any]) -> None:
         self._data = data
         self._materials: list[tuple[int, str]] = data["materials"]
         self._sides: NDArray[np.uint16] = data["sides"]
@@ -179,6 +182,9 @@ class Mesh:
     def tetrahedra(self, max_cell: float | None = None, order: int | None = None) -> Tetrahedra:
         """Fill every material but the outside.
 
+        Only facets of Delaunay cells can be filled. A mesh of stars (the knob `triangulation`) is triangulated anew, from
+        the same particles: this mesh has the new triangles and points then.
+
         Parameters
         ----------
         max_cell : float, optional
@@ -193,7 +199,10 @@ class Mesh:
             run._native.set("element_order", knob("order", order))
         if max_cell is not None:
             run._native.set("max_cell", knob("max_cell", max_cell))
-        return Tetrahedra(self, run._native.tetrahedra())
+        cells, anew = run._native.tetrahedra()
+        if anew is not None:
+            self._take(anew)
+        return Tetrahedra(self, cells)
 
     @property
     def quality(self) -> Quality:

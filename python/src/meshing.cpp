@@ -157,7 +157,18 @@ void bind_meshing(nb::module_& module) {
       .def("get", [](Run& run, const std::string& name) { return to_python(run.run().get(name)); })
       .def("particles", [](Run& run) { return particles_dict(run.call([](Meshing& m) { return m.particles(); })); })
       .def("mesh", [](Run& run) { return mesh_dict(*run.call([](Meshing& m) { return &m.mesh(); })); })
-      .def("tetrahedra", [](Run& run) { return cells_dict(*run.call([](Meshing& m) { return &m.tetrahedra(); })); })
+      .def("tetrahedra",  // and the mesh, if it was triangulated anew
+           [](Run& run) {
+             bool anew = false;
+             const Tetrahedra* filled = run.call([&](Meshing& m) {
+               const auto before = m.mesh().triangles;
+               const Tetrahedra* made = &m.tetrahedra();
+               anew = m.mesh().triangles != before;
+               return made;
+             });
+             nb::dict cells = cells_dict(*filled);
+             return nb::make_tuple(cells, anew ? nb::object(mesh_dict(run.run().mesh())) : nb::object(nb::none()));
+           })
       .def("quality", [](Run& run) { return quality_dict(*run.call([](Meshing& m) { return &m.quality(); })); })
       .def("report", [](Run& run) { return run.call([](Meshing& m) { return m.report(); }); });
 

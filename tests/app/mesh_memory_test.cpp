@@ -38,7 +38,7 @@ TEST_F(LongMeshMemory, IsWhatWasExpected) {
     return square(x % 20 - 10, y % 20 - 10, z % 20 - 10) < 64 ? 1 + x / 20 + 8 * (y / 75) : 0;
   }));
   for (const double ratio : {sparse, dense}) {
-    EXPECT_GT(ratio, 0.7);
+    EXPECT_GT(ratio, 0.55) << "stars take less than the cells that a run may fall back to";
     EXPECT_LT(ratio, 1.5);
   }
 }

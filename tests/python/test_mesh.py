@@ -81,6 +81,23 @@ def test_tetrahedra_fill_the_materials(ball_mesh):
     assert len(ball_mesh.tetrahedra(max_cell=0).cells) == len(t.cells)
 
 
+def test_a_mesh_of_stars_is_triangulated_anew_before_it_is_filled():
+    mesh = nacre.mesh(two_balls(20), max_size=2)
+    assert mesh.report["mesh"]["stars"]["meshes"] > 0
+    stars = mesh.triangles
+    t = mesh.tetrahedra()
+    assert "stars" not in mesh.report["mesh"]
+    assert mesh.triangles is not stars
+    assert np.array_equal(t.points[: len(mesh.points)], mesh.points)
+    facets = np.sort(t.cells[:, [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]].reshape(-1, 3), axis=1)
+    assert {tuple(f) for f in np.sort(mesh.triangles, axis=1)} <= {tuple(f) for f in facets}
+    again = mesh.triangles
+    mesh.tetrahedra()
+    assert mesh.triangles is again
+    with pytest.raises(nacre.Error, match="triangulation"):
+        nacre.mesh(two_balls(20), max_size=2, triangulation="stars").tetrahedra()
+
+
 def test_second_order(program, tmp_path):
     write_nrrd(tmp_path / "a.nrrd", two_balls(20))
     options = ("mesh", tmp_path / "a.nrrd", "--labels", "--max-size", "2", "--element-order", "2")
