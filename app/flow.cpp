@@ -49,7 +49,7 @@ FrameRange wanted_steps(const std::string& chunk, int steps) {
     throw UsageError("--chunk takes I/N with whole numbers, and I from 1 to N, not '" + chunk + "'");
   if (parts > steps)
     throw UsageError(fmt::format("--chunk {} makes more parts than there are steps ({})", chunk, steps));
-  const auto begin_of = [&](double i) { return int(std::int64_t(i) * steps / std::int64_t(parts)); };
+  const auto begin_of = [steps, parts = parts](double i) { return int(std::int64_t(i) * steps / std::int64_t(parts)); };
   return {begin_of(part - 1), begin_of(part)};
 }
 

@@ -2,6 +2,8 @@
 // for.
 #pragma once
 
+#include <initializer_list>
+
 #include "compute/field/material_bricks.hpp"
 
 namespace nacre {

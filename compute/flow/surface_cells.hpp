@@ -190,6 +190,8 @@ struct ToArray {
   Value* values;
   NACRE_HD_INLINE void operator()(CellIndex s, const Value& value) const { values[s] = value; }
 };
+template <class Value>
+ToArray(Value*) -> ToArray<Value>;
 
 /// As many surface cells of the grid as `Wide` has lanes, in the order of their numbers.
 template <class Wide>

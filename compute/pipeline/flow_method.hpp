@@ -13,6 +13,7 @@
 
 #include "compute/embedding/closest_point_grid.hpp"
 #include "compute/flow/filter.hpp"
+#include "compute/flow/velocity.hpp"
 #include "compute/pipeline/carry.hpp"
 #include "compute/pipeline/colour_scene.hpp"
 #include "compute/pipeline/describe_cells.hpp"

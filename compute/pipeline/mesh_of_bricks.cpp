@@ -21,7 +21,8 @@ constexpr double triangle_margin = 1, brick_margin = 9;
 struct BrickRank {
   std::uint64_t code;
   std::uint64_t rank;
-  friend auto operator<=>(const BrickRank&, const BrickRank&) = default;
+  friend auto operator<=>(const BrickRank&,
+                          const BrickRank&) = default;  // NOLINT(modernize-use-nullptr): a false alarm
 };
 
 /// A triangle on its way: corners among the points that go with it.

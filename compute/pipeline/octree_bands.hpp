@@ -10,6 +10,7 @@
 #include "compute/embedding/build_thesis_octree.hpp"
 #include "compute/flow/sample_band.hpp"
 #include "compute/flow/surface_cells.hpp"
+#include "compute/pipeline/carry.hpp"
 #include "compute/pipeline/flow_domain.hpp"
 #include "compute/pipeline/flow_pipeline.hpp"
 

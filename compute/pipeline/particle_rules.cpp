@@ -31,7 +31,7 @@ double particle_capacity(double expected) { return 1.6 * expected + 20000; }
 
 double solver_bytes(std::int64_t capacity, std::int64_t interfaces, const MeshParameters& parameters) {
   AllocationPlan solver, control, smoothing;
-  TreeSolver(solver, capacity, interfaces, 1);
+  TreeSolver planned(solver, capacity, interfaces, 1);
   if (solver_from_string(parameters.solver) != Solver::tree) allocate_solver_state(solver, capacity);
   // Of the temporaries, which come one after the other, these are the largest.
   detail::PopulationScratch(control, capacity);

@@ -225,7 +225,8 @@ Spread from_triangles(const Voxels& voxels, const TriangleTree& tree, std::uint1
     for (int i = 0; i < parts; ++i)
       for (int j = 0; j < 2 * (parts - i) - 1; ++j) {  // parts^2 small triangles, every second one upside down
         const double third = j % 2 ? 2 / 3.0 : 1 / 3.0;
-        const Vec3d middle = a + u * ((i + third) / parts) + w * ((j / 2 + third) / parts);
+        const int pair = j / 2;
+        const Vec3d middle = a + u * ((i + third) / parts) + w * ((pair + third) / parts);
         spread.add(voxels.distance_to_faces(middle, material), area);
       }
   }

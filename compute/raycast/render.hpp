@@ -186,7 +186,8 @@ struct RenderPixel {
     float alpha = 0;
     for (int k = 0; k < samples * samples; ++k) {
       const double x = (px + (k % samples + 0.5) / samples) / width * 2 - 1;
-      const double y = 1 - (py + (k / samples + 0.5) / samples) / height * 2;
+      const int row = k / samples;
+      const double y = 1 - (py + (row + 0.5) / samples) / height * 2;
       Ray ray = camera.ray(x, y, reach);
       ray.fronts_only = shading.hidden_backs;
       SeenSample sample;

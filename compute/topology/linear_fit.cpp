@@ -42,7 +42,7 @@ LinearFit fit_linear(const TangentField& field, std::uint32_t centre, std::span<
   const auto [x_axis, y_axis, normal] = field.frame(centre);
   const Vec3d origin =
       (field.corner_point(3 * centre) + field.corner_point(3 * centre + 1) + field.corner_point(3 * centre + 2)) / 3.0;
-  const auto flat = [&](const Vec3d& p) {  // as far from the origin as in space
+  const auto flat = [&, x_axis = x_axis, y_axis = y_axis](const Vec3d& p) {  // as far from the origin as in space
     const Vec3d d = p - origin;
     const Vec2d q{dot(d, x_axis), dot(d, y_axis)};
     const double n = std::hypot(q.x, q.y), stretch = n > 0 ? length(d) / n : 1;
@@ -104,7 +104,7 @@ LinearFit fit_linear(const TangentField& field, std::uint32_t centre, std::span<
   if (root >= 0) {
     fit.first = half + std::sqrt(root);
     fit.second = half - std::sqrt(root);
-    const auto axis = [&](double value) {  // of the larger row of J - value
+    const auto axis = [&, x_axis = x_axis, y_axis = y_axis](double value) {  // of the larger row of J - value
       const double u1 = b, v1 = value - a, u2 = value - d, v2 = c;
       const bool upper = std::hypot(u1, v1) >= std::hypot(u2, v2);
       return normalized(x_axis * (upper ? u1 : u2) + y_axis * (upper ? v1 : v2));

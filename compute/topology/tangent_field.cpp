@@ -124,7 +124,7 @@ void TangentField::measure_fan(std::uint32_t first, std::uint32_t v) {
 
 double TangentField::polar_angle(std::uint32_t first, std::uint32_t v) const {
   const auto [x, y] = across(normal_[v]);
-  const auto planar = [&](const Vec3d& d) { return std::atan2(dot(d, y), dot(d, x)); };
+  const auto planar = [x = x, y = y](const Vec3d& d) { return std::atan2(dot(d, y), dot(d, x)); };
   const double wanted = planar(value_[v]);
   double nearest = 1e300, result = 0;
   const auto try_sector = [&](double from, double to, double begin, double width) {  // true: it is in there

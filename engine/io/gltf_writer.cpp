@@ -118,7 +118,7 @@ class GltfAsset {
     out.write("glTF");
     out.write(head.data(), 8);
     chunk("JSON", text);
-    chunk("BIN\0", numbers_);
+    chunk("BIN\0", numbers_);  // NOLINT(bugprone-string-literal-with-embedded-nul): four bytes
     out.commit();
   }
 

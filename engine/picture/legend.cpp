@@ -150,7 +150,8 @@ KeptFree legend_room(int width, int height) {
   if (bar + text_width("0", font) + margin > width / 4) return {};
   const float widest = float(bar + text_width("\u22120.000", font) + margin);
   const Rows rows = bar_rows(height, font);
-  const float left = float(width) - std::min(widest, float(width / 4)) - halo;
+  const int quarter = width / 4;
+  const float left = float(width) - std::min(widest, float(quarter)) - halo;
   const float top = float(rows.first) - 3.4f * font, bottom = float(rows.first + rows.count) + 0.5f * font;
   return {left / float(width), top / float(height), bottom / float(height)};
 }

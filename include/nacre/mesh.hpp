@@ -138,10 +138,10 @@ class NACRE_API Meshing {
   /// Runs what is left to do. The reference is valid until the next change.
   const Mesh& mesh();
   const MeshQuality& quality();
-  /// Fills the mesh. One of stars, as the knob `triangulation` has them unless told otherwise, is triangulated anew first,
-  /// from the same particles: then `mesh` is the new one. The knob `max_cell` bounds the edges. With `element_order` 2 its points on edges of the mesh lie
-  /// on the interfaces, or nearer to the edges where cells would be turned inside out. The reference is valid until the
-  /// next change.
+  /// Fills the mesh. One of stars, as the knob `triangulation` has them unless told otherwise, is triangulated anew
+  /// first, from the same particles: then `mesh` is the new one. The knob `max_cell` bounds the edges. With
+  /// `element_order` 2 points on edges of the mesh lie on the interfaces, or nearer to the edges where cells would be
+  /// turned inside out. The reference is valid until the next change.
   const Tetrahedra& tetrahedra();
 
   /// Version, device, knobs, input, timings and measures of what was computed so far, as JSON: what the program writes

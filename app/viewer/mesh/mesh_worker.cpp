@@ -327,9 +327,7 @@ bool MeshWorker::await_turn() {
       lock.unlock();
       fill_slice();
       lock.lock();
-    } else if (!lockstep_ || all_turns_) {
-      return true;
-    } else if (made_ < run_to_ && memory_due()) {
+    } else if (!lockstep_ || all_turns_ || (made_ < run_to_ && memory_due())) {
       return true;
     } else if (turns_ > 0 && memory_due()) {
       --turns_;
@@ -370,7 +368,7 @@ void MeshWorker::show(const MeshProgress& progress, bool step) {
     std::scoped_lock lock(mutex_);
     unshown_ = false;
   }
-  if (step || memory) tell(std::move(told));
+  if (step || memory) tell(told);
 }
 
 }  // namespace nacre

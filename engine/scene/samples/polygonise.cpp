@@ -16,11 +16,11 @@
 namespace nacre {
 namespace {
 
-constexpr int kBlock = 8;               // cells of a block along an axis
-constexpr int kNodes = kBlock + 1;      // nodes of a block along an axis
-constexpr double kFineness = 0.7;       // cell size over edge length: what is finer than the mesh does not fray it
-constexpr double kSteepest = 1.5;       // promised bound on the slope of an implicit function
-constexpr double kMaxBlocks = 1 << 24;  // more cannot be meant: just visiting them would take minutes
+constexpr int block_cells = 8;                // cells of a block along an axis
+constexpr int block_nodes = block_cells + 1;  // nodes of a block along an axis
+constexpr double fineness = 0.7;        // cell size over edge length: what is finer than the mesh does not fray it
+constexpr double steepest = 1.5;        // promised bound on the slope of an implicit function
+constexpr double max_blocks = 1 << 24;  // more cannot be meant: just visiting them would take minutes
 
 /// A lattice of cubes, each cut into six tetrahedra about its diagonal. Every edge of these leads from a node to one
 /// that lies further by 0 or 1 along each axis, so that (node, 3-bit step) names it.
@@ -29,7 +29,7 @@ struct Lattice {
   double cell;
   Int3 blocks;
 
-  std::uint64_t nodes(int axis) const { return std::uint64_t(blocks[axis]) * kBlock + 1; }
+  std::uint64_t nodes(int axis) const { return std::uint64_t(blocks[axis]) * block_cells + 1; }
   Vec3d position(const Int3& node) const { return origin + Vec3d(node) * cell; }
 
   std::uint64_t edge_key(const Int3& node, int step) const {
@@ -45,7 +45,7 @@ struct Lattice {
 };
 
 /// The corners of the six tetrahedra as 3-bit steps from the cube's low corner, each with positive volume.
-constexpr std::array<std::array<int, 4>, 6> kTetrahedra{
+constexpr std::array<std::array<int, 4>, 6> tetrahedra{
     {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}}};
 
 /// The zero set within one tetrahedron. `inside` has one bit per corner, `key(i, j)` names the edge between corners.
@@ -76,24 +76,24 @@ void march(unsigned inside, Key key, std::vector<KeyedTriangle>& out) {
 /// All triangles in one block, or nothing at once where the function cannot change sign in it.
 void march_block(const ImplicitFunction& f, const Lattice& lattice, const Int3& block,
                  std::vector<KeyedTriangle>& out) {
-  const Int3 low = block * kBlock;
-  const Vec3d centre = lattice.position(low) + Vec3d(0.5 * kBlock * lattice.cell);
-  const double half_diagonal = 0.5 * std::sqrt(3.0) * kBlock * lattice.cell;
-  if (std::abs(f(centre)) > kSteepest * half_diagonal) return;
+  const Int3 low = block * block_cells;
+  const Vec3d centre = lattice.position(low) + Vec3d(0.5 * block_cells * lattice.cell);
+  const double half_diagonal = 0.5 * std::sqrt(3.0) * block_cells * lattice.cell;
+  if (std::abs(f(centre)) > steepest * half_diagonal) return;
 
-  std::array<bool, kNodes * kNodes * kNodes> inside;
-  const auto at = [](int x, int y, int z) { return (x * kNodes + y) * kNodes + z; };
-  for (int x = 0; x < kNodes; ++x)
-    for (int y = 0; y < kNodes; ++y)
-      for (int z = 0; z < kNodes; ++z) inside[at(x, y, z)] = f(lattice.position(low + Int3{x, y, z})) < 0;
+  std::array<bool, block_nodes * block_nodes * block_nodes> inside;
+  const auto at = [](int x, int y, int z) { return (x * block_nodes + y) * block_nodes + z; };
+  for (int x = 0; x < block_nodes; ++x)
+    for (int y = 0; y < block_nodes; ++y)
+      for (int z = 0; z < block_nodes; ++z) inside[at(x, y, z)] = f(lattice.position(low + Int3{x, y, z})) < 0;
 
-  for (int x = 0; x < kBlock; ++x) {
-    for (int y = 0; y < kBlock; ++y) {
-      for (int z = 0; z < kBlock; ++z) {
+  for (int x = 0; x < block_cells; ++x) {
+    for (int y = 0; y < block_cells; ++y) {
+      for (int z = 0; z < block_cells; ++z) {
         unsigned cube = 0;
         for (int c = 0; c < 8; ++c) cube |= unsigned(inside[at(x + (c & 1), y + (c >> 1 & 1), z + (c >> 2))]) << c;
         if (cube == 0 || cube == 255) continue;
-        for (const std::array<int, 4>& corners : kTetrahedra) {
+        for (const std::array<int, 4>& corners : tetrahedra) {
           const auto key = [&](int i, int j) {
             const int from = std::min(corners[i], corners[j]), to = std::max(corners[i], corners[j]);
             return lattice.edge_key(low + Int3{x + (from & 1), y + (from >> 1 & 1), z + (from >> 2)}, to & ~from);
@@ -142,9 +142,9 @@ Lattice make_lattice(const Vec3d& lower, const Vec3d& upper, double cell) {
   Lattice lattice{lower, cell, {}};
   double total = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const double blocks = std::ceil((upper[axis] - lower[axis]) / (cell * kBlock));
+    const double blocks = std::ceil((upper[axis] - lower[axis]) / (cell * block_cells));
     total *= blocks;
-    if (!(blocks >= 1) || !(total <= kMaxBlocks))
+    if (!(blocks >= 1) || !(total <= max_blocks))
       throw Error(fmt::format("a box cannot be divided into cells of {:g}", cell), "", "choose a larger cell size");
     lattice.blocks[axis] = int(blocks);
   }
@@ -160,7 +160,7 @@ Vec3d implicit_normal(const ImplicitFunction& f, const Vec3d& p, double scale) {
 }
 
 PolygonMesh polygonise(const ImplicitFunction& f, const Vec3d& lower, const Vec3d& upper, double edge) {
-  const Lattice lattice = make_lattice(lower, upper, kFineness * edge);
+  const Lattice lattice = make_lattice(lower, upper, fineness * edge);
   const Int3 blocks = lattice.blocks;
 
   // One list per row of blocks, joined in order: the result is the same on any number of threads.

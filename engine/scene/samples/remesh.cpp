@@ -11,9 +11,9 @@ namespace {
 
 using Index = std::uint32_t;
 
-constexpr double kFacing =
+constexpr double least_facing =
     0.5;  // a change that turns triangles further than this from the surface's normals must be no worse
-constexpr std::size_t kMaxFan = 10;  // most triangles about a point that a collapse may create
+constexpr std::size_t max_fan = 10;  // most triangles about a point that a collapse may create
 
 class Remesher {
  public:
@@ -96,7 +96,7 @@ void Remesher::neighbours(Index v, std::vector<Index>& out) const {
 bool Remesher::collapse(Index gone, Index kept) {
   neighbours(gone, ring_a_);
   neighbours(kept, ring_b_);
-  if (ring_a_.size() + ring_b_.size() > kMaxFan + 4) return false;
+  if (ring_a_.size() + ring_b_.size() > max_fan + 4) return false;
   std::size_t shared = 0;
   for (const Index v : ring_a_) {
     const bool common = std::binary_search(ring_b_.begin(), ring_b_.end(), v);
@@ -105,7 +105,7 @@ bool Remesher::collapse(Index gone, Index kept) {
     if (length(points_[v] - points_[kept]) > 1.4 * edge_) return false;
   }
   if (shared != 2) return false;
-  const double least = std::min(kFacing, worst_facing(fans_[gone]));
+  const double least = std::min(least_facing, worst_facing(fans_[gone]));
   for (const Index t : fans_[gone])
     if (!has(triangles_[t], kept) && !(facing(replaced(triangles_[t], gone, kept)) >= least)) return false;
 
@@ -147,7 +147,7 @@ bool Remesher::flip(Index a, Index b) {
   const double before = std::max(least_angle_cosine(triangles_[s]), least_angle_cosine(triangles_[t]));
   const double after = std::max(least_angle_cosine(first), least_angle_cosine(second));
   if (after > before - 1e-6) return false;
-  const double least = std::min({kFacing, facing(triangles_[s]), facing(triangles_[t])});
+  const double least = std::min({least_facing, facing(triangles_[s]), facing(triangles_[t])});
   if (!(std::min(facing(first), facing(second)) >= least)) return false;
   for (const Index i : fans_[c])
     if (has(triangles_[i], d)) return false;
@@ -206,7 +206,7 @@ void Remesher::spread_points() {
   });
   for (std::size_t v = 0; v < points_.size(); ++v) {
     if (fans_[v].empty()) continue;
-    const double least = std::min(kFacing, worst_facing(fans_[v]));
+    const double least = std::min(least_facing, worst_facing(fans_[v]));
     std::swap(points_[v], moved[v]);
     std::swap(normals_[v], turned[v]);
     if (worst_facing(fans_[v]) >= least) continue;

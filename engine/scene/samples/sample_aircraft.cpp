@@ -8,10 +8,10 @@
 namespace nacre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kLength = 3.84;  // along x from -1.92 (nose); the wings along y, z up; symmetric in y
-constexpr double kHalfSpan = 1.91;
-constexpr double kEngineSpan = 0.66, kEngineHeight = -0.275;
+using std::numbers::pi;
+constexpr double aircraft_length = 3.84;  // along x from -1.92 (nose); the wings along y, z up; symmetric in y
+constexpr double wing_half_span = 1.91;
+constexpr double engine_span = 0.66, engine_height = -0.275;
 
 /// A tapered, swept wing panel in its own frame: `x` along the chord, `span` outward from the root, `off` across.
 struct Panel {
@@ -37,33 +37,33 @@ struct Panel {
   }
 };
 
-constexpr Panel kWing{-0.52, 0.60, 0.02, 0.44, 0.38, kHalfSpan, 0.058};
-constexpr Panel kTailplane{1.27, 0.62, 1.66, 0.32, -9, 0.70, 0.05};
-constexpr Panel kFin{1.13, 0.80, 1.68, 0.26, -9, 0.66, 0.055};
+constexpr Panel wing_panel{-0.52, 0.60, 0.02, 0.44, 0.38, wing_half_span, 0.058};
+constexpr Panel tailplane_panel{1.27, 0.62, 1.66, 0.32, -9, 0.70, 0.05};
+constexpr Panel fin_panel{1.13, 0.80, 1.68, 0.26, -9, 0.66, 0.055};
 
 double wing_height(double span) { return -0.11 + 0.09 * span; }
 
 /// Half an ellipsoid for the nose, a cylinder, and half a longer ellipsoid, bent upwards, for the tail.
 double fuselage(const Vec3d& p) {
-  constexpr double kRadius = 0.22, kNose = -1.25, kTail = 0.55;  // the cylinder lies between the last two
-  constexpr double kNoseLength = 0.67, kTailLength = 1.37;
-  const double beyond = p.x < kNose ? p.x - kNose : std::max(p.x - kTail, 0.0);
-  const double stretch = beyond < 0 ? kNoseLength / kRadius : kTailLength / kRadius;
+  constexpr double body_radius = 0.22, nose_at = -1.25, tail_at = 0.55;  // the cylinder lies between the last two
+  constexpr double nose_length = 0.67, tail_length = 1.37;
+  const double beyond = p.x < nose_at ? p.x - nose_at : std::max(p.x - tail_at, 0.0);
+  const double stretch = beyond < 0 ? nose_length / body_radius : tail_length / body_radius;
   const double bend = (beyond < 0 ? -0.10 : 0.075) * beyond * beyond;
   const Vec3d q{beyond / stretch, p.y, p.z - bend};  // the point where the ellipsoid is a sphere
   const double radius = length(q), slope = length(Vec3d{q.x / stretch, q.y, q.z});
   // Deep inside, this first-order distance is too large; a constant will do there.
-  return std::max((radius - kRadius) * radius / std::max(slope, 1e-9), -0.1);
+  return std::max((radius - body_radius) * radius / std::max(slope, 1e-9), -0.1);
 }
 
 /// An open duct under the wing, and the pylon that holds it.
 double nacelle(double x, double span, double z) {
-  constexpr double kRadius = 0.108;
-  const double from_axis = norm(span - kEngineSpan, z - kEngineHeight);
-  const double duct = round_cone(x + 0.60, from_axis - kRadius, 0.46, 0.022, 0.011);
-  const double sweep = 1.1 * (z - kEngineHeight - kRadius);
-  const double blade = round_cone(x + 0.42 - sweep, span - kEngineSpan, 0.46, 0.02, 0.012) * 0.8;
-  const double pylon = rounded_extrusion(blade, z - (kEngineHeight + kRadius + 0.06), 0.075, 0.01);
+  constexpr double body_radius = 0.108;
+  const double from_axis = norm(span - engine_span, z - engine_height);
+  const double duct = round_cone(x + 0.60, from_axis - body_radius, 0.46, 0.022, 0.011);
+  const double sweep = 1.1 * (z - engine_height - body_radius);
+  const double blade = round_cone(x + 0.42 - sweep, span - engine_span, 0.46, 0.02, 0.012) * 0.8;
+  const double pylon = rounded_extrusion(blade, z - (engine_height + body_radius + 0.06), 0.075, 0.01);
   return smooth_union(duct, pylon, 0.03);
 }
 
@@ -71,16 +71,16 @@ double nacelle(double x, double span, double z) {
 double aircraft(const Vec3d& p) {
   const double span = std::abs(p.y);
   const double body = fuselage(p);
-  const double wing = kWing(p.x, span, p.z - wing_height(span));
-  const double tailplane = kTailplane(p.x, span, p.z - 0.10 - 0.10 * span);
-  const double fin = std::max(kFin(p.x, p.z - 0.10, p.y), 0.08 - p.z);  // its root ends within the body
+  const double wing = wing_panel(p.x, span, p.z - wing_height(span));
+  const double tailplane = tailplane_panel(p.x, span, p.z - 0.10 - 0.10 * span);
+  const double fin = std::max(fin_panel(p.x, p.z - 0.10, p.y), 0.08 - p.z);  // its root ends within the body
   double all = smooth_union(body, wing, 0.12);
   all = smooth_union(all, smooth_union(tailplane, fin, 0.03), 0.06);
   return smooth_union(all, nacelle(p.x, span, p.z), 0.03);
 }
 
 SampleShape aircraft_shape(int detail) {
-  PolygonMesh mesh = polygonise(aircraft, {-2.1, -2.0, -0.6}, {2.1, 2.0, 1.0}, kLength / detail);
+  PolygonMesh mesh = polygonise(aircraft, {-2.1, -2.0, -0.6}, {2.1, 2.0, 1.0}, aircraft_length / detail);
   return {std::move(mesh.points), std::move(mesh.normals), std::move(mesh.triangles)};
 }
 
@@ -88,17 +88,17 @@ SampleShape aircraft_shape(int detail) {
 std::vector<Eddy> aircraft_eddies(double time) {
   std::vector<Eddy> eddies;
   for (const double side : {-1.0, 1.0}) {
-    constexpr double kSpacing = 0.36;
+    constexpr double spacing = 0.36;
     for (int i = -1; i < 5; ++i) {
       const auto cell = [&](double span, double chordwise, double radius, double spin, double spread) {
         const double fade = smooth_step(0.27, 0.55, span) * (1 - smooth_step(1.6, 1.85, span));
-        const double x = kWing.leading(span) + chordwise * (kWing.trailing(span) - kWing.leading(span));
-        const double size = radius * (kWing.trailing(span) - kWing.leading(span));
+        const double x = wing_panel.leading(span) + chordwise * (wing_panel.trailing(span) - wing_panel.leading(span));
+        const double size = radius * (wing_panel.trailing(span) - wing_panel.leading(span));
         eddies.push_back({{x, side * span, wing_height(span)}, size, side * spin * fade, spread * fade});
       };
-      const double span = 0.25 + kSpacing * (i + time);
+      const double span = 0.25 + spacing * (i + time);
       cell(span, 0.70, 0.22, -1.5, -0.3);
-      cell(span + 0.5 * kSpacing, 0.45, 0.20, 1.2, 0.25);
+      cell(span + 0.5 * spacing, 0.45, 0.20, 1.2, 0.25);
     }
     for (int i = -1; i < 6; ++i) {
       const double x = -1.7 + 0.62 * (i + time + (side < 0 ? 0.5 : 0.0));
@@ -112,7 +112,7 @@ std::vector<Eddy> aircraft_eddies(double time) {
 
 /// Rotation about the line along x through the wing tip, which is where the vortex leaves it.
 Vec3d tip_vortex(const Vec3d& p, double side, double strength) {
-  const Vec3d arm{0, p.y - side * (kHalfSpan - 0.1), p.z - wing_height(kHalfSpan) - 0.03};
+  const Vec3d arm{0, p.y - side * (wing_half_span - 0.1), p.z - wing_height(wing_half_span) - 0.03};
   const double core = 0.14;
   return cross(Vec3d{-side, 0, 0}, arm) *
          (strength * core / (dot(arm, arm) + core * core) * smooth_step(0.4, 0.9, p.x));
@@ -132,7 +132,7 @@ Vec3d body_crossflow(const Vec3d& p, const Vec3d& n, double phase) {
 /// Slow outboard drift over the rear of the wing, where the flow is about to separate, and waves on its lower side.
 Vec3d wing_drift(const Vec3d& p, const Vec3d& n, double phase) {
   const double span = std::abs(p.y), side = p.y < 0 ? -1 : 1;
-  const double chordwise = (p.x - kWing.leading(span)) / (kWing.trailing(span) - kWing.leading(span));
+  const double chordwise = (p.x - wing_panel.leading(span)) / (wing_panel.trailing(span) - wing_panel.leading(span));
   const double over = smooth_step(-0.2, 0.4, n.z) * smooth_step(0.35, 0.9, chordwise);
   const double under = smooth_step(-0.2, 0.4, -n.z);
   const Vec3d drift = Vec3d{-0.55, 0.75 * side, 0} * (over * (0.75 + 0.4 * std::sin(9 * span - phase)));
@@ -143,14 +143,14 @@ Vec3d wing_drift(const Vec3d& p, const Vec3d& n, double phase) {
 /// Swirl around the nacelles, and a flutter of the flow over the fin.
 Vec3d engine_and_fin(const Vec3d& p, double phase) {
   const double side = p.y < 0 ? -1 : 1;
-  const Vec3d arm{0, p.y - side * kEngineSpan, p.z - kEngineHeight};
+  const Vec3d arm{0, p.y - side * engine_span, p.z - engine_height};
   const double engine = (1 - smooth_step(0.13, 0.19, length(arm))) * (1 - smooth_step(-0.05, 0.1, p.x));
   const double flutter = 0.55 * smooth_step(0.2, 0.4, p.z) * std::sin(9 * p.z - 5 * p.x + phase);
   return cross(Vec3d{side, 0, 0}, arm) * (engine * (3 + 4 * std::sin(14 * p.x - phase))) + Vec3d{0, 0, flutter};
 }
 
 SampleField aircraft_flow(double time) {
-  const double phase = 2 * kPi * time;
+  const double phase = 2 * pi * time;
   const Vec3d wind{1, 0.16 * std::sin(phase), 0.12};
   return [phase, wind, eddies = aircraft_eddies(time)](const Vec3d& p, const Vec3d& n) {
     const double shed = std::max(on_body(p), smooth_step(-0.2, 0.4, n.z));  // not below the wings

@@ -9,12 +9,12 @@
 namespace nacre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kHeight =
+using std::numbers::pi;
+constexpr double height =
     4.72;                       // of the whole; the axis of the cylinder is z, the piston at 0, the pipes leave along y
-constexpr double kBore = 0.72;  // radius
-constexpr double kHead = 2.9;   // height of the cylinder
-constexpr double kReach = 1.11;  // the pipes end at +-kReach
+constexpr double bore = 0.72;   // radius
+constexpr double head = 2.9;    // height of the cylinder
+constexpr double reach = 1.11;  // the pipes end at +-reach
 
 /// A pipe that rises from the head, bends by a right angle and leaves along y. There are two on either side.
 struct Pipe {
@@ -23,11 +23,11 @@ struct Pipe {
   double bend_height, bend_radius;
   double stream;  // speed away from the chamber
 
-  static constexpr double kAcross = 0.315;  // |x| of the centre line
-  static constexpr double kStart = 0.31;    // |y| of the rising part
+  static constexpr double pipe_across = 0.315;  // |x| of the centre line
+  static constexpr double start = 0.31;         // |y| of the rising part
 };
 
-constexpr std::array<Pipe, 2> kPipes{{{+1, 0.22, 4.08, 0.42, -0.9}, {-1, 0.195, 3.30, 0.45, 1.1}}};
+constexpr std::array<Pipe, 2> both_pipes{{{+1, 0.22, 4.08, 0.42, -0.9}, {-1, 0.195, 3.30, 0.45, 1.1}}};
 
 struct NearestOnPipe {
   double distance;  // from the centre line
@@ -37,8 +37,8 @@ struct NearestOnPipe {
 };
 
 NearestOnPipe nearest_on(const Pipe& pipe, const Vec3d& p) {
-  const double x = std::abs(p.x) - Pipe::kAcross, sign = p.x < 0 ? -1 : 1;
-  const double out = pipe.side * p.y - Pipe::kStart, up = p.z - pipe.bend_height, r = pipe.bend_radius;
+  const double x = std::abs(p.x) - Pipe::pipe_across, sign = p.x < 0 ? -1 : 1;
+  const double out = pipe.side * p.y - Pipe::start, up = p.z - pipe.bend_height, r = pipe.bend_radius;
   // From the centre of the bend; on it the line is a quarter circle, beyond its ends it is straight.
   const double u = out - r, v = up;
   double off_out = out, off_up = 0;
@@ -58,15 +58,15 @@ NearestOnPipe nearest_on(const Pipe& pipe, const Vec3d& p) {
 
 double pipe_body(const Pipe& pipe, const Vec3d& p) {
   const double tube = nearest_on(pipe, p).distance - pipe.radius;
-  const double ended = rounded_extrusion(tube, std::max(pipe.side * p.y, 0.0), kReach, 0.03);
-  return std::max(ended, kHead - 0.15 - p.z);
+  const double ended = rounded_extrusion(tube, std::max(pipe.side * p.y, 0.0), reach, 0.03);
+  return std::max(ended, head - 0.15 - p.z);
 }
 
 /// A poppet valve, opened into the chamber; its stem leaves through the pipe's bend.
 double valve(const Pipe& pipe, const Vec3d& p) {
   const double lift = pipe.side > 0 ? 0.24 : 0.15;
-  const double off = norm(std::abs(p.x) - Pipe::kAcross, pipe.side * p.y - Pipe::kStart);
-  const double z = p.z - (kHead - lift);
+  const double off = norm(std::abs(p.x) - Pipe::pipe_across, pipe.side * p.y - Pipe::start);
+  const double z = p.z - (head - lift);
   const double stem = std::max(off - 0.045, -z);
   const double plate = rounded_extrusion(off - 0.93 * pipe.radius, z, 0.035, 0.03);
   return smooth_union(stem, plate, 0.16);
@@ -74,22 +74,22 @@ double valve(const Pipe& pipe, const Vec3d& p) {
 
 /// Signed distance (about) to the gas: cylinder and pipes, less the valves and the dome of the piston.
 double chamber(const Vec3d& p) {
-  double gas = rounded_extrusion(norm(p.x, p.y) - kBore, p.z - kHead / 2, kHead / 2, 0.06);
+  double gas = rounded_extrusion(norm(p.x, p.y) - bore, p.z - head / 2, head / 2, 0.06);
   const double dome = length(p - Vec3d{0, 0, -1.22}) - 1.36;
   gas = smooth_cut(gas, dome, 0.06);
-  for (const Pipe& pipe : kPipes) gas = smooth_union(gas, pipe_body(pipe, p), 0.08);
-  for (const Pipe& pipe : kPipes) gas = smooth_cut(gas, valve(pipe, p), 0.08);
+  for (const Pipe& pipe : both_pipes) gas = smooth_union(gas, pipe_body(pipe, p), 0.08);
+  for (const Pipe& pipe : both_pipes) gas = smooth_cut(gas, valve(pipe, p), 0.08);
   return gas;
 }
 
 SampleShape cylinder_shape(int detail) {
-  PolygonMesh mesh = polygonise(chamber, {-0.9, -1.3, -0.15}, {0.9, 1.3, 4.9}, kHeight / detail);
+  PolygonMesh mesh = polygonise(chamber, {-0.9, -1.3, -0.15}, {0.9, 1.3, 4.9}, height / detail);
   return {std::move(mesh.points), std::move(mesh.normals), std::move(mesh.triangles)};
 }
 
 /// Along the pipe, winding around it, faster and slower in turns.
 Vec3d pipe_flow(const Vec3d& p, double phase) {
-  const Pipe& pipe = kPipes[p.y < 0];
+  const Pipe& pipe = both_pipes[p.y < 0];
   const NearestOnPipe near = nearest_on(pipe, p);
   const double along = p.z + std::abs(p.y);
   const Vec3d around = cross(near.tangent, near.away) / pipe.radius * (p.x < 0 ? -1.0 : 1.0);
@@ -99,21 +99,21 @@ Vec3d pipe_flow(const Vec3d& p, double phase) {
 
 /// Swirl whose axis circles about the cylinder's, tumble, and helical waves that travel up the wall.
 Vec3d chamber_flow(const Vec3d& p, double phase) {
-  const double angle = std::atan2(p.y, p.x), r = norm(p.x, p.y) / kBore;
-  const Vec3d axis{0.2 * std::cos(phase) * (1 - 0.5 * p.z / kHead), 0.2 * std::sin(phase) * (1 - 0.5 * p.z / kHead), 0};
-  const Vec3d swirl = cross(Vec3d{0, 0, 1}, p - axis) / kBore;
-  const Vec3d tumble = cross(Vec3d{std::cos(0.4), std::sin(0.4), 0}, p - Vec3d{0, 0, kHead / 2}) / kHead;
+  const double angle = std::atan2(p.y, p.x), r = norm(p.x, p.y) / bore;
+  const Vec3d axis{0.2 * std::cos(phase) * (1 - 0.5 * p.z / head), 0.2 * std::sin(phase) * (1 - 0.5 * p.z / head), 0};
+  const Vec3d swirl = cross(Vec3d{0, 0, 1}, p - axis) / bore;
+  const Vec3d tumble = cross(Vec3d{std::cos(0.4), std::sin(0.4), 0}, p - Vec3d{0, 0, head / 2}) / head;
   const double helix = 2 * angle - 5.0 * p.z + phase, counter = 3 * angle + 3.1 * p.z + phase;
-  const Vec3d radial = Vec3d{p.x, p.y, 0} / kBore;
+  const Vec3d radial = Vec3d{p.x, p.y, 0} / bore;
   return swirl * (0.5 + 0.55 * std::sin(helix)) + tumble * (0.6 + 0.3 * std::cos(phase)) +
          Vec3d{0, 0, 1} * (r * (0.75 * std::cos(helix) + 0.45 * std::sin(counter))) +
          radial * (0.35 * std::cos(3 * angle - phase) - 0.15);
 }
 
 SampleField cylinder_flow(double time) {
-  const double phase = 2 * kPi * time;
+  const double phase = 2 * pi * time;
   return [phase](const Vec3d& p, const Vec3d&) {
-    const double in_pipe = smooth_step(kHead - 0.1, kHead + 0.35, p.z);
+    const double in_pipe = smooth_step(head - 0.1, head + 0.35, p.z);
     Vec3d v;
     if (in_pipe < 1) v += chamber_flow(p, phase) * (1 - in_pipe);
     if (in_pipe > 0) v += pipe_flow(p, phase) * in_pipe;

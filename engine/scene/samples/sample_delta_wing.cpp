@@ -8,9 +8,9 @@
 namespace nacre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kLength = 10.0;  // the surface begins at the wing's apex, x = 0, and ends at x = kLength
-constexpr double kBubble = 5.7;   // where the vortex breaks down
+using std::numbers::pi;
+constexpr double surface_length = 10.0;  // the surface begins at the wing's apex, x = 0, and ends at x = surface_length
+constexpr double breakdown_at = 5.7;     // where the vortex breaks down
 
 /// The axis of the vortex at `x`: beside the wing's leading edge, then, behind the bubble, a helix.
 Vec3d axis(double x) {
@@ -25,8 +25,8 @@ struct Meridional {
 
 /// Pushes the windings outward around the bubble. Its hollow is drawn from the axis, so that none can cross another.
 Meridional swell(const Meridional& m) {
-  const double hollow =
-      0.30 * smooth_step(kBubble - 1.1, kBubble, m.x) * (1 - smooth_step(kBubble, kBubble + 2.2, m.x));
+  const double hollow = 0.30 * smooth_step(breakdown_at - 1.1, breakdown_at, m.x) *
+                        (1 - smooth_step(breakdown_at, breakdown_at + 2.2, m.x));
   return {m.x, norm(m.r, hollow)};
 }
 
@@ -53,10 +53,10 @@ double winding(double x, double q) {
 /// innermost. A spiral in each plane across the axis, then the bubble and its folds; each step keeps points apart that
 /// were, so that the sheet does not meet itself.
 Vec3d sheet_point(double x, double q) {
-  const double angle = 0.65 * kPi - 2 * kPi * turns(x) * q;
+  const double angle = 0.65 * pi - 2 * pi * turns(x) * q;
   Meridional m{x, outer_radius(x) * winding(x, q)};
   m = swell(m);
-  m = fold(m, kBubble + 1.1, 0.37, 0.35, -1.7);
+  m = fold(m, breakdown_at + 1.1, 0.37, 0.35, -1.7);
   return axis(m.x) + Vec3d{0, std::cos(angle), std::sin(angle)} * m.r;
 }
 
@@ -85,11 +85,11 @@ class Measure {
 
 /// Along the row of points at `x`.
 Measure across_sheet(double x) {
-  constexpr int kSamples = 600;
+  constexpr int sample_count = 600;
   std::vector<double> length_to{0};
   Vec3d last = sheet_point(x, 0);
-  for (int i = 1; i <= kSamples; ++i) {
-    const Vec3d next = sheet_point(x, double(i) / kSamples);
+  for (int i = 1; i <= sample_count; ++i) {
+    const Vec3d next = sheet_point(x, double(i) / sample_count);
     length_to.push_back(length_to.back() + length(next - last));
     last = next;
   }
@@ -98,20 +98,20 @@ Measure across_sheet(double x) {
 
 /// How far rows at neighbouring `x` are from each other, in the mean over a row, measured square to it.
 Measure along_sheet() {
-  constexpr int kSamples = 1500, kAcross = 96;
+  constexpr int sample_count = 1500, parts_across = 96;
   constexpr double h = 1e-5;
   std::vector<double> length_to{0};
-  for (int i = 0; i < kSamples; ++i) {
-    const double x = kLength * (i + 0.5) / kSamples;
+  for (int i = 0; i < sample_count; ++i) {
+    const double x = surface_length * (i + 0.5) / sample_count;
     double area = 0, width = 0;
-    for (int j = 0; j < kAcross; ++j) {
-      const double q = (j + 0.5) / kAcross;
+    for (int j = 0; j < parts_across; ++j) {
+      const double q = (j + 0.5) / parts_across;
       const Vec3d along = sheet_point(x + h, q) - sheet_point(x - h, q);
       const Vec3d across = sheet_point(x, q + h) - sheet_point(x, q - h);
       area += length(cross(along, across));
       width += length(across);
     }
-    length_to.push_back(length_to.back() + area / width / (2 * h) * kLength / kSamples);
+    length_to.push_back(length_to.back() + area / width / (2 * h) * surface_length / sample_count);
   }
   return Measure(std::move(length_to));
 }
@@ -136,13 +136,13 @@ void join(const Row& a, const Row& b, SampleShape& shape) {
 }
 
 SampleShape delta_wing_shape(int detail) {
-  const double edge = kLength / detail;
+  const double edge = surface_length / detail;
   const Measure along = along_sheet();
   const int rows = int(std::lround(along.total() / (edge * 0.87)));
   SampleShape shape;
   Row last{};
   for (int i = 0; i <= rows; ++i) {
-    const double x = kLength * along.parameter_at(along.total() * i / rows);
+    const double x = surface_length * along.parameter_at(along.total() * i / rows);
     const Measure across = across_sheet(x);
     const int steps = std::max(2, int(std::lround(across.total() / edge)));
     const Row row{std::uint32_t(shape.points.size()), std::uint32_t(steps + 1)};
@@ -159,12 +159,12 @@ SampleShape delta_wing_shape(int detail) {
 
 /// The stream, its swirl about the axis, waves on both that travel downstream, and a bubble that breathes.
 SampleField delta_wing_flow(double time) {
-  const double phase = 2 * kPi * time;
+  const double phase = 2 * pi * time;
   return [phase](const Vec3d& p, const Vec3d& n) {
     const Vec3d a = axis(p.x), off{0, p.y - a.y, p.z - a.z};
     const double r = std::max(length(off), 1e-6), angle = std::atan2(off.z, off.y);
     const Vec3d outward = off / r, around = cross(outward, Vec3d{1, 0, 0});
-    const double bubble = smooth_step(kBubble - 1.2, kBubble - 0.3, p.x) * (1 - smooth_step(6.6, 7.8, p.x));
+    const double bubble = smooth_step(breakdown_at - 1.2, breakdown_at - 0.3, p.x) * (1 - smooth_step(6.6, 7.8, p.x));
     const double stream = 0.9 - 0.75 * bubble + 0.3 * std::sin(2.2 * p.x - angle - phase);
     const double swirl = 0.75 + 0.4 * std::sin(2.9 * p.x + angle - phase) + 0.3 * bubble * std::cos(2 * angle + phase);
     const Vec3d pumping = outward * (0.5 * bubble * std::sin(5.0 * p.x + 14.0 * r + phase));

@@ -6,16 +6,16 @@
 namespace nacre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// A cube whose faces are divided into equal angles, blown up to the sphere: no poles, triangles of nearly equal size.
 SampleShape sphere_shape(int detail) {
-  const int n = std::max(2, int(std::lround(detail * kPi / 4)));
+  const int n = std::max(2, int(std::lround(detail * pi / 4)));
   LatticeBox box = lattice_box(n, n, n);
   SampleShape shape;
   shape.triangles = std::move(box.triangles);
   for (const Int3& p : box.points) {
-    const auto warp = [&](int i) { return std::tan(kPi / 4 * (2.0 * i / n - 1)); };
+    const auto warp = [&](int i) { return std::tan(pi / 4 * (2.0 * i / n - 1)); };
     shape.points.push_back(normalized(Vec3d{warp(p.x), warp(p.y), warp(p.z)}));
   }
   shape.normals = shape.points;
@@ -26,7 +26,7 @@ SampleShape sphere_shape(int detail) {
 Eddy circling(Vec3d home, double reach, double turns, double time, Eddy eddy) {
   home = normalized(home);
   const Vec3d side = normalized(cross(home, std::abs(home.z) < 0.8 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0}));
-  const double angle = 2 * kPi * turns * time;
+  const double angle = 2 * pi * turns * time;
   eddy.centre = normalized(home + (side * std::cos(angle) + cross(home, side) * std::sin(angle)) * reach);
   return eddy;
 }
@@ -43,7 +43,7 @@ SampleField sphere_flow(double time) {
       circling({0.1, -0.1, -1.0}, 0.20, 1, time, {{}, 0.50, 1.2, -0.4}),
       circling({1.0, 0.1, -0.3}, 0.20, 1, time, {{}, 0.40, 0.2, 0.9}),
   };
-  const double sway = 0.4 * std::sin(2 * kPi * time);
+  const double sway = 0.4 * std::sin(2 * pi * time);
   return [eddies, sway](const Vec3d& p, const Vec3d& n) {
     const Vec3d drift = cross(Vec3d{sway, -0.2, 0.45}, p);
     return drift + sum_of(eddies, p, n);

@@ -6,21 +6,21 @@
 namespace nacre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kMajor = 1.0;  // centre of the tube
-constexpr double kMinor = 0.4;  // radius of the tube
+using std::numbers::pi;
+constexpr double major = 1.0;  // centre of the tube
+constexpr double minor = 0.4;  // radius of the tube
 
 SampleShape torus_shape(int detail) {
-  const double edge = 2 * (kMajor + kMinor) / detail;
-  const int along = std::max(6, int(std::lround(2 * kPi * kMajor / edge)));
-  const int around = std::max(4, int(std::lround(2 * kPi * kMinor / edge)));
+  const double edge = 2 * (major + minor) / detail;
+  const int along = std::max(6, int(std::lround(2 * pi * major / edge)));
+  const int around = std::max(4, int(std::lround(2 * pi * minor / edge)));
   SampleShape shape;
   for (int i = 0; i < along; ++i) {
     for (int j = 0; j < around; ++j) {
-      const double phi = 2 * kPi * i / along, theta = 2 * kPi * j / around;
+      const double phi = 2 * pi * i / along, theta = 2 * pi * j / around;
       const Vec3d outward{std::cos(phi), std::sin(phi), 0};
       const Vec3d normal = outward * std::cos(theta) + Vec3d{0, 0, std::sin(theta)};
-      shape.points.push_back(outward * kMajor + normal * kMinor);
+      shape.points.push_back(outward * major + normal * minor);
       shape.normals.push_back(normal);
       const auto index = [&](int di, int dj) { return std::uint32_t((i + di) % along * around + (j + dj) % around); };
       shape.triangles.push_back({index(0, 0), index(1, 0), index(1, 1)});
@@ -32,10 +32,10 @@ SampleShape torus_shape(int detail) {
 
 /// Toroidal stream with a swing of the poloidal one, and a chain of travelling cells that reverses it here and there.
 SampleField torus_flow(double time) {
-  const double phase = 2 * kPi * time;
+  const double phase = 2 * pi * time;
   return [phase](const Vec3d& p, const Vec3d& n) {
     const double phi = std::atan2(p.y, p.x), ring = std::hypot(p.x, p.y);
-    const double theta = std::atan2(p.z, ring - kMajor);
+    const double theta = std::atan2(p.z, ring - major);
     const Vec3d along{-p.y / ring, p.x / ring, 0};
     const Vec3d around = cross(n, along);
     const double wave = 3 * phi - phase;

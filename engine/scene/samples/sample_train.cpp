@@ -8,12 +8,12 @@
 namespace nacre {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kHalfLength = 5.0;  // the train lies along x, its nose at -5, the track at z = 0
-constexpr double kHalfWidth = 0.5664;
-constexpr double kBottom = 0.15, kTop = 1.4977;
-constexpr double kNoseLength = 2.0;
-constexpr double kTipHeight = 0.52;
+using std::numbers::pi;
+constexpr double half_length = 5.0;  // the train lies along x, its nose at -5, the track at z = 0
+constexpr double train_half_width = 0.5664;
+constexpr double bottom = 0.15, top = 1.4977;
+constexpr double nose_length = 2.0;
+constexpr double tip_height = 0.52;
 
 /// The cross-section at `x`: a superellipse.
 struct Section {
@@ -21,17 +21,17 @@ struct Section {
 };
 
 Section section(double x) {
-  const double u = std::min((kHalfLength - std::abs(x)) / kNoseLength, 1.0);  // 0 at a tip, 1 at the body
+  const double u = std::min((half_length - std::abs(x)) / nose_length, 1.0);  // 0 at a tip, 1 at the body
   const auto dome = [u](double power) { return std::sqrt(std::max(1 - std::pow(1 - u, power), 0.0)); };
-  const double roof = kTipHeight + (kTop - kTipHeight) * dome(2.2) * (0.62 + 0.38 * smooth_step(0.1, 0.95, u));
-  const double floor = kTipHeight + (kBottom - kTipHeight) * dome(4.0);
-  return {kHalfWidth * dome(2.6), (roof - floor) / 2, (roof + floor) / 2, 2.2 + 2.3 * smooth_step(0.1, 1.0, u)};
+  const double roof = tip_height + (top - tip_height) * dome(2.2) * (0.62 + 0.38 * smooth_step(0.1, 0.95, u));
+  const double floor = tip_height + (bottom - tip_height) * dome(4.0);
+  return {train_half_width * dome(2.6), (roof - floor) / 2, (roof + floor) / 2, 2.2 + 2.3 * smooth_step(0.1, 1.0, u)};
 }
 
 /// The point at `s` (0 at the nose, 1 at the tail; quadratic there, which makes the round tips regular) and direction
 /// `angle` about the axis (0: +y, a quarter turn: up).
 Vec3d surface_point(double s, double angle) {
-  const double x = -kHalfLength * std::cos(kPi * s);
+  const double x = -half_length * std::cos(pi * s);
   const Section cut = section(x);
   const double y = std::cos(angle), z = std::sin(angle);
   const double a = std::max(cut.half_width, 1e-12), b = std::max(cut.half_height, 1e-12);
@@ -53,11 +53,11 @@ Vec3d surface_normal(double s, double angle) {
 class Meridian {
  public:
   Meridian() {
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < sample_count; ++i) {
       double step = 0;
       for (int k = 0; k < 8; ++k)
-        step +=
-            length(surface_point((i + 1.0) / kSamples, kPi * k / 4) - surface_point(double(i) / kSamples, kPi * k / 4));
+        step += length(surface_point((i + 1.0) / sample_count, pi * k / 4) -
+                       surface_point(double(i) / sample_count, pi * k / 4));
       lengths_[i + 1] = lengths_[i] + step / 8;
     }
   }
@@ -66,20 +66,20 @@ class Meridian {
   double s_at(double distance) const {
     const auto next = std::upper_bound(lengths_.begin() + 1, lengths_.end() - 1, distance);
     const double fraction = (distance - *(next - 1)) / (*next - *(next - 1));
-    return std::clamp((double(next - lengths_.begin()) - 1 + fraction) / kSamples, 0.0, 1.0);
+    return std::clamp((double(next - lengths_.begin()) - 1 + fraction) / sample_count, 0.0, 1.0);
   }
 
  private:
-  static constexpr int kSamples = 4096;
-  std::array<double, kSamples + 1> lengths_{};
+  static constexpr int sample_count = 4096;
+  std::array<double, sample_count + 1> lengths_{};
 };
 
 /// A box lattice wrapped around the train. Rings of points run around its sides; on the two end faces they shrink to
 /// the tip as squares within squares, so that triangles stay of one size.
 SampleShape train_shape(int detail) {
   const Meridian meridian;
-  const double edge = 2 * kHalfLength / detail;
-  const int across = 2 * std::max(1, int(std::lround(0.5 * (kHalfWidth + (kTop - kBottom) / 2) * 0.92 / edge)));
+  const double edge = 2 * half_length / detail;
+  const int across = 2 * std::max(1, int(std::lround(0.5 * (train_half_width + (top - bottom) / 2) * 0.92 / edge)));
   const int along = std::max(4, int(std::lround(meridian.total() / edge)) - across);
 
   LatticeBox box = lattice_box(along, across, across);
@@ -91,7 +91,7 @@ SampleShape train_shape(int detail) {
     double rings = p.x + across / 2.0;
     if (p.x == 0) rings = ring * across / 2;
     if (p.x == along) rings = along + across - ring * across / 2;
-    const double scale = kPi / 4 / std::max(ring, 1e-12);
+    const double scale = pi / 4 / std::max(ring, 1e-12);
     const double angle = std::atan2(std::tan(w * scale), std::tan(v * scale));
     const double s = ring == 0 ? double(p.x != 0) : meridian.s_at(meridian.total() * rings / (along + across));
     shape.points.push_back(surface_point(s, angle));
@@ -103,38 +103,38 @@ SampleShape train_shape(int detail) {
 /// Flow around the section at `angle`: away from the attachment lines, towards the separation lines, which waver along
 /// the train. Positive turns from +y (lee) to up.
 double crossflow(double x, double angle, double phase) {
-  const auto wave = [&](double count, double shift) { return std::sin(count * kPi / kHalfLength * x - phase + shift); };
-  const double windward = kPi * (1.0 + 0.04 * wave(2, 0.0));      // attachment
-  const double roof_edge = kPi * (0.36 + 0.05 * wave(4, 1.0));    // separation
-  const double lee = kPi * (0.03 + 0.07 * wave(6, 2.0));          // reattachment
-  const double floor_edge = kPi * (-0.30 + 0.04 * wave(3, 0.5));  // separation
+  const auto wave = [&](double count, double shift) { return std::sin(count * pi / half_length * x - phase + shift); };
+  const double windward = pi * (1.0 + 0.04 * wave(2, 0.0));      // attachment
+  const double roof_edge = pi * (0.36 + 0.05 * wave(4, 1.0));    // separation
+  const double lee = pi * (0.03 + 0.07 * wave(6, 2.0));          // reattachment
+  const double floor_edge = pi * (-0.30 + 0.04 * wave(3, 0.5));  // separation
   const auto factor = [angle](double line) { return std::sin((angle - line) / 2); };
   return 3.2 * factor(windward) * factor(roof_edge) * factor(lee) * factor(floor_edge);
 }
 
 /// Vortices that drift along the lee wall and, weaker, along the roof; one spacing a period, so that the loop closes.
 std::vector<Eddy> travelling_eddies(double time) {
-  constexpr double kSpacing = 1.6;
+  constexpr double spacing = 1.6;
   std::vector<Eddy> eddies;
   const auto add = [&eddies](double x, double y, double z, double radius, double spin, double spread) {
     const double strength = smooth_step(-4.6, -2.5, x) * (1 - smooth_step(3.6, 4.8, x));
     eddies.push_back({{x, y, z}, radius, spin * strength, spread * strength});
   };
   for (int i = -1; i < 7; ++i) {
-    const double x = -kHalfLength + kSpacing * (i + time);
-    add(x, kHalfWidth, 1.02, 0.30, -0.95, -0.3);
-    add(x + 0.5 * kSpacing, kHalfWidth, 0.58, 0.22, 0.75, 0.2);
-    add(x + 0.25 * kSpacing, 0.12, kTop, 0.22, 0.5, -0.25);
+    const double x = -half_length + spacing * (i + time);
+    add(x, train_half_width, 1.02, 0.30, -0.95, -0.3);
+    add(x + 0.5 * spacing, train_half_width, 0.58, 0.22, 0.75, 0.2);
+    add(x + 0.25 * spacing, 0.12, top, 0.22, 0.5, -0.25);
   }
   return eddies;
 }
 
 SampleField train_flow(double time) {
-  const double phase = 2 * kPi * time;
+  const double phase = 2 * pi * time;
   return [phase, eddies = travelling_eddies(time)](const Vec3d& p, const Vec3d& n) {
     const double angle = std::atan2(p.z - section(p.x).middle, p.y);
     const double windward = 0.5 - 0.5 * std::cos(angle);  // 1 on the windward side, 0 on the lee side
-    const double pulse = 1 + 0.15 * std::sin(3 * kPi / kHalfLength * p.x - phase);
+    const double pulse = 1 + 0.15 * std::sin(3 * pi / half_length * p.x - phase);
     const Vec3d stream = tangential({(0.28 + 0.54 * windward) * pulse, 0.18, 0}, n);
     return stream + cross(Vec3d{1, 0, 0}, n) * crossflow(p.x, angle, phase) + sum_of(eddies, p, n);
   };

@@ -16,7 +16,7 @@
 namespace nacre {
 namespace {
 
-constexpr int kMaxDetail = 1024;  // millions of triangles: more would only fill memory
+constexpr int max_detail = 1024;  // millions of triangles: more would only fill memory
 
 const std::vector<SampleDefinition>& definitions() {
   static const std::vector<SampleDefinition> all{
@@ -82,9 +82,9 @@ std::vector<SampleInfo> samples() {
 SurfaceSeries make_sample(const std::string& name, int detail) {
   const SampleDefinition& definition = sample_definition(name);
   if (detail == 0) detail = definition.default_detail;
-  if (detail < definition.min_detail || detail > kMaxDetail)
+  if (detail < definition.min_detail || detail > max_detail)
     throw Error(fmt::format("the sample '{}' cannot be made with detail {}", name, detail), "",
-                fmt::format("choose from {} to {}, or 0 for its default of {}", definition.min_detail, kMaxDetail,
+                fmt::format("choose from {} to {}, or 0 for its default of {}", definition.min_detail, max_detail,
                             definition.default_detail));
 
   const auto shape = std::make_shared<const SampleShape>(definition.shape(detail));
