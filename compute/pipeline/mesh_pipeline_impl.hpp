@@ -14,7 +14,7 @@
 namespace nacre {
 
 /// Above this share of unsettled stars, surfaces are sampled so coarsely that cells are quicker, and better.
-constexpr double most_unsettled_stars = 0.07;
+constexpr double most_unsettled_stars = 0.05;
 
 template <class Backend>
 class MeshPipelineOf : public MeshPipeline {
