@@ -90,8 +90,6 @@ bool on_small_body(const SurfaceMesh& mesh, const VertexTable& facets_at, std::u
   return false;
 }
 
-bool has_corner(const Triangle& t, std::uint32_t point) { return t.a == point || t.b == point || t.c == point; }
-
 /// Where points are too few to take one away, another one splits the longest edge of a bad triangle, if it is long.
 bool split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size, std::uint32_t t,
            MeshDefects& defects) {

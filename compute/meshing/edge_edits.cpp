@@ -27,8 +27,6 @@ constexpr std::size_t most_edits = 8;  // for each bad triangle, in the mean
 
 using Triangles = std::vector<std::uint32_t>;
 
-bool has(const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; }
-
 /// The corner of `t` that is neither `u` nor `v`.
 std::uint32_t opposite(const Triangle& t, std::uint32_t u, std::uint32_t v) {
   for (int k = 0; k < 3; ++k)
@@ -59,7 +57,6 @@ class Editor {
         if (!gone(t)) note(t);
       again &= left > 0;
     }
-    edits_.bad = std::count_if(bad_.begin(), bad_.end(), [&](const auto& entry) { return !gone(entry.second); });
     compact();
     return std::move(edits_);
   }
@@ -102,7 +99,7 @@ class Editor {
 
   Triangles at_edge(std::uint32_t u, std::uint32_t v) const {
     Triangles all = at(u);
-    std::erase_if(all, [&](std::uint32_t t) { return !has(mesh_.triangles[t], v); });
+    std::erase_if(all, [&](std::uint32_t t) { return !has_corner(mesh_.triangles[t], v); });
     return all;
   }
 
@@ -178,12 +175,12 @@ class Editor {
     Change change{at(u), {}, u, order_[u] == 1 && is_within(edge) ? v : none};
     for (const std::uint32_t t : change.old) {
       Triangle made = mesh_.triangles[t];
-      if (has(made, v)) continue;
+      if (has_corner(made, v)) continue;
       (made.a == u ? made.a : made.b == u ? made.b : made.c) = v;
       for (int k = 0; k < 3; ++k)  // the edge beyond u must not be beyond v, too
         if (made[k] != v && made[(k + 1) % 3] != v)
           for (const std::uint32_t other : at_edge(made[k], made[(k + 1) % 3]))
-            if (has(mesh_.triangles[other], v)) return {};
+            if (has_corner(mesh_.triangles[other], v)) return {};
       change.made.push_back({made, t});
     }
     if (change.made.empty()) return {};

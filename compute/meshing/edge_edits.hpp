@@ -13,7 +13,6 @@ namespace nacre {
 /// What `edit_edges` did.
 struct EdgeEdits {
   std::int64_t flips = 0, contractions = 0;
-  std::int64_t bad = 0;                ///< triangles that are still bad
   std::vector<std::uint32_t> kept;     ///< which of the points are left, ascending
   std::vector<std::uint32_t> crossed;  ///< of those left, by their new numbers: a curve was led through them
 };

@@ -14,8 +14,6 @@ constexpr double least_share = 0.5;  // of the worst fitness that is left: edits
 constexpr double long_edge = 1.3;    // in sizes
 constexpr double least_turn = 0.35;  // cosine between the normals of a surface before and after
 
-bool has_corner(const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; }
-
 std::vector<std::uint32_t> triangles_at(const SurfaceMesh& mesh, const VertexTable& table,
                                         const std::array<std::uint32_t, 2>& ends) {
   std::vector<std::uint32_t> found;

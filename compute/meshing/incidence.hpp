@@ -10,6 +10,8 @@
 
 namespace nacre {
 
+inline bool has_corner(const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; }
+
 /// The edges of a mesh, ascending by (a, b), a < b. A use is 3 * triangle + k: the edge from the triangle's corner k to
 /// its next one.
 class EdgeTable {

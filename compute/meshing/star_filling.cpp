@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <span>
 
 #include "compute/math/disjoint_sets.hpp"
@@ -49,41 +48,18 @@ std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vecto
   return odd;
 }
 
-/// What filled the holes of a round, none where it failed: by their loops, with the items within.
-struct Fillings {
-  struct One {
-    std::vector<std::uint32_t> within;
-    std::vector<Triangle> triangles;
-  };
-  std::map<std::vector<std::uint32_t>, One> of_loop;
-  std::vector<std::uint32_t> outdated;  ///< items whose stars have changed since, ascending
-
-  /// The filling of the same hole, if it would be the same again.
-  const std::vector<Triangle>* find(const StarHole& hole) const {
-    const auto at = of_loop.find(hole.loop);
-    if (at == of_loop.end() || at->second.within != hole.within) return nullptr;
-    const auto is_outdated = [&](std::uint32_t i) { return std::binary_search(outdated.begin(), outdated.end(), i); };
-    const bool changed = std::any_of(hole.loop.begin(), hole.loop.end(), is_outdated) ||
-                         std::any_of(hole.within.begin(), hole.within.end(), is_outdated);
-    return changed ? nullptr : &at->second.triangles;
-  }
-};
-
 /// Items of holes that could not be filled.
 struct Failed {
   std::vector<std::uint32_t> wider;     ///< of those that are worth widening
   std::vector<std::uint32_t> hopeless;  ///< of the others
 };
 
-/// Fills what can be filled. Holes that have one of the items `hopeless`, which ascend, are not worth widening. `known`
-/// are the fillings of the round before, and then those of this one.
+/// Fills what can be filled. Holes that have one of the items `hopeless`, which ascend, are not worth widening.
 Failed fill(const StarItems& items, const std::vector<Star>& stars, const std::vector<StarHole>& holes,
-            std::span<const std::uint32_t> hopeless, Fillings& known, std::vector<Triangle>& triangles) {
+            std::span<const std::uint32_t> hopeless, std::vector<Triangle>& triangles) {
   std::vector<std::vector<Triangle>> fillings(holes.size());
-  tbb::parallel_for(std::size_t(0), holes.size(), [&](std::size_t i) {
-    const std::vector<Triangle>* same = known.find(holes[i]);
-    fillings[i] = same ? *same : fill_hole(items, stars, holes[i]);
-  });
+  tbb::parallel_for(std::size_t(0), holes.size(),
+                    [&](std::size_t i) { fillings[i] = fill_hole(items, stars, holes[i]); });
   const auto is_hopeless = [&](std::uint32_t i) { return std::binary_search(hopeless.begin(), hopeless.end(), i); };
   Failed failed;
   for (std::size_t i = 0; i < holes.size(); ++i) {
@@ -100,9 +76,6 @@ Failed fill(const StarItems& items, const std::vector<Star>& stars, const std::v
   for (const std::uint32_t i : at_odd_edges(items, stars, triangles))
     (is_hopeless(i) ? failed.hopeless : failed.wider).push_back(i);
   sort_unique(failed.wider), sort_unique(failed.hopeless);
-  known = {};
-  for (std::size_t i = 0; i < holes.size(); ++i)
-    known.of_loop[holes[i].loop] = {holes[i].within, std::move(fillings[i])};
   return failed;
 }
 
@@ -174,21 +147,17 @@ std::vector<std::uint32_t> close_bodies(const StarItems& items, const std::vecto
 }
 
 /// Fills holes, and widens those that cannot be filled, `hopeless` ones excepted. `failed` receives the items of those
-/// that were widened in vain. `first` are fillings of the holes as they are now, if known; then those of the first
-/// round.
+/// that were widened in vain.
 StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomplete,
-                           std::span<const std::uint32_t> hopeless, Fillings& first,
-                           std::vector<std::uint32_t>& failed) {
+                           std::span<const std::uint32_t> hopeless, std::vector<std::uint32_t>& failed) {
   const StarItems& items = finder.items();
   const std::vector<Star>& stars = finder.stars();
   StarFilling filling;
-  Fillings known = first;
   for (int round = 0;; ++round) {
     const StarHoles holes = find_holes(items, stars, incomplete);
     filling.holes = std::int64_t(holes.holes.size());
     filling.triangles.clear();
-    Failed now = fill(items, stars, holes.holes, hopeless, known, filling.triangles);
-    if (round == 0) first = known;
+    Failed now = fill(items, stars, holes.holes, hopeless, filling.triangles);
     if (now.wider.empty() || round == widenings || now.wider.size() > most_opened * holes.holes.size()) {
       failed = std::move(now.wider);
       for (const StarHole& hole : holes.holes)
@@ -205,8 +174,6 @@ StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomp
     const std::vector<std::uint32_t> changed = finder.open(now.wider);
     incomplete.insert(incomplete.end(), changed.begin(), changed.end());
     sort_unique(incomplete);
-    known.outdated = changed;
-    sort_unique(known.outdated);
     filling.opened.insert(filling.opened.end(), now.wider.begin(), now.wider.end());
   }
 }
@@ -214,14 +181,13 @@ StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomp
 }  // namespace
 
 StarFilling fill_holes(StarFinder& finder, std::vector<std::uint32_t> incomplete) {
-  Fillings first;
   std::vector<std::uint32_t> failed;
-  StarFilling filling = widen_and_fill(finder, incomplete, {}, first, failed);
+  StarFilling filling = widen_and_fill(finder, incomplete, {}, failed);
   if (failed.empty()) return filling;
   // What was widened in vain stays as small as it was.
   finder.close();
   std::vector<std::uint32_t> again;
-  return widen_and_fill(finder, std::move(incomplete), failed, first, again);
+  return widen_and_fill(finder, std::move(incomplete), failed, again);
 }
 
 }  // namespace nacre

@@ -8,6 +8,8 @@
 #include <map>
 #include <optional>
 
+#include "compute/meshing/incidence.hpp"
+
 namespace nacre {
 namespace {
 
@@ -263,8 +265,8 @@ class Filling {
   }
 
   bool in_patch(std::uint32_t a, std::uint32_t b) const {
-    const auto has = [](const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; };
-    return std::any_of(triangles_.begin(), triangles_.end(), [&](const Triangle& t) { return has(t, a) && has(t, b); });
+    return std::any_of(triangles_.begin(), triangles_.end(),
+                       [&](const Triangle& t) { return has_corner(t, a) && has_corner(t, b); });
   }
 
   const StarItems& items_;

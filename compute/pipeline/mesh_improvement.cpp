@@ -112,7 +112,11 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
       if (take_back_attempt()) made = triangulate();
     }
     if (smoothed_ >= rule_.smooth) {
-      Kept now = polishes() ? polished(made) : Kept{made, particles_.download(), {}, {}, {}, {}, {}, {}};
+      Kept now;
+      if (polishes())
+        now = polished(made);
+      else
+        now.made = made, now.particles = particles_.download();
       in_vain_ = best && !better_shaped(now, *best) ? in_vain_ + 1 : 0;
       if (!best || !better_shaped(*best, now)) best = std::move(now);
       if (polishes() && (is_good(*best) || in_vain_ == most_in_vain)) return;

@@ -1,5 +1,6 @@
-// Nacre: a mesh made better without triangulating it again: edges are edited and points smoothed in turn.
+// Nacre: a mesh made better without triangulating it again: edges are edited and split and points smoothed in turn.
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 #include "compute/meshing/edge_edits.hpp"
@@ -13,15 +14,14 @@ constexpr int most_rounds = 8;
 /// What edits aim at, everywhere.
 constexpr DefectRule mediocre{0, wanted_ratio, wanted_ratio, false};
 
-/// The numbers that `defects` have where only the points `kept` are left; those of others are dropped.
+/// The numbers that the points of `defects` have where only the points `kept`, theirs among them, are left.
 void renumber(std::vector<std::array<std::uint32_t, 2>>& defects, std::span<const std::uint32_t> kept) {
-  const auto number = [&](std::uint32_t& v) {
-    const auto at = std::lower_bound(kept.begin(), kept.end(), v);
-    if (at == kept.end() || *at != v) return false;
-    v = std::uint32_t(at - kept.begin());
-    return true;
-  };
-  std::erase_if(defects, [&](auto& defect) { return !(number(defect[0]) && number(defect[1])); });
+  for (auto& defect : defects)
+    for (std::uint32_t& v : defect) {
+      const auto at = std::lower_bound(kept.begin(), kept.end(), v);
+      assert(at != kept.end() && *at == v);
+      v = std::uint32_t(at - kept.begin());
+    }
 }
 
 }  // namespace
@@ -46,7 +46,10 @@ bool MeshImprovement::is_good(const Kept& kept) const {
 /// are not on. Returns how many changes it made.
 std::int64_t MeshImprovement::edit(Kept& kept, std::vector<std::uint8_t>& fixed) {
   Triangulated& made = kept.made;
-  const EdgeEdits edits = edit_edges(made.mesh, made.order, mediocre);
+  std::vector<std::uint8_t> order = made.order;
+  for (const auto& defect : made.touching)
+    for (const std::uint32_t point : defect) order[point] = 0;  // stays: remeshing has to find it
+  const EdgeEdits edits = edit_edges(made.mesh, order, mediocre);
   const auto keep = [&](auto& of_points) {
     for (std::size_t v = 0; v < edits.kept.size(); ++v) of_points[v] = of_points[edits.kept[v]];
     of_points.resize(edits.kept.size());
