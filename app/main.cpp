@@ -5,13 +5,16 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/commands.hpp"
@@ -56,6 +59,27 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
+Status run(std::vector<std::string> arguments);
+
+struct Command {
+  std::string_view name;
+  void (*add)(CLI::App& program, std::function<void()>& run);
+};
+
+constexpr std::array<Command, 8> commands = {{
+    {"flow", nacre::add_flow_command},
+    {"mesh", nacre::add_mesh_command},
+    {"info", nacre::add_info_command},
+    {"sample", nacre::add_sample_command},
+    {"bench", nacre::add_bench_command},
+    {"join", nacre::add_join_command},
+    {"view", nacre::add_view_command},
+    {"rerun",
+     [](CLI::App& program, std::function<void()>& command) {
+       nacre::add_rerun_command(program, command, [](const std::vector<std::string>& again) { run(again); });
+     }},
+}};
+
 /// `arguments`: what follows the program's name.
 Status run(std::vector<std::string> arguments) {
   CLI::App program("Nacre: unsteady flow on surfaces, and multi-material meshes from labelled volumes.", "nacre");
@@ -65,14 +89,12 @@ Status run(std::vector<std::string> arguments) {
   bool knobs = false;
   program.add_flag("--knobs", knobs, "print all knobs with their defaults, ranges and units");
   std::function<void()> command;
-  nacre::add_flow_command(program, command);
-  nacre::add_mesh_command(program, command);
-  nacre::add_info_command(program, command);
-  nacre::add_sample_command(program, command);
-  nacre::add_bench_command(program, command);
-  nacre::add_join_command(program, command);
-  nacre::add_view_command(program, command);
-  nacre::add_rerun_command(program, command, [](const std::vector<std::string>& again) { run(again); });
+  // Options are dear to declare: those of the command that is named suffice.
+  const auto named = std::find_if(commands.begin(), commands.end(), [&](const Command& each) {
+    return !arguments.empty() && arguments.front() == each.name;
+  });
+  for (const Command& each : commands)
+    if (named == commands.end() || each.name == named->name) each.add(program, command);
   for (CLI::App* each : program.get_subcommands({})) each->set_version_flag("--version", program.version());
   try {
     std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
