@@ -2,8 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace nacre {
@@ -18,8 +20,8 @@ class StageTimers {
     long launches = 0;  ///< of an Executor, within its calls
   };
 
-  void add(std::string_view name, double seconds, long launches = 0) {
-    Stage& stage = find(name);
+  void add(std::string name, double seconds, long launches = 0) {
+    Stage& stage = find(std::move(name));
     stage.seconds += seconds;
     stage.launches += launches;
     ++stage.calls;
@@ -36,13 +38,17 @@ class StageTimers {
     return 0;
   }
 
-  /// Times its own life.
+  /// Times its own life. Its end asks for no memory: it may be why the stage ends.
   class Scope {
    public:
     Scope(StageTimers& timers, std::string_view name)
-        : timers_(timers), name_(name), launches_(timers.launches_), start_(std::chrono::steady_clock::now()) {}
+        : timers_(timers), name_(name), launches_(timers.launches_), start_(std::chrono::steady_clock::now()) {
+      timers.stages_.reserve(timers.stages_.size() + timers.open_ + 1);
+      ++timers.open_;
+    }
     ~Scope() {
-      timers_.add(name_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
+      --timers_.open_;
+      timers_.add(std::move(name_), std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
                   timers_.launches_ - launches_);
     }
     Scope(const Scope&) = delete;
@@ -56,13 +62,14 @@ class StageTimers {
   };
 
  private:
-  Stage& find(std::string_view name) {
+  Stage& find(std::string name) {
     for (Stage& stage : stages_)
       if (stage.name == name) return stage;
-    return stages_.emplace_back(Stage{std::string(name)});
+    return stages_.emplace_back(Stage{std::move(name)});
   }
 
   std::vector<Stage> stages_;
+  std::size_t open_ = 0;  // scopes
   long launches_ = 0;
 };
 
