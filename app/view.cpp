@@ -203,7 +203,7 @@ nlohmann::json input_report(const SessionInput& input) {
 }
 
 nlohmann::json view_report(const ViewerResult& result, const Session& session) {
-  nlohmann::json report;
+  nlohmann::json report = nlohmann::json::object();
   report["nacre"] = version;
   report["command"] = "view";
   report["device"] = {{"backend", result.backend}, {"name", result.device_name}, {"threads", result.threads}};

@@ -56,9 +56,11 @@ class TriangleTable {
 
 }  // namespace
 
-void label_beside(const DelaunayCells& cells, std::span<const Triangle> triangles,
-                  std::span<const std::array<std::uint16_t, 2>> materials, std::span<std::uint16_t> label) {
-  if (triangles.empty()) return;
+std::vector<std::uint8_t> label_beside(const DelaunayCells& cells, std::span<const Triangle> triangles,
+                                       std::span<const std::array<std::uint16_t, 2>> materials,
+                                       std::span<std::uint16_t> label) {
+  std::vector<std::uint8_t> labelled(label.size(), 0);
+  if (triangles.empty()) return labelled;
   const TriangleTable table(triangles);
   std::vector<std::uint8_t> is_corner;
   for (const Triangle& t : triangles) {
@@ -81,9 +83,10 @@ void label_beside(const DelaunayCells& cells, std::span<const Triangle> triangle
         agree = agree && (!known || inside == material);
         known = true, material = inside;
       }
-      if (known && agree) label[i] = material;
+      if (known && agree) label[i] = material, labelled[i] = 1;
     }
   });
+  return labelled;
 }
 
 }  // namespace nacre

@@ -57,7 +57,12 @@ std::uint64_t key_of(std::span<const Vec3d> places) {
 void PatchCells::begin() {
   before_ = std::move(now_);
   now_.clear();
+  in_patch_.clear();
 }
+
+bool PatchCells::was_in_patch(const Vec3d& point) const { return in_patch_.contains(key_of({&point, 1})); }
+
+void PatchCells::keep_in_patch(const Vec3d& point) { in_patch_.insert(key_of({&point, 1})); }
 
 std::shared_ptr<const PatchCells::Made> PatchCells::make(std::vector<Vec3d> places, std::vector<double> size,
                                                          const PatchWorld& world, const std::atomic<bool>* stop) {

@@ -15,6 +15,7 @@
 #include "compute/math/sort_unique.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/near_points.hpp"
+#include "compute/meshing/patch_voids.hpp"
 #include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
@@ -24,12 +25,11 @@ namespace nacre {
 namespace {
 
 constexpr int patch_rounds = 100;
-constexpr int slow_rounds = 8;        // then a patch grows by whole rings
-constexpr double around = 3;          // sizes: as far as the particles are that a patch is made of
-constexpr double wider = 3;           // times as far, where that does not suffice
-constexpr double most_wider = 8;      // as far in the end, nearly
-constexpr double most_at_once = 0.5;  // particles triangulated in a round, and in all, by those that there are
-constexpr double most_work = 1.5;
+constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
+constexpr double beside = 1.5;     // as far as neighbours are
+constexpr double wider = 3;        // times as far, where that does not suffice
+constexpr double most_wider = 8;   // as far in the end, nearly
+constexpr double most_work = 0.6;  // particles triangulated in all rounds, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
 class Guards {
@@ -65,15 +65,17 @@ class Patch {
       : guards_(&guards), world_(&world), stop_(stop) {}
 
   /// Of `members`, ascending. `kept` are triangles that stay, corners as numbers of members: the cells beside them have
-  /// the materials on their sides, wherever the centres are.
-  void make(std::span<const std::uint32_t> members, const StarMesh& kept, PatchCells& cells) {
+  /// the materials on their sides, wherever the centres are. `reach`, per member: see unify_voids.
+  void make(std::span<const std::uint32_t> members, std::span<const double> reach, const StarMesh& kept,
+            PatchCells& cells) {
     std::vector<Vec3d> places;
     std::vector<double> size;
     for (const std::uint32_t i : members) places.push_back(world_->points[i]), size.push_back(world_->size[i]);
     guards_->add(places, size);
     made_ = cells.make(std::move(places), std::move(size), *world_, stop_);
     label_ = made_->label;
-    label_beside(made_->cells, kept.triangles, kept.materials, label_);
+    const std::vector<std::uint8_t> known = label_beside(made_->cells, kept.triangles, kept.materials, label_);
+    unify_voids(made_->places, made_->cells, reach, known, label_);
     facets_ = interface_facets(made_->cells, label_);
     defects_.clear();
   }
@@ -112,7 +114,7 @@ void add_pinched(StarMesh& mesh, std::size_t particles) {
 
 class Settling {
  public:
-  Settling(const StarMesh& stars, const PatchWorld& world)
+  Settling(const StarMesh& stars, const PatchWorld& world, const PatchCells& cells)
       : stars_(stars),
         world_(world),
         guards_(world),
@@ -124,6 +126,7 @@ class Settling {
         number_(group_of_),
         wide_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
+    for (std::size_t i = 0; i < bad_.size(); ++i) bad_[i] = bad_[i] || cells.was_in_patch(world.points[i]);
   }
 
   /// Parts of the patch that have no particle within reach in common. Returns how many particles those have that are
@@ -173,7 +176,9 @@ class Settling {
       Group& group = groups_[k];
       if (group.patch) continue;
       group.patch.emplace(guards_, world_, stop);
-      group.patch->make(group.members, kept[k], cells);
+      std::vector<double> reach;
+      for (const std::uint32_t i : group.members) reach.push_back(bad_[i] ? around * extent_[i] : 0);
+      group.patch->make(group.members, reach, kept[k], cells);
       if (repairs) group.patch->repair(marks(group.members));
       list_at_bad(group);
     }
@@ -237,7 +242,7 @@ class Settling {
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
     stuck_ = !open.empty() && !any;
-    if (++grown_ > slow_rounds || (stuck_ && repaired)) any = add_around(joined, open) || any;
+    if (stuck_ && repaired) any = add_around(open);
     if (!open.empty()) return any || (repaired && widen(open));
     pinched_ = false;
     for (const std::uint32_t i : at_pinched_vertices(joined, marked_)) {
@@ -247,15 +252,12 @@ class Settling {
     return any;
   }
 
-  /// The neighbours of `some`, too; whether that are any.
-  bool add_around(const StarMesh& joined, std::span<const std::uint32_t> some) {
+  /// The neighbours of `some`, too; whether that is any more.
+  bool add_around(std::span<const std::uint32_t> some) {
     std::vector<std::uint8_t> there(bad_.size(), 0);
-    for (const std::uint32_t i : some) there[i] = 1;
+    mark_near(world_.points, some, world_.size, beside, there);
     bool any = false;
-    for (const Triangle& t : joined.triangles) {
-      if (!there[t.a] && !there[t.b] && !there[t.c]) continue;
-      for (int k = 0; k < 3; ++k) any = any || !bad_[t[k]], bad_[t[k]] = 1;
-    }
+    for (std::size_t i = 0; i < bad_.size(); ++i) any = any || bad_[i] < there[i], bad_[i] |= there[i];
     return any;
   }
 
@@ -386,7 +388,6 @@ class Settling {
   double wide_reach_ = 0;                         // sizes; 0: none are listed yet
   std::size_t beside_ = 0;                        // triangles of stars in the mesh joined last
   bool stuck_ = false, pinched_ = false;
-  int grown_ = 0;
 };
 
 }  // namespace
@@ -397,15 +398,17 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
   if (world.mirrored)
     for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
   add_pinched(mesh, world.points.size());
-  if (mesh.unsettled.empty()) return !mesh.triangles.empty();
-  Settling settling(mesh, world);
+  if (mesh.unsettled.empty()) {
+    cells.begin();
+    return !mesh.triangles.empty();
+  }
+  Settling settling(mesh, world, cells);
   cells.begin();
   bool repairs = false;
   double work = 0;  // particles triangulated
   for (int round = 0; round < patch_rounds; ++round) {
-    const auto now = double(settling.regroup()), all = double(world.points.size());
-    work += now;
-    if ((now >= most_at_once * all || work >= most_work * all) && all > 1000) return false;
+    work += double(settling.regroup());
+    if (world.points.size() > 1000 && work >= most_work * double(world.points.size())) return false;
     settling.make(cells, stop, repairs);
     StarMesh joined = settling.join();
     if (settling.grow(joined, repairs)) continue;
@@ -420,6 +423,8 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
     settling.replace(mesh, joined);
     if (mesh.triangles.empty()) return false;
     mesh.counts.in_patches = settling.count();
+    for (std::size_t i = 0; i < world.points.size(); ++i)
+      if (settling.is_bad(std::uint32_t(i))) cells.keep_in_patch(world.points[i]);
     mesh.unsettled.clear();
     return true;
   }

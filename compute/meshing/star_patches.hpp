@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "compute/meshing/delaunay.hpp"
@@ -24,8 +25,8 @@ struct PatchWorld {
   std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)> material_at;
 };
 
-/// Cells of patches, from one mesh to the next: those of the mesh before are used again where they have the same
-/// particles and, as is asked, the same materials around them.
+/// Patches, from one mesh to the next. Particles that have not moved stay in them, which saves the rounds in which they
+/// grow; cells of the mesh before are used again where they have the same particles.
 class PatchCells {
  public:
   explicit PatchCells(int threads = 0) : delaunay_(threads) {}
@@ -39,12 +40,16 @@ class PatchCells {
   void begin();  ///< a new mesh
   std::shared_ptr<const Made> make(std::vector<Vec3d> places, std::vector<double> size, const PatchWorld& world,
                                    const std::atomic<bool>* stop);
+  /// Whether the mesh before had a particle of a patch there.
+  bool was_in_patch(const Vec3d& point) const;
+  void keep_in_patch(const Vec3d& point);
 
  private:
   using Kept = std::unordered_multimap<std::uint64_t, std::shared_ptr<const Made>>;
 
   Delaunay delaunay_;
   Kept now_, before_;  // of this mesh, and of the one before what this has not asked for, by their places
+  std::unordered_set<std::uint64_t> in_patch_;  // keys of points
 };
 
 /// Replaces the triangles at the mesh's unsettled particles by the facets that the Delaunay triangulation of the

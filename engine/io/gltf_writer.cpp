@@ -72,7 +72,12 @@ class GltfAsset {
     json_ = {{"asset", {{"version", "2.0"}, {"generator", "Nacre"}}},
              {"scene", 0},
              {"scenes", json::array({json{{"nodes", json::array({0})}}})},
-             {"nodes", json::array()}};
+             {"nodes", json::array()},
+             {"meshes", json::array()},
+             {"materials", json::array()},
+             {"buffers", json::array()},
+             {"bufferViews", json::array()},
+             {"accessors", json::array()}};
     if (!origin.empty()) json_["asset"]["extras"] = {{"origin", json::parse(origin)}};
     json_["nodes"].push_back({{"name", "mesh"},
                               {"rotation", {-half, 0, 0, half}},

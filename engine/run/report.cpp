@@ -17,7 +17,8 @@ nlohmann::json stages_report(const StageTimers& timers) {
 
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
                             std::size_t arena_bytes) {
-  nlohmann::json report;
+  // An object from the start: where memory runs out as a null value becomes one, nlohmann's 3.11.2 fails in its end.
+  nlohmann::json report = nlohmann::json::object();
   report["nacre"] = NACRE_VERSION_STRING;
   report["command"] = command;
   report["device"] = {{"backend", device.backend()}, {"name", device.name()}, {"threads", device.threads()}};

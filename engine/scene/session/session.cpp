@@ -165,7 +165,7 @@ json whole_knobs(Settings settings) {
 }
 
 json event_json(const SessionEvent& event) {
-  json to;
+  json to = json::object();
   to["time"] = event.time;
   if (event.input) write_input(*event.input, to);
   if (!event.knobs.empty()) {
@@ -208,11 +208,12 @@ Session parse_session(const std::string& text) {
 }
 
 std::string session_text(const Session& session) {
-  json to;
+  json to = json::object();
   to["nacre"] = format_name;
   write_input(session, to);
   to["knobs"] = whole_knobs(session.settings);
   if (session.camera) to["camera"] = camera_json(*session.camera);
+  if (!session.events.empty()) to["events"] = json::array();
   for (const SessionEvent& event : session.events) to["events"].push_back(event_json(event));
   if (session.duration > 0) to["duration"] = session.duration;
   try {

@@ -123,6 +123,27 @@ TEST(StarPatches, CellsThatAreKeptGiveTheSameMesh) {
   EXPECT_EQ(made[2], made[0]);
 }
 
+/// Particles that have not moved stay in the patch of the mesh before, though their stars agree again.
+TEST(StarPatches, ParticlesStayInThePatchOfTheMeshBefore) {
+  Cloud cloud = halves(6, 0.8);
+  PatchCells cells;
+  std::vector<std::int64_t> in_patches;
+  for (int round = 0; round < 3; ++round) {
+    std::vector<Vec3d> points;
+    std::vector<double> size;
+    for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
+    const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) { return material_in_halves(6, at); }};
+    StarMesh mesh = mesh_from_stars(cloud.view());
+    mesh.unsettled = {round == 0 ? 200u : 500u};
+    std::vector<std::array<std::uint32_t, 2>> touching;
+    ASSERT_TRUE(settle_by_cells(mesh, world, cells, touching));
+    in_patches.push_back(mesh.counts.in_patches);
+    if (round == 1)
+      for (Float4& p : cloud.position) p.w *= 0.999f, p.x += 1e-4f;
+  }
+  EXPECT_EQ(in_patches, (std::vector<std::int64_t>{1, 2, 1}));
+}
+
 /// A rim that lacks particles has no chain around it; the cells close it.
 TEST(StarPatches, ABrokenRimIsClosedByCells) {
   Cloud cloud = halves(6, 0.8);
