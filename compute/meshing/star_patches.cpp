@@ -26,9 +26,6 @@ namespace {
 
 constexpr int patch_rounds = 100;
 constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
-constexpr double beside = 1.5;     // as far as neighbours are
-constexpr double wider = 3;        // times as far, where that does not suffice
-constexpr double most_wider = 8;   // as far in the end, nearly
 constexpr double most_work = 0.6;  // particles triangulated in all rounds, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
@@ -119,7 +116,6 @@ class Settling {
         world_(world),
         guards_(world),
         bad_(world.points.size(), 0),
-        extent_(world.size.begin(), world.size.end()),
         near_(bad_),
         sets_(bad_.size()),
         group_of_(bad_.size(), none),
@@ -136,9 +132,7 @@ class Settling {
     std::vector<std::uint32_t> more;
     std::set_difference(all.begin(), all.end(), all_bad_.begin(), all_bad_.end(), std::back_inserter(more));
     all_bad_ = std::move(all);
-    more.insert(more.end(), widened_.begin(), widened_.end());
-    widened_.clear();
-    mark_near(world_.points, more, extent_, around, near_);
+    mark_near(world_.points, more, world_.size, around, near_);
     const std::vector<std::uint32_t> members = select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
     join_around(more, members);
     std::vector<std::uint32_t> roots;
@@ -177,7 +171,7 @@ class Settling {
       if (group.patch) continue;
       group.patch.emplace(guards_, world_, stop);
       std::vector<double> reach;
-      for (const std::uint32_t i : group.members) reach.push_back(bad_[i] ? around * extent_[i] : 0);
+      for (const std::uint32_t i : group.members) reach.push_back(bad_[i] ? around * world_.size[i] : 0);
       group.patch->make(group.members, reach, kept[k], cells);
       if (repairs) group.patch->repair(marks(group.members));
       list_at_bad(group);
@@ -226,8 +220,8 @@ class Settling {
     return joined;
   }
 
-  /// Adds what lies at edges of the mesh joined last that do not match; false where all do. Where all is of cells
-  /// there, whose labels were repaired already, what is around them is added, too.
+  /// Adds what lies at edges of the mesh joined last that do not match, or at pinched vertices; false where that is
+  /// nothing new.
   bool grow(const StarMesh& joined, bool repaired) {
     std::vector<std::uint32_t> open;
     touching_.clear();
@@ -242,30 +236,13 @@ class Settling {
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
     stuck_ = !open.empty() && !any;
-    if (stuck_ && repaired) any = add_around(open);
-    if (!open.empty()) return any || (repaired && widen(open));
+    if (!open.empty()) return any;
     pinched_ = false;
     for (const std::uint32_t i : at_pinched_vertices(joined, marked_)) {
       pinched_ = pinched_ || bad_[i];
       any = any || !bad_[i], bad_[i] = 1;
     }
     return any;
-  }
-
-  /// The neighbours of `some`, too; whether that is any more.
-  bool add_around(std::span<const std::uint32_t> some) {
-    std::vector<std::uint8_t> there(bad_.size(), 0);
-    mark_near(world_.points, some, world_.size, beside, there);
-    bool any = false;
-    for (std::size_t i = 0; i < bad_.size(); ++i) any = any || bad_[i] < there[i], bad_[i] |= there[i];
-    return any;
-  }
-
-  /// Particles farther around these, too, are to be in the patch; false where it reaches far already.
-  bool widen(std::span<const std::uint32_t> some) {
-    for (const std::uint32_t i : some)
-      if (extent_[i] < most_wider * world_.size[i] && bad_[i]) extent_[i] *= wider, widened_.push_back(i);
-    return !widened_.empty();
   }
 
   /// In `stars`, facets of the mesh joined last in place of the triangles at bad particles.
@@ -306,7 +283,7 @@ class Settling {
     std::vector<PointTree::Found> found;
     for (const std::uint32_t i : more) {
       found.clear();
-      tree.within(0, world_.points[i], around * extent_[i], found);
+      tree.within(0, world_.points[i], around * world_.size[i], found);
       for (const PointTree::Found& f : found) sets_.join(i, members[f.point]);
     }
   }
@@ -375,8 +352,6 @@ class Settling {
   Guards guards_;
   std::vector<std::uint8_t> bad_;
   std::vector<std::uint32_t> all_bad_;  // when members were asked for last
-  std::vector<double> extent_;          // sizes that tell how far is within reach
-  std::vector<std::uint32_t> widened_;  // particles whose extents have changed since
   std::vector<std::uint8_t> near_;      // within reach of these
   DisjointSets sets_;                   // particles within reach of the same ones
   std::vector<Group> groups_;
