@@ -104,7 +104,8 @@ void add_save_session(CLI::App& command, CommonOptions& options) {
 }
 
 void limit_threads(int threads) {
-  static std::unique_ptr<tbb::global_control> limit;
+  // Never destroyed: that may ask for memory, when nothing can be told any more.
+  static auto& limit = *new std::unique_ptr<tbb::global_control>;
   if (threads > 0 && threads < tbb::info::default_concurrency())
     limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
 }
