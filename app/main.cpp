@@ -89,7 +89,7 @@ Status run(std::vector<std::string> arguments) {
   bool knobs = false;
   program.add_flag("--knobs", knobs, "print all knobs with their defaults, ranges and units");
   std::function<void()> command;
-  // Options are dear to declare: those of the command that is named suffice.
+  // Declaring options takes most of the start: only those of the command that is named are needed.
   const auto named = std::find_if(commands.begin(), commands.end(), [&](const Command& each) {
     return !arguments.empty() && arguments.front() == each.name;
   });

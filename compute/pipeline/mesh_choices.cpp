@@ -82,7 +82,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
     case MeshQuality::standard: break;
   }
   if (triangles_from_string(p.triangles) == TriangleSource::automatic)
-    p.triangles = to_string(p.max_deviation > 0 ? TriangleSource::delaunay : TriangleSource::stars);
+    p.triangles = to_string(TriangleSource::stars);
   return p;
 }
 

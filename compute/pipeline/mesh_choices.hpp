@@ -29,7 +29,7 @@ enum class MeshQuality {
 
 /// What triangles are made of.
 enum class TriangleSource {
-  automatic,  ///< delaunay where the deviation is bounded, else stars
+  automatic,  ///< stars; delaunay where tetrahedra are asked for with the surface
   delaunay,   ///< facets between Delaunay cells of different materials, and nothing else
   stars,      ///< each particle's neighbours on its surfaces, where these settle; polished
 };

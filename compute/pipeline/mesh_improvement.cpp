@@ -83,7 +83,10 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       rule_(rule),
       tell_(tell),
       delaunay_(rule.threads),
-      patch_cells_(rule.threads) {}
+      patch_cells_(rule.threads),
+      on_junctions_([this](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+        return particles_.onto_junctions(points, junctions, false);
+      }) {}
 
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;

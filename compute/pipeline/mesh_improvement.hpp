@@ -26,6 +26,7 @@
 #include "compute/meshing/star_finder.hpp"
 #include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/surface_mesh.hpp"
+#include "compute/pipeline/kept_nearest.hpp"
 #include "compute/pipeline/mesh_deviation.hpp"
 #include "compute/pipeline/movable_particles.hpp"
 #include "compute/pipeline/stage_progress.hpp"
@@ -134,6 +135,7 @@ class MeshImprovement {
   HostParticles before_;            ///< what was there before it,
   int further_ = 0;                 ///< and its rounds after the first
   DeviationInfo deviation_;
+  KeptNearest on_junctions_;  ///< where the deviation is measured
 };
 
 }  // namespace nacre

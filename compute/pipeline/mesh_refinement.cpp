@@ -31,7 +31,7 @@ void MeshImprovement::measure(Kept& kept) {
     kept.deviation = measure_deviation(
         kept.made.mesh,
         [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
-          return particles_.onto_junctions(points, junctions, false);
+          return on_junctions_(points, junctions);
         },
         frame_.unit);
     // Rules are in voxels, meshes in the world.

@@ -42,7 +42,7 @@ class MeshKnobs(TypedDict, total=False):
     by_density: bool  #: serial and redblack solvers: control the population by estimated density, not by the thesis's rule
     smooth: int  #: how often vertices are moved within the triangles around them [rounds]
     remesh: int  #: how often, at most, particles are deleted and inserted at bad triangles (local remeshing) [rounds]
-    triangulation: Literal["auto", "delaunay", "stars"]  #: what triangles are made of: each particle's neighbours (stars), whose bad triangles are then changed edge by edge, or cells of the Delaunay triangulation alone; auto: stars, but cells for tetrahedra and where max_deviation is set
+    triangulation: Literal["auto", "delaunay", "stars"]  #: what triangles are made of: each particle's neighbours (stars), whose bad triangles are then changed edge by edge, or cells of the Delaunay triangulation alone; auto: stars, but cells for tetrahedra
     seeds: Literal["auto", "embedding", "marching-cubes"]  #: where particles on surfaces begin; auto: with the tree solver on the embedding, else at vertices of marching cubes
     particles: int  #: seed this many on surfaces (junctions as usual) and add none; 0: as many as the sizing field asks for
     max_cell: float  #: longest edge of the tetrahedra; 0: they grow with the distance from the surface [voxels]

@@ -230,8 +230,7 @@ std::vector<Knob> particle_knobs(Settings& s) {
        .group = group,
        .help =
            "what triangles are made of: each particle's neighbours (stars), whose bad triangles are then changed edge "
-           "by edge, or cells of the Delaunay triangulation alone; auto: stars, but cells for tetrahedra and where "
-           "`max_deviation` is set",
+           "by edge, or cells of the Delaunay triangulation alone; auto: stars, but cells for tetrahedra",
        .value = &m.triangles,
        .choices = {"auto", "delaunay", "stars"}},
       {.name = "seeds",

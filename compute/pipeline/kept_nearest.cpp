@@ -1,0 +1,51 @@
+// Nacre: positions on junctions that are kept from one mesh to the next.
+#include "compute/pipeline/kept_nearest.hpp"
+
+#include <bit>
+
+namespace nacre {
+namespace {
+
+std::uint64_t hash_of(const Vec3d& point, const Junction& junction) {
+  std::uint64_t hash = junction.packed;
+  for (int a = 0; a < 3; ++a) {
+    hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(point[a])) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 32;
+  }
+  return hash;
+}
+
+}  // namespace
+
+const std::vector<Vec3d>& KeptNearest::operator()(std::span<const Vec3d> points, std::span<const Junction> junctions) {
+  std::vector<Vec3d> on(points.size()), asked;
+  std::vector<Junction> asked_of;
+  std::vector<std::uint32_t> fresh;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t known = slots_.empty() ? none : slots_[slot_of(points[i], junctions[i])];
+    if (known != none)
+      on[i] = on_[known];
+    else
+      fresh.push_back(i), asked.push_back(points[i]), asked_of.push_back(junctions[i]);
+  }
+  const std::vector<Vec3d> answer = asked.empty() ? std::vector<Vec3d>() : onto_(asked, asked_of);
+  for (std::size_t k = 0; k < fresh.size(); ++k) on[fresh[k]] = answer[k];
+  keep(points, junctions, std::move(on));
+  return on_;
+}
+
+std::size_t KeptNearest::slot_of(const Vec3d& point, const Junction& junction) const {
+  std::size_t slot = hash_of(point, junction) & (slots_.size() - 1);
+  while (slots_[slot] != none && !(points_[slots_[slot]] == point && junctions_[slots_[slot]] == junction))
+    slot = (slot + 1) & (slots_.size() - 1);
+  return slot;
+}
+
+void KeptNearest::keep(std::span<const Vec3d> points, std::span<const Junction> junctions, std::vector<Vec3d> on) {
+  points_.assign(points.begin(), points.end()), junctions_.assign(junctions.begin(), junctions.end());
+  on_ = std::move(on);
+  slots_.assign(std::bit_ceil(2 * points.size() + 2), none);
+  for (std::uint32_t i = 0; i < points_.size(); ++i) slots_[slot_of(points_[i], junctions_[i])] = i;
+}
+
+}  // namespace nacre
