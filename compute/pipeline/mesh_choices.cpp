@@ -81,8 +81,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
       break;
     case MeshQuality::standard: break;
   }
-  if (triangles_from_string(p.triangles) == TriangleSource::automatic)
-    p.triangles = to_string(TriangleSource::stars);
+  if (triangles_from_string(p.triangles) == TriangleSource::automatic) p.triangles = to_string(TriangleSource::stars);
   return p;
 }
 
