@@ -90,12 +90,17 @@ json particles_json(const MeshInfo& info, bool interrupted) {
 }
 
 json stars_json(const StarUse& use) {
-  return {{"meshes", use.meshes},          {"fallbacks", use.fallbacks},
-          {"edge_flips", use.flips},       {"edge_contractions", use.contractions},
+  return {{"meshes", use.meshes},
+          {"fallbacks", use.fallbacks},
+          {"edge_flips", use.flips},
+          {"edge_contractions", use.contractions},
           {"edge_splits", use.splits},
-          {"stars", use.last.stars},       {"unsettled", use.last.unsettled},
-          {"holes", use.last.holes},       {"filled_triangles", use.last.filled},
-          {"left_out", use.last.left_out}, {"in_patches", use.last.in_patches}};
+          {"stars", use.last.stars},
+          {"unsettled", use.last.unsettled},
+          {"holes", use.last.holes},
+          {"filled_triangles", use.last.filled},
+          {"left_out", use.last.left_out},
+          {"in_patches", use.last.in_patches}};
 }
 
 json angles_json(const TriangleQuality& q) {

@@ -105,8 +105,8 @@ class Scene {
   virtual bool has_legend() const = 0;  ///< a colour legend lies over the picture, or soon will
   /// The legend of the colours that the knob `color_range` is for; none: there is no such legend.
   virtual std::optional<LegendRange> legend_range() const { return {}; }
-  virtual bool complete() const = 0;    ///< shows what it is for: the texture; particles or triangles
-  virtual bool settled() const = 0;     ///< nothing more will come unless something is changed (a mesh that is done)
+  virtual bool complete() const = 0;  ///< shows what it is for: the texture; particles or triangles
+  virtual bool settled() const = 0;   ///< nothing more will come unless something is changed (a mesh that is done)
   /// Slices of its volume, for the layout; null: it has none (yet).
   virtual SliceViews* slices() { return nullptr; }
   virtual bool is_flow() const { return false; }   ///< knobs of what flows mean something

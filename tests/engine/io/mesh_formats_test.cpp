@@ -137,12 +137,12 @@ TEST(MeshFormats, Gmsh4HasAnEntityPerGroup) {
   EXPECT_EQ(bounds, (std::vector<std::int32_t>{1, -3, 2, 3})) << "the interface of both points out of the second";
   EXPECT_EQ(file.substr(at, 14), "\n$EndEntities\n");
   at = file.find("$Elements\n") + 10 + 32;
-  for (const auto& [tag, elements] : std::map<std::int32_t, std::vector<std::vector<std::uint64_t>>>{
-           {1, {{2, 3, 4}, {1, 4, 3}, {1, 2, 4}}},
-           {2, {{2, 5, 3}, {1, 3, 5}, {1, 5, 2}}},
-           {3, {{1, 2, 3}}},
-           {5, {{1, 2, 3, 4}}},
-           {300, {{1, 3, 2, 5}}}}) {
+  for (const auto& [tag, elements] :
+       std::map<std::int32_t, std::vector<std::vector<std::uint64_t>>>{{1, {{2, 3, 4}, {1, 4, 3}, {1, 2, 4}}},
+                                                                       {2, {{2, 5, 3}, {1, 3, 5}, {1, 5, 2}}},
+                                                                       {3, {{1, 2, 3}}},
+                                                                       {5, {{1, 2, 3, 4}}},
+                                                                       {300, {{1, 3, 2, 5}}}}) {
     at += 4;  // the dimension
     EXPECT_EQ(take(std::int32_t()), tag);
     at += 4;  // the type
