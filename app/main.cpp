@@ -113,7 +113,7 @@ Status run(std::vector<std::string> arguments) {
     fmt::print("{}", program.help());
     return usage;
   }
-  if (nacre::run_ranks() && nacre::run_ranks()->count() > 1 && !program.got_subcommand("flow"))
+  if (nacre::run_ranks() && nacre::run_ranks()->count() > 1 && program.get_subcommands().front()->get_name() != "flow")
     throw nacre::UsageError("only nacre flow works on several processes; leave mpirun away");
   command();
   return done;
