@@ -23,6 +23,7 @@
 
 #include "compute/device/error.hpp"
 #include "compute/device/worker_arena.hpp"
+#include "compute/math/point_hash.hpp"
 #include "compute/meshing/delaunay_order.hpp"
 
 namespace nacre {
@@ -139,9 +140,7 @@ class PlaceTable {
  private:
   /// The slot of the position, or the empty one where it would go.
   std::size_t slot_of(const Vec3d& position) const {
-    std::uint64_t key = 0;
-    for (const double x : {position.x, position.y, position.z})
-      key = (std::rotl(key, 21) ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15u;  // -0 is 0
+    const std::uint64_t key = hash_point(0, position);
     std::size_t slot = (key ^ key >> 32) & (slots_.size() - 1);
     while (slots_[slot] != none && !(points_[slots_[slot]] == position)) slot = (slot + 1) & (slots_.size() - 1);
     return slot;

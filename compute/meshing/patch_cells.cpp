@@ -1,8 +1,8 @@
 // Nacre: Delaunay cells of patches, kept from one mesh to the next.
 #include <algorithm>
-#include <bit>
 #include <utility>
 
+#include "compute/math/point_hash.hpp"
 #include "compute/meshing/interface_facets.hpp"
 #include "compute/meshing/star_patches.hpp"
 
@@ -46,9 +46,7 @@ std::vector<Vec3d> label_points(const PatchCells::Made& made) {
 
 std::uint64_t key_of(std::span<const Vec3d> places) {
   std::uint64_t key = places.size();
-  for (const Vec3d& p : places)
-    for (int a = 0; a < 3; ++a)
-      key = (std::rotl(key, 21) ^ std::bit_cast<std::uint64_t>(p[a])) * 0x9e3779b97f4a7c15u, key ^= key >> 32;
+  for (const Vec3d& p : places) key = hash_point(key, p), key ^= key >> 32;
   return key;
 }
 
@@ -57,10 +55,11 @@ std::uint64_t key_of(std::span<const Vec3d> places) {
 void PatchCells::begin() {
   before_ = std::move(now_);
   now_.clear();
+  in_patch_before_ = std::move(in_patch_);
   in_patch_.clear();
 }
 
-bool PatchCells::was_in_patch(const Vec3d& point) const { return in_patch_.contains(key_of({&point, 1})); }
+bool PatchCells::was_in_patch(const Vec3d& point) const { return in_patch_before_.contains(key_of({&point, 1})); }
 
 void PatchCells::keep_in_patch(const Vec3d& point) { in_patch_.insert(key_of({&point, 1})); }
 

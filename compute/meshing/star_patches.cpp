@@ -373,12 +373,9 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
   if (world.mirrored)
     for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
   add_pinched(mesh, world.points.size());
-  if (mesh.unsettled.empty()) {
-    cells.begin();
-    return !mesh.triangles.empty();
-  }
-  Settling settling(mesh, world, cells);
   cells.begin();
+  if (mesh.unsettled.empty()) return !mesh.triangles.empty();
+  Settling settling(mesh, world, cells);
   bool repairs = false;
   double work = 0;  // particles triangulated
   for (int round = 0; round < patch_rounds; ++round) {

@@ -49,7 +49,7 @@ class PatchCells {
 
   Delaunay delaunay_;
   Kept now_, before_;  // of this mesh, and of the one before what this has not asked for, by their places
-  std::unordered_set<std::uint64_t> in_patch_;  // keys of points
+  std::unordered_set<std::uint64_t> in_patch_, in_patch_before_;  // keys of points: of this mesh, and of the one before
 };
 
 /// Replaces the triangles at the mesh's unsettled particles by the facets that the Delaunay triangulation of the

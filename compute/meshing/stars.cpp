@@ -5,9 +5,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <tuple>
+
+#include "compute/math/point_hash.hpp"
 
 namespace nacre {
 namespace {
@@ -21,9 +22,7 @@ constexpr double coincident = 1e-5;  // sizes: nearer ones count as one
 
 /// A number in [0, 1) that looks random, by the position alone.
 double hash(const Vec3d& position) {
-  std::uint64_t x = 0;
-  for (const double c : {position.x, position.y, position.z})
-    x = (std::rotl(x, 21) ^ std::bit_cast<std::uint64_t>(c + 0.0)) * 0x9e3779b97f4a7c15ull;  // -0 is 0
+  std::uint64_t x = hash_point(0, position);
   x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9ull;
   return double((x ^ x >> 29) >> 11) * 0x1p-53;
 }

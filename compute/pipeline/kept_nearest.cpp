@@ -3,16 +3,14 @@
 
 #include <bit>
 
+#include "compute/math/point_hash.hpp"
+
 namespace nacre {
 namespace {
 
 std::uint64_t hash_of(const Vec3d& point, const Junction& junction) {
-  std::uint64_t hash = junction.packed;
-  for (int a = 0; a < 3; ++a) {
-    hash = (std::rotl(hash, 21) ^ std::bit_cast<std::uint64_t>(point[a])) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 32;
-  }
-  return hash;
+  const std::uint64_t hash = hash_point(junction.packed, point);
+  return hash ^ hash >> 32;
 }
 
 }  // namespace

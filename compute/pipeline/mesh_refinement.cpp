@@ -1,5 +1,6 @@
 // Nacre: particles added where triangles are too far from their interfaces.
 #include <algorithm>
+#include <functional>
 #include <tuple>
 #include <utility>
 
@@ -28,12 +29,7 @@ bool MeshImprovement::better(const Kept& a, const Kept& b) {
 
 void MeshImprovement::measure(Kept& kept) {
   particles_.in_stage("refine", [&] {
-    kept.deviation = measure_deviation(
-        kept.made.mesh,
-        [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
-          return on_junctions_(points, junctions);
-        },
-        frame_.unit);
+    kept.deviation = measure_deviation(kept.made.mesh, std::ref(on_junctions_), frame_.unit);
     // Rules are in voxels, meshes in the world.
     kept.further = refine_deviation(kept.made.mesh, kept.deviation, {rule_.deviation, rule_.detail * frame_.unit});
   });

@@ -17,7 +17,7 @@ nlohmann::json stages_report(const StageTimers& timers) {
 
 nlohmann::json report_frame(const std::string& command, const Device& device, const StageTimers& timers,
                             std::size_t arena_bytes) {
-  // An object from the start: where memory runs out as a null value becomes one, nlohmann's 3.11.2 fails in its end.
+  // An object from the start: nlohmann json 3.11.2 crashes if memory runs out while a null value becomes one.
   nlohmann::json report = nlohmann::json::object();
   report["nacre"] = NACRE_VERSION_STRING;
   report["command"] = command;
