@@ -1,9 +1,10 @@
 // Nacre: how far flat triangles are from the interfaces that they stand for, and where new points bring them nearer.
 #include "compute/pipeline/mesh_deviation.hpp"
 
+#include <oneapi/tbb/parallel_sort.h>
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 #include "compute/meshing/quality.hpp"
@@ -22,7 +23,7 @@ struct Side {
   std::uint32_t triangle;
   std::uint8_t k;
 
-  auto edge() const { return std::tie(a, b); }
+  bool same_edge(const Side& other) const { return a == other.a && b == other.b; }
 };
 
 std::vector<Side> sides_of(const SurfaceMesh& mesh) {
@@ -33,19 +34,33 @@ std::vector<Side> sides_of(const SurfaceMesh& mesh) {
       const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
       sides.push_back({std::min(a, b), std::max(a, b), mesh.materials[t], t, std::uint8_t(k)});
     }
-  std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
+  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) {
     return std::tie(s.a, s.b, s.materials, s.triangle) < std::tie(t.a, t.b, t.materials, t.triangle);
   });
   return sides;
 }
 
-/// The curve that sides at one edge lie on; no junction where two materials meet there.
+/// The curve that sides at one edge lie on; no junction where two materials meet there, or more than three.
 Junction curve_of(std::span<const Side> sides) {
-  std::vector<std::uint16_t> met;
-  for (const Side& s : sides) met.insert(met.end(), s.materials.begin(), s.materials.end());
+  std::array<std::uint16_t, 3> met;
+  std::size_t count = 0;
+  for (const Side& s : sides)
+    for (const std::uint16_t m : s.materials) {
+      if (std::find(met.begin(), met.begin() + count, m) != met.begin() + count) continue;
+      if (count == met.size()) return Junction();
+      met[count++] = m;
+    }
+  if (count < met.size()) return Junction();
   std::sort(met.begin(), met.end());
-  met.erase(std::unique(met.begin(), met.end()), met.end());
-  return met.size() == 3 ? Junction(met[0], met[1], met[2]) : Junction();
+  return Junction(met[0], met[1], met[2]);
+}
+
+/// The one of a curve's three materials that does not meet at this side.
+std::uint16_t third_of(const Junction& curve, const Side& side) {
+  for (int k = 0; k < 2; ++k)
+    if (curve.material(k) != side.materials[0] && curve.material(k) != side.materials[1])
+      return std::uint16_t(curve.material(k));
+  return std::uint16_t(curve.material(2));
 }
 
 /// Calls visit(sides at one edge) for each edge.
@@ -53,7 +68,7 @@ template <class Visit>
 void for_each_edge(std::span<const Side> sides, const Visit& visit) {
   for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
     end = begin + 1;
-    while (end < sides.size() && sides[end].edge() == sides[begin].edge()) ++end;
+    while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
     visit(sides.subspan(begin, end - begin));
   }
 }
@@ -62,6 +77,8 @@ void for_each_edge(std::span<const Side> sides, const Visit& visit) {
 class Samples {
  public:
   explicit Samples(const SurfaceMesh& mesh) : mesh_(mesh), sides_(sides_of(mesh)) {
+    points_.reserve(3 * mesh.triangles.size());  // about 1.5 edges to a triangle
+    junctions_.reserve(3 * mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       const Triangle& c = mesh.triangles[t];
       add((mesh.points[c.a] + mesh.points[c.b] + mesh.points[c.c]) / 3.0,
@@ -83,11 +100,11 @@ class Samples {
     MeshDeviation result;
     const std::size_t n = mesh_.triangles.size();
     result.triangle.resize(n);
-    result.on_rim.assign(n, {-1, -1, -1});
+    result.on_rim.resize(n);
     for (std::size_t t = 0; t < n; ++t) result.triangle[t] = away(t);
     std::size_t next = n;
     for_each_edge(sides_, [&](std::span<const Side> at) {
-      const bool rim = !(curve_of(at) == Junction());
+      const Junction curve = curve_of(at);
       std::size_t i = next;
       float largest = 0;
       for (std::size_t s = 0; s < at.size(); ++s) {
@@ -96,10 +113,10 @@ class Samples {
         result.triangle[at[s].triangle] = std::max(result.triangle[at[s].triangle], away(i));
       }
       next = i + 1;
-      if (!rim) return;
+      if (curve == Junction()) return;
       largest = std::max(largest, away(next++));
       for (const Side& s : at) {
-        result.on_rim[s.triangle][s.k] = largest;
+        result.on_rim[s.triangle][s.k] = {largest, third_of(curve, s)};
         result.triangle[s.triangle] = std::max(result.triangle[s.triangle], largest);
       }
     });
@@ -137,17 +154,17 @@ class Insertion {
     const double radius = length(centre - p[0]);
     int rim = -1;
     for (int k = 0; k < 3; ++k) {
-      const float off = deviation_.on_rim[t][std::size_t(k)];
+      const float off = deviation_.on_rim[t][std::size_t(k)].away;
       if (off < 0) continue;
       const Vec3d a = p[std::size_t(k)], b = p[std::size_t((k + 1) % 3)];
       const bool encroached = length(centre - 0.5 * (a + b)) < 0.5 * length(b - a);
-      const bool worse = rim < 0 || off > deviation_.on_rim[t][std::size_t(rim)];
+      const bool worse = rim < 0 || off > deviation_.on_rim[t][std::size_t(rim)].away;
       if ((off > rule_.most || encroached) && worse) rim = k;
     }
     if (rim >= 0) {
       const std::uint32_t a = c[rim], b = c[(rim + 1) % 3];
       return insert(0.5 * (mesh_.points[a] + mesh_.points[b]), 0.5 * length(mesh_.points[b] - mesh_.points[a]), t,
-                    third_at(t, a, b));
+                    deviation_.on_rim[t][std::size_t(rim)].third);
     }
     return insert(centre, radius, t, 0xffff);
   }
@@ -166,22 +183,9 @@ class Insertion {
     return true;
   }
 
-  /// The material that meets those of triangle `t` at its side from a to b.
-  std::uint16_t third_at(std::uint32_t t, std::uint32_t a, std::uint32_t b) {
-    if (sides_.empty()) sides_ = sides_of(mesh_);
-    const std::uint32_t low = std::min(a, b), high = std::max(a, b);
-    const auto [first, last] = std::equal_range(sides_.begin(), sides_.end(), Side{low, high, {}, 0, 0},
-                                                [](const Side& s, const Side& r) { return s.edge() < r.edge(); });
-    for (auto s = first; s != last; ++s)
-      for (const std::uint16_t m : s->materials)
-        if (m != mesh_.materials[t][0] && m != mesh_.materials[t][1]) return m;
-    return 0xffff;
-  }
-
   const SurfaceMesh& mesh_;
   const MeshDeviation& deviation_;
   const DeviationRule& rule_;
-  std::vector<Side> sides_;
   std::vector<std::vector<std::uint32_t>> beside_;  ///< per point: new points in triangles at it
   std::vector<MeshDefects::NewPoint> found_;
 };

@@ -18,10 +18,15 @@ using NearestOnJunctions = std::function<std::vector<Vec3d>(std::span<const Vec3
 
 /// Distances of a mesh from its interfaces, in the unit asked for.
 struct MeshDeviation {
-  std::vector<float> triangle;               ///< the largest at its middle and those of its edges; of these on curves,
-                                             ///< also from the curve
-  std::vector<std::array<float, 3>> on_rim;  ///< of the edges 01 12 20 on junction curves; -1 for others
-  double max = 0, mean = 0;                  ///< of `triangle`
+  std::vector<float> triangle;  ///< the largest at its middle and those of its edges; of these on curves,
+                                ///< also from the curve
+  /// An edge on a junction curve: its largest distance (-1: it lies on none), and the curve's third material.
+  struct Rim {
+    float away = -1;
+    std::uint16_t third = 0xffff;
+  };
+  std::vector<std::array<Rim, 3>> on_rim;  ///< the edges 01 12 20
+  double max = 0, mean = 0;                ///< of `triangle`
 };
 
 /// Measures `mesh`; lengths are divided by `unit`. A position without an interface nearby counts as 0.

@@ -27,7 +27,7 @@ TEST(MeshDeviation, IsThatOfTheMiddleOfAFlatTriangle) {
   for (const float d : deviation.triangle) EXPECT_NEAR(d, (radius - inner) / 2, 1e-6);
   EXPECT_NEAR(deviation.max, (radius - inner) / 2, 1e-6);
   EXPECT_NEAR(deviation.mean, deviation.max, 1e-6);
-  EXPECT_EQ(deviation.on_rim[0], (std::array<float, 3>{-1, -1, -1}));
+  for (const MeshDeviation::Rim& rim : deviation.on_rim[0]) EXPECT_EQ(rim.away, -1);
 }
 
 TEST(MeshDeviation, EdgesOfCurvesAreMeasuredFromTheCurve) {
@@ -43,7 +43,10 @@ TEST(MeshDeviation, EdgesOfCurvesAreMeasuredFromTheCurve) {
   };
   const MeshDeviation deviation = measure_deviation(mesh, onto, 1);
   EXPECT_EQ(deviation.triangle, (std::vector<float>{0.25f, 0.25f, 0.25f}));
-  EXPECT_EQ(deviation.on_rim[0], (std::array<float, 3>{-1, -1, 0.25f}));
+  EXPECT_EQ(deviation.on_rim[0][0].away, -1);
+  EXPECT_EQ(deviation.on_rim[0][1].away, -1);
+  EXPECT_EQ(deviation.on_rim[0][2].away, 0.25f);
+  EXPECT_EQ(deviation.on_rim[0][2].third, 7);
   const DeviationRefinement further = refine_deviation(mesh, deviation, {0.1, 0.25});
   ASSERT_EQ(further.insert.size(), 1u) << "the three wish for one point";
   EXPECT_EQ(further.insert[0].position, Vec3d(0, 0, 0.5));
