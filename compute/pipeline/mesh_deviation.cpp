@@ -163,17 +163,19 @@ class Insertion {
     }
     if (rim >= 0) {
       const std::uint32_t a = c[rim], b = c[(rim + 1) % 3];
-      return insert(0.5 * (mesh_.points[a] + mesh_.points[b]), 0.5 * length(mesh_.points[b] - mesh_.points[a]), t,
-                    deviation_.on_rim[t][std::size_t(rim)].third);
+      const auto& [away, third] = deviation_.on_rim[t][std::size_t(rim)];
+      return insert(0.5 * (mesh_.points[a] + mesh_.points[b]), 0.5 * length(mesh_.points[b] - mesh_.points[a]), away, t,
+                    third);
     }
-    return insert(centre, radius, t, 0xffff);
+    return insert(centre, radius, deviation_.triangle[t], t, 0xffff);
   }
 
   std::vector<MeshDefects::NewPoint> take() { return std::move(found_); }
 
  private:
-  bool insert(const Vec3d& position, double free, std::uint32_t t, std::uint16_t third) {
-    if (free < least_spacing * rule_.detail) return false;
+  /// `free`: the distance of `position` from other points; it will be moved by about `away`.
+  bool insert(const Vec3d& position, double free, double away, std::uint32_t t, std::uint16_t third) {
+    if (std::hypot(free, away * rule_.unit) < least_spacing * rule_.detail) return false;
     const Triangle& c = mesh_.triangles[t];
     for (int k = 0; k < 3; ++k)
       for (const std::uint32_t other : beside_[c[k]])

@@ -42,10 +42,11 @@ struct DeviationRange {
 DeviationRange sampled_deviation(const SurfaceMesh& mesh, const SecondOrder* second, const NearestOnJunctions& onto,
                                  double unit);
 
-/// Bounds of a refinement, world units.
+/// Bounds of a refinement.
 struct DeviationRule {
-  double most;    ///< that a triangle may deviate
-  double detail;  ///< no new point is put nearer to others than 0.7 of this
+  double most;      ///< that a triangle may deviate, in the unit of the deviation
+  double detail;    ///< no new point is put nearer to others than 0.7 of this, in the unit of the mesh
+  double unit = 1;  ///< of the deviation, in that of the mesh
 };
 
 /// What brings the triangles above the bound nearer.

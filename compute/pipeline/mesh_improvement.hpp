@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 #include "compute/meshing/attempt.hpp"
@@ -99,6 +100,9 @@ class MeshImprovement {
   bool is_good(const Kept& kept) const;
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
   bool polishes() const { return rule_.stars && rule_.deviation == 0; }
+  void forget_tried(DeviationRefinement& further);
+  std::vector<MeshDefects::NewPoint> points_on_rims(std::span<const MeshDefects::NewPoint> points,
+                                                    std::span<const std::uint32_t> taken);
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
   static std::vector<std::uint8_t> bad_points(const Triangulated& made);
   static double fitness_of(const Triangulated& made);
@@ -135,7 +139,8 @@ class MeshImprovement {
   HostParticles before_;            ///< what was there before it,
   int further_ = 0;                 ///< and its rounds after the first
   DeviationInfo deviation_;
-  KeptNearest on_junctions_;  ///< where the deviation is measured
+  KeptNearest on_junctions_;                      ///< where the deviation is measured
+  std::unordered_set<std::uint64_t> refined_at_;  ///< hashes of the points that were added for it
 };
 
 }  // namespace nacre

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "compute/math/point_hash.hpp"
 #include "compute/pipeline/mesh_improvement.hpp"
 
 namespace nacre {
@@ -31,15 +32,55 @@ void MeshImprovement::measure(Kept& kept) {
   particles_.in_stage("refine", [&] {
     kept.deviation = measure_deviation(kept.made.mesh, std::ref(on_junctions_), frame_.unit);
     // Rules are in voxels, meshes in the world.
-    kept.further = refine_deviation(kept.made.mesh, kept.deviation, {rule_.deviation, rule_.detail * frame_.unit});
+    kept.further =
+        refine_deviation(kept.made.mesh, kept.deviation, {rule_.deviation, rule_.detail * frame_.unit, frame_.unit});
+    forget_tried(kept.further);
   });
   check_stop(rule_.stop);
+}
+
+/// Takes out of `further` the points that were added before: they have not helped, or found no interface.
+void MeshImprovement::forget_tried(DeviationRefinement& further) {
+  std::erase_if(further.insert, [&](const MeshDefects::NewPoint& p) {
+    return !refined_at_.insert(hash_point(p.third, p.position)).second;
+  });
+}
+
+/// For the points that have not become particles: where their interface is covered by a third material, points on the
+/// curve on which the three meet.
+std::vector<MeshDefects::NewPoint> MeshImprovement::points_on_rims(std::span<const MeshDefects::NewPoint> points,
+                                                                   std::span<const std::uint32_t> taken) {
+  std::vector<MeshDefects::NewPoint> lost;
+  std::vector<Vec3d> position;
+  std::vector<Junction> interface;
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    if (points[k].third != 0xffff || std::binary_search(taken.begin(), taken.end(), k)) continue;
+    lost.push_back(points[k]);
+    position.push_back(points[k].position);
+    interface.emplace_back(points[k].materials[0], points[k].materials[1]);
+  }
+  if (lost.empty()) return lost;
+  const std::vector<Vec3d> on = particles_.onto_junctions(position, interface, false);
+  for (std::size_t k = 0; k < lost.size(); ++k)
+    if (is_finite(on[k])) position[k] = lost[k].position = on[k];
+  const std::vector<std::uint16_t> covered_by = particles_.material_at(position);
+  for (std::size_t k = 0; k < lost.size(); ++k) lost[k].third = covered_by[k];
+  std::erase_if(lost, [](const MeshDefects::NewPoint& p) {
+    return p.third == p.materials[0] || p.third == p.materials[1] || p.third == 0xffff;
+  });
+  return lost;
 }
 
 /// Adds particles, and smooths what is around them. False where there is no room for any.
 bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
   const std::size_t before = std::size_t(particles_.count());
-  particles_.in_stage("refine", [&] { particles_.replace(std::vector<std::uint8_t>(before, 0), further.insert); });
+  particles_.in_stage("refine", [&] {
+    const auto add = [&](std::span<const MeshDefects::NewPoint> points) {
+      return particles_.replace(std::vector<std::uint8_t>(std::size_t(particles_.count()), 0), points);
+    };
+    const std::vector<std::uint32_t> taken = add(further.insert);
+    add(points_on_rims(further.insert, taken));
+  });
   const std::size_t added = std::size_t(particles_.count()) - before;
   deviation_.inserted += std::int64_t(added);
   if (added == 0) return false;

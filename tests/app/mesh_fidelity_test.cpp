@@ -28,6 +28,17 @@ TEST_F(MeshFidelity, TheBoundIsKeptAndReported) {
   EXPECT_GT(read_json("r.json")["mesh"]["surface_distance_voxels"]["facet_max"], 0.1) << "the bound did nothing";
 }
 
+TEST_F(MeshFidelity, TheBoundIsKeptWhereThirdMaterialsBeginBetweenParticles) {
+  ASSERT_EQ(nacre({"mesh", "--sample", "torso", "--detail", "32", "--surface-only", "--max-deviation", "0.1", "--out",
+                   path("a.ply"), "--report", path("r.json")})
+                .status,
+            0);
+  const json r = read_json("r.json"), d = r["mesh"]["deviation"];
+  expect_sound(r);
+  EXPECT_GT(d["before_refining"]["max_voxels"], 0.4);
+  EXPECT_EQ(d["met"], true) << d;
+}
+
 TEST_F(MeshFidelity, ABoundThatCannotBeMetIsSaid) {
   const Outcome run =
       nacre({"mesh", write("a.nrrd", ball_nrrd()), "--max-deviation", "0.001", "--report", path("r.json")});

@@ -73,6 +73,8 @@ TEST(MeshDeviation, NewPointsKeepAwayFromAllOthers) {
   const DeviationRefinement none = refine_deviation(mesh, deviation, {0.5 * deviation.max, 10});
   EXPECT_TRUE(none.insert.empty()) << "the triangles are too small for such a detail";
   EXPECT_EQ(none.above_detail, none.above);
+  const DeviationRefinement deep = refine_deviation(mesh, deviation, {0.5 * deviation.max, 10, 10 / deviation.max});
+  EXPECT_GT(deep.insert.size(), 10u) << "points that move so far do not come near to others";
   EXPECT_EQ(refine_deviation(mesh, deviation, {1.01 * deviation.max, 0.25}).above, 0);
 }
 
