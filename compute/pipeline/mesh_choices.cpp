@@ -69,12 +69,13 @@ MeshParameters at_quality(const MeshParameters& parameters) {
   MeshParameters p = parameters;
   switch (quality_from_string(parameters.quality)) {
     case MeshQuality::draft:
-      p.subcells = std::min(p.subcells, 1);
+      p.subcells = 1;
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);
       p.remesh = std::min(p.remesh, 12);
       break;
     case MeshQuality::best:
+      p.subcells = std::max(p.subcells, 2);
       p.iterations = std::max(p.iterations, 120);
       p.smooth = std::max(p.smooth, 4);
       p.remesh = std::max(p.remesh, 40);

@@ -20,7 +20,7 @@ class MeshKnobs(TypedDict, total=False):
     tighten: float  #: width of the smoothing of label boundaries; 0: keep the voxel staircase [voxels]
     stairs: float  #: staircases of labels become slopes where their treads are at most this long; 0: never [voxels]
     kernel: Literal["catmull-rom", "b-spline"]  #: reconstruction kernel of the fields
-    mesh_subcells: int  #: closest-point cells per voxel and axis
+    mesh_subcells: int  #: closest-point cells per voxel and axis; twice as many for sheets thinner than particles are apart
     epsilon: float  #: distance between particles as a share of the local feature size
     delta: float  #: largest slope of the sizing field
     min_size: float  #: smallest distance between particles, at most max_size [voxels]

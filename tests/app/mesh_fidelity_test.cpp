@@ -35,7 +35,7 @@ TEST_F(MeshFidelity, TheBoundIsKeptWhereThirdMaterialsBeginBetweenParticles) {
             0);
   const json r = read_json("r.json"), d = r["mesh"]["deviation"];
   expect_sound(r);
-  EXPECT_GT(d["before_refining"]["max_voxels"], 0.4);
+  EXPECT_GT(d["before_refining"]["max_voxels"], 0.3);
   EXPECT_EQ(d["met"], true) << d;
 }
 

@@ -86,7 +86,7 @@ std::vector<Knob> field_knobs(Settings& s) {
        .choices = {"catmull-rom", "b-spline"}},
       {.name = "mesh_subcells",
        .group = fields,
-       .help = "closest-point cells per voxel and axis",
+       .help = "closest-point cells per voxel and axis; twice as many for sheets thinner than particles are apart",
        .value = &m.subcells,
        .min = 1,
        .max = 8},
