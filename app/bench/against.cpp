@@ -40,7 +40,7 @@ bool has_ratios(const json& row) {
   return false;
 }
 
-void compare_rows(const std::string& table, const json& now, const json& last, Comparison& result) {
+void compare_rows(const std::string& table, const json& now, const json& last, RunComparison& result) {
   for (const auto& [quantity, was] : last.at("values").items()) {
     if (!was.contains("better") || !was.contains("ours")) continue;
     const std::string name = fmt::format("Table {}, {}, {}", table, last.at("name").get<std::string>(), quantity);
@@ -77,8 +77,8 @@ void check_shape(const json& report) {
 
 }  // namespace
 
-Comparison compare_runs(const json& now, const json& last, const std::vector<std::string>& asked) {
-  Comparison result;
+RunComparison compare_runs(const json& now, const json& last, const std::vector<std::string>& asked) {
+  RunComparison result;
   for (const json& table : last.at("tables")) {
     const std::string name = table.at("name");
     const json* same = find_named(now.at("tables"), name);

@@ -135,7 +135,7 @@ void measure(const BenchOptions& options, Bench& bench, json& report) {
 }
 
 void judge(const BenchOptions& options, const json& now, const json& last) {
-  const Comparison result = compare_runs(now, last, options.tables);
+  const RunComparison result = compare_runs(now, last, options.tables);
   std::string text;
   if (!result.losses.empty())
     text = fmt::format("{} of {} ratios lost more than {:.0f}% against {}: {}", result.losses.size(), result.compared,

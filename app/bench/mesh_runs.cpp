@@ -79,7 +79,7 @@ void MeshRuns::open(const MeshJob& job, bool own_settings, Device& device) {
   }
 }
 
-const MeshFields& MeshRuns::fields(const MeshJob& job) {
+const FieldSeconds& MeshRuns::fields(const MeshJob& job) {
   const auto known = fields_.find(job);
   if (known != fields_.end()) return known->second;
   open(job, false, device_);

@@ -38,7 +38,7 @@ struct MeshSolve {
 };
 
 /// Seconds of the fields' stages.
-struct MeshFields {
+struct FieldSeconds {
   Int3 dims{};
   int materials = 0;  ///< without the outside
   double distance = 0, sizing = 0, embed = 0;
@@ -68,7 +68,7 @@ class MeshRuns {
 
   /// Throws Error where the memory does not suffice, and Interrupted. The serial solver runs on the CPU whatever the
   /// device is.
-  const MeshFields& fields(const MeshJob& job);
+  const FieldSeconds& fields(const MeshJob& job);
   const MeshRun& run(const MeshJob& job, const MeshSolve& solve);
   /// The particles of `run`, which is done again; lengths in voxels.
   MeshParticles particles(const MeshJob& job, const MeshSolve& solve);
@@ -89,7 +89,7 @@ class MeshRuns {
   bool own_settings_ = false;
   std::unique_ptr<MeshVolume> volume_;
   std::unique_ptr<MeshPipeline> pipeline_;
-  std::map<MeshJob, MeshFields> fields_;
+  std::map<MeshJob, FieldSeconds> fields_;
   std::map<std::pair<MeshJob, MeshSolve>, MeshRun> runs_;
 };
 

@@ -34,7 +34,7 @@ MeshJob job_of(const Bench& bench, const Case& c) {
 
 /// What a row was run on, and where its solvers did not all run on the bench's device.
 std::string input_text(Bench& bench, const MeshJob& job) {
-  const MeshFields& fields = bench.meshes.fields(job);
+  const FieldSeconds& fields = bench.meshes.fields(job);
   const std::string materials = fields.materials > 1 ? fmt::format(", {} materials", fields.materials) : "";
   const char* serial = bench.device.backend() == "cpu" ? "" : "; serial on the CPU";
   return fmt::format("phantom {}, {}x{}x{}{}{}", job.sample, fields.dims.x, fields.dims.y, fields.dims.z, materials,
@@ -205,7 +205,7 @@ void bench_material_stages(Bench& bench) {
     bench.row(table, c.row, c.sample, [&](BenchRow& row) {
       const MeshJob job = job_of(bench, c);
       const std::array<MeshRun, 3> runs = run_solvers(bench, job, 0, true);
-      const MeshFields& fields = bench.meshes.fields(job);
+      const FieldSeconds& fields = bench.meshes.fields(job);
       row.input = input_text(bench, job);
       table.add(row, "distance volume, s", fields.distance);
       table.add(row, "sizing field, s", fields.sizing);

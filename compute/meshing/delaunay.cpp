@@ -61,6 +61,7 @@ std::vector<std::size_t> insertion_order(const std::vector<Kernel::Point_3>& poi
   using Traits = CGAL::Spatial_sort_traits_adapter_3<Kernel, Map>;
   std::vector<std::size_t> order(points.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
+  if (order.empty()) return order;
   const Traits traits(CGAL::make_property_map(points));
   if (threaded)
     CGAL::spatial_sort<CGAL::Parallel_tag>(order.begin(), order.end(), traits);

@@ -21,7 +21,7 @@ double now() { return std::chrono::duration<double>(std::chrono::steady_clock::n
 
 }  // namespace
 
-GatheringTime time_gathering(Device& device, const HostParticles& particles, const std::atomic<bool>* stop) {
+GatheringTime time_gathering(Device& device, const ParticleSpans& particles, const std::atomic<bool>* stop) {
   Executor<Cpu> exec(device);
   exec.watch(stop);
   ParticleSet set;

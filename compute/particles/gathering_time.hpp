@@ -17,12 +17,12 @@ struct GatheringTime {
 };
 
 /// Particles in host memory, as ParticleSet has them: one entry of each array per particle.
-struct HostParticles {
+struct ParticleSpans {
   std::span<const Float4> position, direction;
   std::span<const std::uint32_t> interface;
 };
 
 /// The fastest of a few turns. `device` is a CPU device. Throws Interrupted when `stop` is set.
-GatheringTime time_gathering(Device& device, const HostParticles& particles, const std::atomic<bool>* stop);
+GatheringTime time_gathering(Device& device, const ParticleSpans& particles, const std::atomic<bool>* stop);
 
 }  // namespace nacre

@@ -16,8 +16,8 @@ namespace nacre {
 
 /// Sets what `options` say of colours, background and back faces. `values`: what to colour by, one for each embedded
 /// point; empty: nothing. The arrays last as long as the caller's scope of the arena.
-template <class Scene>
-void colour_scene(Arena& arena, const RenderOptions& options, std::span<const float> values, Scene& scene) {
+template <class RayScene>
+void colour_scene(Arena& arena, const RenderOptions& options, std::span<const float> values, RayScene& scene) {
   const auto linear = [](const std::array<float, 3>& c) { return to_linear({c[0], c[1], c[2]}); };
   if (!values.empty()) {
     Array<float> scalar = arena.temporary<float>(values.size());

@@ -21,8 +21,8 @@ constexpr std::array<Named<CubicKernel>, 2> kernels{
     {{"catmull-rom", CubicKernel::catmull_rom}, {"b-spline", CubicKernel::b_spline}}};
 constexpr std::array<Named<TriangleSource>, 3> triangle_sources{
     {{"auto", TriangleSource::automatic}, {"delaunay", TriangleSource::delaunay}, {"stars", TriangleSource::stars}}};
-constexpr std::array<Named<MeshQuality>, 3> qualities{
-    {{"draft", MeshQuality::draft}, {"standard", MeshQuality::standard}, {"best", MeshQuality::best}}};
+constexpr std::array<Named<QualityLevel>, 3> qualities{
+    {{"draft", QualityLevel::draft}, {"standard", QualityLevel::standard}, {"best", QualityLevel::best}}};
 enum class Seeds { automatic, embedding, marching_cubes };
 constexpr std::array<Named<Seeds>, 3> seed_names{
     {{"auto", Seeds::automatic}, {"embedding", Seeds::embedding}, {"marching-cubes", Seeds::marching_cubes}}};
@@ -55,7 +55,7 @@ CubicKernel kernel_from_string(std::string_view text) { return choice_of<CubicKe
 TriangleSource triangles_from_string(std::string_view text) {
   return choice_of<TriangleSource>(triangle_sources, "triangulation", text);
 }
-MeshQuality quality_from_string(std::string_view text) { return choice_of<MeshQuality>(qualities, "quality", text); }
+QualityLevel quality_from_string(std::string_view text) { return choice_of<QualityLevel>(qualities, "quality", text); }
 
 SeedOrigin seeds_from_string(std::string_view text, Solver solver) {
   switch (choice_of<Seeds>(seed_names, "seeds", text)) {
@@ -68,19 +68,19 @@ SeedOrigin seeds_from_string(std::string_view text, Solver solver) {
 MeshParameters at_quality(const MeshParameters& parameters) {
   MeshParameters p = parameters;
   switch (quality_from_string(parameters.quality)) {
-    case MeshQuality::draft:
+    case QualityLevel::draft:
       p.subcells = 1;
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);
       p.remesh = std::min(p.remesh, 12);
       break;
-    case MeshQuality::best:
+    case QualityLevel::best:
       p.subcells = std::max(p.subcells, 2);
       p.iterations = std::max(p.iterations, 120);
       p.smooth = std::max(p.smooth, 4);
       p.remesh = std::max(p.remesh, 40);
       break;
-    case MeshQuality::standard: break;
+    case QualityLevel::standard: break;
   }
   if (triangles_from_string(p.triangles) == TriangleSource::automatic) p.triangles = to_string(TriangleSource::stars);
   return p;

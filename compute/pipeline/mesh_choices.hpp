@@ -21,7 +21,7 @@ enum class Solver {
 enum class SeedOrigin { embedding, marching_cubes };
 
 /// How much work a mesh is worth.
-enum class MeshQuality {
+enum class QualityLevel {
   draft,     ///< for looking, and for turning knobs
   standard,  ///< the parameters as they are
   best,      ///< more rounds of everything
@@ -42,7 +42,7 @@ std::string to_string(CubicKernel kernel);
 Solver solver_from_string(std::string_view text);
 CubicKernel kernel_from_string(std::string_view text);
 TriangleSource triangles_from_string(std::string_view text);
-MeshQuality quality_from_string(std::string_view text);
+QualityLevel quality_from_string(std::string_view text);
 /// "auto" is the embedding for the tree solver and marching cubes for the others, as in ch. 4 and ch. 3.
 SeedOrigin seeds_from_string(std::string_view text, Solver solver);
 
@@ -58,7 +58,7 @@ struct MeshChoices {
   CubicKernel kernel;
   SeedOrigin seeds;
   TriangleSource triangles;
-  MeshQuality quality;
+  QualityLevel quality;
 
   /// Throws Error where one of the values is unknown.
   explicit MeshChoices(const MeshParameters& parameters);

@@ -61,13 +61,13 @@ class MeshPipelineOf : public MeshPipeline {
     else
       relaxed_ = particles_.download();
     exec_.arena().give_back();  // for the triangulation, which is on the host
-    const MeshQuality quality = quality_from_string(used.quality);
+    const QualityLevel quality = quality_from_string(used.quality);
     const bool stars = triangles_from_string(used.triangles) == TriangleSource::stars;
     const ImprovementRule rule{.smooth = used.smooth,
                                .remesh = used.remesh,
                                .stars = stars,
-                               .most_unsettled = quality == MeshQuality::draft ? 1 : most_unsettled_stars,
-                               .thorough = quality == MeshQuality::best,
+                               .most_unsettled = quality == QualityLevel::draft ? 1 : most_unsettled_stars,
+                               .thorough = quality == QualityLevel::best,
                                .threads = exec_.device().threads(),
                                .stop = stop_,
                                .deviation = used.max_deviation,

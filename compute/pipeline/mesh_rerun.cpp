@@ -26,7 +26,7 @@ auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.remesh,
 
 MeshRerun mesh_rerun(const MeshParameters& asked_before, const MeshParameters& asked_after) {
   const MeshParameters before = at_quality(asked_before), after = at_quality(asked_after);
-  const auto is_draft = [](const MeshParameters& p) { return quality_from_string(p.quality) == MeshQuality::draft; };
+  const auto is_draft = [](const MeshParameters& p) { return quality_from_string(p.quality) == QualityLevel::draft; };
   if (of_fields(before) != of_fields(after) || is_draft(before) != is_draft(after)) return MeshRerun::fields;
   if (of_relax(before) != of_relax(after)) return MeshRerun::relax;
   const bool tree = after.solver == to_string(Solver::tree);

@@ -75,7 +75,7 @@ void Relaxation<Backend>::run(const MeshParameters& parameters, const TellStage&
   unfinished_ = true;
   relax_order(run, {1, 0.18, 0.22, {}});
   relax_order(run, {2, 0.22, 0.85, {}});
-  info.final_energy = run.choices.quality == MeshQuality::draft ? 0 : measure_energy();
+  info.final_energy = run.choices.quality == QualityLevel::draft ? 0 : measure_energy();
   project();
 }
 

@@ -118,7 +118,7 @@ NACRE_HD_INLINE bool is_own(const BandTarget<BrickOctreeView>& target, const Ray
 }
 
 template <class Target>
-struct Scene : Shading {
+struct RayScene : Shading {
   Target target;
 };
 
@@ -165,7 +165,7 @@ NACRE_HD inline Vec3f shade(const Shading& shading, const Ray& ray, const SeenSa
 /// Renders pixel i of width x height: `samples`^2 rays, averaged in linear light; RGBA, 8 bits a channel.
 template <class Target>
 struct RenderPixel {
-  Scene<Target> scene;
+  RayScene<Target> scene;
   GridCamera camera;
   int width, height, samples;
   double reach;  ///< radius of a ball around the target that contains the surface

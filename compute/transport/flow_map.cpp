@@ -73,7 +73,7 @@ struct Moment {
 
 class FlowMaps {
  public:
-  FlowMaps(const SurfaceFlow& flow, const std::atomic<bool>* stop)
+  FlowMaps(const FlowOnSurface& flow, const std::atomic<bool>* stop)
       : flow_(flow),
         stop_(stop),
         surface_(flow.points, flow.triangles, std::vector<Vec3f>(flow.points.size())),
@@ -188,7 +188,7 @@ class FlowMaps {
     return 0.5 * std::log(0.5 * (p + q) + std::hypot(0.5 * (p - q), r));
   }
 
-  const SurfaceFlow& flow_;
+  const FlowOnSurface& flow_;
   const std::atomic<bool>* stop_;
   TangentField surface_;
   Lists fans_, rings_;
@@ -199,6 +199,6 @@ class FlowMaps {
 
 }  // namespace
 
-FlowMap flow_map(const SurfaceFlow& flow, const std::atomic<bool>* stop) { return FlowMaps(flow, stop).run(); }
+FlowMap flow_map(const FlowOnSurface& flow, const std::atomic<bool>* stop) { return FlowMaps(flow, stop).run(); }
 
 }  // namespace nacre

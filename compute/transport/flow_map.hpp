@@ -12,7 +12,7 @@
 namespace nacre {
 
 /// Vectors on a surface over an interval of time.
-struct SurfaceFlow {
+struct FlowOnSurface {
   std::span<const Vec3d> points;  ///< at the beginning; points at one position have one index (TangentField)
   std::span<const Triangle> triangles;
   /// At least two, ascending or descending: from the beginning to the end. Vectors are linear in time between two.
@@ -47,7 +47,7 @@ struct FlowMap {
 /// unstructured meshes and for non-Euclidean manifolds (Chaos 20, 2010). Where the vertex or a neighbour leaves, the
 /// last of the times before counts; the exponent is NaN where that is the first. The same to the byte for any number of
 /// threads. Throws Interrupted where `stop` is set.
-FlowMap flow_map(const SurfaceFlow& flow, const std::atomic<bool>* stop = nullptr);
+FlowMap flow_map(const FlowOnSurface& flow, const std::atomic<bool>* stop = nullptr);
 
 inline constexpr double outflow_share = 0.02;
 

@@ -11,7 +11,7 @@ SegmentPass::SegmentPass() : program_("segments.vert", "lines.frag") {
   for (GLuint k = 0; k < 2; ++k) {
     glEnableVertexArrayAttrib(array_, k);
     glVertexArrayAttribFormat(array_, k, 3, GL_FLOAT, GL_FALSE,
-                              k == 0 ? offsetof(Segment, from) : offsetof(Segment, to));
+                              k == 0 ? offsetof(LineSegment, from) : offsetof(LineSegment, to));
     glVertexArrayAttribBinding(array_, k, 0);
   }
   glVertexArrayBindingDivisor(array_, 0, 1);
@@ -27,7 +27,7 @@ void SegmentPass::draw(const View& view, const Placement& placement, const Buffe
   program_.set("width", style.width);
   program_.set("lift", lift_of(view));
   program_.use();
-  glVertexArrayVertexBuffer(array_, 0, segments.id(), 0, sizeof(Segment));
+  glVertexArrayVertexBuffer(array_, 0, segments.id(), 0, sizeof(LineSegment));
   glBindVertexArray(array_);
   if (style.through)
     glDisable(GL_DEPTH_TEST);
@@ -35,7 +35,7 @@ void SegmentPass::draw(const View& view, const Placement& placement, const Buffe
     glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   const Blended blended;
-  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(segments.bytes() / sizeof(Segment)));
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, GLsizei(segments.bytes() / sizeof(LineSegment)));
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
 }

@@ -10,7 +10,7 @@
 namespace nacre {
 
 /// Two end points, in model coordinates.
-struct Segment {
+struct LineSegment {
   Vec3f from, to;
 };
 

@@ -74,7 +74,7 @@ SurfaceFlowMap surface_flow_map(VectorsInTime& input, const FlowSpan& shown, dou
   map.points = input.surface().points;
   map.triangles = input.surface().triangles;
   const std::vector<Triangle> triangles = welded_triangles(input.surface());
-  SurfaceFlow flow{map.points, triangles, moments(input, map.from, map.duration, least_intervals), {}};
+  FlowOnSurface flow{map.points, triangles, moments(input, map.from, map.duration, least_intervals), {}};
   flow.vectors = [&](double t, std::span<Vec3f> out) { input.material_vectors(t, out); };
   if (input.moves()) flow.shape = [&](double t) { return input.points(t); };
   const FlowMap found = flow_map(flow, stop);

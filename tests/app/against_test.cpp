@@ -13,7 +13,7 @@ json report_of(const char* better, double ours) {
   return {{"tables", {{{"name", "3.1"}, {"rows", {{{"name", "heart"}, {"values", {{"a / b", value}}}}}}}}}};
 }
 
-Comparison compare(const char* better, double now, double last) {
+RunComparison compare(const char* better, double now, double last) {
   return compare_runs(report_of(better, now), report_of(better, last), {});
 }
 

@@ -16,6 +16,7 @@ on_display() {
   display=$!
   state=$(mktemp -d)  # recent files are the user's own
   export XDG_STATE_HOME=$state
+  export LSAN_OPTIONS=detect_leaks=0  # of drivers that are unloaded by then; offscreen they are looked for
   trap clean_up EXIT
   read -r number <&"$numbers"
   export DISPLAY=:$number

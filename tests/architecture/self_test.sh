@@ -43,6 +43,13 @@ good_tree() {
 good_tree
 expect_silence layers.sh
 expect_silence habits.sh
+plant engine/io/one.hpp 'namespace nacre {' 'struct Segment {' '};' 'class Other;' 'class Other::Part : Base {' '};' '}  // namespace nacre'
+plant engine/io/own.cpp 'namespace nacre {' 'namespace {' 'struct Segment {' '};' '}  // namespace' '}  // namespace nacre'
+plant engine/io/apart.hpp 'namespace nacre::dicom {' 'struct Segment {' '};' '}  // namespace nacre::dicom'
+expect_silence one_definition.sh
+plant compute/math/two.hpp 'namespace nacre {' 'template <class T> struct Segment : Base {' '};' '}  // namespace nacre'
+expect one_definition.sh 'nacre::Segment is defined in compute/math/two.hpp and in engine/io/one.hpp'
+good_tree
 
 plant compute/math/up.hpp '#include "engine/scene/c.hpp"'
 expect layers.sh 'compute/math/up.hpp: include "engine/scene/c.hpp" points upwards'

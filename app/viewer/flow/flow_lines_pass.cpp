@@ -26,19 +26,20 @@ MarkShape shape_of(CriticalKind kind) {
   }
 }
 
-Buffer buffer_of(const std::vector<Segment>& segments) {
-  return segments.empty() ? Buffer() : Buffer::of<Segment>(segments);
+Buffer buffer_of(const std::vector<LineSegment>& segments) {
+  return segments.empty() ? Buffer() : Buffer::of<LineSegment>(segments);
 }
 
 }  // namespace
 
 void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const SurfaceBuffers& surface) {
   lines_ = std::move(lines);
-  std::vector<Segment> streamlines, separation, attachment, attracting, repelling, with_flow, against_flow, past, later;
+  std::vector<LineSegment> streamlines, separation, attachment, attracting, repelling, with_flow, against_flow, past,
+      later;
   std::vector<Mark> marks;
   if (lines_) {
     const auto in_model = [&](const Vec3d& p) { return Vec3f((p - surface.origin()) / surface.size()); };
-    const auto add = [&](std::vector<Segment>& segments, const std::vector<Vec3d>& points) {
+    const auto add = [&](std::vector<LineSegment>& segments, const std::vector<Vec3d>& points) {
       for (std::size_t i = 1; i < points.size(); ++i)
         segments.push_back({in_model(points[i - 1]), in_model(points[i])});
     };
@@ -56,15 +57,15 @@ void FlowLinesPass::set_lines(std::shared_ptr<const FlowLines> lines, const Surf
     for (const CriticalPoint& point : lines_->skeleton.topology.points)
       marks.push_back({in_model(point.position), encoded(mark_colour(point.kind)), float(shape_of(point.kind))});
   }
-  std::vector<Segment> separatrices = with_flow;
+  std::vector<LineSegment> separatrices = with_flow;
   separatrices.insert(separatrices.end(), against_flow.begin(), against_flow.end());
   streamlines_ = buffer_of(streamlines);
-  std::vector<Segment> orbits = attracting;
+  std::vector<LineSegment> orbits = attracting;
   orbits.insert(orbits.end(), repelling.begin(), repelling.end());
   orbits_ = buffer_of(orbits);
   attracting_ = buffer_of(attracting);
   repelling_ = buffer_of(repelling);
-  std::vector<Segment> tracks = past;
+  std::vector<LineSegment> tracks = past;
   tracks.insert(tracks.end(), later.begin(), later.end());
   tracks_ = buffer_of(tracks);
   past_ = buffer_of(past);

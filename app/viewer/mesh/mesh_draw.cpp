@@ -83,19 +83,19 @@ void MeshScene::update_edges() {
   for (std::size_t e = 0; e < opacity.size(); ++e)
     if (opacity[e] == 1) edges.push_back(drawing_.geometry.edges[e]);
   surface_.set_edges(edges);
-  std::vector<Segment> curves;
+  std::vector<LineSegment> curves;
   for (const std::uint32_t e : drawing_.junctions) {
     const auto& [a, b] = drawing_.geometry.edges[e];
     if (opacity[e] > 0)
       curves.push_back({drawing_.geometry.vertices[a].position, drawing_.geometry.vertices[b].position});
   }
-  curves_ = Buffer::of<Segment>(curves);
+  curves_ = Buffer::of<LineSegment>(curves);
 }
 
 void MeshScene::update_worst() {
   worst_ = Buffer();
   if (!results_.measures || settings_.view.worst <= 0) return;
-  std::vector<Segment> outlines;
+  std::vector<LineSegment> outlines;
   int left = settings_.view.worst;
   for (const WorstTriangle& worst : results_.measures->worst) {
     if (opacity_of(material_styles_, drawing_.materials[worst.triangle]) <= 0) continue;
@@ -105,7 +105,7 @@ void MeshScene::update_worst() {
       outlines.push_back(
           {drawing_.geometry.vertices[t[k]].position, drawing_.geometry.vertices[t[(k + 1) % 3]].position});
   }
-  worst_ = Buffer::of<Segment>(outlines);
+  worst_ = Buffer::of<LineSegment>(outlines);
 }
 
 /// The knob's; before there is anything else to see, the middle of the volume.

@@ -12,12 +12,12 @@ bool is_drawn(const std::vector<bool>& drawn, std::size_t material) {
 
 }  // namespace
 
-std::map<std::size_t, std::vector<Segment>> mesh_outline(const SurfaceMesh& mesh, const Vec3d& normal,
-                                                         const Vec3d& origin, const std::vector<bool>& drawn) {
+std::map<std::size_t, std::vector<LineSegment>> mesh_outline(const SurfaceMesh& mesh, const Vec3d& normal,
+                                                             const Vec3d& origin, const std::vector<bool>& drawn) {
   std::vector<std::uint8_t> above(mesh.points.size());
   const double offset = dot(normal, origin);
   for (std::size_t v = 0; v < above.size(); ++v) above[v] = dot(normal, mesh.points[v]) >= offset;
-  std::map<std::size_t, std::vector<Segment>> outline;
+  std::map<std::size_t, std::vector<LineSegment>> outline;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Triangle& triangle = mesh.triangles[t];
     const int sum = above[triangle.a] + above[triangle.b] + above[triangle.c];

@@ -21,8 +21,8 @@ Placement placement_of(const VoxelFrame& frame) {
 }
 
 /// The 12 edges of the box around all voxels, from the first one's centre in steps of a voxel.
-std::vector<Segment> box_edges(const Int3& dims) {
-  std::vector<Segment> edges;
+std::vector<LineSegment> box_edges(const Int3& dims) {
+  std::vector<LineSegment> edges;
   const auto corner = [&](int k) {
     return Vec3f(Vec3d((k & 1 ? dims.x : 0) - 0.5, (k & 2 ? dims.y : 0) - 0.5, (k & 4 ? dims.z : 0) - 0.5));
   };
@@ -161,7 +161,7 @@ void MeshScene::take(VolumeRead& told) {
   VoxelFrame frame{input.origin, input.axes};
   for (int a = 0; a < 3; ++a) frame.axes[std::size_t(a)] *= input.spacing[a];
   outline_place_ = placement_of(frame);
-  outline_ = Buffer::of<Segment>(box_edges(input.dims));
+  outline_ = Buffer::of<LineSegment>(box_edges(input.dims));
   update_material_styles();
   update_slice();
 }

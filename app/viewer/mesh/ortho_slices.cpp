@@ -36,12 +36,12 @@ void OrthoSlices::make_outline(int k, const OrthoSlice& slice) {
   shown.origin = slice.plane.corner;
   const Vec3d normal = content_.volume->input.axes[std::size_t(slice.axis)];
   for (const auto& [material, segments] : mesh_outline(*content_.mesh, normal, shown.origin, content_.drawn))
-    shown.outlines.push_back({material, Buffer::of<Segment>(segments)});
+    shown.outlines.push_back({material, Buffer::of<LineSegment>(segments)});
 }
 
-void OrthoSlices::draw_lines(const View& view, const Vec3d& origin, const std::vector<Segment>& lines,
+void OrthoSlices::draw_lines(const View& view, const Vec3d& origin, const std::vector<LineSegment>& lines,
                              const std::array<float, 3>& colour, bool through) const {
-  lines_.draw(view, place_grid(origin, 1), Buffer::of<Segment>(lines),
+  lines_.draw(view, place_grid(origin, 1), Buffer::of<LineSegment>(lines),
               {{colour[0], colour[1], colour[2], 1}, through ? 1.0f : 1.5f, through});
 }
 

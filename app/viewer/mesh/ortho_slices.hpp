@@ -72,7 +72,7 @@ class OrthoSlices : public SliceViews {
   void make_outline(int k, const OrthoSlice& slice);
   void draw_outlines(const Shown& shown, const View& view) const;
   void draw_crosshair(int k, const OrthoSlice& slice, const View& view) const;
-  void draw_lines(const View& view, const Vec3d& origin, const std::vector<Segment>& lines,
+  void draw_lines(const View& view, const Vec3d& origin, const std::vector<LineSegment>& lines,
                   const std::array<float, 3>& colour, bool through) const;
 
   SliceContent content_;

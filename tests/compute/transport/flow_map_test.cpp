@@ -22,8 +22,8 @@ std::vector<double> even_times(double from, double to, int intervals) {
   return times;
 }
 
-SurfaceFlow flow_on(const Shape& shape, std::vector<double> times, const TimeField& field) {
-  SurfaceFlow flow{shape.points, shape.triangles, std::move(times), {}};
+FlowOnSurface flow_on(const Shape& shape, std::vector<double> times, const TimeField& field) {
+  FlowOnSurface flow{shape.points, shape.triangles, std::move(times), {}};
   flow.vectors = [&shape, field](double t, std::span<Vec3f> out) {
     for (std::size_t i = 0; i < out.size(); ++i) out[i] = Vec3f(field(shape.points[i], t));
   };
@@ -94,7 +94,7 @@ TEST(FlowMap, VectorsAreInterpolatedInTime) {
 
 TEST(FlowMap, ASurfaceThatGrowsStretchesAtRest) {
   const Shape sphere = divided_sphere(3);
-  SurfaceFlow flow = flow_on(sphere, even_times(0, 2, 4), [](const Vec3d&, double) { return Vec3d(); });
+  FlowOnSurface flow = flow_on(sphere, even_times(0, 2, 4), [](const Vec3d&, double) { return Vec3d(); });
   flow.shape = [&sphere](double t) {
     std::vector<Vec3d> points = sphere.points;
     for (Vec3d& p : points) p *= 1 + t;
@@ -192,7 +192,7 @@ TEST(FlowMap, TheDoubleGyreOnASphereConverges) {
 
 TEST(FlowMap, BytesDoNotDependOnThreads) {
   const Shape patch = gyre_patch(16);
-  const SurfaceFlow flow = flow_on(patch, even_times(0, 10, 16), gyre_on_globe);
+  const FlowOnSurface flow = flow_on(patch, even_times(0, 10, 16), gyre_on_globe);
   const FlowMap many = flow_map(flow);
   tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const FlowMap alone = flow_map(flow);

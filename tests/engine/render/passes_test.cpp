@@ -317,11 +317,11 @@ TEST_F(Pass, ArrowsTakeTheMapsColours) {
 
 TEST_F(Pass, SegmentsHaveTheirWidthAndLieBehindWhatIsBeforeThem) {
   const SegmentPass pass;
-  const Buffer segments = Buffer::of<Segment>(std::vector<Segment>{{{-0.5f, 1, 0}, {0.5f, 1, 0}}});
+  const Buffer segments = Buffer::of<LineSegment>(std::vector<LineSegment>{{{-0.5f, 1, 0}, {0.5f, 1, 0}}});
   const View view = front();
   const auto draw = [&](float width, bool through) {
     return picture(view, [&] {
-      const Buffer before = Buffer::of<Segment>(std::vector<Segment>{{{0, 0, -1}, {0, 0, 1}}});
+      const Buffer before = Buffer::of<LineSegment>(std::vector<LineSegment>{{{0, 0, -1}, {0, 0, 1}}});
       pass.draw(view, world, before, {{0, 0, 1, 1}, 10, false});
       glEnable(GL_DEPTH_TEST);
       pass.draw(view, world, segments, {{1, 0, 0, 1}, width, through});
@@ -334,7 +334,7 @@ TEST_F(Pass, SegmentsHaveTheirWidthAndLieBehindWhatIsBeforeThem) {
   View behind = view;  // an end that lies behind the eye does not turn the line round
   behind.camera.eye = {0, -1, 0};
   behind.camera.target = {0, 0, 0};
-  const Buffer past = Buffer::of<Segment>(std::vector<Segment>{{{0.2f, 5, 0}, {0.2f, -20, 0}}});
+  const Buffer past = Buffer::of<LineSegment>(std::vector<LineSegment>{{{0.2f, 5, 0}, {0.2f, -20, 0}}});
   const Image image = picture(behind, [&] { pass.draw(behind, world, past, {{1, 0, 0, 1}, 4, false}); });
   EXPECT_EQ(at(image, 80, 50), (Pixel{255, 0, 0}));
   EXPECT_EQ(at(image, 20, 50), (Pixel{255, 255, 255}));
