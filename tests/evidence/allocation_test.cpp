@@ -12,9 +12,13 @@ namespace {
 
 std::atomic<long> made{0};
 
-void* counted(std::size_t bytes) {
+void* counted_or_null(std::size_t bytes) {
   made.fetch_add(1, std::memory_order_relaxed);
-  if (void* block = std::malloc(bytes > 0 ? bytes : 1)) return block;
+  return std::malloc(bytes > 0 ? bytes : 1);
+}
+
+void* counted(std::size_t bytes) {
+  if (void* block = counted_or_null(bytes)) return block;
   throw std::bad_alloc();
 }
 
@@ -23,6 +27,8 @@ void* counted(std::size_t bytes) {
 // Of this program only.
 void* operator new(std::size_t bytes) { return counted(bytes); }
 void* operator new[](std::size_t bytes) { return counted(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return counted_or_null(bytes); }
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept { return counted_or_null(bytes); }
 void operator delete(void* block) noexcept { std::free(block); }
 void operator delete[](void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t) noexcept { std::free(block); }
