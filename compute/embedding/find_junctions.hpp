@@ -317,26 +317,26 @@ struct ListFirst {
 };
 
 /// Junction points near the coarse cells in which one was found: position and size; size 0 where there is none. Looked
-/// for from the middle of what was found and, where `starts` is more than one, from the middles of its octants: a cell
-/// of several voxels may have two.
+/// for from the middle of what was found and, where `starts` is more than one, from each of the cells there and beside
+/// them: a coarse cell of several voxels may have two.
 struct FindJunctionPoints {
   MaterialBricksView field;
   SizingFieldView size;
   Int3 coarse;
   float cells_per_voxel;
   const FoundJunction* found;
-  int starts;  ///< 1 or 9
+  int starts;  ///< 1 or 65
   Float4* point;
   NACRE_HD void operator()(std::int64_t i) const {
     point[i] = {0, 0, 0, 0};
     const FoundJunction f = found[i / starts];
-    const int octant = int(i % starts) - 1;
+    const int cell = int(i % starts) - 1;
     const Int3 b{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
     Vec3f middle;
     for (int axis = 0; axis < 3; ++axis) {
-      middle[axis] = b[axis] * 4 + 0.5f * float(f.low(axis) + f.high(axis) + 1);
-      const float aside = 0.25f * float(f.high(axis) + 1 - f.low(axis));
-      if (octant >= 0) middle[axis] += (octant >> axis & 1) ? aside : -aside;
+      const int k = cell >> 2 * axis & 3;
+      if (cell >= 0 && (k + 1 < f.low(axis) || k - 1 > f.high(axis))) return;
+      middle[axis] = b[axis] * 4 + (cell < 0 ? 0.5f * float(f.low(axis) + f.high(axis) + 1) : float(k) + 0.5f);
     }
     JunctionPoint at;
     if (!project(field, f.junction, middle / cells_per_voxel, cells_per_voxel < 1 ? 6 / cells_per_voxel : 6.0f, at))
@@ -416,7 +416,7 @@ int junction_points(Executor<Backend>& exec, const MaterialBricks& b, const Sizi
   std::vector<FoundJunction> found = search.found.download(0, search.count);
   std::erase_if(found, [](const FoundJunction& f) { return f.junction.order() != 0; });
   if (found.empty()) return 0;
-  const int starts = cells_per_voxel > 1 ? 1 : 9;
+  const int starts = cells_per_voxel > 1 ? 1 : 65;
   Array<FoundJunction> sought = arena.temporary<FoundJunction>(found.size());
   sought.upload(found);
   Array<Float4> position = arena.temporary<Float4>(found.size() * std::size_t(starts));

@@ -157,7 +157,7 @@ def write(folder, files):
 
 def why_bad(status, errors, left):
     lines = [line for line in errors.splitlines() if line.startswith("nacre:")]
-    if re.search("Sanitizer|runtime error:", errors):
+    if re.search("^(?!nacre:).*(Sanitizer|runtime error:)", errors, re.MULTILINE):  # not one of the child's, quoted
         return "report of a sanitizer"
     if status not in (0, 1):
         return f"status {status}"
@@ -204,7 +204,7 @@ def main():
                 print(f"run {number}: {bad}: {errors[-300:]}")
                 shutil.copytree(work, found / f"import-{number}", dirs_exist_ok=True)
             shutil.rmtree(work)
-            return ("bad" if bad else "a child crashed" if "crashed on it" in errors else
+            return ("bad" if bad else "a child crashed" if re.search("crashed on it|Sanitizer", errors) else
                     "refused" if errors.startswith("nacre:") else "read")
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
