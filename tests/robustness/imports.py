@@ -2,8 +2,8 @@
 """Nacre: damaged files of the formats that VTK and GDCM read in child processes. Usage: imports.py PROGRAM RUNS FOUND
 
 Each run damages one of a few small inputs, or what a child reports about one, and gives it to `nacre info`. A child may
-crash; the program may not: good is status 0, or 1 and one line that begins "nacre:", without a report of a sanitizer,
-within 60 s, with nothing left in the folder for temporary files. Run number n is the same each time. The inputs of bad
+crash, or be ended after its 120 s; the program may not: good is status 0, or 1 and one line that begins "nacre:",
+without a report of a sanitizer, within 200 s, with nothing left in the folder for temporary files. Run number n is the same each time. The inputs of bad
 runs are kept in FOUND; then the status is 1.
 """
 import collections
@@ -185,10 +185,10 @@ def run(program, number, work):
         files = dict(files, **{name: damaged(chance, files[name], other)})
     write(work / "input", files)
     try:
-        done = subprocess.run([program, "info", str(work / "input" / opened)], env=environment, timeout=60,
+        done = subprocess.run([program, "info", str(work / "input" / opened)], env=environment, timeout=200,
                               stdin=subprocess.DEVNULL, capture_output=True, check=False)
     except subprocess.TimeoutExpired:
-        return "not done in 60 s", ""
+        return "not done in 200 s", ""
     errors = done.stderr.decode(errors="replace")
     return why_bad(done.returncode, errors, list((work / "temporary").iterdir())), errors
 
@@ -205,6 +205,7 @@ def main():
                 shutil.copytree(work, found / f"import-{number}", dirs_exist_ok=True)
             shutil.rmtree(work)
             return ("bad" if bad else "a child crashed" if re.search("crashed on it|Sanitizer", errors) else
+                    "a child took too long" if "did not finish" in errors else
                     "refused" if errors.startswith("nacre:") else "read")
 
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
