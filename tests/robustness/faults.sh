@@ -1,21 +1,23 @@
 #!/usr/bin/env bash
-# Nacre: faults in the middle of a run. Usage: faults.sh BINARY PRELOAD [--runs N] [--all] [--jobs N]
+# Nacre: faults in the middle of a run. Usage: faults.sh BINARY PRELOAD [--runs N] [--all] [--jobs N] [--kind KIND]
 # A small flow and a small mesh run are repeated, each time with one fault injected by tests/robustness/fault_preload.cpp:
 # an allocation that fails, a disk that is full, a signal. N (default 12) calls of each kind are chosen evenly over the
-# run; --all takes every one; --jobs of them at a time (1). Good is: status 0 where nothing failed that mattered, 1 with one line that begins "nacre:",
-# or 130/143 after a signal; results that are whole or not there; an older result untouched after a failure; nothing else left
-# behind. Then: two programs writing one output, ffmpeg that dies, an input replaced while it is read.
+# run; --all takes every one; --jobs of them at a time (1); --kind chooses one kind. Good is: status 0 where nothing
+# failed that mattered, 1 with one line that begins "nacre:", or 130/143 after a signal; results that are whole or not
+# there; an older result untouched after a failure; nothing else left behind. Then: two programs writing one output,
+# ffmpeg that dies, an input replaced while it is read.
 set -euo pipefail
 
 program=$(readlink -f "$1")
 preload=$(readlink -f "$2")
 shift 2
-runs=12 jobs=1
+runs=12 jobs=1 chosen=
 while (($#)); do
   case $1 in
     --runs) runs=$2; shift 2 ;;
     --all) runs=1000000000; shift ;;
     --jobs) jobs=$2; shift 2 ;;
+    --kind) chosen=$2; shift 2 ;;
     *) echo "faults.sh: no such option: $1" >&2; exit 2 ;;
   esac
 done
@@ -87,7 +89,7 @@ for command in flow mesh; do
   mkdir "$work/$command"
   (cd "$work/$command" && NACRE_FAULT_COUNTS=$work/counts LD_PRELOAD=$preload "$program" "${arguments[@]}" >/dev/null)
   while read -r kind count; do
-    [[ $kind != replace ]] || continue
+    [[ $kind != replace && $kind == "${chosen:-$kind}" ]] || continue
     ((count > 0)) || continue
     tried=0
     step=$(((count + runs - 1) / runs))
