@@ -41,6 +41,24 @@ class Team {
     return total;
   }
 
+  /// put(k, place) for those of 0 <= k < n, n <= 64, that flag(k) says yes to: places 0, 1, ... in their order. Returns
+  /// how many.
+  template <class Flag, class Put>
+  __device__ int compact(int n, const Flag& flag, const Put& put) {
+    static_assert(lanes == 64, "two warps");
+    const int lane = threadIdx.x;
+    const bool mine = lane < n && flag(lane);
+    const unsigned votes = __ballot_sync(0xffffffffu, mine);
+    __shared__ unsigned both[2];
+    if (lane % 32 == 0) both[lane / 32] = votes;
+    __syncthreads();
+    const int before = __popc(votes & ((1u << lane % 32) - 1)) + (lane >= 32 ? __popc(both[0]) : 0);
+    if (mine) put(lane, before);
+    const int total = __popc(both[0]) + __popc(both[1]);
+    __syncthreads();
+    return total;
+  }
+
   /// True in one lane: for what must happen once.
   __device__ bool first() const { return threadIdx.x == 0; }
   __device__ void wait() { __syncthreads(); }
@@ -55,6 +73,19 @@ class Team {
   NACRE_HD_INLINE T sum(int n, const T& zero, const Get& get) {
     T total = zero;
     for (int k = 0; k < n; ++k) total = total + get(k);
+    return total;
+  }
+  template <class Flag, class Put>
+  NACRE_HD_INLINE int compact(int n, const Flag& flag, const Put& put) {
+    std::uint32_t yes[lanes];  // without a branch, in vector instructions
+    for (int k = 0; k < n; ++k) yes[k] = std::uint32_t(flag(k));
+    std::uint8_t list[lanes + 1];
+    int total = 0;
+    for (int k = 0; k < n; ++k) {
+      list[total] = std::uint8_t(k);
+      total += int(yes[k]);
+    }
+    for (int k = 0; k < total; ++k) put(list[k], k);
     return total;
   }
   NACRE_HD bool first() const { return true; }

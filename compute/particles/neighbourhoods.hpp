@@ -89,40 +89,6 @@ NACRE_HD inline Neighbourhood copy_neighbourhood(Team& team, const Neighbourhood
   return result;
 }
 
-namespace detail {
-
-/// Puts those of 0 .. n-1, n <= 64, that `flag` says yes to one after the other, in their order; returns how many.
-template <class Flag, class Put>
-NACRE_HD_INLINE int compact(const Flag& flag, int n, const Put& put) {
-#if defined(__CUDA_ARCH__)
-  static_assert(Team::lanes == 64, "two warps");
-  const int lane = threadIdx.x;
-  const bool mine = lane < n && flag(lane);
-  const unsigned votes = __ballot_sync(0xffffffffu, mine);
-  __shared__ unsigned both[2];
-  if (lane % 32 == 0) both[lane / 32] = votes;
-  __syncthreads();
-  const int before = __popc(votes & ((1u << lane % 32) - 1)) + (lane >= 32 ? __popc(both[0]) : 0);
-  if (mine) put(lane, before);
-  const int total = __popc(both[0]) + __popc(both[1]);
-  __syncthreads();
-  return total;
-#else
-  std::uint32_t yes[64];  // without a branch, in vector instructions
-  for (int k = 0; k < n; ++k) yes[k] = std::uint32_t(flag(k));
-  std::uint8_t list[64 + 1];
-  int total = 0;
-  for (int k = 0; k < n; ++k) {
-    list[total] = std::uint8_t(k);
-    total += int(yes[k]);
-  }
-  for (int k = 0; k < total; ++k) put(list[k], k);
-  return total;
-#endif
-}
-
-}  // namespace detail
-
 /// Of a neighbourhood, the particles that one of them may feel at any position of its next step, in the team's scratch.
 /// There is room for 256; where more are near (seeds on top of each other), sums go over as many lists as it takes.
 class NearInNeighbourhood {
@@ -177,7 +143,7 @@ class NearInNeighbourhood {
         list_.put(base + to, felt ? from.x[k] : 1e9f, from.y[k], from.z[k], from.h[k], from.nx[k], from.ny[k],
                   from.nz[k], felt && rim && relation_.on_rim(from.tag[k]));
       };
-      list_.count += detail::compact(flag, n, put);
+      list_.count += team.compact(n, flag, put);
     }
     team.each(list_.padded() - list_.count,
               [&](int k) { list_.put(list_.count + k, 1e9f, 1e9f, 1e9f, 1, 0, 0, 0, false); });

@@ -8,15 +8,17 @@
 namespace nacre {
 
 /// How particles get back onto their interface: by Newton's method on the fields themselves, for the last steps ...
+/// Where the margin is known to be at least `known` > 0 voxels, the other materials are not looked at.
 struct FieldProjector {
   MaterialBricksView field;
   const Junction* junction;
   SizingFieldView size;
   float last_step = 0.01f;  ///< of Newton's, voxels; what is left is about its square times the curvature
-  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on, float known = 0) const {
     JunctionPoint at;
     if (!nacre::project(field, junction[interface], p, 1, at, last_step)) return false;
-    on = {at.p, at.direction, size(at.p), junction_margin(field, junction[interface], at.p, at.steepness)};
+    on = {at.p, at.direction, size(at.p),
+          known > 0 ? known : junction_margin(field, junction[interface], at.p, at.steepness)};
     return true;
   }
 };
@@ -26,8 +28,8 @@ struct FieldProjector {
 struct EmbeddedProjector {
   InterfaceGridView grid;
   FieldProjector fields;
-  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on) const {
-    return grid.seeds_only || h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on)
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on, float known = 0) const {
+    return grid.seeds_only || h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on, known)
                                                               : nacre::project(grid, interface, p, on);
   }
 };

@@ -22,9 +22,10 @@ struct ForceSum {
 
 namespace detail {
 
-/// Candidates that a team gathers side by side before it computes with them.
+/// Candidates that a team gathers side by side before it computes with them, in whole blocks: what fills the last one
+/// up has no mass.
 struct Candidates {
-  static constexpr int capacity = 512;
+  static constexpr int capacity = 512, block = 16;
   float x[capacity], y[capacity], z[capacity], h[capacity];
   float nx[capacity], ny[capacity], nz[capacity], mass[capacity];
 };
@@ -99,33 +100,40 @@ struct LeafForces {
     int count = 0;
     const auto compute = [&] {
       if (count == 0) return;  // most often on a rim, which is near few leaves
+      constexpr int block = detail::Candidates::block;
+      const int filled = (count + block - 1) / block * block;
+      team.each(filled - count, [&](int k) { put(c, count + k, {0, 0, 0, 1}, {0, 0, 0, 0}, 0); });
       team.each(targets, [&](int t) {
         const Float4 p = tree.position[from + t], n = tree.direction[from + t];
         // A curve's tangents may point either way; its particles, and those of a rim, concern each other fully.
-        detail::add_forces(c, count, {p.x, p.y, p.z}, p.w, {n.x, n.y, n.z}, by_normal && order == 2, sums[t]);
+        detail::add_forces(c, filled, {p.x, p.y, p.z}, p.w, {n.x, n.y, n.z}, by_normal && order == 2, sums[t]);
       });
       count = 0;
     };
     tree.walk(
         root, own.low, own.high, support * own.largest,
         [&](std::uint32_t first, std::uint32_t last) {
-          while (first < last) {
-            const int room = detail::Candidates::capacity - count;
-            const int n = int(last - first) < room ? int(last - first) : room;
-            team.each(n, [&](int k) {
-              const Float4 p = tree.position[first + k], d = tree.direction[first + k];
-              put(c, count + k, p, d, 1);
-            });
-            count += n;
-            first += n;
-            if (count == detail::Candidates::capacity) compute();
+          for (; first < last; first += Team::lanes) {
+            if (count + Team::lanes > detail::Candidates::capacity) compute();
+            const int n = last - first < Team::lanes ? int(last - first) : Team::lanes;
+            count += team.compact(
+                n,
+                [&](int k) {  // some particle of the leaf may feel it
+                  const Float4 p = tree.position[first + k];
+                  const Vec3f at(p.x, p.y, p.z);
+                  const float reach = support * pair_size(own.largest, p.w);
+                  return box_distance2(at, at, own.low, own.high) < reach * reach;
+                },
+                [&](int k, int place) {
+                  put(c, count + place, tree.position[first + k], tree.direction[first + k], 1);
+                });
           }
         },
         [&](const TreeNode& node) {
+          if (count == detail::Candidates::capacity) compute();
           if (team.first()) put(c, count, node.centre, node.normal, node.mass());
           ++count;
           team.wait();
-          if (count == detail::Candidates::capacity) compute();
         });
     compute();
   }

@@ -33,7 +33,10 @@ struct MoveParticle {
   const float* energy;
   Float4* position;
   Float4* direction;  ///< w gets the energy
-  Float4* velocity;
+  Float4* velocity;   ///< w: the interface goes on at least so far around the particle, voxels; 0: not known
+
+  /// By how much the margin may change over a way of one voxel.
+  static constexpr float margin_slope = 3;
 
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t group = interface[i];
@@ -48,9 +51,9 @@ struct MoveParticle {
     const float size = length(v), most = rule.longest * at.w;
     if (size > most) v *= most / size;
     EmbeddedPoint on;
-    if (!arrives(group, p, v, at.w, on)) {  // at the rim: a shorter step, or none
+    if (!arrives(group, p, v, at.w, v4.w, on)) {  // at the rim: a shorter step, or none
       v *= 0.25f;
-      if (!arrives(group, p, v, at.w, on)) {
+      if (!arrives(group, p, v, at.w, v4.w, on)) {
         velocity[i] = {0, 0, 0, 0};
         direction[i].w = energy[i];
         return;
@@ -60,12 +63,13 @@ struct MoveParticle {
     const float sign = order == 1 && dot(on.direction, n) < 0 ? -1.0f : 1.0f;
     position[i] = {on.p.x, on.p.y, on.p.z, on.h};
     direction[i] = {sign * on.direction.x, sign * on.direction.y, sign * on.direction.z, energy[i]};
-    velocity[i] = {v.x, v.y, v.z, 0};
+    velocity[i] = {v.x, v.y, v.z, on.margin};
   }
 
  private:
-  NACRE_HD bool arrives(std::uint32_t group, const Vec3f& p, const Vec3f& v, float h, EmbeddedPoint& on) const {
-    if (!projector.project(group, p + v, h, on) || on.margin < 0) return false;
+  NACRE_HD bool arrives(std::uint32_t group, const Vec3f& p, const Vec3f& v, float h, float margin,
+                        EmbeddedPoint& on) const {
+    if (!projector.project(group, p + v, h, on, margin - margin_slope * length(v)) || on.margin < 0) return false;
     const Vec3f off = on.p - p - v;
     return dot(off, off) < h * h;
   }

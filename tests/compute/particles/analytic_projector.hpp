@@ -14,10 +14,10 @@ template <class Surface>
 struct AnalyticProjector {
   Surface surface;
   float rim = 1e9f;
-  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on) const {
+  NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float, EmbeddedPoint& on, float known = 0) const {
     if (!surface.project(interface, p, 1e9f, on.p, on.direction)) return false;
     on.h = surface.size(on.p);
-    on.margin = rim - std::sqrt(p.x * p.x + p.y * p.y);
+    on.margin = known > 0 ? known : rim - std::sqrt(p.x * p.x + p.y * p.y);
     return true;
   }
 };

@@ -161,6 +161,24 @@ void NobodyStepsOverTheRim(Executor<Backend>& exec) {
   }
 }
 
+/// A crowd spreads over a disc, momentum and all, until the rim stops it, though the margin is not looked up in each step.
+template <class Backend>
+void ACrowdStopsAtTheRim(Executor<Backend>& exec) {
+  const AnalyticProjector<Plane> projector{{1}, 6};
+  std::vector<Vec3f> crowd;
+  for (const Vec3f& p : scattered_on_sphere(4, 400, 9)) crowd.push_back({p.x, p.y, 0});
+  TreeSolverRun<Backend> run = one_surface(exec, 400);
+  run.seed(projector, crowd, std::vector<std::uint32_t>(crowd.size(), 0));
+  for (int k = 0; k < 60; ++k) {
+    if (k % 5 == 0) run.solver.rebuild(exec);
+    run.solver.iterate(exec, projector, run.view, 2, run.rule, 400);
+  }
+  float farthest = 0;
+  for (const Float4& p : run.positions()) farthest = std::max(farthest, std::sqrt(p.x * p.x + p.y * p.y));
+  EXPECT_LE(farthest, 6);
+  EXPECT_GT(farthest, 5.7);
+}
+
 template <class Backend>
 void RandomParticlesSpreadEvenlyOnASphere(Executor<Backend>& exec) {
   const AnalyticProjector<Spheres> projector{{{10}, 1}};
@@ -390,6 +408,7 @@ void IslandsKeepTheirParticlesAndRulesAreKept(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(TreeSolver, AnIterationIsForcesAndAMove)
 NACRE_DEVICE_TEST(TreeSolver, APairStepsApartAsTheFormulaSays)
 NACRE_DEVICE_TEST(TreeSolver, NobodyStepsOverTheRim)
+NACRE_DEVICE_TEST(TreeSolver, ACrowdStopsAtTheRim)
 NACRE_DEVICE_TEST(TreeSolver, RandomParticlesSpreadEvenlyOnASphere)
 NACRE_DEVICE_TEST(TreeSolver, LowerOrdersAreFeltAndStay)
 NACRE_DEVICE_TEST(TreeSolver, BothProjectorsLandOnTheSurface)
