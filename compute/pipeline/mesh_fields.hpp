@@ -62,7 +62,7 @@ class MeshFields {
     return {bricks_.view(), junction_.data(), size_.view(), recipe_.seeds_only ? 0.04f : 0.01f};
   }
   EmbeddedProjector embedded_projector() const {  // smoothing follows, which is finer
-    return {grid_.view(), {bricks_.view(), junction_.data(), size_.view(), 0.04f}};
+    return {grid_.view(), field_projector()};
   }
 
  private:
