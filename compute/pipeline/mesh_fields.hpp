@@ -61,9 +61,7 @@ class MeshFields {
   FieldProjector field_projector() const {
     return {bricks_.view(), junction_.data(), size_.view(), recipe_.seeds_only ? 0.04f : 0.01f};
   }
-  EmbeddedProjector embedded_projector() const {  // smoothing follows, which is finer
-    return {grid_.view(), field_projector()};
-  }
+  EmbeddedProjector embedded_projector() const { return {grid_.view(), field_projector()}; }
 
  private:
   FieldRecipe recipe(const MeshParameters& p) const {
