@@ -67,7 +67,7 @@ for _ in range($count):
   *) echo "soak.sh: no kind '$kind'; choose flow, view or python" >&2; exit 2 ;;
 esac
 
-"$program" "${words[@]}" &
+"$program" "${words[@]}" >/dev/null &
 child=$!
 begun=$SECONDS
 while kill -0 "$child" 2>/dev/null; do
