@@ -259,4 +259,28 @@ DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviatio
   return result;
 }
 
+std::vector<MeshDefects::NewPoint> points_on_rims(std::span<const MeshDefects::NewPoint> points,
+                                                  std::span<const std::uint32_t> taken, const NearestOnJunctions& onto,
+                                                  const MaterialsAt& material_at) {
+  std::vector<MeshDefects::NewPoint> lost;
+  std::vector<Vec3d> position;
+  std::vector<Junction> interface;
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    if (points[k].third != 0xffff || std::binary_search(taken.begin(), taken.end(), k)) continue;
+    lost.push_back(points[k]);
+    position.push_back(points[k].position);
+    interface.emplace_back(points[k].materials[0], points[k].materials[1]);
+  }
+  if (lost.empty()) return lost;
+  const std::vector<Vec3d> on = onto(position, interface);
+  for (std::size_t k = 0; k < lost.size(); ++k)
+    if (is_finite(on[k])) position[k] = lost[k].position = on[k];
+  const std::vector<std::uint16_t> covered_by = material_at(position);
+  for (std::size_t k = 0; k < lost.size(); ++k) lost[k].third = covered_by[k];
+  std::erase_if(lost, [](const MeshDefects::NewPoint& p) {
+    return p.third == p.materials[0] || p.third == p.materials[1] || p.third == 0xffff;
+  });
+  return lost;
+}
+
 }  // namespace nacre

@@ -66,4 +66,14 @@ struct DeviationRefinement {
 DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,
                                      const DeviationRule& rule);
 
+/// The materials in which points of the world lie.
+using MaterialsAt = std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)>;
+
+/// New points in the place of those of `points`, on surfaces, that have not become particles (`taken`: the indices of
+/// those that have, ascending): where a third material covers the interface, the point is to be on the curve on which
+/// the three meet.
+std::vector<MeshDefects::NewPoint> points_on_rims(std::span<const MeshDefects::NewPoint> points,
+                                                  std::span<const std::uint32_t> taken, const NearestOnJunctions& onto,
+                                                  const MaterialsAt& material_at);
+
 }  // namespace nacre

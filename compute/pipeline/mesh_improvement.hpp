@@ -101,8 +101,6 @@ class MeshImprovement {
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
   bool polishes() const { return rule_.stars && rule_.deviation == 0; }
   void forget_tried(DeviationRefinement& further);
-  std::vector<MeshDefects::NewPoint> points_on_rims(std::span<const MeshDefects::NewPoint> points,
-                                                    std::span<const std::uint32_t> taken);
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
   static std::vector<std::uint8_t> bad_points(const Triangulated& made);
   static double fitness_of(const Triangulated& made);

@@ -46,31 +46,6 @@ void MeshImprovement::forget_tried(DeviationRefinement& further) {
   });
 }
 
-/// For the points that have not become particles: where their interface is covered by a third material, points on the
-/// curve on which the three meet.
-std::vector<MeshDefects::NewPoint> MeshImprovement::points_on_rims(std::span<const MeshDefects::NewPoint> points,
-                                                                   std::span<const std::uint32_t> taken) {
-  std::vector<MeshDefects::NewPoint> lost;
-  std::vector<Vec3d> position;
-  std::vector<Junction> interface;
-  for (std::uint32_t k = 0; k < points.size(); ++k) {
-    if (points[k].third != 0xffff || std::binary_search(taken.begin(), taken.end(), k)) continue;
-    lost.push_back(points[k]);
-    position.push_back(points[k].position);
-    interface.emplace_back(points[k].materials[0], points[k].materials[1]);
-  }
-  if (lost.empty()) return lost;
-  const std::vector<Vec3d> on = particles_.onto_junctions(position, interface, false);
-  for (std::size_t k = 0; k < lost.size(); ++k)
-    if (is_finite(on[k])) position[k] = lost[k].position = on[k];
-  const std::vector<std::uint16_t> covered_by = particles_.material_at(position);
-  for (std::size_t k = 0; k < lost.size(); ++k) lost[k].third = covered_by[k];
-  std::erase_if(lost, [](const MeshDefects::NewPoint& p) {
-    return p.third == p.materials[0] || p.third == p.materials[1] || p.third == 0xffff;
-  });
-  return lost;
-}
-
 /// Adds particles, and smooths what is around them. False where there is no room for any.
 bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
   const std::size_t before = std::size_t(particles_.count());
@@ -79,7 +54,11 @@ bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinemen
       return particles_.replace(std::vector<std::uint8_t>(std::size_t(particles_.count()), 0), points);
     };
     const std::vector<std::uint32_t> taken = add(further.insert);
-    add(points_on_rims(further.insert, taken));
+    const auto onto = [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+      return particles_.onto_junctions(points, junctions, false);
+    };
+    const auto material_at = [&](std::span<const Vec3d> points) { return particles_.material_at(points); };
+    add(points_on_rims(further.insert, taken, onto, material_at));
   });
   const std::size_t added = std::size_t(particles_.count()) - before;
   deviation_.inserted += std::int64_t(added);

@@ -1,6 +1,7 @@
 // Nacre: test bodies for teams of lanes.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -44,6 +45,44 @@ void TeamsShareMemoryAndSums(Executor<Backend>& exec) {
   }
 }
 
+/// Item i: of 0 .. n-1 those that a hash chooses, and how many there are at the end of the item's row.
+struct ChosenOnes {
+  static constexpr int most = Team::lanes;
+  std::uint32_t* result;
+  std::size_t scratch_bytes() const { return 0; }
+
+  NACRE_HD static int size(std::int64_t i) { return int(i % (most + 1)); }
+  NACRE_HD static bool chosen(std::int64_t i, int k) {
+    const int share = int(i / (most + 1) % 3);  // none, some, all
+    return share == 2 || (share == 1 && ((std::uint32_t(i) * 2654435761u + std::uint32_t(k) * 40503u) >> 13 & 1) != 0);
+  }
+  NACRE_HD void operator()(Team& team, std::int64_t i) const {
+    std::uint32_t* row = result + i * (most + 1);
+    const int count = team.compact(
+        size(i), [&](int k) { return chosen(i, k); }, [&](int k, int place) { row[place] = std::uint32_t(k); });
+    if (team.first()) row[most] = std::uint32_t(count);
+    team.wait();
+  }
+};
+
+template <class Backend>
+void ChosenOnesKeepTheirOrder(Executor<Backend>& exec) {
+  const std::int64_t items = 6 * (ChosenOnes::most + 1), width = ChosenOnes::most + 1;
+  Arena::Scope scope(exec.arena());
+  Array<std::uint32_t> result = exec.arena().template temporary<std::uint32_t>(items * width);
+  result.fill_bytes(0xff);
+  exec.for_each_team(items, ChosenOnes{result.data()});
+  const std::vector<std::uint32_t> host = result.download();
+  for (std::int64_t i = 0; i < items; ++i) {
+    std::vector<std::uint32_t> expected;
+    for (int k = 0; k < ChosenOnes::size(i); ++k)
+      if (ChosenOnes::chosen(i, k)) expected.push_back(std::uint32_t(k));
+    const auto row = host.begin() + i * width;
+    ASSERT_EQ(row[ChosenOnes::most], expected.size()) << i;
+    ASSERT_TRUE(std::equal(expected.begin(), expected.end(), row)) << i;
+  }
+}
+
 struct Touch {
   std::uint64_t* visits;
   std::size_t scratch_bytes() const { return 0; }
@@ -71,6 +110,7 @@ void NoTeamRunsOnceStopped(Executor<Backend>& exec) {
 }
 
 NACRE_DEVICE_TEST(Team, TeamsShareMemoryAndSums)
+NACRE_DEVICE_TEST(Team, ChosenOnesKeepTheirOrder)
 NACRE_DEVICE_TEST(Team, EveryLaneIndexIsVisitedOnce)
 NACRE_DEVICE_TEST(Team, NoTeamRunsOnceStopped)
 

@@ -161,7 +161,7 @@ void NobodyStepsOverTheRim(Executor<Backend>& exec) {
   }
 }
 
-/// A crowd spreads over a disc, momentum and all, until the rim stops it, though the margin is not looked up in each step.
+/// A crowd spreads over a disc, momentum and all, and the rim stops it, though not each step looks up the margin.
 template <class Backend>
 void ACrowdStopsAtTheRim(Executor<Backend>& exec) {
   const AnalyticProjector<Plane> projector{{1}, 6};

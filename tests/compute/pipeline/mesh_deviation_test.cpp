@@ -78,6 +78,40 @@ TEST(MeshDeviation, NewPointsKeepAwayFromAllOthers) {
   EXPECT_EQ(refine_deviation(mesh, deviation, {1.01 * deviation.max, 0.25}).above, 0);
 }
 
+TEST(MeshDeviation, LostPointsAreLookedForOnTheRims) {
+  // Materials 1 and 2 meet at y = 0; 3 covers what is beyond x = 1.
+  const auto onto = [](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+    std::vector<Vec3d> on;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_EQ(junctions[i], Junction(1, 2));
+      on.push_back(points[i].z < 5 ? Vec3d(points[i].x, 0, points[i].z) : Vec3d(NAN));
+    }
+    return on;
+  };
+  const auto material_at = [](std::span<const Vec3d> points) {
+    std::vector<std::uint16_t> material;
+    for (const Vec3d& p : points) material.push_back(p.x > 1 ? 3 : p.y > 0 ? 2 : 1);
+    return material;
+  };
+  using NewPoint = MeshDefects::NewPoint;
+  const std::vector<NewPoint> wished{
+      {{0, 0.1, 0}, {1, 2}, 0},     // became a particle
+      {{2, 0.1, 0}, {1, 2}, 1},     // beyond the rim
+      {{0, 0.1, 1}, {1, 2}, 2},     // lost for another reason
+      {{2, 0.1, 1}, {1, 2}, 3, 7},  // on a curve already
+      {{2, 0.1, 6}, {1, 2}, 4},     // beyond the rim, without an interface nearby
+  };
+  const std::vector<NewPoint> found = points_on_rims(wished, std::vector<std::uint32_t>{0}, onto, material_at);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].position, Vec3d(2, 0, 0)) << "on the interface, from where its curve is looked for";
+  EXPECT_EQ(found[1].position, Vec3d(2, 0.1, 6)) << "where it was wished for";
+  for (const NewPoint& p : found) {
+    EXPECT_EQ(p.third, 3);
+    EXPECT_EQ(p.materials, wished[1].materials);
+  }
+  EXPECT_TRUE(points_on_rims({}, {}, onto, material_at).empty());
+}
+
 /// The largest distance of middles of triangles and edges, by a formula.
 double largest_off(const SurfaceMesh& mesh, const PlaceFunction& distance) {
   double most = 0;
