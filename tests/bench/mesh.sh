@@ -39,13 +39,13 @@ row() {
     failed=1
     return
   fi
-  local values=() total=0
-  for stage in read materials tighten distance sizing embed seed relax population triangulate smooth remesh quality write; do
+  local values=()
+  for stage in materials tighten distance sizing embed seed relax population triangulate smooth remesh; do
     values+=("$stage=$(stage_seconds "$report" "$stage")")
   done
   [[ $(report_value "$report" mesh.sound) != true ]] || sound=yes
   local line
-  line=$(printf '%s\n' "${values[@]}" | awk -F= -v name="$name" \
+  line=$(printf '%s\n' "${values[@]}" | awk -F= -v name="$name" -v total="$(report_value "$report" seconds)" \
     -v particles="$(report_value "$report" particles.final)" -v iterations="$(report_value "$report" particles.iterations)" \
     -v triangles="$(report_value "$report" mesh.triangles)" -v mean="$(report_value "$report" mesh.radius_ratio.mean)" \
     -v least="$(report_value "$report" mesh.radius_ratio.min)" \
@@ -55,7 +55,7 @@ row() {
     -v off="$(report_value "$report" mesh.nonmanifold_edges)" -v open="$(report_value "$report" mesh.boundary_edges)" \
     -v lost="$(report_list "$report" mesh.lost_labels | wc -l)" -v sound="$sound" \
     -v memory="$(report_value "$report" memory.peak_bytes)" '
-    { s[$1] = $2; total += $2 }
+    { s[$1] = $2 }
     END {
       fields = s["materials"] + s["tighten"] + s["distance"] + s["sizing"] + s["embed"]
       printf "| %s | %d | %d | %d | %.1f | %.1f | %.1f | %.1f | %.1f | %.2f | %.3f | %.3f | %.3f | %.5f | %.3f | %d | %d | %d | %s | %.2f |\n",
