@@ -134,10 +134,10 @@ NACRE_HD_INLINE void atomic_or(std::uint64_t* to, std::uint64_t bits) {
 #endif
 }
 
-/// Writes a flag that several threads may write at once with the same value.
+/// Writes a flag in global memory that several threads may write at once with the same value.
 NACRE_HD_INLINE void relaxed_store(std::uint32_t* to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
-  *reinterpret_cast<volatile unsigned*>(to) = value;
+  __stcg(to, value);
 #else
   __atomic_store_n(to, value, __ATOMIC_RELAXED);
 #endif
@@ -146,7 +146,7 @@ NACRE_HD_INLINE void relaxed_store(std::uint32_t* to, std::uint32_t value) {
 /// Reads what another thread may be writing by `relaxed_store`: its value before or after.
 NACRE_HD_INLINE std::uint32_t relaxed_load(const std::uint32_t* from) {
 #if defined(__CUDA_ARCH__)
-  return *reinterpret_cast<const volatile unsigned*>(from);
+  return __ldcg(from);
 #else
   return __atomic_load_n(from, __ATOMIC_RELAXED);
 #endif

@@ -10,7 +10,8 @@
 namespace nacre {
 
 /// Passed to the kernels of Executor::for_each_team. Every lane runs the kernel's code between the calls, with the same
-/// values; only what is inside of `each` and `sum` is shared out. Both end with all lanes seeing what all have written.
+/// values; only what is inside of `each`, `sum` and `compact` is shared out. These end with all lanes seeing what all
+/// have written.
 class Team {
  public:
   static constexpr int lanes = 64;  ///< on CUDA
@@ -49,7 +50,7 @@ class Team {
     const int lane = threadIdx.x;
     const bool mine = lane < n && flag(lane);
     const unsigned votes = __ballot_sync(0xffffffffu, mine);
-    __shared__ unsigned both[2];
+    auto* both = reinterpret_cast<unsigned*>(scratch_);
     if (lane % 32 == 0) both[lane / 32] = votes;
     __syncthreads();
     const int before = __popc(votes & ((1u << lane % 32) - 1)) + (lane >= 32 ? __popc(both[0]) : 0);
@@ -92,7 +93,7 @@ class Team {
   NACRE_HD void wait() {}
 #endif
 
-  /// Memory that the team shares, behind what `sum` uses. The kernel lays it out; its size is the kernel's
+  /// Memory that the team shares, behind what `sum` and `compact` use. The kernel lays it out; its size is the kernel's
   /// `scratch_bytes()`.
   NACRE_HD unsigned char* scratch() const { return scratch_ + sum_bytes; }
   static constexpr std::size_t sum_bytes = lanes * 64;  ///< T of `sum` has at most 64 bytes

@@ -12,7 +12,6 @@
 #define __global__
 #define __forceinline__ inline __attribute__((always_inline))
 #define __grid_constant__
-#define __shared__ static  // blocks run one after the other
 
 struct alignas(8) short4 {
   short x, y, z, w;
@@ -48,6 +47,9 @@ inline int __popc(unsigned v) { return std::popcount(v); }
 inline int __popcll(unsigned long long v) { return std::popcount(v); }
 inline int __ffs(int v) { return __builtin_ffs(v); }
 inline int __float_as_int(float f) { return std::bit_cast<int>(f); }
+
+inline unsigned __ldcg(const unsigned* from) { return __atomic_load_n(from, __ATOMIC_RELAXED); }
+inline void __stcg(unsigned* to, unsigned value) { __atomic_store_n(to, value, __ATOMIC_RELAXED); }
 
 template <class T>
 T atomicAdd(T* to, std::type_identity_t<T> v) {
