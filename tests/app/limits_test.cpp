@@ -23,7 +23,7 @@ std::string advised_resolution(const std::string& line) {
   return line.substr(begin, line.find_first_not_of("0123456789", begin) - begin);
 }
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST_F(Limits, WhatDoesNotFitInMemoryIsNamedWithWhatDoes) {
   const std::string limit = "-v 600000";  // KiB of address space
   const Arguments arguments = {"flow", "--sample", "sphere", "--detail", "24",     "--steps", "1",       "--ttl",

@@ -86,7 +86,7 @@ TEST_F(OctreeCommandLine, MemoryPerCellIsWhatWasPromised) {
   }
 }
 
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST_F(OctreeCommandLine, ABandThatDoesNotFitIsRefusedBeforeTheWork) {
   const Outcome run = nacre_limited("-v 2000000", {"flow", "--sample", "sphere", "--detail", "24", "--method", "octree",
                                                    "--resolution", "100000", "--quiet", "--image", path("a.png")});
