@@ -50,7 +50,7 @@ judge() {
   left=$(find "$folder" -mindepth 1 ! -name "$result" | head -n 1)
   if grep -aqE 'Sanitizer|runtime error:' "$errors"; then
     grep -aE 'SUMMARY|runtime error:' "$errors" | head -n 1
-  elif ((status == 124 || status == 137)); then
+  elif ((status == 124 || status == 137 || status == 152)); then  # 152: SIGXCPU
     echo "did not end in time, or was killed"
   elif ((status > 2)); then
     echo "ended with status $status: $(tail -n 1 "$errors")"
@@ -78,7 +78,10 @@ one() {
     words=(mesh "$file" --min-size 3 --max-size 3 --iterations 3 --set smooth=1 --set remesh=1 --out "$folder/out/mesh.ply" --quiet)
     result=mesh.ply
   fi
-  TMPDIR=$folder/tmp timeout -k 5 60 "$program" "${words[@]}" >"$folder/stdout" 2>"$folder/stderr" </dev/null || status=$?
+  (
+    ulimit -t 120  # processor seconds: a busy machine makes nothing fail
+    TMPDIR=$folder/tmp exec timeout -k 5 900 "$program" "${words[@]}" >"$folder/stdout" 2>"$folder/stderr" </dev/null
+  ) || status=$?
   printf '%s\t%s\t%s\t%s\n' "$command" "$status" "$file" "$(judge "$status" "$folder/stderr" "$folder/out" $result | tr '\t' ' ')"
   rm -rf "$folder"
 }
@@ -87,8 +90,8 @@ export program work
 
 for file in "${chosen[@]}"; do
   printf 'info\0%s\0flow\0%s\0' "$file" "$file"
-  # Atlases would take longer than all the rest.
-  [[ $file != */malformed/* && -n $(find -L "$file" -size +99k) ]] || printf 'mesh\0%s\0' "$file"
+  # Atlases would take longer than all the rest; the data of some are in a file beside.
+  [[ $file != */malformed/* && -n $(find -L "${file%.*}".* -maxdepth 0 -size +99k) ]] || printf 'mesh\0%s\0' "$file"
 done >"$work/runs"
 xargs -0 -n 2 -P "$jobs" bash -c 'one "$@"' _ <"$work/runs" >"$work/results"
 
