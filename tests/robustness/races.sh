@@ -47,5 +47,6 @@ export -f run_suite
 those() { sed -n "s/^$1 //p" "$out/verdicts" | sort | paste -sd, ; }
 
 suites | xargs -P "${NACRE_RACES_JOBS:-$(nproc)}" -L 1 bash -c 'run_suite "$@"' _
-echo "$(wc -l <"$out/verdicts") suites; cut by time: $(those cut); failed: $(those failed)"
-[[ -s $out/verdicts && -z $(those failed) ]]
+cut=$(those cut) failed=$(those failed)
+echo "$(wc -l <"$out/verdicts") suites; cut by time: ${cut:-none}; failed: ${failed:-none}"
+[[ -s $out/verdicts && -z $failed ]]
