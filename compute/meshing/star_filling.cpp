@@ -34,7 +34,7 @@ std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vecto
   const auto agreed = [&](std::uint32_t a, std::uint32_t b) {
     const Star& star = stars[a];
     for (int k = 0; k < star.count; ++k)
-      if (star.ring[std::size_t(k)] == b) return (star.agreed >> k & 1) != 0;
+      if (star.ring[k] == b) return (star.agreed >> k & 1) != 0;
     return false;
   };
   std::vector<std::uint32_t> odd;
@@ -109,8 +109,8 @@ std::vector<std::vector<std::uint32_t>> group_neighbours(const std::vector<Star>
     const Star& star = stars[alone[k]];
     int neighbours = 0;
     for (int r = 0; r < star.count; ++r) {
-      const auto at = std::lower_bound(alone.begin(), alone.end(), star.ring[std::size_t(r)]);
-      if (at == alone.end() || *at != star.ring[std::size_t(r)]) continue;
+      const auto at = std::lower_bound(alone.begin(), alone.end(), star.ring[r]);
+      if (at == alone.end() || *at != star.ring[r]) continue;
       sets.join(k, std::uint32_t(at - alone.begin()));
       ++neighbours;
     }

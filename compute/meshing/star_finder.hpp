@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "compute/meshing/item_tree.hpp"
-#include "compute/meshing/stars.hpp"
+#include "compute/meshing/star_device.hpp"
 
 namespace nacre {
 
@@ -16,6 +15,9 @@ namespace nacre {
 /// depends on the items alone.
 class StarFinder {
  public:
+  /// The device must outlive the object, which alone uses it.
+  explicit StarFinder(StarDevice& device) : device_(device) {}
+
   /// All stars, settled, with what is agreed marked.
   void find(StarItems items);
 
@@ -28,14 +30,10 @@ class StarFinder {
   std::int64_t cut() const { return cut_; }                  ///< stars that the last call found again
 
  private:
-  std::vector<std::uint8_t> take_over(const StarItems& items);
-  void take_back(std::size_t first);
-
+  StarDevice& device_;
   StarItems items_;
-  std::vector<Star> stars_, spare_;
-  std::vector<std::pair<std::uint32_t, Star>> unsettled_;  // stars that have changed since, as they were
-  std::size_t settled_ = 0;                                // of these, before anything was opened
-  ItemTree tree_;
+  std::vector<Star> stars_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> opened_;  // items, and what they agreed on
   std::int64_t cut_ = 0;
 };
 

@@ -44,7 +44,7 @@ std::vector<Side> list_sides(const StarItems& items, const std::vector<Star>& st
     const std::uint32_t next = items.next[i];
     bool has_next = false;
     for (int k = 0; k < star.count; ++k) {
-      const std::uint32_t r = star.ring[std::size_t(k)];
+      const std::uint32_t r = star.ring[k];
       has_next = has_next || (r == next && agreed_from(star, k));
       if (agreed_to(star, k) && !agreed_from(star, k) && items.next[r] != i && r != next) sides.push_back({i, r});
     }
@@ -105,7 +105,7 @@ class Orphans {
     std::map<std::uint32_t, int> votes;
     const Star& star = stars_[i];
     for (int k = 0; k < star.count; ++k)
-      if (const auto at = holes_at_.find(star.ring[std::size_t(k)]); at != holes_at_.end())
+      if (const auto at = holes_at_.find(star.ring[k]); at != holes_at_.end())
         for (const std::uint32_t h : at->second) ++votes[h];
     const auto best =
         std::max_element(votes.begin(), votes.end(), [](const auto& s, const auto& t) { return s.second < t.second; });
@@ -155,7 +155,7 @@ class Filling {
   bool is_there(std::uint32_t a, std::uint32_t b) const {
     const Star& star = stars_[a];
     for (int k = 0; k < star.count; ++k)
-      if (star.ring[std::size_t(k)] == b) return agreed_from(star, k) || agreed_to(star, k);
+      if (star.ring[k] == b) return agreed_from(star, k) || agreed_to(star, k);
     return items_.next[a] == b || items_.previous[a] == b;
   }
 
@@ -201,8 +201,7 @@ class Filling {
   bool stars_has_backwards() const {
     const Star& star = stars_[hole_.loop[0]];
     for (int k = 0; k < star.count; ++k)
-      if (star.ring[std::size_t(k)] == hole_.loop[2] && agreed_from(star, k) &&
-          star.ring[std::size_t(star.after(k))] == hole_.loop[1])
+      if (star.ring[k] == hole_.loop[2] && agreed_from(star, k) && star.ring[star.after(k)] == hole_.loop[1])
         return true;
     return false;
   }

@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "compute/meshing/stars.hpp"
+#include "compute/meshing/star.hpp"
+#include "compute/meshing/star_items.hpp"
 
 namespace nacre {
 

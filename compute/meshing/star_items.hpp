@@ -7,6 +7,7 @@
 
 #include "compute/math/vec.hpp"
 #include "compute/meshing/curve_links.hpp"
+#include "compute/meshing/star.hpp"
 
 namespace nacre {
 
@@ -24,6 +25,11 @@ struct StarItems {
   std::vector<std::uint32_t> broken;                    ///< particles at which a rim begins or ends; ascending
 
   std::size_t count() const { return position.size(); }
+  /// For the host.
+  StarItemsView view() const {
+    return {position.data(), normal.data(), size.data(),     particle.data(),
+            surface.data(),  next.data(),   previous.data(), first.data()};
+  }
 };
 
 /// In parallel.

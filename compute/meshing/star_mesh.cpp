@@ -34,7 +34,7 @@ void add_agreed(const StarItems& items, const std::vector<Star>& stars, std::uin
   const Star& star = stars[i];
   for (int k = 0; k < star.count; ++k) {
     if (!(star.agreed >> k & 1)) continue;
-    const std::uint32_t a = star.ring[std::size_t(k)], b = star.ring[std::size_t(star.after(k))];
+    const std::uint32_t a = star.ring[k], b = star.ring[star.after(k)];
     if (i < a && i < b) found.triangles.push_back({i, a, b});
   }
   if (!is_incomplete(items, star, i)) return;
@@ -121,11 +121,6 @@ std::vector<std::uint32_t> of_lost_materials(const StarItems& items, const StarM
 }
 
 }  // namespace
-
-StarMesh mesh_from_stars(const StarParticles& particles) {
-  StarFinder finder;
-  return mesh_from_stars(particles, finder);
-}
 
 StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   StarMesh made;

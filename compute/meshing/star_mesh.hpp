@@ -24,10 +24,8 @@ struct StarMesh {
   bool sound() const { return unsettled.empty() && !triangles.empty(); }
 };
 
-/// The surfaces between all materials as one mesh. In parallel; the result depends on the particles alone.
-StarMesh mesh_from_stars(const StarParticles& particles);
-
-/// The same, of particles that are much as they were at the last call with this finder.
+/// The surfaces between all materials as one mesh. Quicker where the particles are much as they were at the last call
+/// with this finder; the result depends on the particles alone. In parallel.
 StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder);
 
 }  // namespace nacre

@@ -43,6 +43,10 @@ class VertexFanCounter {
   /// ascend.
   const std::vector<MaterialCount>& vertex_fans(std::span<const Facet> facets) {
     counts_.clear();
+    if (is_one_ring(facets)) {  // as nearly everywhere
+      for (const std::uint16_t m : facets[0].materials) counts_.push_back({m, 1});
+      return counts_;
+    }
     for (const Facet& f : facets)
       for (const std::uint16_t m : f.materials) add(m);
     std::sort(counts_.begin(), counts_.end(), [](const auto& s, const auto& t) { return s.material < t.material; });
@@ -51,6 +55,19 @@ class VertexFanCounter {
   }
 
  private:
+  /// Whether all facets are between the same two materials, ascending, and follow each other around the vertex, once.
+  static bool is_one_ring(std::span<const Facet> facets) {
+    if (facets.empty() || facets[0].materials[0] >= facets[0].materials[1]) return false;
+    std::uint32_t at = facets[0].from;
+    for (std::size_t n = 1; n <= facets.size(); ++n) {
+      const auto next = std::find_if(facets.begin(), facets.end(), [at](const Facet& f) { return f.from == at; });
+      if (next == facets.end() || next->materials != facets[0].materials) return false;
+      at = next->to;
+      if (at == facets[0].from) return n == facets.size();
+    }
+    return false;
+  }
+
   void add(std::uint16_t material) {
     for (MaterialCount& c : counts_)
       if (c.material == material) {

@@ -20,6 +20,8 @@ constexpr double cells_on_area = 18, bytes_of_cell = 18;
 constexpr double boundary_cells = 1.7;
 /// Delaunay's cells, triangles, their neighbours and what repair and improvement keep beside them.
 constexpr double host_bytes_of_particle = 1250;
+/// Stars twice, what they are cut from, and boxes; some particles have several.
+constexpr double device_bytes_of_particle = 400;
 
 double largest_size(const MeshParameters& parameters) { return std::max(parameters.min_size, parameters.max_size); }
 
@@ -93,7 +95,7 @@ double require_memory(const VolumeFacts& facts, const MeshParameters& parameters
     free = std::min(free, double(device.available_bytes()));
     before = double(device.peak_bytes());
   } else {
-    estimate.triangulation = 0;
+    estimate.triangulation *= device_bytes_of_particle / host_bytes_of_particle;
   }
   if (estimate.peak() > free) {
     const double factor = factor_that_fits(facts, parameters, free);

@@ -83,6 +83,8 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       rule_(rule),
       tell_(tell),
       delaunay_(rule.threads),
+      star_device_(particles.star_device()),
+      star_finder_(*star_device_),
       patch_cells_(rule.threads),
       on_junctions_([this](std::span<const Vec3d> points, std::span<const Junction> junctions) {
         return particles_.onto_junctions(points, junctions, false);

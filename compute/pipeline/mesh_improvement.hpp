@@ -14,6 +14,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_set>
@@ -125,6 +126,7 @@ class MeshImprovement {
   ImprovementRule rule_;
   const TellStage& tell_;
   Delaunay delaunay_;  ///< of all particles,
+  std::unique_ptr<StarDevice> star_device_;
   StarFinder star_finder_;
   PatchCells patch_cells_;  ///< and of those where stars do not settle
   StarUse star_use_;

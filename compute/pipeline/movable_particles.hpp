@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "compute/meshing/star_device.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 #include "compute/particles/smoothing_rule.hpp"
 #include "compute/pipeline/host_particles.hpp"
@@ -39,6 +41,8 @@ class MovableParticles {
   /// Where points of the world come to lie on junctions, as MeshPipeline::onto_junctions.
   virtual std::vector<Vec3d> onto_junctions(std::span<const Vec3d> points, std::span<const Junction> junctions,
                                             bool within) = 0;
+  /// One that finds stars where the particles lie. It must go before another one is made, or the particles are.
+  virtual std::unique_ptr<StarDevice> star_device() = 0;
   /// Does `work` as a part of the stage of that name.
   virtual void in_stage(std::string_view name, const std::function<void()>& work) = 0;
 };

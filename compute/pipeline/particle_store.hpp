@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "compute/meshing/device_stars.hpp"
 #include "compute/particles/ring_smoothing.hpp"
 #include "compute/particles/tree_solver.hpp"
 #include "compute/pipeline/mesh_fields.hpp"
@@ -76,6 +77,7 @@ class ParticleStore : public MovableParticles {
                                     bool within) override {
     return nacre::onto_junctions(exec_, fields_, points, junctions, within);
   }
+  std::unique_ptr<StarDevice> star_device() override { return std::make_unique<DeviceStars<Backend>>(exec_); }
   void in_stage(std::string_view name, const std::function<void()>& work) override {
     auto stage = exec_.stage(name);
     work();

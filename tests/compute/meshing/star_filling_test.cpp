@@ -6,7 +6,7 @@
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/star_chords.hpp"
 #include "compute/meshing/star_holes.hpp"
-#include "tests/compute/meshing/star_clouds.hpp"
+#include "tests/compute/meshing/cpu_stars.hpp"
 
 namespace nacre::test {
 namespace {
@@ -25,7 +25,7 @@ Cloud with_a_gap(double gap) {
 TEST(StarFilling, WideHolesAreFilledWhereTheyAreFlat) {
   for (const double gap : {2.0, 3.0, 4.0}) {
     const Cloud cloud = with_a_gap(gap);
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_TRUE(made.sound()) << gap;
     EXPECT_EQ(made.triangles.size(), 2 * cloud.position.size() - 4) << gap;
     EXPECT_TRUE(cloud.topology(made).sound()) << gap;
@@ -45,7 +45,8 @@ std::vector<std::uint32_t> incomplete_of(const StarFinder& finder) {
 
 TEST(StarFilling, AHoleHasAllParticlesInItsMiddle) {
   const Cloud cloud = sphere(spiral(2000), 10);
-  StarFinder finder;
+  CpuStars stars;
+  StarFinder& finder = stars.finder();
   finder.find(star_items(cloud.view()));
   std::vector<std::uint32_t> near_top;
   for (std::uint32_t i = 0; i < finder.items().count(); ++i)
@@ -78,7 +79,7 @@ TEST(StarFilling, AHoleIsNotFilledWhereThatWouldCutOffWhatGoesOn) {
 TEST(StarFilling, ATriangleAloneBoundsNothing) {
   Cloud cloud = sphere(spiral(600), 5);
   for (const Vec3d& p : {Vec3d(20, 0, 0), Vec3d(20.6, 0, 0), Vec3d(20.3, 0.5, 0)}) cloud.add(p, 0.6, {0, 0, 1});
-  const StarMesh made = mesh_from_stars(cloud.view());
+  const StarMesh made = mesh_of(cloud);
   ASSERT_TRUE(made.sound());
   EXPECT_EQ(made.triangles.size(), 2 * 600 - 4);
   EXPECT_EQ(made.counts.left_out, 3);
@@ -97,7 +98,7 @@ TEST(StarFilling, BodiesOfAFewParticlesAreClosedOrLeftOut) {
       const Vec3d noise = Vec3d(random(generator), random(generator), random(generator)) * (0.15 * double(round % 7));
       cloud.add(Vec3d(20, 0, 0) + d * 0.4, 0.5, normalized(d + noise));
     }
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     if (!made.sound()) continue;
     const TopologyReport topology = cloud.topology(made);
     ASSERT_TRUE(topology.sound()) << round;
@@ -119,7 +120,7 @@ TEST(StarFilling, NoParticleIsInTwoBodies) {
       const Vec3d n(normal(generator), normal(generator), normal(generator));
       cloud.add(Vec3d(20, 0, 0) + p, 0.7, normalized(n));
     }
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     if (!made.sound()) continue;
     ASSERT_TRUE(cloud.topology(made).sound()) << round;
     const SurfaceMesh mesh = cloud.mesh(made);
@@ -132,7 +133,8 @@ TEST(StarFilling, NoParticleIsInTwoBodies) {
 
 TEST(StarFilling, ClosingUndoesAllThatWasOpened) {
   const Cloud cloud = sphere(random_directions(800, 3), 6);
-  StarFinder finder;
+  CpuStars stars;
+  StarFinder& finder = stars.finder();
   finder.find(star_items(cloud.view()));
   const std::vector<Star> before = finder.stars();
   for (const std::uint32_t i : {5U, 6U, 5U, 90U}) finder.open(std::vector<std::uint32_t>{i});
@@ -142,13 +144,14 @@ TEST(StarFilling, ClosingUndoesAllThatWasOpened) {
 
 TEST(StarFilling, WhatWasOpenedIsThereAgainTheNextTime) {
   const Cloud cloud = sphere(random_directions(800, 3), 6);
-  StarFinder finder;
-  const StarMesh first = mesh_from_stars(cloud.view(), finder);
+  CpuStars stars;
+  StarFinder& finder = stars.finder();
+  const StarMesh first = stars.mesh(cloud);
   const std::vector<std::uint32_t> some = {5, 6, 90};
   const std::vector<std::uint32_t> changed = finder.open(some);
   EXPECT_GT(changed.size(), 3 * some.size());
   for (const std::uint32_t i : some) EXPECT_EQ(finder.stars()[i].agreed, 0u);
-  EXPECT_EQ(mesh_from_stars(cloud.view(), finder).triangles, first.triangles);
+  EXPECT_EQ(stars.mesh(cloud).triangles, first.triangles);
   EXPECT_EQ(finder.cut(), 0);
 }
 

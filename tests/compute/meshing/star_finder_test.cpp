@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "tests/compute/meshing/star_clouds.hpp"
+#include "tests/compute/meshing/cpu_stars.hpp"
 
 namespace nacre::test {
 namespace {
@@ -71,9 +71,9 @@ Cloud shuffled(const Cloud& cloud, std::mt19937& generator) {
 /// Rounds of random changes: few, many, none, back to an earlier state, another order.
 void expect_the_same_after_changes(const Cloud& first, unsigned seed) {
   std::mt19937 generator(seed);
-  StarFinder finder;
+  CpuStars stars;
   std::vector<Cloud> states = {first};
-  std::int64_t cut = 0, stars = 0;
+  std::int64_t cut = 0, all = 0;
   for (int round = 0; round < 40; ++round) {
     const Cloud& last = states.back();
     Cloud now;
@@ -84,12 +84,12 @@ void expect_the_same_after_changes(const Cloud& first, unsigned seed) {
       case 3: now = generator() % 2 ? shuffled(last, generator) : changed(last, 1000, generator); break;
       default: now = changed(last, 200, generator);
     }
-    const StarMesh quick = mesh_from_stars(now.view(), finder);
-    expect_equal(quick, mesh_from_stars(now.view()), round);
-    cut += finder.cut(), stars += quick.counts.stars;
+    const StarMesh quick = stars.mesh(now);
+    expect_equal(quick, mesh_of(now), round);
+    cut += stars.finder().cut(), all += quick.counts.stars;
     states.push_back(now);
   }
-  EXPECT_LT(cut, stars * 3 / 4) << "most are known from before";
+  EXPECT_LT(cut, all * 3 / 4) << "most are known from before";
 }
 
 TEST(StarFinder, AfterRandomChangesTheMeshIsThatOfAllStarsAnew) {
@@ -101,13 +101,13 @@ TEST(StarFinder, AfterRandomChangesTheMeshIsThatOfAllStarsAnew) {
 
 TEST(StarFinder, NorDoesTheNumberOfThreadsMatter) {
   const auto on = [](int threads) {
-    return tbb::task_arena(threads).execute([] {
+    return tbb::task_arena(threads).execute([=] {
       std::mt19937 generator(9);
-      StarFinder finder;
+      CpuStars stars(threads);
       Cloud cloud = halves(8, 0.8);
-      mesh_from_stars(cloud.view(), finder);
-      for (int k = 0; k < 5; ++k) cloud = changed(cloud, 100, generator), mesh_from_stars(cloud.view(), finder);
-      return mesh_from_stars(cloud.view(), finder);
+      stars.mesh(cloud);
+      for (int k = 0; k < 5; ++k) cloud = changed(cloud, 100, generator), stars.mesh(cloud);
+      return stars.mesh(cloud);
     });
   };
   expect_equal(on(1), on(3), 0);
@@ -115,11 +115,11 @@ TEST(StarFinder, NorDoesTheNumberOfThreadsMatter) {
 
 TEST(StarFinder, WhereNothingHasChangedNoStarIsCutAgain) {
   const Cloud cloud = halves(8, 0.8);
-  StarFinder finder;
-  mesh_from_stars(cloud.view(), finder);
-  EXPECT_EQ(finder.cut(), std::int64_t(finder.stars().size()));
-  mesh_from_stars(cloud.view(), finder);
-  EXPECT_EQ(finder.cut(), 0);
+  CpuStars stars;
+  stars.mesh(cloud);
+  EXPECT_EQ(stars.finder().cut(), std::int64_t(stars.finder().stars().size()));
+  stars.mesh(cloud);
+  EXPECT_EQ(stars.finder().cut(), 0);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "tests/compute/meshing/star_clouds.hpp"
+#include "tests/compute/meshing/cpu_stars.hpp"
 
 namespace nacre::test {
 namespace {
@@ -25,7 +25,7 @@ struct Settled {
 };
 
 Settled settle(const Cloud& cloud, double radius, const std::vector<std::uint32_t>& more = {}) {
-  Settled settled{mesh_from_stars(cloud.view()), false, {}};
+  Settled settled{mesh_of(cloud), false, {}};
   std::vector<std::uint32_t>& unsettled = settled.mesh.unsettled;
   unsettled.insert(unsettled.end(), more.begin(), more.end());
   std::vector<Vec3d> points;
@@ -53,7 +53,7 @@ void expect_halves(const Cloud& cloud, const Settled& settled, double radius) {
 
 TEST(StarPatches, WhereAllIsSettledNothingChanges) {
   const Cloud cloud = halves(6, 0.8);
-  const StarMesh stars = mesh_from_stars(cloud.view());
+  const StarMesh stars = mesh_of(cloud);
   const Settled settled = settle(cloud, 6);
   expect_halves(cloud, settled, 6);
   EXPECT_EQ(settled.mesh.triangles, stars.triangles);
@@ -111,7 +111,7 @@ TEST(StarPatches, CellsThatAreKeptGiveTheSameMesh) {
   std::vector<std::vector<Triangle>> made;
   std::vector<int> asked;
   for (int round = 0; round < 3; ++round) {
-    StarMesh mesh = mesh_from_stars(cloud.view());
+    StarMesh mesh = mesh_of(cloud);
     mesh.unsettled = {0, 200, 500};
     std::vector<std::array<std::uint32_t, 2>> touching;
     ASSERT_TRUE(settle_by_cells(mesh, world, cells, touching));
@@ -133,7 +133,7 @@ TEST(StarPatches, ParticlesStayInThePatchOfTheMeshBefore) {
     std::vector<double> size;
     for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
     const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) { return material_in_halves(6, at); }};
-    StarMesh mesh = mesh_from_stars(cloud.view());
+    StarMesh mesh = mesh_of(cloud);
     mesh.unsettled = {round == 0 ? 200u : 500u};
     std::vector<std::array<std::uint32_t, 2>> touching;
     ASSERT_TRUE(settle_by_cells(mesh, world, cells, touching));
@@ -152,7 +152,7 @@ TEST(StarPatches, ABrokenRimIsClosedByCells) {
   cloud.direction.erase(cloud.direction.begin(), cloud.direction.begin() + missing);
   cloud.junction.erase(cloud.junction.begin(), cloud.junction.begin() + missing);
   cloud.gradient.erase(cloud.gradient.begin(), cloud.gradient.begin() + missing);
-  ASSERT_FALSE(mesh_from_stars(cloud.view()).sound());
+  ASSERT_FALSE(mesh_of(cloud).sound());
   const Settled settled = settle(cloud, 6);
   expect_halves(cloud, settled, 6);
   EXPECT_LT(settled.mesh.counts.in_patches, std::int64_t(cloud.position.size() / 3));

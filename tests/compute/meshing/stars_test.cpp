@@ -8,9 +8,9 @@
 #include <random>
 #include <set>
 
+#include "compute/meshing/settle_star.hpp"
 #include "compute/meshing/star_mesh.hpp"
-#include "compute/meshing/star_settling.hpp"
-#include "tests/compute/meshing/star_clouds.hpp"
+#include "tests/compute/meshing/cpu_stars.hpp"
 
 namespace nacre::test {
 namespace {
@@ -29,7 +29,7 @@ TEST(Stars, OnASphereTheyAreItsConvexHull) {
   // The tangent planes at the corners of a facet meet above its circumcentre, so that all stars agree.
   for (unsigned seed = 0; seed < 40; ++seed) {
     const Cloud cloud = sphere(random_directions(300, seed), 5);
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_TRUE(made.sound()) << seed;
     EXPECT_EQ(made.triangles.size(), 2 * 300 - 4);
     EXPECT_TRUE(cloud.topology(made).sound());
@@ -53,7 +53,7 @@ TEST(Stars, WhereTheyDisagreeOneRuleDecides) {
   std::int64_t unsettled = 0, stars = 0;
   for (unsigned seed = 0; seed < 12; ++seed) {
     const Cloud cloud = ellipsoid(800, seed);
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_TRUE(made.sound()) << seed;
     const TopologyReport topology = cloud.topology(made);
     EXPECT_TRUE(topology.sound()) << seed;
@@ -76,7 +76,7 @@ TEST(Stars, TheSmallestBodies) {
       for (const Vec3d& p : {Vec3d(0, s, t), Vec3d(s, t, 0), Vec3d(t, 0, s)}) twelve.push_back(p);
   for (const auto& points : {four, six, eight, twelve}) {
     const Cloud cloud = sphere(points, 1.3);
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_TRUE(made.sound()) << points.size();
     EXPECT_EQ(made.triangles.size(), 2 * points.size() - 4);
     EXPECT_EQ(cloud.topology(made).materials[1].euler, 2);
@@ -86,11 +86,11 @@ TEST(Stars, TheSmallestBodies) {
 }
 
 TEST(Stars, WhatIsNoBodyIsLeftToOthers) {
-  EXPECT_FALSE(mesh_from_stars(Cloud().view()).sound());
+  EXPECT_FALSE(mesh_of(Cloud()).sound());
   for (const int count : {1, 2, 3}) {
     std::vector<Vec3d> points = {{1, 0, 0}, {-0.5, 0.866, 0}, {-0.5, -0.866, 0}};
     points.resize(std::size_t(count));
-    EXPECT_FALSE(mesh_from_stars(sphere(points, 1).view()).sound()) << count;
+    EXPECT_FALSE(mesh_of(sphere(points, 1)).sound()) << count;
   }
 }
 
@@ -103,7 +103,7 @@ TEST(Stars, PointsOfALatticeOnOneSphere) {
         for (int z = -9; z <= 9; ++z)
           if (x * x + y * y + z * z == square) points.push_back(Vec3d(x, y, z));
     const Cloud cloud = sphere(points, std::sqrt(double(square)));
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_TRUE(made.sound()) << square;
     EXPECT_EQ(made.triangles.size(), 2 * points.size() - 4) << square;
     EXPECT_TRUE(cloud.topology(made).sound()) << square;
@@ -126,7 +126,7 @@ Cloud torus(int around, int across, double skew) {
 TEST(Stars, AGridOnATorus) {
   for (const double skew : {0.0, 0.5}) {  // quadrilaterals all of whose corners lie on a circle; triangles
     const Cloud cloud = torus(56, 22, skew);
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_TRUE(made.sound());
     const TopologyReport topology = cloud.topology(made);
     EXPECT_TRUE(topology.sound());
@@ -138,13 +138,13 @@ TEST(Stars, AGridOnATorus) {
 
 TEST(Stars, OneOfTwoInTheSamePlaceIsLeftOut) {
   std::vector<Vec3d> points = spiral(400);
-  const StarMesh once = mesh_from_stars(sphere(points, 4).view());
+  const StarMesh once = mesh_of(sphere(points, 4));
   Cloud twice = sphere(points, 4);
   for (const std::size_t i : {3, 17, 18, 200, 399}) {
     const Float4 p = twice.position[i], n = twice.direction[i];
     twice.add({p.x, p.y, p.z}, p.w, {n.x, n.y, n.z});
   }
-  const StarMesh made = mesh_from_stars(twice.view());
+  const StarMesh made = mesh_of(twice);
   ASSERT_TRUE(once.sound() && made.sound());
   EXPECT_EQ(made.counts.left_out, 5);
   EXPECT_EQ(made.triangles.size(), once.triangles.size());
@@ -158,8 +158,8 @@ TEST(Stars, TheOrderOfTheParticlesMakesNoDifference) {
   std::shuffle(order.begin(), order.end(), std::mt19937(5));
   std::vector<Vec3d> shuffled;
   for (const std::uint32_t i : order) shuffled.push_back(points[i]);
-  const StarMesh one = mesh_from_stars(sphere(points, 5).view());
-  StarMesh other = mesh_from_stars(sphere(shuffled, 5).view());
+  const StarMesh one = mesh_of(sphere(points, 5));
+  StarMesh other = mesh_of(sphere(shuffled, 5));
   for (Triangle& t : other.triangles) t = {order[t.a], order[t.b], order[t.c]};
   EXPECT_EQ(corners(one), corners(other));
 }
@@ -181,7 +181,7 @@ TEST(Stars, APerfectLatticeIsDividedInOneWay) {
         for (int k = 0; k < axis; ++k) first = first && p[k] != 0 && p[k] != n;
         if (first) cloud.add(p, 1, normalized(normal));
       }
-  const StarMesh made = mesh_from_stars(cloud.view());
+  const StarMesh made = mesh_of(cloud);
   ASSERT_TRUE(made.sound());
   EXPECT_EQ(made.counts.unsettled, 0);
   EXPECT_EQ(made.triangles.size(), std::size_t(2 * 6 * n * n));
@@ -208,16 +208,16 @@ TEST(Stars, TheRuleOfAQuadrilateralIsTheSameFromAllItsCorners) {
     items.particle = {3, 9, 4, 7};
     std::shuffle(items.particle.begin(), items.particle.end(), generator);
     items.next.assign(4, none), items.previous.assign(4, none);
-    const bool expected = takes_first_diagonal(items, {0, 1, 2, 3});
+    const bool expected = takes_first_diagonal(items.view(), {{0, 1, 2, 3}});
     first += expected;
     for (std::uint32_t k = 0; k < 4; ++k) {
-      const std::array<std::uint32_t, 4> along = {k, (k + 1) % 4, (k + 2) % 4, (k + 3) % 4};
-      const std::array<std::uint32_t, 4> against = {k, (k + 3) % 4, (k + 2) % 4, (k + 1) % 4};
-      ASSERT_EQ(takes_first_diagonal(items, along), expected == (k % 2 == 0)) << round;
-      ASSERT_EQ(takes_first_diagonal(items, against), expected == (k % 2 == 0)) << round;
+      const FourItems along = {{k, (k + 1) % 4, (k + 2) % 4, (k + 3) % 4}};
+      const FourItems against = {{k, (k + 3) % 4, (k + 2) % 4, (k + 1) % 4}};
+      ASSERT_EQ(takes_first_diagonal(items.view(), along), expected == (k % 2 == 0)) << round;
+      ASSERT_EQ(takes_first_diagonal(items.view(), against), expected == (k % 2 == 0)) << round;
     }
     items.next[1] = 3, items.previous[3] = 1;
-    ASSERT_FALSE(takes_first_diagonal(items, {0, 1, 2, 3}));
+    ASSERT_FALSE(takes_first_diagonal(items.view(), {{0, 1, 2, 3}}));
   }
   EXPECT_GT(first, rounds / 4);
   EXPECT_LT(first, 3 * rounds / 4);
@@ -226,8 +226,8 @@ TEST(Stars, TheRuleOfAQuadrilateralIsTheSameFromAllItsCorners) {
 /// What a finder knows from before makes no difference.
 TEST(Stars, FoundAnewOnlyWhereSomethingChangedTheyAreTheSame) {
   Cloud cloud = ellipsoid(2500, 8);
-  StarFinder finder;
-  mesh_from_stars(cloud.view(), finder);
+  CpuStars stars;
+  stars.mesh(cloud);
   std::mt19937 generator(3);
   for (int round = 0; round < 6; ++round) {
     Cloud changed;
@@ -243,11 +243,11 @@ TEST(Stars, FoundAnewOnlyWhereSomethingChangedTheyAreTheSame) {
       const Float4 p = cloud.position[i], n = cloud.direction[i];
       changed.add(Vec3d(p.x, p.y, p.z) + 0.5 * p.w * normalized(Vec3d(n.y, -n.x, 0)), p.w, {n.x, n.y, n.z});
     }
-    const StarMesh quick = mesh_from_stars(changed.view(), finder), from_nothing = mesh_from_stars(changed.view());
+    const StarMesh quick = stars.mesh(changed), from_nothing = mesh_of(changed);
     EXPECT_EQ(quick.triangles, from_nothing.triangles) << round;
     EXPECT_EQ(quick.unsettled, from_nothing.unsettled) << round;
-    EXPECT_LT(finder.cut(), std::int64_t(changed.position.size() / 2));
-    EXPECT_GT(finder.cut(), 10);
+    EXPECT_LT(stars.finder().cut(), std::int64_t(changed.position.size() / 2));
+    EXPECT_GT(stars.finder().cut(), 10);
     cloud = changed;
   }
 }
@@ -260,24 +260,24 @@ TEST(Stars, OneThatWasLeftOutComesBackWhenTheOtherGoes) {
     twice.add({p.x, p.y, p.z}, p.w, {n.x, n.y, n.z});
   }
   for (const bool copies_go : {false, true}) {
-    StarFinder finder;
-    EXPECT_EQ(mesh_from_stars(twice.view(), finder).counts.left_out, 3);
+    CpuStars stars;
+    EXPECT_EQ(stars.mesh(twice).counts.left_out, 3);
     Cloud once;
     for (std::size_t i = 0; i < twice.position.size(); ++i) {
       const Float4 p = twice.position[i], n = twice.direction[i];
       if (copies_go ? i < first : i != 3 && i != 17 && i != 200) once.add({p.x, p.y, p.z}, p.w, {n.x, n.y, n.z});
     }
-    const StarMesh made = mesh_from_stars(once.view(), finder);
+    const StarMesh made = stars.mesh(once);
     EXPECT_EQ(made.counts.left_out, 0);
-    EXPECT_EQ(made.triangles, mesh_from_stars(once.view()).triangles);
-    EXPECT_LT(finder.cut(), 100);
+    EXPECT_EQ(made.triangles, mesh_of(once).triangles);
+    EXPECT_LT(stars.finder().cut(), 100);
   }
 }
 
 TEST(Stars, NorDoesTheNumberOfThreads) {
   const Cloud cloud = ellipsoid(1500, 3);
   const auto on = [&](int threads) {
-    return tbb::task_arena(threads).execute([&] { return mesh_from_stars(cloud.view()); });
+    return tbb::task_arena(threads).execute([&] { return mesh_of(cloud, threads); });
   };
   const StarMesh one = on(1), four = on(4);
   EXPECT_EQ(one.triangles, four.triangles);
@@ -286,7 +286,7 @@ TEST(Stars, NorDoesTheNumberOfThreads) {
 
 TEST(Stars, SurfacesShareTheirRims) {
   const Cloud cloud = halves(6, 0.8);
-  const StarMesh made = mesh_from_stars(cloud.view());
+  const StarMesh made = mesh_of(cloud);
   ASSERT_TRUE(made.sound());
   const TopologyReport topology = cloud.topology(made, 3);
   EXPECT_TRUE(topology.sound());
@@ -307,7 +307,7 @@ TEST(Stars, ABrokenRimIsNotPassedOver) {
   cloud.gradient.erase(cloud.gradient.begin(), cloud.gradient.begin() + missing);
   const std::vector<std::uint32_t> broken = star_items(cloud.view()).broken;
   EXPECT_EQ(broken.size(), 2u) << "where it begins and where it ends";
-  const StarMesh made = mesh_from_stars(cloud.view());
+  const StarMesh made = mesh_of(cloud);
   EXPECT_FALSE(made.sound());
   EXPECT_TRUE(std::includes(made.unsettled.begin(), made.unsettled.end(), broken.begin(), broken.end()));
 }
@@ -320,7 +320,7 @@ TEST(Stars, ARimOfOneOrTwoBoundsNothing) {
       g.from_first[0] = {0, 0, 1}, g.from_first[1] = {float(1 - 2 * i), 0, 1};
       cloud.add({0.1 * i, 0, 5.001}, 0.5, Vec3d(), Junction(0, 1, 2), g);
     }
-    const StarMesh made = mesh_from_stars(cloud.view());
+    const StarMesh made = mesh_of(cloud);
     ASSERT_FALSE(made.triangles.empty() && made.sound());
     if (made.sound()) {
       EXPECT_TRUE(cloud.topology(made, 3).sound());

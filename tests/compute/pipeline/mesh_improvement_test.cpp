@@ -7,6 +7,8 @@
 #include <string>
 
 #include "compute/device/error.hpp"
+#include "compute/device/executor_cpu.hpp"
+#include "compute/meshing/device_stars.hpp"
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
@@ -61,6 +63,7 @@ class SphereParticles : public MovableParticles {
     for (const Vec3d& p : points) on.push_back(p * (radius / length(p)));
     return on;
   }
+  std::unique_ptr<StarDevice> star_device() override { return std::make_unique<DeviceStars<Cpu>>(exec_); }
   void in_stage(std::string_view name, const std::function<void()>& work) override {
     stages.insert(std::string(name));
     work();
@@ -96,6 +99,8 @@ class SphereParticles : public MovableParticles {
   }
 
   HostParticles particles_;
+  std::unique_ptr<Device> device_ = make_cpu_device();
+  Executor<Cpu> exec_{*device_};
 };
 
 ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0, bool stars = false) {

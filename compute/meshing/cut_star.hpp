@@ -1,0 +1,297 @@
+// Nacre: stars are cut: the Voronoi cell of an item in its tangent plane, and whose bisecting planes bound it.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "compute/math/point_hash.hpp"
+#include "compute/meshing/item_boxes.hpp"
+#include "compute/meshing/star.hpp"
+
+namespace nacre {
+
+namespace detail {
+
+/// Items around a position, the nearest first, so many at a time.
+class NearestItems {
+ public:
+  static constexpr int most = 24;
+
+  NACRE_HD int count() const { return count_; }
+  NACRE_HD double distance2(int k) const { return distance2_[k]; }
+  NACRE_HD std::uint32_t item(int k) const { return item_[k]; }
+  /// Whether there may be others behind these.
+  NACRE_HD bool full() const { return count_ == most; }
+  /// Squared distance beyond which none is taken any more.
+  NACRE_HD const double& limit2() const { return limit2_; }
+
+  NACRE_HD void begin(double radius) { count_ = 0, after2_ = -1, after_ = 0, limit2_ = radius2_ = radius * radius; }
+  /// Those behind the last ones.
+  NACRE_HD void go_on() {
+    after2_ = distance2_[count_ - 1], after_ = item_[count_ - 1];
+    count_ = 0, limit2_ = radius2_;
+  }
+
+  NACRE_HD void offer(double d, std::uint32_t i) {
+    if (!is_before(after2_, after_, d, i)) return;
+    if (full() && !is_before(d, i, distance2_[most - 1], item_[most - 1])) return;
+    int k = full() ? most - 1 : count_++;
+    for (; k > 0 && is_before(d, i, distance2_[k - 1], item_[k - 1]); --k)
+      distance2_[k] = distance2_[k - 1], item_[k] = item_[k - 1];
+    distance2_[k] = d, item_[k] = i;
+    if (full() && distance2_[most - 1] < limit2_) limit2_ = distance2_[most - 1];
+  }
+
+ private:
+  NACRE_HD static bool is_before(double d, std::uint32_t i, double e, std::uint32_t k) {
+    return d != e ? d < e : i < k;
+  }
+
+  double distance2_[most];
+  std::uint32_t item_[most];
+  int count_ = 0;
+  double radius2_ = 0, limit2_ = 0, after2_ = -1;  // none before (after2_, after_), nor this one itself
+  std::uint32_t after_ = 0;
+};
+
+/// Cuts the Voronoi cell of an item out of its tangent plane.
+class StarCutter {
+ public:
+  NACRE_HD StarCutter(const StarItemsView& items, const ItemBoxesView& boxes) : items_(items), boxes_(boxes) {}
+
+  NACRE_HD Star cut(std::uint32_t item) {
+    item_ = item;
+    here_ = items_.position[item];
+    normal_ = items_.normal[item];
+    size_ = items_.size[item];
+    weight_ = weight_of(item);
+    const Vec3d aside = std::fabs(normal_.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
+    u_ = normalized(cross(aside, normal_));
+    v_ = cross(normal_, u_);
+    next_ = items_.next[item], previous_ = items_.previous[item];
+    rim_ = next_ != none && previous_ != none;
+    if (rim_ != (next_ != none || previous_ != none)) return {};
+    if (rim_) set_sector();
+    double reach = first_reach * size_;
+    for (;;) {
+      if (!cut_within(reach)) return hidden_star(reach);
+      const double needed = 2 * std::sqrt(farthest2());
+      if (needed <= reach || reach >= last_reach * size_) break;
+      reach = min(max(1.001 * needed, 1.3 * reach), last_reach * size_);
+    }
+    Star star;
+    if (!overflows_) star = rim_ ? rim_star() : closed_star();
+    star.reach = float(1.001 * reach);
+    return star;
+  }
+
+ private:
+  static constexpr double first_reach = 1.7;  // sizes within which neighbours are looked for at first,
+  static constexpr double last_reach = 5;     // and at last
+  static constexpr double same_side = -0.4;   // neighbours' normals differ by no more (cosine)
+  static constexpr double bent = 0.5;         // cosine under which a neighbour is unfolded into the plane
+  static constexpr double tie = 1e-7;         // weight of a particle at most, squares of its size
+  static constexpr double coincident = 1e-5;  // sizes: nearer ones count as one
+  static constexpr int most_corners = 32;
+
+  struct Corner {
+    double u, v;
+    std::uint32_t after;  // the neighbour across the side that begins here; none: the frame
+  };
+  struct Plane {
+    double u, v;
+  };
+
+  NACRE_HD static double min(double a, double b) { return b < a ? b : a; }
+  NACRE_HD static double max(double a, double b) { return a < b ? b : a; }
+
+  NACRE_HD void set_sector() {
+    along_next_ = in_plane(next_), along_previous_ = in_plane(previous_);
+    reflex_ = along_next_.u * along_previous_.v - along_next_.v * along_previous_.u < 0;
+  }
+
+  NACRE_HD Plane in_plane(std::uint32_t item) const {
+    const Vec3d r = items_.position[item] - here_;
+    return {dot(r, u_), dot(r, v_)};
+  }
+
+  /// Strictly between the directions to the next and to the previous item.
+  NACRE_HD bool in_sector(double u, double v) const {
+    const bool left_of_next = along_next_.u * v - along_next_.v * u > 0;
+    const bool right_of_previous = u * along_previous_.v - v * along_previous_.u > 0;
+    return reflex_ ? left_of_next || right_of_previous : left_of_next && right_of_previous;
+  }
+
+  NACRE_HD bool beside_on_rim(std::uint32_t q) const { return q == next_ || q == previous_; }
+
+  /// False where a particle with a lower number has the same position.
+  NACRE_HD bool cut_within(double reach) {
+    const double frame = 2 * size_;
+    Corner* cell = cell_[now_ = 0];
+    cell[0] = {-frame, -frame, none}, cell[1] = {frame, -frame, none};
+    cell[2] = {frame, frame, none}, cell[3] = {-frame, frame, none};
+    corners_ = 4, overflows_ = false;
+    far2_ = farthest2();
+    const std::uint32_t surface = items_.surface[item_];
+    const auto offer = [&](double d, std::uint32_t q) { near_.offer(d, q); };
+    for (near_.begin(reach);; near_.go_on()) {
+      boxes_.within(items_.first[surface], items_.first[surface + 1], Vec3f(here_), near_.limit2(), offer);
+      if (rim_) offer_beside(next_, reach), offer_beside(previous_, reach);
+      for (int k = 0; k < near_.count(); ++k) {
+        const std::uint32_t q = near_.item(k);
+        const double distance2 = near_.distance2(k);
+        if (q == item_) continue;
+        if (distance2 > 4.0001 * far2_ && !beside_on_rim(q)) {
+          if (!rim_) return true;
+          continue;
+        }
+        if (distance2 <= coincident * coincident * size_ * size_) {
+          if (q < item_) return false;
+          continue;
+        }
+        cut_off(distance2, q);
+        if (overflows_) return true;
+      }
+      if (!near_.full()) return true;
+    }
+  }
+
+  /// Items beside this one on its rim are taken however far they are.
+  NACRE_HD void offer_beside(std::uint32_t q, double reach) {
+    const Vec3d r = items_.position[q] - here_;
+    if (const double d = dot(r, r); d > reach * reach) near_.offer(d, q);
+  }
+
+  /// Cuts off what is nearer to item q.
+  NACRE_HD void cut_off(double distance2, std::uint32_t q) {
+    const double facing = dot(normal_, items_.normal[q]);
+    if (facing < same_side) return;
+    Plane to = in_plane(q);
+    if (const double across2 = to.u * to.u + to.v * to.v; facing < bent && across2 > 0) {
+      const double unfold = std::sqrt(distance2 / across2);
+      to.u *= unfold, to.v *= unfold;
+    }
+    if (rim_ && !beside_on_rim(q) && !in_sector(to.u, to.v)) return;
+    if (clip(to.u, to.v, 0.5 * (distance2 + weight_ - weight_of(q)), q)) far2_ = farthest2();
+  }
+
+  /// A small one, by the position alone.
+  NACRE_HD double weight_of(std::uint32_t item) const {
+    std::uint64_t x = hash_point(0, items_.position[item]);
+    x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9ull;
+    const double random = double((x ^ x >> 29) >> 11) * 0x1p-53;  // in [0, 1)
+    return tie * random * items_.size[item] * items_.size[item];
+  }
+
+  NACRE_HD double farthest2() const {
+    double far2 = 0;
+    for (int k = 0; k < corners_; ++k) {
+      const Corner& c = cell_[now_][k];
+      if (!rim_ || in_sector(c.u, c.v)) far2 = max(far2, c.u * c.u + c.v * c.v);
+    }
+    return far2;
+  }
+
+  /// Keeps what has a x + b y <= limit.
+  NACRE_HD bool clip(double a, double b, double limit, std::uint32_t neighbour) {
+    const Corner* cell = cell_[now_];
+    bool any = false, all = true;
+    for (int i = 0; i < corners_; ++i) {
+      beyond_[i] = a * cell[i].u + b * cell[i].v - limit;
+      any = any || beyond_[i] > 0;
+      all = all && beyond_[i] > 0;
+    }
+    if (!any) return false;
+    Corner* kept = cell_[1 - now_];
+    int n = 0;
+    for (int i = 0; i < corners_ && !all; ++i) {
+      if (n + 2 > most_corners) {
+        overflows_ = true;
+        return false;
+      }
+      const int k = i + 1 == corners_ ? 0 : i + 1;
+      const Corner &from = cell[i], &to = cell[k];
+      const bool in = beyond_[i] <= 0, then_in = beyond_[k] <= 0;
+      if (in) kept[n++] = from;
+      if (in == then_in) continue;
+      const double t = beyond_[i] / (beyond_[i] - beyond_[k]);
+      kept[n++] = {from.u + t * (to.u - from.u), from.v + t * (to.v - from.v), in ? neighbour : from.after};
+    }
+    now_ = 1 - now_, corners_ = n;
+    return true;
+  }
+
+  NACRE_HD static Star hidden_star(double reach) {
+    Star star;
+    star.hidden = true;
+    star.reach = float(1.001 * reach);
+    return star;
+  }
+
+  NACRE_HD Star closed_star() const {
+    constexpr std::uint32_t before_first = 1u << 31;
+    Star star;
+    star.closed = true;
+    for (int k = 0; k < corners_; ++k) {
+      const std::uint32_t q = cell_[now_][k].after;
+      if (q == none) {
+        star.gaps |= star.count > 0 ? 1u << (star.count - 1) : before_first;
+        continue;
+      }
+      if (star.count == Star::most) return {};
+      star.ring[star.count++] = q;
+    }
+    if (star.count == 0) return {};
+    if (star.gaps & before_first) star.gaps = (star.gaps & ~before_first) | 1u << (star.count - 1);
+    return star;
+  }
+
+  NACRE_HD Star rim_star() const {
+    Star star;
+    star.ring[star.count++] = next_;
+    // Sides are in the order of their neighbours' directions; the walk begins behind the direction to the next item.
+    double angle[Star::most];
+    for (int k = 0; k < corners_; ++k) {
+      const std::uint32_t q = cell_[now_][k].after;
+      if (q == none || beside_on_rim(q)) continue;
+      if (star.count + 1 == Star::most) return {};
+      const Plane to = in_plane(q);
+      double turn =
+          std::atan2(along_next_.u * to.v - along_next_.v * to.u, along_next_.u * to.u + along_next_.v * to.v);
+      if (turn < 0) turn += 2 * M_PI;
+      int at = star.count++;
+      for (; at > 1 && (turn != angle[at - 1] ? turn < angle[at - 1] : q < star.ring[at - 1]); --at)
+        angle[at] = angle[at - 1], star.ring[at] = star.ring[at - 1];
+      angle[at] = turn, star.ring[at] = q;
+    }
+    star.ring[star.count++] = previous_;
+    return star;
+  }
+
+  const StarItemsView& items_;
+  const ItemBoxesView& boxes_;
+  std::uint32_t item_ = 0, next_ = none, previous_ = none;
+  bool rim_ = false, reflex_ = false, overflows_ = false;
+  Vec3d here_, normal_, u_, v_;
+  double size_ = 0, weight_ = 0, far2_ = 0;
+  Plane along_next_{}, along_previous_{};
+  NearestItems near_;
+  Corner cell_[2][most_corners];
+  double beyond_[most_corners];
+  int now_ = 0, corners_ = 0;
+};
+
+/// The stars of the items that are marked; what is agreed is not known yet.
+struct CutStars {
+  StarItemsView items;
+  ItemBoxesView boxes;
+  const std::uint32_t* stale;
+  Star* star;
+  NACRE_HD void operator()(std::int64_t k) const {
+    const std::uint32_t i = boxes.item(k);
+    if (stale[i]) star[i] = StarCutter(items, boxes).cut(i);
+  }
+};
+
+}  // namespace detail
+}  // namespace nacre

@@ -1,0 +1,80 @@
+// Nacre: the neighbours of a particle on one of its surfaces, and what is read to find them.
+#pragma once
+
+#include <cstdint>
+
+#include "compute/math/vec.hpp"
+
+namespace nacre {
+
+/// StarItems as kernels read them; all pointers have an entry for each item but `first`.
+struct StarItemsView {
+  const Vec3d* position = nullptr;
+  const Vec3d* normal = nullptr;
+  const double* size = nullptr;
+  const std::uint32_t* particle = nullptr;
+  const std::uint32_t* surface = nullptr;
+  const std::uint32_t* next = nullptr;
+  const std::uint32_t* previous = nullptr;
+  const std::uint32_t* first = nullptr;  ///< per surface and one more
+
+  /// Whether two items follow each other on a rim.
+  NACRE_HD bool are_on_rim(std::uint32_t a, std::uint32_t b) const { return next[a] == b || previous[a] == b; }
+};
+
+/// The neighbours of one item, counter-clockwise: those whose bisecting planes bound its Voronoi cell in the tangent
+/// plane. On a rim from the next item of the rim to the previous one, else closed.
+struct Star {
+  static constexpr int most = 20;
+  std::uint32_t ring[most];
+  std::uint8_t count = 0;
+  bool closed = false;
+  bool hidden = false;       ///< another item has the same position; it has no neighbours
+  float reach = 0;           ///< nothing farther away was looked at, the items beside it on a rim excepted
+  std::uint32_t gaps = 0;    ///< bit k: ring[k] and the one after it are no neighbours of each other
+  std::uint32_t agreed = 0;  ///< bit k: triangle (item, ring[k], the one after it) is in the stars of all its corners
+
+  NACRE_HD int after(int k) const { return k + 1 == count ? 0 : k + 1; }
+  /// Whether a triangle may begin with ring[k].
+  NACRE_HD bool has_triangle(int k) const { return !(gaps >> k & 1) && (closed || k + 1 < count) && count > 1; }
+  NACRE_HD bool has(std::uint32_t a, std::uint32_t b) const {
+    const int k = position_of(a);
+    return k >= 0 && has_triangle(k) && ring[after(k)] == b;
+  }
+  /// Where an item is in the ring; -1 where it is not.
+  NACRE_HD int position_of(std::uint32_t item) const {
+    for (int k = 0; k < count; ++k)
+      if (ring[k] == item) return k;
+    return -1;
+  }
+  /// The third corner of the triangle to the left of the edge to `other`, or to its right; `none` where there is none.
+  NACRE_HD std::uint32_t left_of(std::uint32_t other) const {
+    const int k = position_of(other);
+    return k >= 0 && has_triangle(k) ? ring[after(k)] : none;
+  }
+  NACRE_HD std::uint32_t right_of(std::uint32_t other) const {
+    const int k = position_of(other);
+    if (k < 0 || (k == 0 && !closed)) return none;
+    const int before = k == 0 ? count - 1 : k - 1;
+    return has_triangle(before) ? ring[before] : none;
+  }
+  /// Whether there is a triangle that not all of its corners have.
+  NACRE_HD bool has_open() const {
+    for (int k = 0; k < count; ++k)
+      if (has_triangle(k) && !(agreed >> k & 1)) return true;
+    return false;
+  }
+};
+
+/// What is to be marked as agreed in `star`, of item i: the triangles that are in the stars of all their corners.
+NACRE_HD inline std::uint32_t agreed_on(const Star* stars, std::uint32_t i, const Star& star) {
+  std::uint32_t agreed = 0;
+  for (int k = 0; k < star.count; ++k) {
+    if (!star.has_triangle(k)) continue;
+    const std::uint32_t a = star.ring[k], b = star.ring[star.after(k)];
+    if (stars[a].has(b, i) && stars[b].has(i, a)) agreed |= 1u << k;
+  }
+  return agreed;
+}
+
+}  // namespace nacre
