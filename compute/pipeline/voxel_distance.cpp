@@ -3,10 +3,13 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "compute/device/error.hpp"
 #include "compute/pipeline/volume_frame.hpp"
@@ -38,7 +41,10 @@ struct Spread {
 /// is the box around (i, j, k) * spacing.
 class Voxels {
  public:
-  explicit Voxels(const MeshVolume& volume) : volume_(volume), dims_(volume.dims), spacing_(volume.spacing) {}
+  explicit Voxels(const MeshVolume& volume) : volume_(volume), dims_(volume.dims), spacing_(volume.spacing) {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = -1; i <= dims_[axis]; ++i) centres_[std::size_t(axis)].push_back(i * spacing_[axis]);
+  }
 
   Vec3d local(const Vec3d& world) const {
     const Vec3d index = world_to_index(world, volume_.origin, spacing_, volume_.axes);
@@ -79,12 +85,14 @@ class Voxels {
   }
   double area_of_face(int axis) const { return spacing_[(axis + 1) % 3] * spacing_[(axis + 2) % 3]; }
 
-  /// From `p` to the nearest face of a voxel of this material, which there must be. Voxels are searched shell by shell.
+  /// From `p` to the nearest face of a voxel of this material, which there must be. Where it is not among the eight
+  /// voxels around `p`, they are searched shell by shell.
   double distance_to_faces(const Vec3d& p, std::uint16_t material) const {
+    double best = infinite;  // squared
+    if (search_block(p, material, best)) return std::sqrt(best);
     Int3 middle;
     for (int axis = 0; axis < 3; ++axis)
       middle[axis] = int(std::clamp(std::floor(p[axis] / spacing_[axis] + 0.5), 0.0, double(dims_[axis] - 1)));
-    double best = infinite;  // squared
     for (int r = 0;; ++r) {
       search_shell(p, material, middle, r, best);
       const double known = nearest_beyond(p, middle, r);
@@ -104,6 +112,10 @@ class Voxels {
   }
   static bool are_alike(const Row& row) { return std::equal(row.begin() + 1, row.end(), row.begin()); }
 
+  /// Along an axis, of a voxel or one beside the volume. From a table: products that are added to something else in two
+  /// places may be rounded in two ways.
+  double centre(int axis, int index) const { return centres_[std::size_t(axis)][std::size_t(index + 1)]; }
+
   /// How near anything beyond the shell of this radius can be: infinite where there are no voxels.
   double nearest_beyond(const Vec3d& p, const Int3& middle, int r) const {
     double nearest = infinite;
@@ -113,6 +125,39 @@ class Voxels {
       if (middle[axis] + r + 1 < dims_[axis]) nearest = std::min(nearest, (middle[axis] + r + 0.5) * s - p[axis]);
     }
     return nearest;
+  }
+
+  /// Of the faces between the eight voxels whose centres are around `p`. Whether no other can be nearer.
+  bool search_block(const Vec3d& p, std::uint16_t material, double& best) const {
+    Int3 low;
+    Vec3d to_wall[2], off[2];  // between the lower and the upper voxels, as each of both has it
+    double known = infinite;   // how near anything beyond the block can be
+    for (int axis = 0; axis < 3; ++axis) {
+      const double s = spacing_[axis];
+      low[axis] = int(std::clamp(std::floor(p[axis] / s), -1.0, double(dims_[axis] - 1)));
+      to_wall[0][axis] = centre(axis, low[axis]) + 0.5 * s - p[axis];
+      to_wall[1][axis] = centre(axis, low[axis] + 1) - 0.5 * s - p[axis];
+      off[0][axis] = std::min(to_wall[0][axis], 0.0);
+      off[1][axis] = std::max(to_wall[1][axis], 0.0);
+      known = std::min(known, s - std::abs(to_wall[0][axis]));
+    }
+    if (known <= 0) return false;  // far from all voxels
+    const unsigned own = own_in_block(low, material);
+    for (unsigned v = 0; v < 8; ++v)
+      for (int axis = 0; axis < 3; ++axis) {
+        Vec3d to_face(off[v & 1].x, off[v >> 1 & 1].y, off[v >> 2].z);
+        to_face[axis] = to_wall[v >> axis & 1][axis];
+        const bool is_face = own >> v & ~(own >> (v ^ 1u << axis)) & 1;
+        best = std::min(best, is_face ? dot(to_face, to_face) : infinite);
+      }
+    return best < known * known * (1 - 1e-9);
+  }
+
+  /// A bit for each of eight voxels from `low` on, x fastest: whether it is of this material.
+  unsigned own_in_block(const Int3& low, std::uint16_t material) const {
+    unsigned own = 0;
+    for (unsigned v = 0; v < 8; ++v) own |= unsigned(at(low + Int3(v & 1, v >> 1 & 1, v >> 2)) == material) << v;
+    return own;
   }
 
   void search_shell(const Vec3d& p, std::uint16_t material, const Int3& middle, int r, double& best) const {
@@ -128,8 +173,8 @@ class Voxels {
   }
 
   void search_voxel(const Vec3d& p, std::uint16_t material, const Int3& v, double& best) const {
-    const Vec3d centre(v.x * spacing_.x, v.y * spacing_.y, v.z * spacing_.z), half = spacing_ * 0.5;
-    const Vec3d within = min(max(p, centre - half), centre + half), off = within - p;
+    const Vec3d middle(centre(0, v.x), centre(1, v.y), centre(2, v.z)), half = spacing_ * 0.5;
+    const Vec3d within = min(max(p, middle - half), middle + half), off = within - p;
     if (dot(off, off) >= best) return;
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
@@ -137,7 +182,7 @@ class Voxels {
         beside[axis] += side;
         if (at(beside) == material) continue;
         Vec3d to_face = off;
-        to_face[axis] = centre[axis] + side * half[axis] - p[axis];
+        to_face[axis] = middle[axis] + side * half[axis] - p[axis];
         best = std::min(best, dot(to_face, to_face));
       }
   }
@@ -145,79 +190,105 @@ class Voxels {
   const MeshVolume& volume_;
   Int3 dims_;
   Vec3d spacing_;
+  std::array<std::vector<double>, 3> centres_;  // along each axis, and one more at each end
 };
 
-/// The triangles of one material, with only the points that they use, in the coordinates of Voxels.
-TriangleTree tree_of(const SurfaceMesh& mesh, const std::vector<Vec3d>& points,
-                     const std::vector<std::uint32_t>& triangles) {
-  std::vector<std::uint32_t> used;
-  for (const std::uint32_t t : triangles)
-    for (int k = 0; k < 3; ++k) used.push_back(mesh.triangles[t][k]);
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::vector<Vec3d> own;
-  for (const std::uint32_t v : used) own.push_back(points[v]);
-  std::vector<Triangle> of_own;
-  const auto number = [&](std::uint32_t v) {
-    return std::uint32_t(std::lower_bound(used.begin(), used.end(), v) - used.begin());
-  };
-  for (const std::uint32_t t : triangles)
-    of_own.push_back({number(mesh.triangles[t].a), number(mesh.triangles[t].b), number(mesh.triangles[t].c)});
-  return {own, of_own};
+/// What bounds one material.
+struct Boundary {
+  std::vector<std::uint32_t> triangles, points;  // of the mesh
+  TriangleTree tree;
+};
+
+/// Points in the coordinates of Voxels.
+std::shared_ptr<const TriangleSoup> soup_of(const SurfaceMesh& mesh, const Voxels& voxels) {
+  auto soup = std::make_shared<TriangleSoup>(TriangleSoup{std::vector<Vec3d>(mesh.points.size()), mesh.triangles});
+  tbb::parallel_for(std::size_t(0), mesh.points.size(),
+                    [&](std::size_t i) { soup->points[i] = voxels.local(mesh.points[i]); });
+  return soup;
 }
 
-std::vector<TriangleTree> trees_of(const SurfaceMesh& mesh, const Voxels& voxels, std::size_t materials) {
-  std::vector<Vec3d> points(mesh.points.size());
-  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) { points[i] = voxels.local(mesh.points[i]); });
-  std::vector<std::vector<std::uint32_t>> triangles(materials);
+std::vector<Boundary> boundaries_of(const SurfaceMesh& mesh, const Voxels& voxels, std::size_t materials) {
+  std::vector<Boundary> all(materials);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint16_t m : mesh.materials[t])
-      if (m > 0) triangles[m].push_back(std::uint32_t(t));
-  std::vector<TriangleTree> trees(materials);
-  tbb::parallel_for(std::size_t(1), materials, [&](std::size_t m) { trees[m] = tree_of(mesh, points, triangles[m]); });
-  return trees;
+      if (m > 0) all[m].triangles.push_back(std::uint32_t(t));
+  const std::shared_ptr<const TriangleSoup> soup = soup_of(mesh, voxels);
+  std::vector<std::uint16_t> last(mesh.points.size(), 0);  // material that has counted a point
+  for (std::size_t m = 1; m < materials; ++m) {
+    for (const std::uint32_t t : all[m].triangles)
+      for (int k = 0; k < 3; ++k)
+        if (const std::uint32_t v = mesh.triangles[t][k]; std::exchange(last[v], std::uint16_t(m)) != m)
+          all[m].points.push_back(v);
+    all[m].tree = TriangleTree::of_some(soup, all[m].triangles);
+  }
+  return all;
 }
 
-/// From the faces of all voxels to the triangles, per material.
-std::vector<Spread> from_faces(const Voxels& voxels, const std::vector<TriangleTree>& trees, int layers,
-                               const std::atomic<bool>* stop) {
+/// Triangles that were nearest to faces of one layer. Faces come row by row: the last ones of a column and of that
+/// before it are beside the next one.
+class LastNearest {
+ public:
+  explicit LastNearest(int columns) : last_(std::size_t(columns)) {}
+
+  /// One of the material, none where there is nothing near.
+  std::optional<std::uint32_t> near(int column, std::uint16_t material) const {
+    for (int i = column; i >= std::max(column - 1, 0); --i)
+      for (const Found& found : last_[std::size_t(i)])
+        if (found.material == material) return found.triangle;
+    return std::nullopt;
+  }
+  void keep(int column, int side, std::uint16_t material, std::uint32_t triangle) {
+    last_[std::size_t(column)][std::size_t(side)] = {material, triangle};
+  }
+
+ private:
   struct Found {
-    Spread spread;
-    std::optional<TriangleHit> last;  ///< the next face is near it
+    std::uint16_t material = 0;
+    std::uint32_t triangle = 0;
   };
-  std::vector<std::map<std::uint16_t, Found>> found(std::size_t(layers) + 1);
-  tbb::parallel_for(0, layers + 1, [&](int n) {
+  std::vector<std::array<Found, 2>> last_;
+};
+
+/// From the faces of all voxels to the triangles, per material.
+std::vector<Spread> from_faces(const SurfaceMesh& mesh, const Voxels& voxels, const std::vector<Boundary>& boundaries,
+                               const Int3& dims, const std::atomic<bool>* stop) {
+  std::vector<std::map<std::uint16_t, Spread>> spread(std::size_t(dims.z) + 1);
+  tbb::parallel_for(0, dims.z + 1, [&](int n) {
     if (stop && *stop) return;
+    LastNearest last(dims.x + 1);
     voxels.each_face(n - 1, [&](const Int3& v, int axis) {
       Int3 next = v;
       ++next[axis];
       const Vec3d centre = voxels.centre_of_face(v, axis);
-      for (const std::uint16_t m : {voxels.at(v), voxels.at(next)}) {
+      const std::array<std::uint16_t, 2> sides{voxels.at(v), voxels.at(next)};
+      std::optional<TriangleHit> hit;
+      for (int side = 0; side < 2; ++side) {
+        const std::uint16_t m = sides[std::size_t(side)];
         if (m == 0) continue;
-        Found& of = found[std::size_t(n)][m];
-        if (!trees[m].triangles().empty())
-          of.last = trees[m].closest(centre, of.last ? std::optional(of.last->triangle) : std::nullopt);
-        of.spread.add(of.last ? of.last->distance : 0, voxels.area_of_face(axis));
+        const bool shared = hit && (mesh.materials[hit->triangle][0] == m || mesh.materials[hit->triangle][1] == m);
+        hit = boundaries[m].tree.closest(centre, shared ? std::optional(hit->triangle) : last.near(v.x + 1, m));
+        if (hit) last.keep(v.x + 1, side, m, hit->triangle);
+        spread[std::size_t(n)][m].add(hit ? hit->distance : 0, voxels.area_of_face(axis));
       }
     });
   });
   check_stop(stop);
-  std::vector<Spread> sum(trees.size());
-  for (const auto& layer : found)
-    for (const auto& [m, of] : layer) sum[m].add(of.spread);
+  std::vector<Spread> sum(boundaries.size());
+  for (const auto& layer : spread)
+    for (const auto& [m, of] : layer) sum[m].add(of);
   return sum;
 }
 
-/// From the triangles [begin, end) of a material, and the points with these numbers, to the faces of its voxels.
-Spread from_triangles(const Voxels& voxels, const TriangleTree& tree, std::uint16_t material, double voxel,
+/// From those of a boundary's triangles and points that come [begin, end) to the faces of the voxels of its material.
+Spread from_triangles(const Voxels& voxels, const Boundary& boundary, std::uint16_t material, double voxel,
                       std::size_t begin, std::size_t end) {
   constexpr int most_parts = 64;  // of an edge
   Spread spread;
-  const auto points = tree.points();
-  for (std::size_t v = begin; v < std::min(end, points.size()); ++v)
-    spread.most = std::max(spread.most, voxels.distance_to_faces(points[v], material));
-  for (std::size_t t = begin; t < std::min(end, tree.triangles().size()); ++t) {
-    const Triangle& c = tree.triangles()[t];
+  const auto points = boundary.tree.points();
+  for (std::size_t n = begin; n < std::min(end, boundary.points.size()); ++n)
+    spread.most = std::max(spread.most, voxels.distance_to_faces(points[boundary.points[n]], material));
+  for (std::size_t n = begin; n < std::min(end, boundary.triangles.size()); ++n) {
+    const Triangle& c = boundary.tree.triangles()[boundary.triangles[n]];
     const Vec3d a = points[c.a], u = points[c.b] - a, w = points[c.c] - a;
     const double longest = std::max({length(u), length(w), length(u - w)});
     const int parts = std::clamp(int(std::ceil(longest / voxel - 1e-9)), 1, most_parts);
@@ -242,9 +313,9 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   const Voxels voxels(volume);
   const double voxel_volume = volume.spacing.x * volume.spacing.y * volume.spacing.z;
   const std::vector<std::int64_t> count = volume.material.counts(volume.materials());
-  const std::vector<TriangleTree> trees = trees_of(mesh, voxels, materials);
+  const std::vector<Boundary> boundaries = boundaries_of(mesh, voxels, materials);
   check_stop(stop);
-  const std::vector<Spread> faces = from_faces(voxels, trees, volume.dims.z, stop);
+  const std::vector<Spread> faces = from_faces(mesh, voxels, boundaries, volume.dims, stop);
 
   struct Part {
     std::uint16_t material;
@@ -254,9 +325,9 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   std::vector<Part> parts;
   for (std::size_t m = 1; m < materials; ++m) {
     result[m].voxel_volume = double(count[m]) * voxel_volume;
-    result[m].measured = count[m] > 0 && !trees[m].triangles().empty();
+    result[m].measured = count[m] > 0 && !boundaries[m].triangles.empty();
     if (!result[m].measured) continue;
-    for (std::size_t t = 0; t < std::max(trees[m].triangles().size(), trees[m].points().size()); t += part_size)
+    for (std::size_t t = 0; t < std::max(boundaries[m].triangles.size(), boundaries[m].points.size()); t += part_size)
       parts.push_back({std::uint16_t(m), t});
   }
   std::vector<Spread> spread(parts.size());
@@ -264,7 +335,8 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
     if (stop && *stop) return;
     const Part& part = parts[i];
-    spread[i] = from_triangles(voxels, trees[part.material], part.material, voxel, part.begin, part.begin + part_size);
+    spread[i] =
+        from_triangles(voxels, boundaries[part.material], part.material, voxel, part.begin, part.begin + part_size);
     if (i % 8 == 0) volume.material.let_go(0, volume.material.size());  // of a mapped file: what was looked at piles up
   });
   check_stop(stop);

@@ -1,139 +1,223 @@
 // Nacre: a tree of triangles for single rays and closest points on the host.
 #include "compute/raycast/triangle_tree.hpp"
 
-#include <tbb/parallel_sort.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
+#include <numeric>
 #include <utility>
 
 #include "compute/embedding/triangle.hpp"
-#include "compute/math/morton.hpp"
 
 namespace nacre {
 namespace {
 
-constexpr std::size_t leaf_size = 4;  // triangles
+constexpr double finite = std::numeric_limits<double>::max(), infinite = std::numeric_limits<double>::infinity();
 
-/// The parameters between which the ray is inside the box; none if low > high.
-std::pair<double, double> inside(const Vec3d& low, const Vec3d& high, const Vec3d& from, const Vec3d& along) {
-  std::pair<double, double> part{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  for (int axis = 0; axis < 3; ++axis) {
-    if (along[axis] == 0) {
-      if (from[axis] < low[axis] || from[axis] > high[axis]) return {1, 0};
-      continue;
-    }
-    const double a = (low[axis] - from[axis]) / along[axis], b = (high[axis] - from[axis]) / along[axis];
-    part = {std::max(part.first, std::min(a, b)), std::min(part.second, std::max(a, b))};
-  }
-  return part;
+/// At least as much as rounding to float changes a number, so that a box with it on every side is large enough.
+float rounding(double x) {
+  return float(std::abs(x)) * std::numeric_limits<float>::epsilon() + std::numeric_limits<float>::min();
+}
+
+typedef float Floats __attribute__((vector_size(32)));  // of a node's children
+typedef double Doubles __attribute__((vector_size(64)));
+
+Doubles to_doubles(const std::array<float, 8>& a) {
+  Floats floats;
+  std::memcpy(&floats, a.data(), sizeof floats);
+  return __builtin_convertvector(floats, Doubles);
+}
+Doubles larger(const Doubles& a, const Doubles& b) { return a > b ? a : b; }
+Doubles smaller(const Doubles& a, const Doubles& b) { return a < b ? a : b; }
+
+/// Where a triangle is, more or less.
+struct Middle {
+  Vec3f at;
+  std::uint32_t triangle;
+};
+
+/// Sorts the triangles of a node so that those of each of its children, and of theirs, come one after the other. It
+/// cuts across the axis along which they extend farthest.
+void divide(std::span<Middle> middles, std::size_t width) {
+  if (middles.size() <= width) return;
+  std::size_t child = width;  // triangles of one that is full
+  while (child * width < middles.size()) child *= width;
+  Vec3f low = middles[0].at, high = low;
+  for (const Middle& m : middles) low = min(low, m.at), high = max(high, m.at);
+  const Vec3f extent = high - low;
+  const int axis = extent.x >= std::max(extent.y, extent.z) ? 0 : extent.y >= extent.z ? 1 : 2;
+  const std::size_t children = (middles.size() + child - 1) / child, half = children / 2 * child;
+  std::nth_element(middles.begin(), middles.begin() + half, middles.end(), [axis](const Middle& a, const Middle& b) {
+    return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.triangle < b.triangle;
+  });
+  const auto lower = [&] { divide(middles.first(half), width); };
+  const auto upper = [&] { divide(middles.subspan(half), width); };
+  constexpr std::size_t many = 10000;
+  if (middles.size() > many)
+    tbb::parallel_invoke(lower, upper);
+  else
+    lower(), upper();
 }
 
 }  // namespace
 
-TriangleTree::TriangleTree(std::span<const Vec3d> points, std::span<const Triangle> triangles)
-    : points_(points.begin(), points.end()), triangles_(triangles.begin(), triangles.end()) {
-  if (triangles_.empty()) return;
+TriangleTree::TriangleTree(std::span<const Vec3d> points, std::span<const Triangle> triangles) {
+  auto soup = std::make_shared<TriangleSoup>();
+  soup->points.assign(points.begin(), points.end());
+  soup->triangles.assign(triangles.begin(), triangles.end());
+  std::vector<std::uint32_t> all(triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  build(std::move(soup), std::move(all));
+}
+
+TriangleTree TriangleTree::of_some(std::shared_ptr<const TriangleSoup> soup, std::vector<std::uint32_t> some) {
+  TriangleTree tree;
+  tree.build(std::move(soup), std::move(some));
+  return tree;
+}
+
+void TriangleTree::build(std::shared_ptr<const TriangleSoup> soup, std::vector<std::uint32_t> some) {
+  soup_ = std::move(soup);
+  order_ = std::move(some);
+  if (order_.empty()) return;
   sort();
   make_boxes();
 }
 
 void TriangleTree::sort() {
-  Box all;
-  for (const Triangle& t : triangles_)
-    for (int k = 0; k < 3; ++k) all.low = min(all.low, points_[t[k]]), all.high = max(all.high, points_[t[k]]);
-  const Vec3d extent = all.high - all.low;
-  const double scale = ((1 << 20) - 1) / std::max({extent.x, extent.y, extent.z, 1e-300});
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(triangles_.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const Triangle& t = triangles_[i];
-    const Vec3d middle = ((points_[t.a] + points_[t.b] + points_[t.c]) / 3.0 - all.low) * scale;
-    keys[i] = {morton(Int3(int(middle.x), int(middle.y), int(middle.z))), std::uint32_t(i)};
+  std::vector<Middle> middles(order_.size());
+  tbb::parallel_for(std::size_t(0), middles.size(), [&](std::size_t i) {
+    const std::uint32_t t = order_[i];
+    const Vec3f at((corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0);
+    middles[i] = {is_finite(at) ? at : Vec3f(0.0f), t};  // numbers that can be sorted
+  });
+  divide(middles, width);
+  std::transform(middles.begin(), middles.end(), order_.begin(), [](const Middle& m) { return m.triangle; });
+}
+
+TriangleTree::Boxes TriangleTree::no_boxes() {
+  Boxes boxes;
+  for (std::array<float, width>& low : boxes.low) low.fill(std::numeric_limits<float>::infinity());
+  for (std::array<float, width>& high : boxes.high) high.fill(-std::numeric_limits<float>::infinity());
+  return boxes;
+}
+
+/// Of those from `first` on in their order.
+TriangleTree::Boxes TriangleTree::boxes_of_triangles(std::size_t first) const {
+  Boxes boxes = no_boxes();
+  for (std::size_t k = 0; k < std::min(width, order_.size() - first); ++k) {
+    const Vec3d &a = corner(order_[first + k], 0), &b = corner(order_[first + k], 1), &c = corner(order_[first + k], 2);
+    const Vec3d low = min(a, min(b, c)), high = max(a, max(b, c));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      boxes.low[axis][k] = float(low[int(axis)]) - rounding(low[int(axis)]);
+      boxes.high[axis][k] = float(high[int(axis)]) + rounding(high[int(axis)]);
+    }
   }
-  tbb::parallel_sort(keys);
-  for (const auto& key : keys) order_.push_back(key.second);
+  return boxes;
+}
+
+TriangleTree::Boxes TriangleTree::boxes_of_nodes(std::size_t first, std::size_t count) const {
+  Boxes boxes = no_boxes();
+  for (std::size_t k = 0; k < std::min(width, count); ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      boxes.low[axis][k] = *std::ranges::min_element(boxes_[first + k].low[axis]);
+      boxes.high[axis][k] = *std::ranges::max_element(boxes_[first + k].high[axis]);
+    }
+  return boxes;
 }
 
 void TriangleTree::make_boxes() {
-  leaves_ = std::bit_ceil((triangles_.size() + leaf_size - 1) / leaf_size);
-  boxes_.resize(2 * leaves_);
-  for (std::size_t i = 0; i < order_.size(); ++i) {
-    Box& box = boxes_[leaves_ + i / leaf_size];
-    for (int k = 0; k < 3; ++k) {
-      const Vec3d& p = points_[triangles_[order_[i]][k]];
-      box.low = min(box.low, p), box.high = max(box.high, p);
-    }
+  std::size_t nodes = (order_.size() + width - 1) / width;
+  level_ = {0};
+  boxes_.resize(nodes);
+  tbb::parallel_for(std::size_t(0), nodes, [&](std::size_t k) { boxes_[k] = boxes_of_triangles(k * width); });
+  while (nodes > 1) {
+    const std::size_t below = level_.back(), end = boxes_.size();
+    nodes = (nodes + width - 1) / width;
+    level_.push_back(end);
+    for (std::size_t k = 0; k < nodes; ++k)
+      boxes_.push_back(boxes_of_nodes(below + k * width, end - below - k * width));
   }
-  for (std::size_t node = leaves_ - 1; node >= 1; --node) {
-    const Box &a = boxes_[2 * node], &b = boxes_[2 * node + 1];
-    boxes_[node] = {min(a.low, b.low), max(a.high, b.high)};
+}
+
+/// Calls visit(triangle) for those whose boxes are not more than `most` away, which visit may lower; near ones first,
+/// more or less. away(boxes): how far those of a node's children are, infinite where there is none.
+template <class Away, class Visit>
+void TriangleTree::search(const double& most, const Away& away, const Visit& visit) const {
+  struct Entry {
+    std::size_t level, node;
+    double away;
+  };
+  std::array<Entry, 96> open;  // seven for each level, and one more
+  std::size_t count = 0;
+  open[count++] = {level_.size() - 1, 0, 0};
+  while (count > 0) {
+    const Entry entry = open[--count];
+    if (entry.away > most) continue;
+    const Doubles far = away(boxes_[level_[entry.level] + entry.node]);
+    std::array<std::uint8_t, width> within;  // children, near ones first
+    std::size_t found = 0;
+    for (std::uint8_t k = 0; k < width; ++k) {  // without a branch, as nobody could predict it
+      within[found] = k;
+      found += far[k] <= most;
+    }
+    for (std::size_t n = 1; n < found; ++n)
+      for (std::size_t at = n; at > 0 && far[within[at - 1]] > far[within[at]]; --at)
+        std::swap(within[at - 1], within[at]);
+    const std::size_t first = entry.node * width;
+    if (entry.level == 0)
+      for (std::size_t n = 0; n < found && far[within[n]] <= most; ++n) visit(order_[first + within[n]]);
+    else
+      while (found-- > 0) open[count++] = {entry.level - 1, first + within[found], far[within[found]]};
   }
 }
 
 /// Rays along an edge must not slip between its two triangles for rounding: they end a little beyond it.
-void TriangleTree::hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& along, double near, double& far,
-                            std::optional<TriangleHit>& hit) const {
+void TriangleTree::try_hit(std::uint32_t triangle, const Vec3d& from, const Vec3d& along, double near, double& far,
+                           std::optional<TriangleHit>& hit) const {
   constexpr double slack = 1e-12;  // of the weights
-  const std::size_t end = std::min(order_.size(), (leaf + 1) * leaf_size);
-  for (std::size_t i = leaf * leaf_size; i < end; ++i) {
-    const Triangle& t = triangles_[order_[i]];
-    const Vec3d a = points_[t.a], u = points_[t.b] - a, v = points_[t.c] - a, p = cross(along, v);
-    const double determinant = dot(u, p);
-    if (determinant == 0) continue;
-    const Vec3d s = from - a, q = cross(s, u);
-    const double b = dot(s, p) / determinant, c = dot(along, q) / determinant, t_hit = dot(v, q) / determinant;
-    if (!(b >= -slack && c >= -slack && b + c <= 1 + slack && t_hit >= near && t_hit < far)) continue;
-    far = t_hit;
-    const Vec3d w = max(Vec3d(1 - b - c, b, c), Vec3d(0.0));
-    hit = TriangleHit{order_[i], t_hit, from + along * t_hit, w / (w.x + w.y + w.z)};
-  }
+  const Vec3d a = corner(triangle, 0), u = corner(triangle, 1) - a, v = corner(triangle, 2) - a, p = cross(along, v);
+  const double determinant = dot(u, p);
+  if (determinant == 0) return;
+  const Vec3d s = from - a, q = cross(s, u);
+  const double b = dot(s, p) / determinant, c = dot(along, q) / determinant, t_hit = dot(v, q) / determinant;
+  if (!(b >= -slack && c >= -slack && b + c <= 1 + slack && t_hit >= near && t_hit <= far)) return;
+  if (t_hit == far && !(hit && triangle < hit->triangle)) return;
+  far = t_hit;
+  const Vec3d w = max(Vec3d(1 - b - c, b, c), Vec3d(0.0));
+  hit = TriangleHit{triangle, t_hit, from + along * t_hit, w / (w.x + w.y + w.z)};
 }
 
 std::optional<TriangleHit> TriangleTree::first(const Vec3d& from, const Vec3d& along, double near, double far) const {
   std::optional<TriangleHit> hit;
-  if (triangles_.empty()) return hit;
-  struct Entry {
-    std::size_t node;
-    double at;
+  if (empty()) return hit;
+  far = std::min(far, finite);
+  const auto enters = [&](const Boxes& boxes) {
+    Doubles enter = near - Doubles{}, leave = far - Doubles{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = int(k);
+      const Doubles low = to_doubles(boxes.low[k]) - from[axis], high = to_doubles(boxes.high[k]) - from[axis];
+      leave = low <= high ? leave : -infinite - Doubles{};  // there is no child
+      if (along[axis] == 0) {
+        leave = low > 0 || high < 0 ? -infinite - Doubles{} : leave;
+        continue;
+      }
+      const Doubles a = low / along[axis], b = high / along[axis];
+      enter = larger(enter, smaller(a, b)), leave = smaller(leave, larger(a, b));
+    }
+    return enter <= leave ? enter : infinite - Doubles{};
   };
-  std::vector<Entry> open{{1, near}};
-  while (!open.empty()) {
-    const Entry entry = open.back();
-    open.pop_back();
-    if (entry.at >= far) continue;
-    if (entry.node >= leaves_) {
-      hit_leaf(entry.node - leaves_, from, along, near, far, hit);
-      continue;
-    }
-    std::array<Entry, 2> children;
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Box& box = boxes_[2 * entry.node + k];
-      const auto [enters, leaves] = inside(box.low, box.high, from, along);
-      const bool empty = box.low.x > box.high.x;  // beyond the last triangle
-      const bool met = !empty && enters <= leaves && leaves >= near;
-      children[k] = {2 * entry.node + k, met ? std::max(enters, near) : std::numeric_limits<double>::infinity()};
-    }
-    if (children[0].at < children[1].at) std::swap(children[0], children[1]);  // the nearer one is examined first
-    for (const Entry& child : children)
-      if (child.at < far) open.push_back(child);
-  }
+  search(far, enters, [&](std::uint32_t t) { try_hit(t, from, along, near, far, hit); });
   return hit;
-}
-
-/// Squared, and a little less than it is: rounding must not hide a triangle that is exactly as near as another.
-double TriangleTree::distance_to_box(std::size_t node, const Vec3d& from) const {
-  const Box& box = boxes_[node];
-  if (box.low.x > box.high.x) return std::numeric_limits<double>::infinity();  // beyond the last triangle
-  const Vec3d off = from - min(max(from, box.low), box.high);
-  return dot(off, off) * (1 - 1e-12);
 }
 
 void TriangleTree::try_closest(std::uint32_t triangle, const Vec3d& from, double& nearest,
                                std::optional<TriangleHit>& hit) const {
-  const Triangle& t = triangles_[triangle];
-  const Vec3d p = closest_point(Corners{points_[t.a], points_[t.b], points_[t.c]}, from), off = p - from;
+  const Vec3d p = closest_point({corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)}, from), off = p - from;
   const double squared = dot(off, off);
   if (squared > nearest || (squared == nearest && hit && triangle >= hit->triangle)) return;
   nearest = squared;
@@ -142,37 +226,28 @@ void TriangleTree::try_closest(std::uint32_t triangle, const Vec3d& from, double
 
 std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from, std::optional<std::uint32_t> guess) const {
   std::optional<TriangleHit> hit;
-  if (triangles_.empty()) return hit;
-  struct Entry {
-    std::size_t node;
-    double squared;
-  };
-  double nearest = std::numeric_limits<double>::infinity();
+  if (empty()) return hit;
+  double nearest = finite;  // squared
   if (guess) try_closest(*guess, from, nearest, hit);
-  std::array<Entry, 66> open;  // one for each level, and one more
-  std::size_t count = 0;
-  open[count++] = {1, distance_to_box(1, from)};
-  while (count > 0) {
-    const Entry entry = open[--count];
-    if (entry.squared > nearest) continue;
-    if (entry.node >= leaves_) {
-      const std::size_t begin = (entry.node - leaves_) * leaf_size, end = std::min(order_.size(), begin + leaf_size);
-      for (std::size_t i = begin; i < end; ++i) try_closest(order_[i], from, nearest, hit);
-      continue;
+  // A little less than it is: rounding must not hide a triangle that is exactly
+  // as near as another.
+  const auto away = [&](const Boxes& boxes) {
+    Doubles squared{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Doubles low = to_doubles(boxes.low[std::size_t(axis)]) - from[axis],
+                    high = from[axis] - to_doubles(boxes.high[std::size_t(axis)]);
+      const Doubles off = larger(larger(low, high), Doubles{});
+      squared += off * off;
     }
-    Entry near{2 * entry.node, distance_to_box(2 * entry.node, from)};
-    Entry far{2 * entry.node + 1, distance_to_box(2 * entry.node + 1, from)};
-    if (far.squared < near.squared) std::swap(near, far);
-    if (far.squared <= nearest && std::isfinite(far.squared)) open[count++] = far;
-    if (near.squared <= nearest && std::isfinite(near.squared)) open[count++] = near;
-  }
+    return squared * (1 - 1e-12);
+  };
+  search(nearest, away, [&](std::uint32_t t) { try_closest(t, from, nearest, hit); });
   if (hit) hit->distance = length(hit->position - from);
   return hit;
 }
 
 Vec3d TriangleTree::weights_at(std::uint32_t triangle, const Vec3d& position) const {
-  const Triangle& t = triangles_[triangle];
-  const Vec3d &a = points_[t.a], b = points_[t.b] - a, c = points_[t.c] - a, d = position - a;
+  const Vec3d a = corner(triangle, 0), b = corner(triangle, 1) - a, c = corner(triangle, 2) - a, d = position - a;
   const Vec3d normal = cross(b, c);
   const double whole = dot(normal, normal);
   if (!(whole > 0)) return {1, 0, 0};

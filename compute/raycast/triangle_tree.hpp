@@ -1,8 +1,10 @@
 // Nacre: a tree of triangles for single rays and closest points on the host.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,15 +20,24 @@ struct TriangleHit {
   Vec3d weights;        ///< of the three corners
 };
 
-/// Boxes over runs of triangles in Morton order, combined in pairs to an implicit binary tree. It keeps copies of its
-/// input. A ray through a million triangles takes some microseconds.
+/// Triangles with indices in range.
+struct TriangleSoup {
+  std::vector<Vec3d> points;
+  std::vector<Triangle> triangles;
+};
+
+/// Boxes around triangles that are divided at medians, combined eight by eight to an implicit tree. A ray through a
+/// million triangles takes some microseconds.
 class TriangleTree {
  public:
   TriangleTree() = default;
-  /// Triangles with indices in range.
+  /// It keeps copies of its input: triangles with indices in range.
   TriangleTree(std::span<const Vec3d> points, std::span<const Triangle> triangles);
+  /// Of `some` of the triangles, which keep their numbers.
+  static TriangleTree of_some(std::shared_ptr<const TriangleSoup> soup, std::vector<std::uint32_t> some);
 
-  /// The nearest triangle, from either side, on the ray `from` + t `along` (unit) with t in `near`..`far`.
+  /// The nearest triangle (of several the first), from either side, on the ray `from` + t `along` (unit) with t from
+  /// `near` to below `far`.
   std::optional<TriangleHit> first(const Vec3d& from, const Vec3d& along, double near = 0,
                                    double far = std::numeric_limits<double>::infinity()) const;
 
@@ -38,26 +49,35 @@ class TriangleTree {
   /// Of the corners of a triangle, for a point of it.
   Vec3d weights_at(std::uint32_t triangle, const Vec3d& position) const;
 
-  std::span<const Vec3d> points() const { return points_; }
-  std::span<const Triangle> triangles() const { return triangles_; }
+  bool empty() const { return order_.empty(); }
+  std::span<const Vec3d> points() const { return soup_->points; }
+  std::span<const Triangle> triangles() const { return soup_->triangles; }
 
  private:
-  struct Box {
-    Vec3d low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+  static constexpr std::size_t width = 8;  ///< children of a node
+  /// Those of a node's children side by side, rounded outwards; with low > high where there is no child.
+  struct alignas(32) Boxes {
+    std::array<std::array<float, width>, 3> low, high;  ///< by axis
   };
 
+  void build(std::shared_ptr<const TriangleSoup> soup, std::vector<std::uint32_t> some);
   void sort();
   void make_boxes();
-  double distance_to_box(std::size_t node, const Vec3d& from) const;
+  static Boxes no_boxes();
+  Boxes boxes_of_triangles(std::size_t first) const;
+  Boxes boxes_of_nodes(std::size_t first, std::size_t count) const;
+  template <class Away, class Visit>
+  void search(const double& most, const Away& away, const Visit& visit) const;
   void try_closest(std::uint32_t triangle, const Vec3d& from, double& nearest, std::optional<TriangleHit>& hit) const;
-  void hit_leaf(std::size_t leaf, const Vec3d& from, const Vec3d& along, double near, double& far,
-                std::optional<TriangleHit>& hit) const;
+  void try_hit(std::uint32_t triangle, const Vec3d& from, const Vec3d& along, double near, double& far,
+               std::optional<TriangleHit>& hit) const;
 
-  std::vector<Vec3d> points_;
-  std::vector<Triangle> triangles_;
-  std::vector<std::uint32_t> order_;  ///< triangles along the Morton curve
-  std::size_t leaves_ = 0;            ///< a power of two
-  std::vector<Box> boxes_;            ///< node k over 2 k and 2 k + 1, from 1; the leaves come last
+  const Vec3d& corner(std::uint32_t triangle, int k) const { return soup_->points[soup_->triangles[triangle][k]]; }
+
+  std::shared_ptr<const TriangleSoup> soup_ = std::make_shared<TriangleSoup>();
+  std::vector<std::uint32_t> order_;  ///< triangles, those of each node one after the other
+  std::vector<Boxes> boxes_;        ///< level by level, the root last: of a level, node k is over 8 k ... of that below
+  std::vector<std::size_t> level_;  ///< where its nodes begin; the lowest is over triangles
 };
 
 /// Between the values of the corners of a triangle.

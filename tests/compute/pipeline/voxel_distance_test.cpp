@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include "compute/device/random.hpp"
 #include "tests/compute/meshes.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 
@@ -101,6 +102,21 @@ TEST(VoxelDistance, FarFromTheVoxelsTheSearchFindsWhatAllFacesGive) {
     double most = 0;
     for (const Vec3d& p : {a, b, c}) most = std::max(most, to_any_face(volume, 2, p));
     EXPECT_NEAR(d.mesh_max, most, 1e-9);
+  }
+}
+
+TEST(VoxelDistance, AmongVoxelsTheSearchFindsWhatAllFacesGive) {
+  std::uint32_t drawn = 0;
+  const auto random = [&drawn] { return uniform_random(3, drawn++, 0); };
+  MeshVolume volume = label_volume({7, 6, 5}, 3, [&](const Vec3d&) { return int(random() * 3); });
+  for (const Vec3d& spacing : {Vec3d(1, 1, 1), Vec3d(0.7, 1.1, 2.3)}) {
+    volume.spacing = spacing;
+    for (int n = 0; n < 300; ++n) {
+      const Vec3d p((random() * 8 - 1) * spacing.x, (random() * 7 - 1) * spacing.y, (random() * 6 - 1) * spacing.z);
+      test::Mesh point;
+      point.add({p, p, p});
+      EXPECT_NEAR(voxel_distances(between(point, {1, 2}), volume)[2].mesh_max, to_any_face(volume, 2, p), 1e-12);
+    }
   }
 }
 

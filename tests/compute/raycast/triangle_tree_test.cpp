@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "compute/device/random.hpp"
 #include "compute/embedding/triangle.hpp"
@@ -135,8 +136,39 @@ TEST(TriangleTree, OfTrianglesThatAreEquallyCloseTheFirst) {
   const std::vector<Triangle> once = s.triangles;
   s.triangles.insert(s.triangles.end(), once.begin(), once.end());
   const TriangleTree tree(s.points, s.triangles);
-  for (std::uint32_t k = 0; k < 50; ++k) EXPECT_LT(tree.closest(random_place(k, 50))->triangle, once.size());
+  for (std::uint32_t k = 0; k < 50; ++k) {
+    EXPECT_LT(tree.closest(random_place(k, 50))->triangle, once.size());
+    const auto hit = tree.first(random_place(k, 60) * 2.0, normalized(random_place(k, 70) - Vec3d(0.5)));
+    EXPECT_LT(hit ? hit->triangle : 0, once.size());
+  }
   EXPECT_FALSE(TriangleTree().closest(Vec3d(0)));
+}
+
+TEST(TriangleTree, OfManyTrianglesAsOfFew) {
+  const Soup s = soup(30000);  // sorted in parallel
+  const TriangleTree tree(s.points, s.triangles);
+  for (std::uint32_t k = 0; k < 20; ++k) {
+    const Vec3d from = random_place(k, 80);
+    double least = INFINITY;
+    for (const Triangle& c : s.triangles)
+      least = std::min(least, length(closest_point(Corners{s.points[c.a], s.points[c.b], s.points[c.c]}, from) - from));
+    EXPECT_NEAR(tree.closest(from)->distance, least, 1e-12);
+  }
+}
+
+TEST(TriangleTree, OfSomeTrianglesFindsOnlyTheseByTheirNumbers) {
+  const Soup s = soup(400);
+  std::vector<std::uint32_t> some;
+  std::vector<Triangle> alone;
+  for (std::uint32_t t = 5; t < 400; t += 3) some.push_back(t), alone.push_back(s.triangles[t]);
+  const auto all = std::make_shared<TriangleSoup>(TriangleSoup{s.points, s.triangles});
+  const TriangleTree tree = TriangleTree::of_some(all, some);
+  const TriangleTree other(s.points, alone);
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    const Vec3d from = random_place(k, 90);
+    EXPECT_EQ(tree.closest(from)->triangle, some[other.closest(from)->triangle]);
+    EXPECT_EQ(tree.closest(from)->distance, other.closest(from)->distance);
+  }
 }
 
 }  // namespace
