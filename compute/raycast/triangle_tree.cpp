@@ -229,8 +229,7 @@ std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from, std::optiona
   if (empty()) return hit;
   double nearest = finite;  // squared
   if (guess) try_closest(*guess, from, nearest, hit);
-  // A little less than it is: rounding must not hide a triangle that is exactly
-  // as near as another.
+  // A little less than it is: rounding must not hide a triangle that is exactly as near as another.
   const auto away = [&](const Boxes& boxes) {
     Doubles squared{};
     for (int axis = 0; axis < 3; ++axis) {
