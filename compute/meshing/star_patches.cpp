@@ -71,8 +71,9 @@ class Patch {
     guards_->add(places, size);
     made_ = cells.make(std::move(places), std::move(size), *world_, stop_);
     label_ = made_->label;
-    const std::vector<std::uint8_t> known = label_beside(made_->cells, kept.triangles, kept.materials, label_);
-    unify_voids(made_->places, made_->cells, reach, known, label_);
+    reach_.assign(reach.begin(), reach.end());
+    known_ = label_beside(made_->cells, kept.triangles, kept.materials, label_);
+    unify_voids(made_->places, made_->cells, reach_, known_, label_);
     facets_ = interface_facets(made_->cells, label_);
     defects_.clear();
   }
@@ -83,6 +84,8 @@ class Patch {
     there.resize(made_->places.size(), 0);
     std::vector<std::uint16_t> label = label_;
     defects_ = repair_labels_at(there, made_->places, made_->cells, label, stop_).defects;
+    // Labels of single cells may have been changed in a void: an interface that runs into it would not end there.
+    unify_voids(made_->places, made_->cells, reach_, known_, label);
     facets_ = interface_facets(made_->cells, label);
   }
 
@@ -94,7 +97,9 @@ class Patch {
   const PatchWorld* world_;
   const std::atomic<bool>* stop_;
   std::shared_ptr<const PatchCells::Made> made_;
+  std::vector<double> reach_;         // per member
   std::vector<std::uint16_t> label_;  // per cell
+  std::vector<std::uint8_t> known_;   // per cell: the label is that beside a triangle that stays
   InterfaceFacets facets_;
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
@@ -374,8 +379,8 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
     for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
   add_pinched(mesh, world.points.size());
   cells.begin();
-  if (mesh.unsettled.empty()) return !mesh.triangles.empty();
   Settling settling(mesh, world, cells);
+  if (settling.count() == 0) return !mesh.triangles.empty();
   bool repairs = false;
   double work = 0;  // particles triangulated
   for (int round = 0; round < patch_rounds; ++round) {

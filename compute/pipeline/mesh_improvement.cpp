@@ -18,7 +18,9 @@ namespace {
 /// attempts help more.
 int most_further(const ImprovementRule& rule, const StarUse& use) { return rule.stars && use.fallbacks == 0 ? 1 : 4; }
 
-constexpr int most_in_vain = 3;  // attempts
+constexpr int most_in_vain = 3;        // attempts
+constexpr int most_patchings = 3;      // of what is not acceptable,
+constexpr int rounds_of_patching = 6;  // of remeshing in each, at most
 
 /// Cells are tried, too, rather than that triangles of stars are so bad.
 constexpr DefectRule unacceptable{0, worst_defects.near, worst_defects.near, false};
@@ -93,8 +95,8 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
   settle(best);
-  const Triangulated& made = best->made;
-  if (stars() && polishes() && (!made.touching.empty() || fitness(made.mesh, made.order, unacceptable) < 1)) {
+  for (int k = 0; k < most_patchings && stars() && polishes() && !is_acceptable(best->made); ++k) patch(*best);
+  if (stars() && polishes() && !is_acceptable(best->made)) {
     ++star_use_.fallbacks;
     remeshed_ = 0, bad_ = most_bad, in_vain_ = 0;
     best.reset();
@@ -128,6 +130,26 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
     }
     again = improve(made);
   }
+}
+
+bool MeshImprovement::is_acceptable(const Triangulated& made) {
+  return made.touching.empty() && fitness(made.mesh, made.order, unacceptable) >= 1;
+}
+
+/// Makes the mesh again with cells where it is not acceptable, of the same particles, and improves it: triangles of one
+/// kind may be good where those of the other are bad. `best` is replaced where that is better.
+void MeshImprovement::patch(Kept& best) {
+  particles_.upload(best.particles);
+  const std::vector<Vec3d> points = world_positions(best.particles.position, frame_);
+  std::vector<std::uint8_t> bad = points_at_triangles_under(unacceptable.near, best.made.mesh);
+  for (const auto& defect : best.made.touching)
+    for (const std::uint32_t v : defect) bad[v] = 1;
+  for (std::size_t v = 0; v < bad.size(); ++v)
+    if (bad[v]) patch_cells_.keep_in_patch(points[best.made.point_of[v]]);
+  remeshed_ = std::max(1, rule_.remesh - rounds_of_patching), bad_ = most_bad, in_vain_ = 0;
+  std::optional<Kept> now;
+  settle(now);
+  if (stars() && better_shaped(*now, best)) best = std::move(*now);
 }
 
 double MeshImprovement::fraction() const {
