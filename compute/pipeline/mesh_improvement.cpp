@@ -141,9 +141,7 @@ bool MeshImprovement::is_acceptable(const Triangulated& made) {
 void MeshImprovement::patch(Kept& best) {
   particles_.upload(best.particles);
   const std::vector<Vec3d> points = world_positions(best.particles.position, frame_);
-  std::vector<std::uint8_t> bad = points_at_triangles_under(unacceptable.near, best.made.mesh);
-  for (const auto& defect : best.made.touching)
-    for (const std::uint32_t v : defect) bad[v] = 1;
+  const std::vector<std::uint8_t> bad = bad_points(best.made, unacceptable.near);
   for (std::size_t v = 0; v < bad.size(); ++v)
     if (bad[v]) patch_cells_.keep_in_patch(points[best.made.point_of[v]]);
   remeshed_ = std::max(1, rule_.remesh - rounds_of_patching), bad_ = most_bad, in_vain_ = 0;

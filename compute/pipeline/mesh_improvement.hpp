@@ -105,7 +105,7 @@ class MeshImprovement {
   bool polishes() const { return rule_.stars && rule_.deviation == 0; }
   void forget_tried(DeviationRefinement& further);
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
-  static std::vector<std::uint8_t> bad_points(const Triangulated& made);
+  static std::vector<std::uint8_t> bad_points(const Triangulated& made, double ratio = wanted_ratio);
   static double fitness_of(const Triangulated& made);
   static bool better_shaped(const Kept& a, const Kept& b);
   static bool better(const Kept& a, const Kept& b);

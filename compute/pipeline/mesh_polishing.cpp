@@ -26,9 +26,9 @@ void renumber(std::vector<std::array<std::uint32_t, 2>>& defects, std::span<cons
 
 }  // namespace
 
-/// Marks the points of a mesh at triangles that are worth further work, and where it touches itself.
-std::vector<std::uint8_t> MeshImprovement::bad_points(const Triangulated& made) {
-  std::vector<std::uint8_t> bad = points_at_triangles_under(wanted_ratio, made.mesh);
+/// Marks the points of a mesh at triangles with a lower ratio, and where it touches itself.
+std::vector<std::uint8_t> MeshImprovement::bad_points(const Triangulated& made, double ratio) {
+  std::vector<std::uint8_t> bad = points_at_triangles_under(ratio, made.mesh);
   for (const auto& defect : made.touching)
     for (const std::uint32_t point : defect) bad[point] = 1;
   return bad;

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
 #include "compute/embedding/triangle.hpp"
+#include "compute/math/eight.hpp"
 
 namespace nacre {
 namespace {
@@ -23,14 +23,9 @@ float rounding(double x) {
   return float(std::abs(x)) * std::numeric_limits<float>::epsilon() + std::numeric_limits<float>::min();
 }
 
-typedef float Floats __attribute__((vector_size(32)));  // of a node's children
-typedef double Doubles __attribute__((vector_size(64)));
+using Doubles = EightDoubles;  // of a node's children
 
-Doubles to_doubles(const std::array<float, 8>& a) {
-  Floats floats;
-  std::memcpy(&floats, a.data(), sizeof floats);
-  return __builtin_convertvector(floats, Doubles);
-}
+Doubles to_doubles(const std::array<float, 8>& a) { return __builtin_convertvector(load_eight(a.data()), Doubles); }
 Doubles larger(const Doubles& a, const Doubles& b) { return a > b ? a : b; }
 Doubles smaller(const Doubles& a, const Doubles& b) { return a < b ? a : b; }
 
