@@ -28,9 +28,12 @@ struct FieldProjector {
 struct EmbeddedProjector {
   InterfaceGridView grid;
   FieldProjector fields;
+  const float* spacing = nullptr;  ///< per interface: particles are to be so many times as far apart; null: 1
   NACRE_HD bool project(std::uint32_t interface, const Vec3f& p, float h, EmbeddedPoint& on, float known = 0) const {
-    return grid.seeds_only || h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on, known)
-                                                              : nacre::project(grid, interface, p, on);
+    const bool near = grid.seeds_only || h * grid.cells_per_voxel < 0.9f ? fields.project(interface, p, h, on, known)
+                                                                         : nacre::project(grid, interface, p, on);
+    if (near && spacing) on.h *= spacing[interface];
+    return near;
   }
 };
 

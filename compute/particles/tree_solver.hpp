@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "compute/particles/projectors.hpp"
+#include "compute/particles/refinement.hpp"
 #include "compute/particles/tree_forces.hpp"
 #include "compute/particles/tree_population.hpp"
 
@@ -14,8 +15,8 @@ namespace nacre {
 /// Parameters of the tree solver.
 struct TreeRule {
   float theta = 0.5f;
-  float step = 1.2f;       ///< share of the Newton step
-  float momentum = 0.85f;  ///< heavy ball
+  float step = 1.5f;       ///< share of the Newton step
+  float momentum = 0.75f;  ///< heavy ball
   float longest = 0.3f;    ///< of a step, in h
 };
 
@@ -116,6 +117,7 @@ class TreeSolver {
     gradient_ = memory.template permanent<Float4>(capacity);
     energy_ = memory.template permanent<float>(capacity);
     energy_sum_ = memory.template permanent<std::uint64_t>(1);
+    spacing_ = memory.template permanent<float>(std::max<std::int64_t>(interfaces, 1));
   }
 
   ParticleSet& particles() { return set_[0]; }
@@ -185,6 +187,56 @@ class TreeSolver {
     return control_population(exec, population, movers, set_[0], set_[1], velocity_[0], velocity_[1]);
   }
 
+  /// How many times as far apart as the sizing field says the particles of each interface are to be, for projectors.
+  const float* spacing() const { return spacing_.data(); }
+
+  /// All interfaces are to have particles as the sizing field says.
+  template <class Backend>
+  void reset_spacing(Executor<Backend>& exec) {
+    exec.for_each(std::int64_t(spacing_.size()), detail::ResetSpacing{spacing_.data()});
+  }
+
+  /// Keeps a quarter of the particles of this order (half on curves), twice as far apart, on interfaces that have
+  /// enough; returns how many are gone. The tree is to be up to date, and is out of date after it.
+  template <class Backend>
+  std::int64_t thin(Executor<Backend>& exec, const RelatedView& related, int order) {
+    Arena::Scope scope(exec.arena());
+    ParticleSet &from = set_[0], &to = set_[1];
+    const std::int64_t n = from.count;
+    Array<std::uint32_t> kept = exec.arena().template temporary<std::uint32_t>(n);
+    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n);
+    exec.for_each(n,
+                  detail::ThinParticles{view(0), related, order, from.interface.data(), kept.data(), spacing_.data()});
+    to.count = exec.exclusive_scan(kept.data(), start.data(), n);
+    exec.for_each(n, detail::ListKept{kept.data(), start.data(), number_.data()});
+    exec.for_each(to.count, detail::GatherParticles{number_.data(), from.position.data(), from.direction.data(),
+                                                    from.interface.data(), velocity_[0].data(), to.position.data(),
+                                                    to.direction.data(), to.interface.data(), velocity_[1].data()});
+    swap_sets();
+    scale_sizes(exec, related, order, 2);
+    return n - set_[0].count;
+  }
+
+  /// Puts a new particle in the middle of each link between two neighbours on interfaces that were thinned; all are
+  /// then as far apart as the sizing field says. The tree is to be up to date, and is out of date after it. Throws
+  /// Error where there is not enough room.
+  template <class Backend, class Projector>
+  void refine(Executor<Backend>& exec, const RelatedView& related, const Projector& projector) {
+    Arena::Scope scope(exec.arena());
+    ParticleSet& set = set_[0];
+    const std::int64_t n = set.count;
+    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n);
+    const detail::LinkMiddles<Projector> links{view(0), related, projector, set.interface.data(), spacing_.data()};
+    exec.for_each(n, detail::CountMiddles<Projector>{links, start.data()});
+    const std::int64_t born = exec.exclusive_scan(start.data(), start.data(), n);
+    require_capacity(set, n + born);
+    exec.for_each(n, detail::WriteMiddles<Projector>{links, start.data(), n, set.position.data(), set.direction.data(),
+                                                     set.interface.data()});
+    set.count = n + born;
+    scale_sizes(exec, related, -1, 0.5f);
+    reset_spacing(exec);
+  }
+
   /// How many particles are of this order.
   template <class Backend>
   std::int64_t movers(Executor<Backend>& exec, const RelatedView& related, int order) {
@@ -206,6 +258,12 @@ class TreeSolver {
     return double(energy_sum_.download()[0]) / 1048576.0 / double(std::max<std::int64_t>(movers, 1));
   }
 
+  template <class Backend>
+  void scale_sizes(Executor<Backend>& exec, const RelatedView& related, int order, float factor) {
+    exec.for_each(set_[0].count, detail::ScaleSizes{related, order, factor, spacing_.data(), set_[0].interface.data(),
+                                                    set_[0].position.data(), velocity_[0].data()});
+  }
+
   void swap_sets() {
     std::swap(set_[0], set_[1]);
     std::swap(velocity_[0], velocity_[1]);
@@ -220,6 +278,7 @@ class TreeSolver {
   Array<Float4> gradient_;
   Array<float> energy_;
   Array<std::uint64_t> energy_sum_;
+  Array<float> spacing_;  ///< per interface: 2 where particles were thinned, else 1
   Steps rebuilding_, iterating_;
 };
 

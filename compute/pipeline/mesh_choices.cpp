@@ -70,6 +70,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
   switch (quality_from_string(parameters.quality)) {
     case QualityLevel::draft:
       p.subcells = 1;
+      p.coarse_iterations = std::min(p.coarse_iterations, 16);
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);
       p.remesh = std::min(p.remesh, 12);
@@ -77,6 +78,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
     case QualityLevel::best:
       p.subcells = std::max(p.subcells, 2);
       p.iterations = std::max(p.iterations, 120);
+      p.stagnation = std::min(p.stagnation, 0.00005);
       p.smooth = std::max(p.smooth, 4);
       p.remesh = std::max(p.remesh, 40);
       break;

@@ -38,10 +38,11 @@ struct MeshParameters {
   int subcells = 1;                    ///< closest-point cells per voxel and axis; twice as many for thin sheets
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
+  int coarse_iterations = 40;          ///< tree: of a quarter of the particles, before; 0: none
   int iterations = 70;                 ///< at most, per junction order
-  double stagnation = 0.00005;         ///< ends when the energy falls by less, (E_prev - E) / E
-  double step = 1.2;                   ///< tree: share of the Newton step
-  double momentum = 0.85;              ///< tree: heavy ball
+  double stagnation = 0.0002;          ///< ends when the energy falls by less, (E_prev - E) / E
+  double step = 1.5;                   ///< tree: share of the Newton step
+  double momentum = 0.75;              ///< tree: heavy ball
   double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)
   double add_below = 0.65;             ///< split particles with less than this share of the ideal energy
   double delete_above = 1.75;          ///< delete particles with more
@@ -122,6 +123,7 @@ struct MeshInfo {
   std::int64_t seeded_on_surfaces = 0;  ///< of `seeded`; the others are on curves and at points
   std::int64_t points_final = 0, curves_final = 0, surfaces_final = 0;  ///< of `final`, by junction order
   int iterations = 0;                                                   ///< of the surfaces
+  int coarse_iterations = 0;                                            ///< of these, with a quarter of the particles
   std::vector<double> energy;       ///< mean energy per particle, per iteration of the surfaces
   std::vector<std::int64_t> count;  ///< particles on surfaces, per iteration
   std::vector<double> seconds;      ///< at its end, since the surfaces were seeded, per iteration

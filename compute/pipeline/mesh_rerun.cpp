@@ -18,7 +18,7 @@ auto of_relax(const MeshParameters& p) {
                   p.seeds, p.particles, p.seed);
 }
 
-auto of_tree(const MeshParameters& p) { return std::tie(p.theta, p.step, p.momentum); }
+auto of_tree(const MeshParameters& p) { return std::tie(p.theta, p.step, p.momentum, p.coarse_iterations); }
 
 auto of_triangles(const MeshParameters& p) { return std::tie(p.smooth, p.remesh, p.triangles); }
 

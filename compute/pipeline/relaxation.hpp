@@ -37,15 +37,20 @@ class Relaxation {
     const TellStage& tell;
     MeshInfo& info;
   };
-  /// What the particles of one order are moved in: its share of the whole command, and when they were seeded.
+  /// Which particles there are of an order: those that were seeded, a quarter of them, or as many again from that.
+  enum class Level { seeded, coarse, refined };
+  /// What the particles of one order are moved in, and its share of the whole command.
   struct Phase {
     int order;
     double from, to;
-    std::chrono::steady_clock::time_point begin;
+    Level level = Level::seeded;
   };
 
   void seed(const MeshParameters& parameters, int order, MeshInfo& info);
-  void relax_order(const Run& run, Phase phase);
+  void relax_coarse_first(const Run& run);
+  bool thin(int order);
+  void refine();
+  void relax_order(const Run& run, const Phase& phase);
   void relax_by_tree(const Run& run, const Phase& phase);
   void relax_in_turns(const Run& run, const Phase& phase);
   void note_iteration(const Run& run, const Phase& phase, int iteration, double energy, std::int64_t movers);
@@ -56,8 +61,11 @@ class Relaxation {
   Executor<Backend>& exec_;
   const MeshFields<Backend>& fields_;
   ParticleStore<Backend>& particles_;
-  SolverState turns_;        ///< of the serial and the red-black solver
-  int seeded_order_ = 0;     ///< 1: curves have particles, 2: surfaces, too
+  SolverState turns_;           ///< of the serial and the red-black solver
+  int seeded_order_ = 0;        ///< 1: curves have particles, 2: surfaces, too
+  std::int64_t seeds_[3] = {};  ///< per order: as many particles as there are to be
+  bool coarse_ = false;         ///< some interfaces have a quarter of them
+  std::chrono::steady_clock::time_point surfaces_begin_;
   bool unfinished_ = false;  ///< moving them was interrupted
 };
 
@@ -67,14 +75,19 @@ void Relaxation<Backend>::run(const MeshParameters& parameters, const TellStage&
   info.energy.clear();
   info.count.clear();
   info.seconds.clear();
-  info.iterations = 0;
+  info.iterations = info.coarse_iterations = 0;
   info.seeded = info.seeded_on_surfaces = 0;
   if (run.choices.solver != Solver::tree) turns_ = make_solver_state(exec_, particles_.set());
   put_points(fields_, particles_.set(), particles_.solver().velocity());
   seeded_order_ = 0;
   unfinished_ = true;
-  relax_order(run, {1, 0.18, 0.22, {}});
-  relax_order(run, {2, 0.22, 0.85, {}});
+  coarse_ = false;
+  if (run.choices.solver == Solver::tree && parameters.coarse_iterations > 0 && parameters.particles == 0) {
+    relax_coarse_first(run);
+  } else {
+    seed(parameters, 1, info), relax_order(run, {1, 0.18, 0.22});
+    seed(parameters, 2, info), relax_order(run, {2, 0.22, 0.85});
+  }
   info.final_energy = run.choices.quality == QualityLevel::draft ? 0 : measure_energy();
   project();
 }
@@ -83,8 +96,47 @@ template <class Backend>
 void Relaxation<Backend>::finish(const MeshParameters& parameters, MeshInfo& info) {
   if (!unfinished_) return;
   if (seeded_order_ < 1) seed(parameters, 1, info);
-  if (seeded_order_ < 2) seed(parameters, 2, info), spread_seeds(parameters);
+  const bool unsettled = seeded_order_ < 2 || coarse_;
+  if (seeded_order_ < 2) seed(parameters, 2, info);
+  if (coarse_) refine();
+  if (unsettled) spread_seeds(parameters);
   project();
+}
+
+/// A quarter of the particles settle, then all of them from these: long waves of their density, which take the most
+/// iterations, are even when the many begin.
+template <class Backend>
+void Relaxation<Backend>::relax_coarse_first(const Run& run) {
+  particles_.solver().reset_spacing(exec_);
+  seed(run.parameters, 1, run.info);
+  if (thin(1)) relax_order(run, {1, 0.18, 0.2, Level::coarse});
+  seed(run.parameters, 2, run.info);
+  if (thin(2)) relax_order(run, {2, 0.2, 0.35, Level::coarse});
+  const Level level = coarse_ ? Level::refined : Level::seeded;
+  if (coarse_) refine();
+  relax_order(run, {1, 0.35, 0.37, level});
+  relax_order(run, {2, 0.37, 0.85, level});
+}
+
+/// Whether any interface of the order has enough particles for that.
+template <class Backend>
+bool Relaxation<Backend>::thin(int order) {
+  auto stage = exec_.stage("relax");
+  if (seeds_[order] == 0) return false;
+  TreeSolver& solver = particles_.solver();
+  solver.rebuild(exec_);
+  const bool thinned = solver.thin(exec_, fields_.related(), order) > 0;
+  coarse_ |= thinned;
+  return thinned;
+}
+
+template <class Backend>
+void Relaxation<Backend>::refine() {
+  auto stage = exec_.stage("relax");
+  TreeSolver& solver = particles_.solver();
+  solver.rebuild(exec_);
+  solver.refine(exec_, fields_.related(), fields_.embedded_projector());
+  coarse_ = false;
 }
 
 template <class Backend>
@@ -102,8 +154,9 @@ void Relaxation<Backend>::seed(const MeshParameters& parameters, int order, Mesh
   set.fixed = set.count;
   const std::int64_t seeds = seed_order(exec_, fields_, parameters, order, set, particles_.solver().velocity());
   seeded_order_ = order;
+  seeds_[order] = seeds;
   info.seeded += seeds;
-  if (order == 2) info.seeded_on_surfaces = seeds;
+  if (order == 2) info.seeded_on_surfaces = seeds, surfaces_begin_ = std::chrono::steady_clock::now();
 }
 
 /// A few steps of seeds that had no time to settle, so that they leave the rims to the particles there.
@@ -129,12 +182,10 @@ double Relaxation<Backend>::measure_energy() {
   return solver.forces(exec_, fields_.related(), 2, 0, solver.movers(exec_, fields_.related(), 2));
 }
 
-/// Seeds the particles of an order and moves them.
+/// Moves the particles of an order, if there are any.
 template <class Backend>
-void Relaxation<Backend>::relax_order(const Run& run, Phase phase) {
-  seed(run.parameters, phase.order, run.info);
-  if (particles_.set().count == particles_.set().fixed) return;
-  phase.begin = std::chrono::steady_clock::now();
+void Relaxation<Backend>::relax_order(const Run& run, const Phase& phase) {
+  if (seeds_[phase.order] == 0) return;
   if (run.choices.solver == Solver::tree)
     relax_by_tree(run, phase);
   else
@@ -147,10 +198,13 @@ void Relaxation<Backend>::note_iteration(const Run& run, const Phase& phase, int
   if (phase.order == 2) {
     run.info.energy.push_back(energy);
     run.info.count.push_back(movers);
-    run.info.seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - phase.begin).count());
+    run.info.seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - surfaces_begin_).count());
     ++run.info.iterations;
+    if (phase.level == Level::coarse) ++run.info.coarse_iterations;
   }
-  const double done = (phase.to - phase.from) * iteration / run.parameters.iterations;
+  const int most = phase.level == Level::coarse ? run.parameters.coarse_iterations : run.parameters.iterations;
+  const double done = (phase.to - phase.from) * iteration / most;
   run.tell("relax", phase.from + done, iteration, energy);
 }
 
@@ -160,14 +214,21 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
   TreeSolver& solver = particles_.solver();
   const MeshParameters& parameters = run.parameters;
   const RelatedView related = fields_.related();
-  const EmbeddedProjector projector = fields_.embedded_projector();
+  EmbeddedProjector projector = fields_.embedded_projector();
+  const bool coarse = phase.level == Level::coarse;
+  if (coarse) projector.spacing = solver.spacing();
   const int order = phase.order;
   std::int64_t movers = solver.movers(exec_, related, order);
   const TreeRule rule = tree_rule(parameters);
   PopulationRule population = population_rule(parameters, order);
-  if (parameters.particles == 0) population.target = movers;  // as many as the sizing field asked for
-  const int iterations = parameters.iterations, every = std::max(1, parameters.control_every);
-  const int last_control = iterations - 2 * every;
+  // As many as the sizing field asked for.
+  if (parameters.particles == 0) population.target = coarse ? movers : seeds_[order];
+  const int iterations = coarse ? parameters.coarse_iterations : parameters.iterations;
+  // A quarter need more control, where they are squeezed in between rims; then the number is right, nearly.
+  const bool refined = phase.level == Level::refined;
+  const int every = std::max(1, coarse || refined ? 3 * parameters.control_every / 5 : parameters.control_every);
+  int last_control = iterations - (coarse ? 1 : 2) * every;
+  if (refined) last_control = std::min(last_control, 2 * every);
   bool controls = true, sorted = false;
   double before = 0;
   for (int k = 0; k < iterations; ++k) {
@@ -190,7 +251,7 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
       continue;
     }
     note_iteration(run, phase, k + 1, energy, movers);
-    const bool settled = !controls || k > last_control;
+    const bool settled = !coarse && (!controls || k > last_control);
     if (settled && k % every == every - 1 && before > 0 && std::fabs(before - energy) < parameters.stagnation * energy)
       break;
     before = energy;

@@ -82,6 +82,7 @@ json particles_json(const MeshInfo& info, bool interrupted) {
           {"on_curves", info.curves_final},
           {"on_surfaces", info.surfaces_final},
           {"iterations", info.iterations},
+          {"coarse_iterations", info.coarse_iterations},
           {"interrupted", interrupted},
           {"energy", info.energy},
           {"final_energy", info.final_energy},

@@ -11,6 +11,7 @@ namespace nacre {
 void apply_thesis_preset(Settings& settings) {
   MeshParameters& m = settings.mesh;
   m.theta = 0.75;
+  m.coarse_iterations = 0;
   m.iterations = 50;
   m.stagnation = 0.0015;
   m.add_below = 0.75;

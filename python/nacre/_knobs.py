@@ -31,6 +31,7 @@ class MeshKnobs(TypedDict, total=False):
     quality: Literal["draft", "standard", "best"]  #: draft: quick, for looking and for turning knobs; best: more rounds of everything
     solver: Literal["tree", "redblack", "serial"]  #: how particles are moved
     theta: float  #: tree solver: a node smaller than theta times its distance counts as one particle
+    coarse_iterations: int  #: tree solver: iterations of a quarter of the particles, before all of them move; 0: none
     iterations: int  #: most iterations per junction order
     stagnation: float  #: stop when the energy falls by less than this share
     step: float  #: tree solver: share of the Newton step that is taken

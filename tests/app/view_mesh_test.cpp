@@ -54,9 +54,10 @@ double covered(const Image& image) {
 }
 
 TEST_F(ViewMesh, ParticlesGrowAndSettle) {
-  const Image early = picture(2);
+  const Arguments all_at_once{"--set", "coarse_iterations=0"};
+  const Image early = picture(2, all_at_once);
   EXPECT_EQ(report["view"]["steps"], 2);
-  const Image later = picture(36);
+  const Image later = picture(36, all_at_once);
   EXPECT_EQ(report["view"]["steps"], 36);  // an iteration a frame
   EXPECT_GT(covered(early), 0.001);        // the curve alone
   EXPECT_GT(covered(later), 0.15);

@@ -64,9 +64,11 @@ values() {
   local name
   for name in cells=embedding.cells surface=embedding.surface_cells coarse=embedding.closest_point_cells \
     embedding=embedding.bytes fields=fields.bytes points=input.points triangles=input.triangles \
-    particles=particles.final iterations=particles.iterations; do
+    particles=particles.final; do
     echo "${name%=*} $(report_value "$1" "${name#*=}")"
   done
+  awk -v all="$(report_value "$1" particles.iterations)" -v coarse="$(report_value "$1" particles.coarse_iterations)" \
+    'BEGIN { print "iterations", all - 0.75 * coarse }'  # coarse ones move a quarter of the particles
   report_list "$1" fields.blocks | awk 'BEGIN { n = 512 } { n *= $1 } END { print "voxels", n }'
   awk '/^ *"(calls|launches)": / { key = $1; gsub(/[":]/, "", key); last[key] = $2 + 0 }
        /^ *"name": / { stage = $2; gsub(/[",]/, "", stage) }

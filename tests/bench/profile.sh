@@ -33,7 +33,8 @@ element_time() {
   seconds=$(report_value "$1" flow.seconds_per_step.median)
   if [[ -z $elements ]]; then
     elements=$(report_value "$1" particles.final)
-    iterations=$(report_value "$1" particles.iterations)
+    iterations=$(awk -v all="$(report_value "$1" particles.iterations)" \
+      -v coarse="$(report_value "$1" particles.coarse_iterations)" 'BEGIN { print all - 0.75 * coarse }')
     seconds=$(stage_seconds "$1" relax)
   fi
   awk -v s="$seconds" -v n="$elements" -v i="$iterations" -v t="$threads" \

@@ -7,79 +7,11 @@
 #include <vector>
 
 #include "compute/device/error.hpp"
-#include "compute/particles/tree_solver.hpp"
 #include "tests/compute/embedding/embedding_cases.hpp"
-#include "tests/compute/on_devices.hpp"
-#include "tests/compute/particles/analytic_projector.hpp"
 #include "tests/compute/particles/solver_cases.hpp"
+#include "tests/compute/particles/tree_solver_run.hpp"
 
 namespace nacre::test {
-
-/// A tree solver with particles of some interfaces. `bounds`: interface k + 1 is the rim of interface k.
-template <class Backend>
-struct TreeSolverRun {
-  Executor<Backend>& exec;
-  TreeSolver solver;
-  Array<std::uint32_t> start, related;
-  Array<std::uint8_t> order;
-  RelatedView view;
-  TreeRule rule;
-
-  TreeSolverRun(Executor<Backend>& e, std::int64_t capacity, const std::vector<std::uint8_t>& orders,
-                const std::vector<std::vector<std::uint32_t>>& relations)
-      : exec(e), solver(e, capacity, std::int64_t(orders.size()), 64) {
-    std::vector<std::uint32_t> first{0}, all;
-    for (const auto& of_one : relations) {
-      all.insert(all.end(), of_one.begin(), of_one.end());
-      first.push_back(std::uint32_t(all.size()));
-    }
-    start = exec.arena().template permanent_copy<std::uint32_t>(first);
-    related = exec.arena().template permanent_copy<std::uint32_t>(all);
-    order = exec.arena().template permanent_copy<std::uint8_t>(orders);
-    view = {start.data(), related.data(), order.data()};
-  }
-
-  void put(const std::vector<Float4>& position, const std::vector<Float4>& direction,
-           const std::vector<std::uint32_t>& interface) {
-    ParticleSet& set = solver.particles();
-    set.count = std::int64_t(position.size());
-    set.position.upload(position);
-    set.direction.upload(direction);
-    set.interface.upload(interface);
-    solver.velocity().upload(std::vector<Float4>(position.size(), Float4{0, 0, 0, 0}));
-  }
-
-  /// Puts points onto their interfaces and makes them the particles.
-  template <class Projector>
-  void seed(const Projector& projector, const std::vector<Vec3f>& points, const std::vector<std::uint32_t>& interface) {
-    std::vector<Float4> position, direction;
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      EmbeddedPoint on;
-      ASSERT_TRUE(projector.project(interface[k], points[k], 1, on)) << k;
-      position.push_back({on.p.x, on.p.y, on.p.z, on.h});
-      direction.push_back({on.direction.x, on.direction.y, on.direction.z, 0});
-    }
-    put(position, direction, interface);
-  }
-
-  /// One iteration as the pipeline makes it; returns the mean energy before the step.
-  template <class Projector>
-  double step(const Projector& projector, int of_order) {
-    solver.rebuild(exec);
-    return solver.iterate(exec, projector, view, of_order, rule, solver.movers(exec, view, of_order));
-  }
-
-  std::size_t count() const { return std::size_t(solver.particles().count); }
-  std::vector<Float4> positions() const { return solver.particles().position.download(0, count()); }
-  std::vector<Float4> directions() const { return solver.particles().direction.download(0, count()); }
-  std::vector<std::uint32_t> interfaces() const { return solver.particles().interface.download(0, count()); }
-  std::vector<Float4> velocities() { return solver.velocity().download(0, count()); }
-};
-
-template <class Backend>
-TreeSolverRun<Backend> one_surface(Executor<Backend>& exec, std::int64_t capacity) {
-  return {exec, capacity, {2}, {{0}}};
-}
 
 template <class Backend>
 void AnIterationIsForcesAndAMove(Executor<Backend>& exec) {
@@ -137,7 +69,8 @@ void APairStepsApartAsTheFormulaSays(Executor<Backend>& exec) {
     run.step(projector, 2);
     const float gap = std::fabs(once[0].x - once[1].x);
     const PairForce next = pair_force({0, 0, 0}, 1, {gap, 0, 0}, 1);
-    const float expected = 0.85f * std::fabs(first[0].x) + 0.1f / (0.5f * next.stiffness) * std::fabs(next.gradient.x);
+    const float expected =
+        run.rule.momentum * std::fabs(first[0].x) + 0.1f / (0.5f * next.stiffness) * std::fabs(next.gradient.x);
     EXPECT_NEAR(std::fabs(run.velocities()[0].x), std::min(expected, 0.3f), 1e-4) << distance;
   }
 }
@@ -300,7 +233,7 @@ void BothProjectorsLandOnTheSurface(Executor<Backend>& exec) {
   EXPECT_GT(embedded, 0);
 }
 
-/// Holes fill, crowds thin out, and the count stays where it ends: within a quarter of a hexagonal lattice's, since
+/// Holes fill, crowds thin out, and the count stays where it ends: within 28% of a hexagonal lattice's, since
 /// energies within the thresholds are left alone, wherever the start was; next to it from a start that was right, or
 /// where the number is known.
 template <class Backend>
@@ -319,7 +252,7 @@ void TheTreesPopulationSettlesFromAnyStart(Executor<Backend>& exec) {
       const IterationResult changed = control_once(run, ball, rule, k);
       added += changed.added, deleted += changed.deleted, last = changed.added + changed.deleted;
     }
-    const double allowed = share == 1 ? 0.04 : known ? 0.06 : 0.25;
+    const double allowed = share == 1 ? 0.04 : known ? 0.06 : 0.28;
     EXPECT_NEAR(double(run.count()), ball.ideal(), allowed * ball.ideal());
     EXPECT_LE(last, std::int64_t(0.01 * ball.ideal()));
     EXPECT_EQ(std::int64_t(run.count()), std::int64_t(share * ball.ideal()) + added - deleted);

@@ -23,6 +23,7 @@ class MeshInterrupt : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     pipeline_->parameters.solver = GetParam();
+    pipeline_->parameters.coarse_iterations = 0;
     pipeline_->parameters.stagnation = 0;
     pipeline_->parameters.iterations = 200;
     pipeline_->load(volume_);

@@ -95,6 +95,7 @@ TEST(Relaxation, BringsTheParticlesToRestByEachSolver) {
     SCOPED_TRACE(solver);
     Parts parts(scalar_volume({24, 24, 24}, ball({11, 12, 11.5}, 6)));
     parts.parameters.solver = solver;
+    parts.parameters.coarse_iterations = 0;
     parts.make_room();
     int told = 0;
     const TellStage tell = [&](std::string_view stage, double fraction, int iteration, double) {
@@ -110,6 +111,47 @@ TEST(Relaxation, BringsTheParticlesToRestByEachSolver) {
     for (const Float4& p : particles.position)
       EXPECT_NEAR(length(parts.fields.frame().to_world({p.x, p.y, p.z}) - Vec3d(11, 12, 11.5)), 6, 0.05);
   }
+}
+
+/// A quarter of the particles settle first; those that are made from them begin with less energy than seeds end with
+/// after as many iterations.
+TEST(Relaxation, BeginsWithAQuarterOfTheParticles) {
+  const MeshVolume volume = scalar_volume({32, 32, 32}, ball({15, 16, 15.5}, 13));
+  Parts at_once(volume), coarse_first(volume);
+  at_once.parameters.coarse_iterations = 0;
+  coarse_first.parameters.coarse_iterations = 30;
+  for (Parts* parts : {&at_once, &coarse_first}) {
+    parts->make_room();
+    parts->relaxation.run(parts->parameters, silent, parts->info);
+  }
+  EXPECT_EQ(at_once.info.coarse_iterations, 0);
+  const MeshInfo& info = coarse_first.info;
+  ASSERT_GT(info.coarse_iterations, 20);
+  ASSERT_LT(info.coarse_iterations, info.iterations);
+  const double seeds = double(info.seeded_on_surfaces);
+  EXPECT_NEAR(double(info.count.front()), seeds / 4, 1);
+  EXPECT_NEAR(double(info.count[std::size_t(info.coarse_iterations)]), seeds, 0.03 * seeds);
+  EXPECT_LT(info.energy[std::size_t(info.coarse_iterations)], at_once.info.energy.back());
+  const HostParticles particles = coarse_first.particles.download();
+  EXPECT_NEAR(double(particles.count()), double(at_once.particles.count()), 0.03 * seeds);
+  for (const Float4& p : particles.position) {
+    EXPECT_NEAR(length(coarse_first.fields.frame().to_world({p.x, p.y, p.z}) - Vec3d(15, 16, 15.5)), 13, 0.05);
+    EXPECT_NEAR(p.w, 1, 1e-3) << "the size of the field, not that of a quarter";
+  }
+}
+
+/// Stopped among a quarter of the particles: the others are made all the same.
+TEST(Relaxation, IsRefinedAfterAnInterruption) {
+  Parts parts(scalar_volume({32, 32, 32}, ball({15, 16, 15.5}, 13)));
+  parts.make_room();
+  const TellStage stop = [](std::string_view, double, int iteration, double) {
+    if (iteration == 10) throw Interrupted();
+  };
+  EXPECT_THROW(parts.relaxation.run(parts.parameters, stop, parts.info), Interrupted);
+  const double quarter = double(parts.particles.count());
+  parts.relaxation.finish(parts.parameters, parts.info);
+  EXPECT_NEAR(double(parts.particles.count()), 4 * quarter, 0.05 * 4 * quarter);
+  for (const Float4& p : parts.particles.download().position) EXPECT_NEAR(p.w, 1, 1e-3);
 }
 
 /// Stopped while curves move: surfaces have particles all the same when it is finished.
