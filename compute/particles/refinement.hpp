@@ -86,20 +86,24 @@ struct LinkMiddles {
     const std::uint32_t group = interface[i];
     if (!(spacing[group] > 1)) return;
     std::uint32_t near[most_near];
-    const int count = find_near(i, group, near);
     const Vec3f p = at(std::uint32_t(i));
+    const float h = tree.position[i].w;
+    EmbeddedPoint here;  // its size is twice the field's, unless thinning was interrupted
+    if (!projector.project(group, p, 0.5f * h, here) || h < 1.5f * here.h) return;
+    const int count = find_near(i, group, near);
     for (int k = 0; k < count; ++k) {
       if (interface[near[k]] == group && near[k] < std::uint32_t(i)) continue;
       const Vec3f along = at(near[k]) - p, middle = p + along * 0.5f;
       const bool linked = is_link(i, along, k, near, count);
       EmbeddedPoint on;
-      if (!linked || !projector.project(group, middle, 0.5f * tree.position[i].w, on) || on.margin < 0) continue;
+      if (!linked || !projector.project(group, middle, 0.5f * h, on) || on.margin < 0) continue;
       const Vec3f off = on.p - middle;
       if (dot(off, off) <= 0.25f * dot(along, along)) visit(on);
     }
   }
 
  private:
+  /// Whether particle i is linked to number `other` of those near it, which is `along` away.
   NACRE_HD bool is_link(std::int64_t i, const Vec3f& along, int other, const std::uint32_t* near, int count) const {
     const Float4 d = tree.direction[i];
     const Vec3f p = at(std::uint32_t(i)), side = cross(Vec3f(d.x, d.y, d.z), along);
@@ -163,11 +167,13 @@ struct WriteMiddles {
   Float4* position;
   Float4* direction;
   std::uint32_t* interface;
+  Float4* velocity;
   NACRE_HD void operator()(std::int64_t i) const {
     std::int64_t to = first + start[i];
     const std::uint32_t group = interface[i];
     links.visit(i, [&](const EmbeddedPoint& on) {
-      position[to] = {on.p.x, on.p.y, on.p.z, on.h * links.spacing[group]};
+      position[to] = {on.p.x, on.p.y, on.p.z, on.h};
+      velocity[to] = {0, 0, 0, 0};
       direction[to] = {on.direction.x, on.direction.y, on.direction.z, 0};
       interface[to++] = group;
     });

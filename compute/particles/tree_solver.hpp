@@ -212,8 +212,8 @@ class TreeSolver {
     exec.for_each(to.count, detail::GatherParticles{number_.data(), from.position.data(), from.direction.data(),
                                                     from.interface.data(), velocity_[0].data(), to.position.data(),
                                                     to.direction.data(), to.interface.data(), velocity_[1].data()});
-    swap_sets();
-    scale_sizes(exec, related, order, 2);
+    scale_sizes(exec, related, order, 2, to, velocity_[1]);
+    swap_sets();  // last: an interruption leaves the particles as they were
     return n - set_[0].count;
   }
 
@@ -231,10 +231,10 @@ class TreeSolver {
     const std::int64_t born = exec.exclusive_scan(start.data(), start.data(), n);
     require_capacity(set, n + born);
     exec.for_each(n, detail::WriteMiddles<Projector>{links, start.data(), n, set.position.data(), set.direction.data(),
-                                                     set.interface.data()});
-    set.count = n + born;
-    scale_sizes(exec, related, -1, 0.5f);
+                                                     set.interface.data(), velocity_[0].data()});
+    scale_sizes(exec, related, -1, 0.5f, set, velocity_[0]);
     reset_spacing(exec);
+    set.count = n + born;  // last: after an interruption there are those of before
   }
 
   /// How many particles are of this order.
@@ -259,9 +259,10 @@ class TreeSolver {
   }
 
   template <class Backend>
-  void scale_sizes(Executor<Backend>& exec, const RelatedView& related, int order, float factor) {
-    exec.for_each(set_[0].count, detail::ScaleSizes{related, order, factor, spacing_.data(), set_[0].interface.data(),
-                                                    set_[0].position.data(), velocity_[0].data()});
+  void scale_sizes(Executor<Backend>& exec, const RelatedView& related, int order, float factor, ParticleSet& set,
+                   Array<Float4>& velocity) {
+    exec.for_each(set.count, detail::ScaleSizes{related, order, factor, spacing_.data(), set.interface.data(),
+                                                set.position.data(), velocity.data()});
   }
 
   void swap_sets() {
