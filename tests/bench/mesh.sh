@@ -47,7 +47,8 @@ row() {
   local line
   line=$(printf '%s\n' "${values[@]}" | awk -F= -v name="$name" -v total="$(report_value "$report" seconds)" \
     -v particles="$(report_value "$report" particles.final)" -v iterations="$(report_value "$report" particles.iterations)" \
-    -v coarse="$(report_value "$report" particles.coarse_iterations)" -v triangles="$(report_value "$report" mesh.triangles)" -v mean="$(report_value "$report" mesh.radius_ratio.mean)" \
+    -v coarse="$(report_value "$report" particles.coarse_iterations)" \
+    -v triangles="$(report_value "$report" mesh.triangles)" -v mean="$(report_value "$report" mesh.radius_ratio.mean)" \
     -v least="$(report_value "$report" mesh.radius_ratio.min)" \
     -v away="$(report_value "$report" mesh.away_from_junctions.radius_ratio.min)" \
     -v under="$(report_value "$report" mesh.away_from_junctions.share_under_25_degrees)" \
