@@ -15,8 +15,8 @@ namespace nacre {
 /// Parameters of the tree solver.
 struct TreeRule {
   float theta = 0.5f;
-  float step = 1.5f;       ///< share of the Newton step
-  float momentum = 0.75f;  ///< heavy ball
+  float step = 1.2f;       ///< share of the Newton step
+  float momentum = 0.85f;  ///< heavy ball
   float longest = 0.3f;    ///< of a step, in h
 };
 

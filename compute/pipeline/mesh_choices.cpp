@@ -78,7 +78,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
     case QualityLevel::best:
       p.subcells = std::max(p.subcells, 2);
       p.iterations = std::max(p.iterations, 120);
-      p.stagnation = std::min(p.stagnation, 0.00005);
+      p.stagnation = std::min(p.stagnation, 0.0000125);
       p.smooth = std::max(p.smooth, 4);
       p.remesh = std::max(p.remesh, 40);
       break;

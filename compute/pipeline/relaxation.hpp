@@ -219,7 +219,12 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
   if (coarse) projector.spacing = solver.spacing();
   const int order = phase.order;
   std::int64_t movers = solver.movers(exec_, related, order);
-  const TreeRule rule = tree_rule(parameters);
+  TreeRule rule = tree_rule(parameters);
+  double stagnation = parameters.stagnation;
+  if (phase.level != Level::seeded) {  // without the long waves of seeds, which are what so heavy a ball is for
+    rule.step *= 1.25f, rule.momentum *= 15.0f / 17;  // 1.5 and 0.75 by default
+    stagnation *= 4;
+  }
   PopulationRule population = population_rule(parameters, order);
   // As many as the sizing field asked for.
   if (parameters.particles == 0) population.target = coarse ? movers : seeds_[order];
@@ -252,8 +257,7 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
     }
     note_iteration(run, phase, k + 1, energy, movers);
     const bool settled = !coarse && (!controls || k > last_control);
-    if (settled && k % every == every - 1 && before > 0 && std::fabs(before - energy) < parameters.stagnation * energy)
-      break;
+    if (settled && k % every == every - 1 && before > 0 && std::fabs(before - energy) < stagnation * energy) break;
     before = energy;
   }
 }
