@@ -23,7 +23,7 @@ check_rows() {
 number='[0-9.]+ \|'
 check_rows flow.sh "\| train \| 256 \| [1-9][0-9]* \|( $number){6}"
 NACRE_BENCH_CASES=table check_rows octree.sh "\| train \| 256 \| [1-9][0-9]* \|( $number){11}"
-NACRE_BENCH_CASES=heart check_rows mesh.sh "\| heart \|( $number){17} yes \| $number"
+NACRE_BENCH_CASES=heart check_rows mesh.sh "\| heart \|( $number){2} [1-9][0-9]* \+ [1-9][0-9]* \|( $number){14} yes \| $number"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
