@@ -164,10 +164,6 @@ struct EmbedInterface {
       const Vec3f along =
           j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
       if (dot(along, along) < 2.5f * last_step() * last_step()) break;
-      if (seeds_only) {  // in the tangent, which is near enough
-        at.p += along;
-        break;
-      }
       JunctionPoint better;
       if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
         break;

@@ -115,6 +115,15 @@ class StarCutter {
     return {dot(r, u_), dot(r, v_)};
   }
 
+  /// Item q as it is seen from between the two normals, in the plane that is turned into this item's: the same length
+  /// and, from each of the two, the same direction.
+  NACRE_HD Plane unfolded(std::uint32_t q) const {
+    const Vec3d r = items_.position[q] - here_, half = normalized(normal_ + items_.normal[q]), turn = half + normal_;
+    const Vec3d across = r - dot(r, half) * half;
+    const Vec3d turned = across - dot(turn, across) / (1 + dot(half, normal_)) * turn;
+    return {dot(turned, u_), dot(turned, v_)};
+  }
+
   /// Strictly between the directions to the next and to the previous item.
   NACRE_HD bool in_sector(double u, double v) const {
     const bool left_of_next = along_next_.u * v - along_next_.v * u > 0;
@@ -166,11 +175,7 @@ class StarCutter {
   NACRE_HD void cut_off(double distance2, std::uint32_t q) {
     const double facing = dot(normal_, items_.normal[q]);
     if (facing < same_side) return;
-    Plane to = in_plane(q);
-    if (const double across2 = to.u * to.u + to.v * to.v; facing < bent && across2 > 0) {
-      const double unfold = std::sqrt(distance2 / across2);
-      to.u *= unfold, to.v *= unfold;
-    }
+    const Plane to = facing < bent ? unfolded(q) : in_plane(q);
     if (rim_ && !beside_on_rim(q) && !in_sector(to.u, to.v)) return;
     if (clip(to.u, to.v, 0.5 * (distance2 + weight_ - weight_of(q)), q)) far2_ = farthest2();
   }

@@ -96,6 +96,8 @@ class StarSettler {
 
   NACRE_HD void add(int k, std::uint32_t other) {
     if (star_.position_of(other) >= 0) return;
+    for (const std::uint32_t q : fresh_)
+      if (q == other) return;  // another side takes it: it is in the ring once
     if (fresh_[k] == none || other < fresh_[k]) fresh_[k] = other;
     any_new_ = true;
   }

@@ -49,9 +49,8 @@ struct PopulationRule {
   float certain_above = 4;                        ///< deleted whatever chance says (a share, too)
   bool may_add = true;
   std::int64_t target = 0;  ///< tree: how many there shall be, within `slack`; 0: as the energies have it
+  double slack = 0.05;      ///< share of the target
   std::uint32_t seed = 1;
-
-  static constexpr double slack = 0.05;
 };
 
 /// What an iteration did.

@@ -220,7 +220,7 @@ struct PopulationScratch {
 inline float tree_demand(const PopulationRule& rule, std::int64_t movers) {
   if (rule.target <= 0) return 0;
   const double missing = double(rule.target - movers) / double(std::max<std::int64_t>(movers, 1));
-  return std::fabs(missing) > PopulationRule::slack ? float(missing) : 0.0f;
+  return std::fabs(missing) > rule.slack ? float(missing) : 0.0f;
 }
 
 }  // namespace detail

@@ -43,9 +43,10 @@ FieldRecipe field_recipe(const MeshParameters& parameters, MeshVolume::Kind kind
   // voxel for what meets there, so that a few are no cheaper than many, and one that is larger than the volume takes
   // forever.
   constexpr double fewest = 0.125, to_a_size = 1.5, thin = 0.75;
-  recipe.seeds_only = quality_from_string(parameters.quality) == QualityLevel::draft;
-  // Where sheets are nearer to each other than their particles may be, stencils have to fit between them.
-  const int finer = small < thin * parameters.min_size && !recipe.seeds_only ? 2 : 1;
+  recipe.seeds_only = projection_from_string(parameters.projection) == Projection::fields;
+  // Where sheets are nearer to each other than their particles may be, each needs cells of its own.
+  const bool draft = quality_from_string(parameters.quality) == QualityLevel::draft;
+  const int finer = small < thin * parameters.min_size && !draft ? 2 : 1;
   recipe.cells_per_voxel = std::clamp(to_a_size / small, fewest, double(finer * parameters.subcells));
   return recipe;
 }

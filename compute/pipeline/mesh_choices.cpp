@@ -23,6 +23,8 @@ constexpr std::array<Named<TriangleSource>, 3> triangle_sources{
     {{"auto", TriangleSource::automatic}, {"delaunay", TriangleSource::delaunay}, {"stars", TriangleSource::stars}}};
 constexpr std::array<Named<QualityLevel>, 3> qualities{
     {{"draft", QualityLevel::draft}, {"standard", QualityLevel::standard}, {"best", QualityLevel::best}}};
+constexpr std::array<Named<Projection>, 2> projections{
+    {{"fields", Projection::fields}, {"embedding", Projection::embedding}}};
 enum class Seeds { automatic, embedding, marching_cubes };
 constexpr std::array<Named<Seeds>, 3> seed_names{
     {{"auto", Seeds::automatic}, {"embedding", Seeds::embedding}, {"marching-cubes", Seeds::marching_cubes}}};
@@ -55,6 +57,9 @@ CubicKernel kernel_from_string(std::string_view text) { return choice_of<CubicKe
 TriangleSource triangles_from_string(std::string_view text) {
   return choice_of<TriangleSource>(triangle_sources, "triangulation", text);
 }
+Projection projection_from_string(std::string_view text) {
+  return choice_of<Projection>(projections, "projection", text);
+}
 QualityLevel quality_from_string(std::string_view text) { return choice_of<QualityLevel>(qualities, "quality", text); }
 
 SeedOrigin seeds_from_string(std::string_view text, Solver solver) {
@@ -70,6 +75,7 @@ MeshParameters at_quality(const MeshParameters& parameters) {
   switch (quality_from_string(parameters.quality)) {
     case QualityLevel::draft:
       p.subcells = 1;
+      p.projection = "fields";
       p.coarse_iterations = std::min(p.coarse_iterations, 16);
       p.iterations = std::min(p.iterations, 8);
       p.smooth = std::min(p.smooth, 1);

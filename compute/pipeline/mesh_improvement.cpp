@@ -124,7 +124,7 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
         now = polished(made);
       else
         now.made = made, now.particles = particles_.download();
-      in_vain_ = best && !better_shaped(now, *best) ? in_vain_ + 1 : 0;
+      in_vain_ = best && !nearer_to_good(now, *best) ? in_vain_ + 1 : 0;
       if (!best || !better_shaped(*best, now)) best = std::move(now);
       if (polishes() && (is_good(*best) || in_vain_ == most_in_vain)) return;
     }

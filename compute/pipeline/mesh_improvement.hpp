@@ -99,6 +99,7 @@ class MeshImprovement {
   std::int64_t edit(Kept& kept, std::vector<std::uint8_t>& fixed);
   std::int64_t split(Kept& kept, std::vector<std::uint8_t>& fixed);
   bool is_good(const Kept& kept) const;
+  bool nearer_to_good(const Kept& a, const Kept& b) const;
   static bool is_acceptable(const Triangulated& made);
   void patch(Kept& best);
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }

@@ -35,6 +35,7 @@ struct MeshParameters {
   std::string sizes;                   ///< sizing: largest distances in materials and regions: size_bounds.hpp
   bool curvature = false;              ///< sizing: bound by epsilon / largest curvature, too
   double max_deviation = 0;            ///< of triangles from their interface, sizes shrink to keep it; 0: no bound
+  std::string projection = "fields";   ///< tree: back onto interfaces by the fields, or by closest points: embedding
   int subcells = 1;                    ///< closest-point cells per voxel and axis; twice as many for thin sheets
   std::string kernel = "catmull-rom";  ///< reconstruction of fields: catmull-rom or b-spline
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle

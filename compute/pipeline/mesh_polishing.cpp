@@ -42,6 +42,10 @@ bool MeshImprovement::is_good(const Kept& kept) const {
   return kept.made.fitness >= 1 && (!rule_.thorough || kept.mediocre == 0);
 }
 
+bool MeshImprovement::nearer_to_good(const Kept& a, const Kept& b) const {
+  return a.made.fitness > b.made.fitness || (rule_.thorough && better_shaped(a, b));
+}
+
 /// Changes bad triangles by their edges. `fixed` marks points; those are added where a curve goes that their particles
 /// are not on. Returns how many changes it made.
 std::int64_t MeshImprovement::edit(Kept& kept, std::vector<std::uint8_t>& fixed) {

@@ -10,7 +10,7 @@ namespace {
 
 auto of_fields(const MeshParameters& p) {
   return std::tie(p.kernel, p.tighten, p.stairs, p.epsilon, p.delta, p.min_size, p.max_size, p.sizes, p.curvature,
-                  p.max_deviation, p.subcells);
+                  p.max_deviation, p.subcells, p.projection);
 }
 
 auto of_relax(const MeshParameters& p) {

@@ -65,6 +65,7 @@ class Relaxation {
   int seeded_order_ = 0;        ///< 1: curves have particles, 2: surfaces, too
   std::int64_t seeds_[3] = {};  ///< per order: as many particles as there are to be
   bool coarse_ = false;         ///< some interfaces have a quarter of them
+  double crowded_out_ = 0;      ///< share of the quarter on surfaces that had no room
   std::chrono::steady_clock::time_point surfaces_begin_;
   bool unfinished_ = false;  ///< moving them was interrupted
 };
@@ -82,6 +83,7 @@ void Relaxation<Backend>::run(const MeshParameters& parameters, const TellStage&
   seeded_order_ = 0;
   unfinished_ = true;
   coarse_ = false;
+  crowded_out_ = 0;
   if (run.choices.solver == Solver::tree && parameters.coarse_iterations > 0 && parameters.particles == 0) {
     relax_coarse_first(run);
   } else {
@@ -223,17 +225,23 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
   double stagnation = parameters.stagnation;
   if (phase.level != Level::seeded) {  // without the long waves of seeds, which are what so heavy a ball is for
     rule.step *= 1.25f, rule.momentum *= 15.0f / 17;  // 1.5 and 0.75 by default
-    stagnation *= 4;
+    stagnation *= 2;
   }
   PopulationRule population = population_rule(parameters, order);
   // As many as the sizing field asked for.
   if (parameters.particles == 0) population.target = coarse ? movers : seeds_[order];
+  const std::int64_t begun = movers;
   const int iterations = coarse ? parameters.coarse_iterations : parameters.iterations;
   // A quarter need more control, where they are squeezed in between rims; then the number is right, nearly.
   const bool refined = phase.level == Level::refined;
   const int every = std::max(1, coarse || refined ? 3 * parameters.control_every / 5 : parameters.control_every);
   int last_control = iterations - (coarse ? 1 : 2) * every;
-  if (refined) last_control = std::min(last_control, 2 * every);
+  if (refined) {
+    last_control = std::min(last_control, 2 * every);
+    population.slack = 0.02;
+    // Rims crowd out those beside them, in a strip that is half as wide now.
+    if (order == 2) population.target = std::int64_t((1 - 0.5 * crowded_out_) * double(seeds_[order]));
+  }
   bool controls = true, sorted = false;
   double before = 0;
   for (int k = 0; k < iterations; ++k) {
@@ -260,6 +268,7 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
     if (settled && k % every == every - 1 && before > 0 && std::fabs(before - energy) < stagnation * energy) break;
     before = energy;
   }
+  if (coarse && order == 2) crowded_out_ = std::max(0.0, 1 - double(movers) / double(begun));
 }
 
 /// One after the other, in turns (ch. 3): serial or red-black, on the fields themselves.

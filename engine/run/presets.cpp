@@ -16,6 +16,7 @@ void apply_thesis_preset(Settings& settings) {
   m.stagnation = 0.0015;
   m.add_below = 0.75;
   m.delete_above = 1.35;
+  m.projection = "embedding";
   m.subcells = 3;
   m.smooth = 0;
   m.remesh = 0;

@@ -20,6 +20,7 @@ class MeshKnobs(TypedDict, total=False):
     tighten: float  #: width of the smoothing of label boundaries; 0: keep the voxel staircase [voxels]
     stairs: float  #: staircases of labels become slopes where their treads are at most this long; 0: never [voxels]
     kernel: Literal["catmull-rom", "b-spline"]  #: reconstruction kernel of the fields
+    projection: Literal["fields", "embedding"]  #: tree solver: how particles get back onto their interface: by Newton's method on the fields, or by the closest points of the embedding, as in the thesis
     mesh_subcells: int  #: closest-point cells per voxel and axis; twice as many for sheets thinner than particles are apart
     epsilon: float  #: distance between particles as a share of the local feature size
     delta: float  #: largest slope of the sizing field

@@ -84,6 +84,12 @@ std::vector<Knob> field_knobs(Settings& s) {
        .help = "reconstruction kernel of the fields",
        .value = &m.kernel,
        .choices = {"catmull-rom", "b-spline"}},
+      {.name = "projection",
+       .group = fields,
+       .help = "tree solver: how particles get back onto their interface: by Newton's method on the fields, or by the "
+               "closest points of the embedding, as in the thesis",
+       .value = &m.projection,
+       .choices = {"fields", "embedding"}},
       {.name = "mesh_subcells",
        .group = fields,
        .help = "closest-point cells per voxel and axis; twice as many for sheets thinner than particles are apart",

@@ -223,6 +223,37 @@ TEST(Stars, TheRuleOfAQuadrilateralIsTheSameFromAllItsCorners) {
   EXPECT_LT(first, 3 * rounds / 4);
 }
 
+/// Around crumpled sheets two sides of a star may want the same item: one of them gets it.
+TEST(Stars, ASettledStarHasEachNeighbourOnce) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> random(-1, 1);
+  constexpr std::uint32_t count = 9;
+  int changes = 0;
+  for (int round = 0; round < 100000; ++round) {
+    StarItems items;
+    std::vector<Star> stars(count);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      items.position.push_back({random(generator), random(generator), random(generator)});
+      items.normal.push_back({0, 0, 1});
+      items.particle.push_back(i);
+      std::vector<std::uint32_t> others(count);
+      std::iota(others.begin(), others.end(), 0u);
+      others.erase(others.begin() + i);
+      std::shuffle(others.begin(), others.end(), generator);
+      stars[i].closed = true;
+      stars[i].count = std::uint8_t(4 + generator() % 3);
+      std::copy_n(others.begin(), stars[i].count, stars[i].ring);
+    }
+    items.next.assign(count, none), items.previous.assign(count, none);
+    Star changed;
+    if (!detail::StarSettler(items.view(), stars.data(), 0).run(changed)) continue;
+    ++changes;
+    const std::set<std::uint32_t> once(changed.ring, changed.ring + changed.count);
+    ASSERT_EQ(once.size(), changed.count) << round;
+  }
+  EXPECT_GT(changes, 10000);
+}
+
 /// What a finder knows from before makes no difference.
 TEST(Stars, FoundAnewOnlyWhereSomethingChangedTheyAreTheSame) {
   Cloud cloud = ellipsoid(2500, 8);

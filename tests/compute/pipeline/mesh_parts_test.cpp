@@ -140,6 +140,50 @@ TEST(Relaxation, BeginsWithAQuarterOfTheParticles) {
   }
 }
 
+/// A ball in slices, so that many of the surfaces' particles stand at rims.
+MeshVolume sliced_ball() {
+  return label_volume({38, 38, 38}, 8, [](const Vec3d& p) {
+    return length(p - Vec3d(18.3, 18.6, 18.4)) > 16.4 ? 0 : 1 + int(p.z / 5.5);
+  });
+}
+
+/// Rims crowd out particles beside them, twice as wide a strip among a quarter of them: in the end there are as many as
+/// without that.
+TEST(Relaxation, AsManyStandAtRimsAfterAQuarter) {
+  const MeshVolume volume = sliced_ball();
+  double count[2] = {};
+  for (const int coarse : {0, 1}) {
+    Parts parts(volume);
+    parts.parameters = {};
+    parts.parameters.max_size = parts.parameters.min_size = 0.6;
+    if (coarse == 0) parts.parameters.coarse_iterations = 0;
+    parts.build();
+    parts.make_room();
+    parts.relaxation.run(parts.parameters, silent, parts.info);
+    EXPECT_EQ(parts.info.coarse_iterations > 0, coarse == 1);
+    count[coarse] = double(parts.particles.count());
+  }
+  EXPECT_NEAR(count[1], count[0], 0.03 * count[0]);
+}
+
+/// Both ways back onto the interfaces lead to the same particles, as far as numbers and energies tell.
+TEST(Relaxation, ByTheFieldsAndByTheEmbeddingEndAlike) {
+  const MeshVolume volume = sliced_ball();
+  Parts fields(volume), embedding(volume);
+  for (Parts* parts : {&fields, &embedding}) {
+    parts->parameters = {};
+    parts->parameters.coarse_iterations = 0;
+    parts->parameters.projection = parts == &fields ? "fields" : "embedding";
+    parts->build();
+    parts->make_room();
+    parts->relaxation.run(parts->parameters, silent, parts->info);
+  }
+  const double count = double(fields.particles.count());
+  EXPECT_NEAR(double(fields.info.seeded), double(embedding.info.seeded), 0.005 * count);
+  EXPECT_NEAR(double(embedding.particles.count()), count, 0.01 * count);
+  EXPECT_NEAR(embedding.info.final_energy, fields.info.final_energy, 0.02 * fields.info.final_energy);
+}
+
 /// Stopped among a quarter of the particles: the others are made all the same.
 TEST(Relaxation, IsRefinedAfterAnInterruption) {
   Parts parts(scalar_volume({32, 32, 32}, ball({15, 16, 15.5}, 13)));

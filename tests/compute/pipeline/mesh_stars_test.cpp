@@ -105,6 +105,8 @@ TEST(MeshStars, ADraftTakesLessOnlyAndTheBestMore) {
   EXPECT_LT(draft.coarse_iterations, p.coarse_iterations);
   EXPECT_LT(draft.smooth, p.smooth);
   p.iterations = 3, p.remesh = 0, p.triangles = "delaunay";  // said so
+  p.projection = "embedding";
+  EXPECT_EQ(at_quality(p).projection, "fields") << "an embedding takes longer";
   EXPECT_EQ(at_quality(p).iterations, 3);
   EXPECT_EQ(at_quality(p).remesh, 0);
   EXPECT_EQ(at_quality(p).triangles, "delaunay");

@@ -18,6 +18,7 @@ const std::map<std::string, MeshRerun>& begins() {
       {"tighten", MeshRerun::fields},
       {"stairs", MeshRerun::fields},
       {"kernel", MeshRerun::fields},
+      {"projection", MeshRerun::fields},
       {"mesh_subcells", MeshRerun::fields},
       {"epsilon", MeshRerun::fields},
       {"delta", MeshRerun::fields},
