@@ -207,7 +207,7 @@ void Relaxation<Backend>::note_iteration(const Run& run, const Phase& phase, int
   }
   const int most = phase.level == Level::coarse ? run.parameters.coarse_iterations : run.parameters.iterations;
   const double done = (phase.to - phase.from) * iteration / most;
-  run.tell("relax", phase.from + done, iteration, energy);
+  run.tell("relax", std::min(phase.from + done, phase.to), iteration, energy);
 }
 
 /// All at once (ch. 4): control of the number until nothing changes, then the rest of the iterations to settle.

@@ -111,7 +111,7 @@ def test_other_threads_go_on():
     thread = threading.Thread(target=tick)
     thread.start()
     began = time.monotonic()
-    nacre.mesh(two_balls(40), max_size=0.7)
+    nacre.mesh(two_balls(100), max_size=0.7)
     took = time.monotonic() - began
     stop.set()
     thread.join()
