@@ -115,8 +115,8 @@ class StarCutter {
     return {dot(r, u_), dot(r, v_)};
   }
 
-  /// Item q as it is seen from between the two normals, in the plane that is turned into this item's: the same length
-  /// and, from each of the two, the same direction.
+  /// Item q projected along the mean of the two normals, and turned as that mean is into this item's normal: each of
+  /// the two sees the other at the same distance.
   NACRE_HD Plane unfolded(std::uint32_t q) const {
     const Vec3d r = items_.position[q] - here_, half = normalized(normal_ + items_.normal[q]), turn = half + normal_;
     const Vec3d across = r - dot(r, half) * half;

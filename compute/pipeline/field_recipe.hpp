@@ -23,7 +23,7 @@ struct FieldRecipe {
   SizingRule rule;                ///< sizing
   std::vector<SizeBound> bounds;  ///< sizing: in materials and regions
   double cells_per_voxel = 0;     ///< embed; limited by the sizing field
-  bool seeds_only = false;        ///< embed: particles are projected by the fields
+  bool seeds_only = false;        ///< embed: not for stencils: particles are projected by the fields
 
   /// How many stages, from the first, are built alike by `other`.
   int alike(const FieldRecipe& other) const;

@@ -54,10 +54,10 @@ Projection projection_from_string(std::string_view text);
 SeedOrigin seeds_from_string(std::string_view text, Solver solver);
 
 /// The parameters that a run with these works with. A draft has one closest-point cell per voxel and axis, projects by
-/// the fields, has 16 iterations of a quarter of the particles, 8 of all, one round of
-/// smoothing and twelve of remeshing, or fewer where `parameters` say so, and does not measure the energy at the end;
-/// the best has at least two closest-point cells per voxel and axis, 120 iterations, a stagnation of 0.0000125, four
-/// rounds of smoothing and 40 of remeshing. `auto` triangles are what they stand for.
+/// the fields, has 16 iterations of a quarter of the particles, 8 of all, one round of smoothing and twelve of
+/// remeshing, or fewer where `parameters` say so, and does not measure the energy at the end; the best has at least two
+/// closest-point cells per voxel and axis, 120 iterations, a stagnation of 0.0000125, four rounds of smoothing and 40
+/// of remeshing. `auto` triangles are what they stand for.
 MeshParameters at_quality(const MeshParameters& parameters);
 
 /// All choices of a set of parameters.
