@@ -56,11 +56,9 @@ class TriangleTable {
 
 }  // namespace
 
-std::vector<std::uint8_t> label_beside(const DelaunayCells& cells, std::span<const Triangle> triangles,
-                                       std::span<const std::array<std::uint16_t, 2>> materials,
-                                       std::span<std::uint16_t> label) {
-  std::vector<std::uint8_t> labelled(label.size(), 0);
-  if (triangles.empty()) return labelled;
+void label_beside(const DelaunayCells& cells, std::span<const Triangle> triangles,
+                  std::span<const std::array<std::uint16_t, 2>> materials, std::span<std::uint16_t> label) {
+  if (triangles.empty()) return;
   const TriangleTable table(triangles);
   std::vector<std::uint8_t> is_corner;
   for (const Triangle& t : triangles) {
@@ -83,10 +81,9 @@ std::vector<std::uint8_t> label_beside(const DelaunayCells& cells, std::span<con
         agree = agree && (!known || inside == material);
         known = true, material = inside;
       }
-      if (known && agree) label[i] = material, labelled[i] = 1;
+      if (known && agree) label[i] = material;
     }
   });
-  return labelled;
 }
 
 }  // namespace nacre

@@ -12,10 +12,9 @@
 namespace nacre {
 
 /// Gives each cell that has one of the triangles for a facet the material on its side; one whose triangles disagree
-/// keeps its label. Returns which cells got one. Corners are numbers of the points that were triangulated; `materials`
+/// keeps its label. Corners are numbers of the points that were triangulated; `materials`
 /// and the sense of the triangles are as in SurfaceMesh.
-std::vector<std::uint8_t> label_beside(const DelaunayCells& cells, std::span<const Triangle> triangles,
-                                       std::span<const std::array<std::uint16_t, 2>> materials,
-                                       std::span<std::uint16_t> label);
+void label_beside(const DelaunayCells& cells, std::span<const Triangle> triangles,
+                  std::span<const std::array<std::uint16_t, 2>> materials, std::span<std::uint16_t> label);
 
 }  // namespace nacre

@@ -15,7 +15,6 @@
 #include "compute/math/sort_unique.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/near_points.hpp"
-#include "compute/meshing/patch_voids.hpp"
 #include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
@@ -41,12 +40,13 @@ class Guards {
     for (int a = 0; a < 3; ++a) middle_[a] = step * std::round((low[a] + high[a]) / (2 * step));
   }
 
-  void add(std::vector<Vec3d>& places, std::vector<double>& size) const {
+  void add(PatchCells::Points& points) const {
     for (int k = 0; k < 8; ++k) {
       // At no corner of a cube exactly, so that no four lie in a plane with others.
       const double far = (6 + 0.37 * k) * half_;
-      places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
-      size.push_back(half_);
+      points.places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
+      points.size.push_back(half_);
+      points.wanted.push_back(0);
     }
   }
 
@@ -61,31 +61,27 @@ class Patch {
   Patch(const Guards& guards, const PatchWorld& world, const std::atomic<bool>* stop)
       : guards_(&guards), world_(&world), stop_(stop) {}
 
-  /// Of `members`, ascending. `kept` are triangles that stay, corners as numbers of members: the cells beside them have
-  /// the materials on their sides, wherever the centres are. `reach`, per member: see unify_voids.
-  void make(std::span<const std::uint32_t> members, std::span<const double> reach, const StarMesh& kept,
+  /// Of `members`, ascending; facets are wanted at those that are `wanted`. `kept` are triangles of stars that settled,
+  /// corners as numbers of members: the cells beside them have the materials on their sides, wherever the centres are.
+  void make(std::span<const std::uint32_t> members, std::vector<std::uint8_t> wanted, const StarMesh& kept,
             PatchCells& cells) {
-    std::vector<Vec3d> places;
-    std::vector<double> size;
-    for (const std::uint32_t i : members) places.push_back(world_->points[i]), size.push_back(world_->size[i]);
-    guards_->add(places, size);
-    made_ = cells.make(std::move(places), std::move(size), *world_, stop_);
+    PatchCells::Points points;
+    for (const std::uint32_t i : members)
+      points.places.push_back(world_->points[i]), points.size.push_back(world_->size[i]);
+    points.wanted = std::move(wanted);
+    guards_->add(points);
+    made_ = cells.make(std::move(points), *world_, stop_);
     label_ = made_->label;
-    reach_.assign(reach.begin(), reach.end());
-    known_ = label_beside(made_->cells, kept.triangles, kept.materials, label_);
-    unify_voids(made_->places, made_->cells, reach_, known_, label_);
+    label_beside(made_->cells, kept.triangles, kept.materials, label_);
     facets_ = interface_facets(made_->cells, label_);
     defects_.clear();
   }
 
-  /// At the members that `there` marks: between the parts of the patch, where particles are missing, labels mean
-  /// nothing.
-  void repair(std::vector<std::uint8_t> there) {
-    there.resize(made_->places.size(), 0);
+  /// At the wanted members only: between the parts of the patch, where particles are missing, labels mean nothing.
+  void repair() {
+    const PatchCells::Points& points = made_->points;
     std::vector<std::uint16_t> label = label_;
-    defects_ = repair_labels_at(there, made_->places, made_->cells, label, stop_).defects;
-    // Labels of single cells may have been changed in a void: an interface that runs into it would not end there.
-    unify_voids(made_->places, made_->cells, reach_, known_, label);
+    defects_ = repair_labels_at(points.wanted, points.places, made_->cells, label, stop_).defects;
     facets_ = interface_facets(made_->cells, label);
   }
 
@@ -97,9 +93,7 @@ class Patch {
   const PatchWorld* world_;
   const std::atomic<bool>* stop_;
   std::shared_ptr<const PatchCells::Made> made_;
-  std::vector<double> reach_;         // per member
   std::vector<std::uint16_t> label_;  // per cell
-  std::vector<std::uint8_t> known_;   // per cell: the label is that beside a triangle that stays
   InterfaceFacets facets_;
   std::vector<std::array<std::uint32_t, 2>> defects_;
 };
@@ -127,6 +121,7 @@ class Settling {
         number_(group_of_),
         wide_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
+    unsettled_ = bad_;
     for (std::size_t i = 0; i < bad_.size(); ++i) bad_[i] = bad_[i] || cells.was_in_patch(world.points[i]);
   }
 
@@ -175,17 +170,15 @@ class Settling {
       Group& group = groups_[k];
       if (group.patch) continue;
       group.patch.emplace(guards_, world_, stop);
-      std::vector<double> reach;
-      for (const std::uint32_t i : group.members) reach.push_back(bad_[i] ? around * world_.size[i] : 0);
-      group.patch->make(group.members, reach, kept[k], cells);
-      if (repairs) group.patch->repair(marks(group.members));
+      group.patch->make(group.members, marks(group.members), kept[k], cells);
+      if (repairs) group.patch->repair();
       list_at_bad(group);
     }
   }
 
   void repair() {
     for (Group& group : groups_) {
-      group.patch->repair(marks(group.members));
+      group.patch->repair();
       list_at_bad(group);
     }
   }
@@ -293,9 +286,10 @@ class Settling {
     }
   }
 
-  /// Triangles of stars within each group that has no cells yet, none of whose corners is bad.
+  /// Triangles of stars within each group that has no cells yet, all of whose corners have settled: where a patch has
+  /// grown over them, its cells are to follow them.
   void list_kept(std::vector<StarMesh>& kept) const {
-    const auto is_kept = [&](std::uint32_t i) { return near_[i] && !bad_[i] && !groups_[group_of_[i]].patch; };
+    const auto is_kept = [&](std::uint32_t i) { return near_[i] && !unsettled_[i] && !groups_[group_of_[i]].patch; };
     for (const std::uint32_t i : select_where(stars_.triangles.size(), [&](std::size_t i) {
            const Triangle& t = stars_.triangles[i];
            return is_kept(t.a) && is_kept(t.b) && is_kept(t.c) && group_of_[t.a] == group_of_[t.b] &&
@@ -356,9 +350,10 @@ class Settling {
   const PatchWorld& world_;
   Guards guards_;
   std::vector<std::uint8_t> bad_;
-  std::vector<std::uint32_t> all_bad_;  // when members were asked for last
-  std::vector<std::uint8_t> near_;      // within reach of these
-  DisjointSets sets_;                   // particles within reach of the same ones
+  std::vector<std::uint8_t> unsettled_;  // those that were bad from the start
+  std::vector<std::uint32_t> all_bad_;   // when members were asked for last
+  std::vector<std::uint8_t> near_;       // within reach of these
+  DisjointSets sets_;                    // particles within reach of the same ones
   std::vector<Group> groups_;
   std::vector<std::array<std::uint32_t, 2>> touching_;  // edges where cells of the patch alone touch themselves
   std::vector<std::uint32_t> group_of_, number_;  // per particle near: its group, and its place in the list of this

@@ -31,17 +31,22 @@ class PatchCells {
  public:
   explicit PatchCells(int threads = 0) : delaunay_(threads) {}
 
-  struct Made {
+  /// What a patch is made of: guards, too.
+  struct Points {
     std::vector<Vec3d> places;
     std::vector<double> size;
+    std::vector<std::uint8_t> wanted;  ///< whether facets at it are wanted: then all within its reach is there, too
+    friend bool operator==(const Points&, const Points&) = default;
+  };
+  struct Made {
+    Points points;
     DelaunayCells cells;
     std::vector<std::uint16_t> label;  ///< per cell, where it is looked up
   };
   void begin();  ///< a new mesh
-  std::shared_ptr<const Made> make(std::vector<Vec3d> places, std::vector<double> size, const PatchWorld& world,
-                                   const std::atomic<bool>* stop);
-  /// Whether the mesh before had a particle of a patch there.
-  bool was_in_patch(const Vec3d& point) const;
+  std::shared_ptr<const Made> make(Points points, const PatchWorld& world, const std::atomic<bool>* stop);
+  bool is_in_patch(const Vec3d& point) const;   ///< a particle there is to be in a patch of the next mesh
+  bool was_in_patch(const Vec3d& point) const;  ///< ... or was to be in one of this mesh
   void keep_in_patch(const Vec3d& point);
 
  private:

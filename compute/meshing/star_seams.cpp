@@ -63,8 +63,7 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
   for (std::size_t i = 0, k = 0; i < uses.size(); i = k) {
     facets.clear();
     for (k = i; k < uses.size() && uses[k].vertex == uses[i].vertex; ++k) facets.push_back(uses[k].facet);
-    const std::vector<MaterialCount>& fans = counter.vertex_fans(facets);
-    if (fans.size() == 2 && (fans[0].count > 1 || fans[1].count > 1)) pinched.push_back(uses[i].vertex);
+    if (counter.is_pinched(facets)) pinched.push_back(uses[i].vertex);
   }
   return pinched;
 }

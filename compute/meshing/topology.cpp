@@ -17,14 +17,6 @@ namespace nacre {
 namespace {
 
 /// Whether three or more materials meet at one of the edges of a vertex that has these facets.
-bool has_junction_edge(std::span<const VertexFanCounter::Facet> facets) {
-  return std::any_of(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& f) {
-    return std::any_of(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& g) {
-      return (g.from == f.to || g.to == f.from || g.from == f.from || g.to == f.to) && g.materials != f.materials;
-    });
-  });
-}
-
 void check_mesh(const SurfaceMesh& mesh, int materials) {
   const char* what = "the mesh cannot be examined";
   if (mesh.materials.size() != mesh.triangles.size()) throw Error(what, "its triangles have no materials");
@@ -223,9 +215,7 @@ std::vector<std::uint32_t> pinched_points(const SurfaceMesh& mesh) {
         const int k = int(corner % 3);
         facets.push_back({t[(k + 1) % 3], t[(k + 2) % 3], mesh.materials[corner / 3]});
       }
-      const auto& fans = counter.vertex_fans(facets);
-      const bool twice = std::any_of(fans.begin(), fans.end(), [](const MaterialCount& c) { return c.count > 1; });
-      pinched[v] = twice && !has_junction_edge(facets);
+      pinched[v] = counter.is_pinched(facets);
     }
   });
   return select_where(pinched.size(), [&](std::size_t v) { return pinched[v] != 0; });

@@ -54,7 +54,22 @@ class VertexFanCounter {
     return counts_;
   }
 
+  /// Whether the surface of a material passes more than once, at a vertex where no junction ends or passes.
+  bool is_pinched(std::span<const Facet> facets) {
+    const std::vector<MaterialCount>& fans = vertex_fans(facets);
+    return std::any_of(fans.begin(), fans.end(), [](const MaterialCount& c) { return c.count > 1; }) &&
+           !has_junction_edge(facets);
+  }
+
  private:
+  static bool has_junction_edge(std::span<const Facet> facets) {
+    return std::any_of(facets.begin(), facets.end(), [&](const Facet& f) {
+      return std::any_of(facets.begin(), facets.end(), [&](const Facet& g) {
+        return (g.from == f.to || g.to == f.from || g.from == f.from || g.to == f.to) && g.materials != f.materials;
+      });
+    });
+  }
+
   /// Whether all facets are between the same two materials, ascending, and follow each other around the vertex, once.
   static bool is_one_ring(std::span<const Facet> facets) {
     if (facets.empty() || facets[0].materials[0] >= facets[0].materials[1]) return false;

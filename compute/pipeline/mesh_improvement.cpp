@@ -124,6 +124,7 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
         now = polished(made);
       else
         now.made = made, now.particles = particles_.download();
+      if (stars() && polishes() && !is_acceptable(now.made)) patch_at_unacceptable(made);
       in_vain_ = best && !nearer_to_good(now, *best) ? in_vain_ + 1 : 0;
       if (!best || !better_shaped(*best, now)) best = std::move(now);
       if (polishes() && (is_good(*best) || in_vain_ == most_in_vain)) return;
@@ -140,14 +141,18 @@ bool MeshImprovement::is_acceptable(const Triangulated& made) {
 /// kind may be good where those of the other are bad. `best` is replaced where that is better.
 void MeshImprovement::patch(Kept& best) {
   particles_.upload(best.particles);
-  const std::vector<Vec3d> points = world_positions(best.particles.position, frame_);
-  const std::vector<std::uint8_t> bad = bad_points(best.made, unacceptable.near);
-  for (std::size_t v = 0; v < bad.size(); ++v)
-    if (bad[v]) patch_cells_.keep_in_patch(points[best.made.point_of[v]]);
+  patch_at_unacceptable(best.made);
   remeshed_ = std::max(1, rule_.remesh - rounds_of_patching), bad_ = most_bad, in_vain_ = 0;
   std::optional<Kept> now;
   settle(now);
   if (stars() && better_shaped(*now, best)) best = std::move(*now);
+}
+
+/// The next mesh has cells where `made`, of the particles as they are, is not acceptable.
+void MeshImprovement::patch_at_unacceptable(const Triangulated& made) {
+  const std::vector<std::uint8_t> bad = bad_points(made, unacceptable.near);
+  for (std::size_t v = 0; v < bad.size(); ++v)
+    if (bad[v]) patch_cells_.keep_in_patch(made.mesh.points[v]);
 }
 
 double MeshImprovement::fraction() const {
@@ -291,8 +296,11 @@ std::int64_t MeshImprovement::smooth(Triangulated& made, std::span<const std::ui
   for (std::size_t v = 0; v < made.point_of.size(); ++v) {
     const Float4 a = before[made.point_of[v]], b = after[made.point_of[v]];
     const Vec3d position(b.x, b.y, b.z);
-    far += length(position - Vec3d(a.x, a.y, a.z)) > 0.01 * a.w;
-    made.mesh.points[v] = frame_.to_world(position);
+    const double moved = length(position - Vec3d(a.x, a.y, a.z));
+    far += moved > 0.01 * a.w;
+    const Vec3d was = std::exchange(made.mesh.points[v], frame_.to_world(position));
+    // What an attempt moves stays in its patch, which would else begin to grow anew.
+    if (attempt_ && moved > 0 && patch_cells_.is_in_patch(was)) patch_cells_.keep_in_patch(made.mesh.points[v]);
     made.size[v] = b.w * float(frame_.unit);
   }
   return far;

@@ -102,6 +102,7 @@ class MeshImprovement {
   bool nearer_to_good(const Kept& a, const Kept& b) const;
   static bool is_acceptable(const Triangulated& made);
   void patch(Kept& best);
+  void patch_at_unacceptable(const Triangulated& made);
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
   bool polishes() const { return rule_.stars && rule_.deviation == 0; }
   void forget_tried(DeviationRefinement& further);

@@ -70,6 +70,54 @@ TEST(StarPatches, CellsAndStarsMeetEdgeToEdge) {
   }
 }
 
+/// A patch that takes in several materials, and far more than it reaches beyond. Its cells agree with the stars around
+/// it, so that it has no reason to grow, however far its own large cells reach.
+TEST(StarPatches, AWidePatchStaysAsItIs) {
+  const Cloud cloud = halves(12, 0.8);
+  for (const double wide : {4.0, 7.0}) {
+    std::vector<std::uint32_t> within;
+    for (std::uint32_t i = 0; i < cloud.position.size(); ++i) {
+      const Float4& p = cloud.position[i];
+      if (length(Vec3d(p.x, p.y, p.z) - Vec3d(12, 0, 0)) < wide) within.push_back(i);
+    }
+    const Settled settled = settle(cloud, 12, within);
+    expect_halves(cloud, settled, 12);
+    EXPECT_LT(settled.mesh.counts.in_patches, std::int64_t(within.size() * 11 / 10)) << within.size();
+  }
+}
+
+/// The ball of a cell is empty near the particles whose facets are wanted; farther away it may have others in it, of
+/// which the patch knows nothing.
+TEST(StarPatches, MaterialsAreLookedUpNearParticles) {
+  const Cloud cloud = halves(6, 0.8);
+  std::vector<Vec3d> points, asked;
+  std::vector<double> size;
+  for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
+  const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) {
+                           asked.assign(at.begin(), at.end());
+                           return material_in_halves(6, at);
+                         }};
+  PatchCells cells;
+  PatchCells::Points patch;
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    if (length(points[i] - points[200]) < 4) {
+      patch.places.push_back(points[i]), patch.size.push_back(size[i]);
+      patch.wanted.push_back(length(points[i] - points[200]) < 1);
+    }
+  const auto made = cells.make(patch, world, nullptr);
+  ASSERT_EQ(asked.size(), made->cells.vertices.size());
+  std::size_t far = 0;
+  for (std::size_t i = 0; i < asked.size(); ++i) {
+    const auto& cell = made->cells.vertices[i];
+    const auto wanted = std::find_if(cell.begin(), cell.end(), [&](std::uint32_t v) { return patch.wanted[v] != 0; });
+    if (wanted == cell.end()) continue;
+    const Vec3d& at = patch.places[*wanted];
+    EXPECT_LT(length(asked[i] - at), 1.0001 * patch.size[*wanted]);
+    far += length(made->cells.circumcentres[i] - at) > 2 * patch.size[*wanted];
+  }
+  EXPECT_GT(far, 5U);  // of which this is not true by itself
+}
+
 /// What is far apart is settled as if each were alone.
 TEST(StarPatches, GroupsDoNotDependOnEachOther) {
   const Cloud cloud = halves(9, 0.8);
