@@ -234,7 +234,8 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
   const int iterations = coarse ? parameters.coarse_iterations : parameters.iterations;
   // A quarter need more control, where they are squeezed in between rims; then the number is right, nearly.
   const bool refined = phase.level == Level::refined;
-  const int every = std::max(1, coarse || refined ? 3 * parameters.control_every / 5 : parameters.control_every);
+  int every = std::max(1, coarse || refined ? 3 * parameters.control_every / 5 : parameters.control_every);
+  if (refined) every = std::clamp(iterations / 4, 1, every);  // in a draft, too
   int last_control = iterations - (coarse ? 1 : 2) * every;
   if (refined) {
     last_control = std::min(last_control, 2 * every);
