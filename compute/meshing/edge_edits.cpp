@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "compute/math/sort_unique.hpp"
+#include "compute/meshing/flat_tetrahedron.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
+#include "compute/meshing/vertex_fans.hpp"
 
 namespace nacre {
 namespace {
@@ -20,8 +22,9 @@ struct Latitude {
   double turn;   ///< least cosine between a triangle's normals before and after
   double bend;   ///< most, of a curve where a point is contracted, in lengths of the side that is left; < 0: not at all
   double cross;  ///< of the mean edge: across so wide a strip a point of a curve is contracted, at most
+  double flat;   ///< height by longest edge of a tetrahedron that goes to another material, at most
 };
-constexpr Latitude at_mediocre{0.8, -1, 0}, at_worst{0.35, 0.25, 0.5};
+constexpr Latitude at_mediocre{0.8, -1, 0, 0}, at_worst{0.35, 0.25, 0.5, 0.25};
 constexpr double least_gain = 1e-6;    // of fitness
 constexpr std::size_t most_edits = 8;  // for each bad triangle, in the mean
 
@@ -65,10 +68,10 @@ class Editor {
   /// A change: triangles that go, and what stands in their place. `from` is the point that leaves, if one does.
   struct Change {
     Triangles old;
-    std::vector<std::pair<Triangle, std::uint32_t>> made;  ///< and the old one whose materials each has
+    std::vector<std::pair<MaterialFacet, std::uint32_t>> made;  ///< and the old one whose number each has
     std::uint32_t from = none;
-    std::uint32_t crossed = none;  ///< ... from a curve, through this one, which is not on it
-    double fitness = 0;            ///< the least of those made
+    std::vector<std::uint32_t> crossed = {};  ///< points that were not on a curve, and are now
+    double fitness = 0;                       ///< the least of those made
   };
 
   bool gone(std::uint32_t t) const { return mesh_.triangles[t].a == mesh_.triangles[t].b; }
@@ -128,6 +131,7 @@ class Editor {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t u = corner[k], v = corner[(k + 1) % 3];
       consider(flip(u, v));
+      consider(giving_away(u, v));
       consider(contraction(u, v));
       consider(contraction(v, u));
     }
@@ -135,19 +139,27 @@ class Editor {
     return best.has_value();
   }
 
-  /// The change, if the worst triangle becomes better and none turns.
-  std::optional<Change> judged(Change change) const {
+  /// The change, if the worst triangle becomes better.
+  std::optional<Change> better(Change change) const {
     double before = best_fitness(rule_);
     for (const std::uint32_t t : change.old) before = std::min(before, fitness(mesh_.triangles[t]));
     change.fitness = best_fitness(rule_);
-    for (const auto& [made, old] : change.made) change.fitness = std::min(change.fitness, fitness(made));
+    for (const auto& [made, old] : change.made) change.fitness = std::min(change.fitness, fitness(made.corners));
     if (!(change.fitness > before + least_gain)) return {};
-    for (const auto& [made, old] : change.made) {
+    return change;
+  }
+
+  /// ... and none turns.
+  std::optional<Change> judged(Change proposed) const {
+    std::optional<Change> change = better(std::move(proposed));
+    if (!change) return {};
+    for (const auto& [made, old] : change->made) {
       Vec3d around{};  // a bad triangle's own normal says little
-      for (const std::uint32_t t : change.old)
+      for (const std::uint32_t t : change->old)
         if (mesh_.materials[t] == mesh_.materials[old]) around += normal(mesh_.triangles[t]);
       const Triangle& was = mesh_.triangles[old];
-      const Vec3d before_turn = change.from == none || fitness(was) < 1 ? around : normal(was), after = normal(made);
+      const Vec3d before_turn = change->from == none || fitness(was) < 1 ? around : normal(was),
+                  after = normal(made.corners);
       if (!(dot(before_turn, after) > latitude_.turn * length(before_turn) * length(after))) return {};
     }
     return change;
@@ -160,7 +172,80 @@ class Editor {
     while (first.c == u || first.c == v) first = {first.b, first.c, first.a};
     const std::uint32_t c = first.c, d = opposite(mesh_.triangles[edge[1]], u, v);
     if (c == d || !at_edge(c, d).empty()) return {};
-    return judged({edge, {{{first.a, d, c}, edge[0]}, {{d, first.b, c}, edge[1]}}});
+    const auto& materials = mesh_.materials[edge[0]];
+    return judged({edge, {{{{first.a, d, c}, materials}, edge[0]}, {{{d, first.b, c}, materials}, edge[1]}}});
+  }
+
+  /// Gives the flat tetrahedron between the two triangles of an edge, and others, to the material on their other side.
+  /// So a fold of a surface goes that no flip can open, since the mesh has the new edge.
+  std::optional<Change> giving_away(std::uint32_t u, std::uint32_t v) const {
+    Triangles faces = at_edge(u, v);
+    if (!(latitude_.flat > 0) || !is_within(faces)) return {};
+    const std::uint32_t c = opposite(mesh_.triangles[faces[0]], u, v), d = opposite(mesh_.triangles[faces[1]], u, v);
+    if (c == d || !is_flat({u, v, c, d})) return {};
+    for (const std::uint32_t t : at_edge(c, d))
+      if (has_corner(mesh_.triangles[t], u) || has_corner(mesh_.triangles[t], v)) faces.push_back(t);
+    std::vector<MaterialFacet> facets;
+    for (const std::uint32_t t : faces) facets.push_back({mesh_.triangles[t], mesh_.materials[t]});
+    const auto left = give_away(u, v, c, d, facets);
+    if (!left) return {};
+    Change change{std::move(faces), {}};
+    for (std::size_t k = 0; k < left->size(); ++k) change.made.push_back({(*left)[k], change.old[k]});
+    if (!stays_sound(change, {u, v, c, d})) return {};
+    return better(std::move(change));
+  }
+
+  bool is_flat(const std::array<std::uint32_t, 4>& corners) const {
+    double longest = 0, largest = 0;  // edge, twice the area of a face
+    for (int i = 0; i < 4; ++i) {
+      const Vec3d a = point(corners[i]), b = point(corners[(i + 1) % 4]), e = point(corners[(i + 2) % 4]);
+      longest = std::max({longest, length(b - a), length(e - a)});
+      largest = std::max(largest, length(cross(b - a, e - a)));
+    }
+    const Vec3d a = point(corners[0]);
+    const double volume = std::abs(dot(point(corners[1]) - a, cross(point(corners[2]) - a, point(corners[3]) - a)));
+    return volume < latitude_.flat * longest * largest;
+  }
+
+  /// Whether no surface touches itself at these points after the change that did not before, and all materials are
+  /// still there. Lists the points that come to lie on curves.
+  bool stays_sound(Change& change, const std::array<std::uint32_t, 4>& corners) const {
+    std::vector<std::uint16_t> materials, left;
+    for (const std::uint32_t at_corner : corners) {
+      std::vector<VertexFanCounter::Facet> before, after;
+      const auto add = [&](auto& facets, const Triangle& t, const MaterialPair& pair) {
+        for (int k = 0; k < 3; ++k)
+          if (t[k] == at_corner) facets.push_back({t[(k + 1) % 3], t[(k + 2) % 3], pair});
+      };
+      for (const std::uint32_t t : at(at_corner)) {
+        add(before, mesh_.triangles[t], mesh_.materials[t]);
+        if (std::find(change.old.begin(), change.old.end(), t) == change.old.end())
+          add(after, mesh_.triangles[t], mesh_.materials[t]);
+      }
+      for (const auto& [made, old] : change.made) add(after, made.corners, made.materials);
+      VertexFanCounter counter;
+      const std::vector<MaterialCount> fans = counter.vertex_fans(before);
+      for (const MaterialCount& now : counter.vertex_fans(after)) {
+        const auto was =
+            std::find_if(fans.begin(), fans.end(), [&](const auto& f) { return f.material == now.material; });
+        if (now.count > std::max(1, was == fans.end() ? 0 : was->count)) return false;
+      }
+      for (const VertexFanCounter::Facet& f : after)
+        for (const std::uint32_t end : {f.from, f.to})
+          for (const std::uint16_t m : f.materials)
+            if (std::count_if(after.begin(), after.end(), [&](const VertexFanCounter::Facet& g) {
+                  return (g.from == end || g.to == end) && (g.materials[0] == m || g.materials[1] == m);
+                }) != 2)
+              return false;
+      for (const VertexFanCounter::Facet& f : before)
+        materials.insert(materials.end(), f.materials.begin(), f.materials.end());
+      for (const VertexFanCounter::Facet& f : after) left.insert(left.end(), f.materials.begin(), f.materials.end());
+      const bool several =
+          std::any_of(after.begin(), after.end(), [&](const auto& f) { return f.materials != after[0].materials; });
+      if (order_[at_corner] == 2 && several) change.crossed.push_back(at_corner);
+    }
+    sort_unique(materials), sort_unique(left);
+    return materials == left;
   }
 
   /// Moves point `u` onto its neighbour `v`.
@@ -172,7 +257,8 @@ class Editor {
     std::vector<std::uint32_t> common;
     std::set_intersection(of_u.begin(), of_u.end(), of_v.begin(), of_v.end(), std::back_inserter(common));
     if (common.size() != edge.size()) return {};
-    Change change{at(u), {}, u, order_[u] == 1 && is_within(edge) ? v : none};
+    Change change{at(u), {}, u};
+    if (order_[u] == 1 && is_within(edge)) change.crossed.push_back(v);
     for (const std::uint32_t t : change.old) {
       Triangle made = mesh_.triangles[t];
       if (has_corner(made, v)) continue;
@@ -181,7 +267,7 @@ class Editor {
         if (made[k] != v && made[(k + 1) % 3] != v)
           for (const std::uint32_t other : at_edge(made[k], made[(k + 1) % 3]))
             if (has_corner(mesh_.triangles[other], v)) return {};
-      change.made.push_back({made, t});
+      change.made.push_back({{made, mesh_.materials[t]}, t});
     }
     if (change.made.empty()) return {};
     return judged(std::move(change));
@@ -277,11 +363,11 @@ class Editor {
     }
     for (const std::uint32_t t : change.old) mesh_.triangles[t] = {0, 0, 0};
     for (const auto& [made, t] : change.made) {
-      mesh_.triangles[t] = made;
-      for (int k = 0; k < 3; ++k) changed_[made[k]].push_back(t);
+      mesh_.triangles[t] = made.corners, mesh_.materials[t] = made.materials;
+      for (int k = 0; k < 3; ++k) changed_[made.corners[k]].push_back(t);
     }
     for (const auto& [made, t] : change.made) note(t);
-    if (change.crossed != none) crossed_.push_back(change.crossed);
+    crossed_.insert(crossed_.end(), change.crossed.begin(), change.crossed.end());
   }
 
   /// Leaves out triangles that are gone, and points that no triangle has any more.

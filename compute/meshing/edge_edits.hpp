@@ -24,8 +24,10 @@ struct EdgeEdits {
 /// condition). No triangle turns by more than about 35 degrees. At triangles that are also bad by `worst_defects`
 /// triangles may turn by up to 70 degrees, and points of curves are contracted, too: along their curve where that is
 /// nearly straight, or across a strip of surface narrower than half the mean edge, if only the two materials beside
-/// that have both ends. `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are contracted
-/// leave it.
+/// that have both ends; and where the mesh has the new edge of a flip, the flat tetrahedron between the two triangles
+/// and others goes to the material on their other side (see give_away; counted as a flip), if no material is lost and
+/// no surface touches itself for it. `order` (2 surface, 1 curve, 0 point) is per point of the mesh; points that are
+/// contracted, or at the tip of such a tetrahedron, leave it.
 EdgeEdits edit_edges(SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
 
 }  // namespace nacre

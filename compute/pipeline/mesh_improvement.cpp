@@ -22,8 +22,10 @@ constexpr int most_in_vain = 3;        // attempts
 constexpr int most_patchings = 3;      // of what is not acceptable,
 constexpr int rounds_of_patching = 6;  // of remeshing in each, at most
 
-/// Cells are tried, too, rather than that triangles of stars are so bad.
-constexpr DefectRule unacceptable{0, worst_defects.near, worst_defects.near, false};
+/// Cells are tried, too, rather than that triangles of stars are so bad. Below what is aimed at: a triangle or two that
+/// nearly reach that are not worth so much.
+constexpr double least_accepted = 0.2;
+constexpr DefectRule unacceptable{0, least_accepted, least_accepted, false};
 
 /// What an attempt does to the particles around bad points.
 struct AttemptKind {
@@ -95,8 +97,8 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
 ImprovedMesh MeshImprovement::run() {
   std::optional<Kept> best;
   settle(best);
-  for (int k = 0; k < most_patchings && stars() && polishes() && !is_acceptable(best->made); ++k) patch(*best);
-  if (stars() && polishes() && !is_acceptable(best->made)) {
+  for (int k = 0; k < most_patchings && stars() && polishes() && !best->acceptable; ++k) patch(*best);
+  if (stars() && polishes() && !best->acceptable) {
     ++star_use_.fallbacks;
     remeshed_ = 0, bad_ = most_bad, in_vain_ = 0;
     best.reset();
@@ -124,7 +126,8 @@ void MeshImprovement::settle(std::optional<Kept>& best) {
         now = polished(made);
       else
         now.made = made, now.particles = particles_.download();
-      if (stars() && polishes() && !is_acceptable(now.made)) patch_at_unacceptable(made);
+      now.acceptable = is_acceptable(now.made);
+      if (stars() && polishes() && !now.acceptable) patch_at_unacceptable(made);
       in_vain_ = best && !nearer_to_good(now, *best) ? in_vain_ + 1 : 0;
       if (!best || !better_shaped(*best, now)) best = std::move(now);
       if (polishes() && (is_good(*best) || in_vain_ == most_in_vain)) return;

@@ -35,6 +35,7 @@ std::vector<std::uint8_t> MeshImprovement::bad_points(const Triangulated& made, 
 }
 
 bool MeshImprovement::better_shaped(const Kept& a, const Kept& b) {
+  if (a.acceptable != b.acceptable) return a.acceptable;
   return a.made.fitness != b.made.fitness ? a.made.fitness > b.made.fitness : a.mediocre < b.mediocre;
 }
 
@@ -43,7 +44,9 @@ bool MeshImprovement::is_good(const Kept& kept) const {
 }
 
 bool MeshImprovement::nearer_to_good(const Kept& a, const Kept& b) const {
-  return a.made.fitness > b.made.fitness || (rule_.thorough && better_shaped(a, b));
+  constexpr double worth = 0.01;  // a mesh
+  return a.acceptable > b.acceptable || a.made.fitness > b.made.fitness + worth ||
+         (rule_.thorough && better_shaped(a, b));
 }
 
 /// Changes bad triangles by their edges. `fixed` marks points; those are added where a curve goes that their particles

@@ -7,7 +7,10 @@
 #include <cmath>
 #include <random>
 
+#include "compute/meshing/delaunay.hpp"
+#include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/quality.hpp"
+#include "compute/meshing/repair.hpp"
 #include "compute/meshing/surface_nets.hpp"
 #include "compute/meshing/topology.hpp"
 
@@ -101,6 +104,50 @@ TEST(EdgeEdits, AGoodMeshStaysAsItIs) {
   EXPECT_EQ(edits.flips + edits.contractions, 0);
   EXPECT_EQ(mesh.triangles, before.triangles);
   EXPECT_EQ(mesh.points, before.points);
+}
+
+/// Random points in a cube, their Delaunay cells of three materials in layers, ragged as cells are; closed, since cells
+/// at the hull are outside.
+SurfaceMesh ragged_layers(unsigned seed) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> within(0, 10);
+  std::vector<Vec3d> points;
+  for (int i = 0; i < 250; ++i) points.push_back({within(generator), within(generator), within(generator)});
+  const DelaunayCells cells = delaunay(points, 1);
+  std::vector<std::uint16_t> label;
+  for (const auto& v : cells.vertices) {
+    Vec3d middle{};
+    for (const std::uint32_t i : v) middle += points[i] / 4;
+    const Vec3d d = middle - Vec3d(5, 5, 5);
+    label.push_back(std::uint16_t(dot(d, d) > 14 ? 0 : middle.z < 4.7 ? 1 : middle.z < 5.6 ? 2 : 3));
+  }
+  repair_labels(points, cells, label);
+  return extract_interfaces(points, cells, label);
+}
+
+/// Among such triangles are many whose edge cannot be flipped since the mesh has the new one: folds of flat
+/// tetrahedra, which go from one material to another.
+TEST(EdgeEdits, FoldsGoAndTheMeshStaysSound) {
+  std::int64_t meshes = 0, before = 0, after = 0;
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    SurfaceMesh mesh = ragged_layers(seed);
+    const TopologyReport was = check_topology(mesh, 4);
+    if (!was.sound()) continue;
+    ++meshes;
+    const std::vector<std::uint8_t> order = orders(mesh);
+    before += bad_triangles(mesh, order);
+    const EdgeEdits edits = edit_edges(mesh, order, rule);
+    std::vector<std::uint8_t> order_left;
+    for (const std::uint32_t v : edits.kept) order_left.push_back(order[v]);
+    after += bad_triangles(mesh, order_left);
+    const TopologyReport is = check_topology(mesh, 4);
+    EXPECT_TRUE(is.sound());
+    EXPECT_EQ(is.unused_points, 0);
+    for (std::size_t m = 0; m < 4; ++m) EXPECT_EQ(is.materials[m].closed, was.materials[m].closed);
+  }
+  EXPECT_GT(meshes, 100);
+  EXPECT_LT(10 * after, 9 * before) << after << " of " << before;
 }
 
 constexpr DefectRule flat{0, 0.2, 0.2, false};
