@@ -223,6 +223,7 @@ class Editor {
           add(after, mesh_.triangles[t], mesh_.materials[t]);
       }
       for (const auto& [made, old] : change.made) add(after, made.corners, made.materials);
+      if (after.empty() && order_[at_corner] == 0) return false;  // such points stay
       VertexFanCounter counter;
       const std::vector<MaterialCount> fans = counter.vertex_fans(before);
       for (const MaterialCount& now : counter.vertex_fans(after)) {

@@ -34,9 +34,12 @@ std::optional<std::vector<MaterialFacet>> give_away(std::uint32_t u, std::uint32
   // All run the same way round as seen from inside, or all as seen from outside.
   const std::array<Triangle, 4> around = {{{u, c, v}, {u, v, d}, {u, d, c}, {v, c, d}}};
   std::array<const MaterialFacet*, 4> face{};
-  for (int k = 0; k < 4; ++k)
-    for (const MaterialFacet& f : faces)
-      if (sorted(f.corners) == sorted(around[k])) face[k] = &f;
+  for (const MaterialFacet& f : faces) {
+    const auto at =
+        std::find_if(around.begin(), around.end(), [&](const Triangle& t) { return sorted(t) == sorted(f.corners); });
+    if (at == around.end() || face[at - around.begin()]) return {};  // none of the four, or one twice
+    face[at - around.begin()] = &f;
+  }
   if (!face[0] || !face[1] || (!face[2] && !face[3])) return {};
 
   // Which of a face's two materials is inside: the first, or the second, if it runs as in `around`.

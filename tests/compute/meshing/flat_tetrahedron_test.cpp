@@ -64,6 +64,8 @@ TEST(FlatTetrahedron, NothingIsDoneWhereItIsNotClear) {
   EXPECT_FALSE(give_away(0, 1, 2, 3, Facets{face(3, 5, 4), face(2, 5, 4), face(1, 5, 4)}));
   // No material is inside of all.
   EXPECT_FALSE(give_away(0, 1, 2, 3, Facets{face(3, 5, 6), face(2, 5, 6), face(1, 7, 4)}));
+  // A face that the mesh has twice.
+  EXPECT_FALSE(give_away(0, 1, 2, 3, Facets{face(3, 5, 6), face(2, 5, 6), face(1, 5, 4), face(1, 4, 5)}));
   // A flip is enough.
   EXPECT_FALSE(give_away(0, 1, 2, 3, Facets{face(3, 5, 6), face(2, 5, 6)}));
 }
