@@ -211,42 +211,65 @@ class Editor {
   /// still there. Lists the points that come to lie on curves.
   bool stays_sound(Change& change, const std::array<std::uint32_t, 4>& corners) const {
     std::vector<std::uint16_t> materials, left;
-    for (const std::uint32_t at_corner : corners) {
-      std::vector<VertexFanCounter::Facet> before, after;
-      const auto add = [&](auto& facets, const Triangle& t, const MaterialPair& pair) {
-        for (int k = 0; k < 3; ++k)
-          if (t[k] == at_corner) facets.push_back({t[(k + 1) % 3], t[(k + 2) % 3], pair});
-      };
-      for (const std::uint32_t t : at(at_corner)) {
-        add(before, mesh_.triangles[t], mesh_.materials[t]);
-        if (std::find(change.old.begin(), change.old.end(), t) == change.old.end())
-          add(after, mesh_.triangles[t], mesh_.materials[t]);
-      }
-      for (const auto& [made, old] : change.made) add(after, made.corners, made.materials);
-      if (after.empty() && order_[at_corner] == 0) return false;  // such points stay
-      VertexFanCounter counter;
-      const std::vector<MaterialCount> fans = counter.vertex_fans(before);
-      for (const MaterialCount& now : counter.vertex_fans(after)) {
-        const auto was =
-            std::find_if(fans.begin(), fans.end(), [&](const auto& f) { return f.material == now.material; });
-        if (now.count > std::max(1, was == fans.end() ? 0 : was->count)) return false;
-      }
-      for (const VertexFanCounter::Facet& f : after)
-        for (const std::uint32_t end : {f.from, f.to})
-          for (const std::uint16_t m : f.materials)
-            if (std::count_if(after.begin(), after.end(), [&](const VertexFanCounter::Facet& g) {
-                  return (g.from == end || g.to == end) && (g.materials[0] == m || g.materials[1] == m);
-                }) != 2)
-              return false;
+    for (const std::uint32_t v : corners) {
+      const Facets before = facets_at(v, at(v)), after = facets_after(v, change);
+      if (after.empty() && order_[v] == 0) return false;  // such points stay
+      if (touches_more(before, after) || !edges_pass_once(after)) return false;
       for (const VertexFanCounter::Facet& f : before)
-        materials.insert(materials.end(), f.materials.begin(), f.materials.end());
-      for (const VertexFanCounter::Facet& f : after) left.insert(left.end(), f.materials.begin(), f.materials.end());
+        materials.insert(materials.end(), {f.materials[0], f.materials[1]});
+      for (const VertexFanCounter::Facet& f : after) left.insert(left.end(), {f.materials[0], f.materials[1]});
       const bool several =
           std::any_of(after.begin(), after.end(), [&](const auto& f) { return f.materials != after[0].materials; });
-      if (order_[at_corner] == 2 && several) change.crossed.push_back(at_corner);
+      if (order_[v] == 2 && several) change.crossed.push_back(v);
     }
     sort_unique(materials), sort_unique(left);
     return materials == left;
+  }
+
+  using Facets = std::vector<VertexFanCounter::Facet>;
+
+  static void add_facet(Facets& facets, std::uint32_t v, const Triangle& t, const MaterialPair& materials) {
+    for (int k = 0; k < 3; ++k)
+      if (t[k] == v) facets.push_back({t[(k + 1) % 3], t[(k + 2) % 3], materials});
+  }
+
+  Facets facets_at(std::uint32_t v, const Triangles& some) const {
+    Facets facets;
+    for (const std::uint32_t t : some) add_facet(facets, v, mesh_.triangles[t], mesh_.materials[t]);
+    return facets;
+  }
+
+  Facets facets_after(std::uint32_t v, const Change& change) const {
+    Triangles stay = at(v);
+    std::erase_if(
+        stay, [&](std::uint32_t t) { return std::find(change.old.begin(), change.old.end(), t) != change.old.end(); });
+    Facets facets = facets_at(v, stay);
+    for (const auto& [made, old] : change.made) add_facet(facets, v, made.corners, made.materials);
+    return facets;
+  }
+
+  /// Whether the surface of a material passes a vertex more than once, and more often than before.
+  static bool touches_more(const Facets& before, const Facets& after) {
+    VertexFanCounter counter;
+    const std::vector<MaterialCount> fans = counter.vertex_fans(before);
+    const std::vector<MaterialCount>& now = counter.vertex_fans(after);
+    return std::any_of(now.begin(), now.end(), [&](const MaterialCount& is) {
+      const auto was = std::find_if(fans.begin(), fans.end(), [&](const auto& f) { return f.material == is.material; });
+      return is.count > std::max(1, was == fans.end() ? 0 : was->count);
+    });
+  }
+
+  /// Whether each material has two facets at each of a vertex's edges, if any.
+  static bool edges_pass_once(const Facets& facets) {
+    const auto passes = [&](std::uint32_t end, std::uint16_t m) {
+      return std::count_if(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& f) {
+        return (f.from == end || f.to == end) && (f.materials[0] == m || f.materials[1] == m);
+      });
+    };
+    return std::all_of(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& f) {
+      return passes(f.from, f.materials[0]) == 2 && passes(f.from, f.materials[1]) == 2 &&
+             passes(f.to, f.materials[0]) == 2 && passes(f.to, f.materials[1]) == 2;
+    });
   }
 
   /// Moves point `u` onto its neighbour `v`.

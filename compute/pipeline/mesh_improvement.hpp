@@ -88,7 +88,7 @@ class MeshImprovement {
     Triangulated made;
     HostParticles particles;
     std::int64_t mediocre = 0;                             ///< of its points, at triangles below wanted_ratio
-    bool acceptable = false;                               ///< cells would be no better
+    bool acceptable = false;                               ///< as it is, nothing is to be tried with cells
     std::int64_t flips = 0, contractions = 0, splits = 0;  ///< of edges
     DeviationRefinement further;                           ///< what would bring it nearer to its interfaces
     MeshDeviation deviation;
