@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
@@ -268,6 +270,15 @@ MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> 
   return defects;
 }
 
+void renumber(std::vector<std::array<std::uint32_t, 2>>& defects, std::span<const std::uint32_t> kept) {
+  for (auto& defect : defects)
+    for (std::uint32_t& v : defect) {
+      const auto at = std::lower_bound(kept.begin(), kept.end(), v);
+      assert(at != kept.end() && *at == v);
+      v = std::uint32_t(at - kept.begin());
+    }
+}
+
 void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order) {
   const auto near =
       select_where(mesh.triangles.size(), [&](std::size_t t) { return at_junction(mesh.triangles[t], order); });
@@ -284,29 +295,42 @@ void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& orde
     if (!stays[v]) order[v] = 2;
 }
 
+double highest_bad_ratio(const DefectRule& rule) {
+  const double least = rule.angle * std::numbers::pi / 180, others = (std::numbers::pi - least) / 2;
+  const double isosceles = 8 * std::sin(least / 2) * std::sin(others / 2) * std::sin(others / 2);
+  return std::max({rule.ratio, rule.near, isosceles});
+}
+
+double triangle_fitness(const std::array<Vec3d, 3>& corners, bool at_junction, const DefectRule& rule) {
+  const auto& [a, b, c] = corners;
+  const double by_ratio = radius_ratio(a, b, c) / (at_junction ? rule.near : rule.ratio);
+  const double fitness = std::min(by_ratio, best_fitness(rule));
+  if (at_junction || rule.angle <= 0) return fitness;
+  const std::array<double, 3> angles = triangle_angles(a, b, c);
+  return std::min(fitness, *std::min_element(angles.begin(), angles.end()) / rule.angle);
+}
+
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
                         const DefectRule& rule) {
-  const auto p = corners(mesh, t);
-  const double asked = at_junction(mesh.triangles[t], order) ? rule.near : rule.ratio;
-  return std::min(radius_ratio(p[0], p[1], p[2]) / asked, best_fitness(rule));
+  return triangle_fitness(corners(mesh, t), at_junction(mesh.triangles[t], order), rule);
+}
+
+std::vector<std::uint8_t> points_at_bad(const SurfaceMesh& mesh, std::span<const std::uint8_t> order,
+                                        const DefectRule& rule) {
+  std::vector<std::uint8_t> bad(mesh.points.size(), 0);
+  for (const std::uint32_t t : triangles_under(highest_bad_ratio(rule) + 1e-6, mesh)) {
+    const Triangle& c = mesh.triangles[t];
+    if (triangle_fitness(mesh, t, order, rule) < 1) bad[c.a] = bad[c.b] = bad[c.c] = 1;
+  }
+  return bad;
 }
 
 double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule) {
   const double best = best_fitness(rule);
   double least = best;
-  for (const std::uint32_t t : triangles_under(best * std::max(rule.ratio, rule.near) + 1e-6, mesh))
+  for (const std::uint32_t t : triangles_under(best * highest_bad_ratio(rule) + 1e-6, mesh))
     least = std::min(least, triangle_fitness(mesh, t, order, rule));
   return least;
-}
-
-std::vector<std::uint8_t> points_at_triangles_under(double ratio, const SurfaceMesh& mesh) {
-  std::vector<std::uint8_t> marked(mesh.points.size(), 0);
-  for (const std::uint32_t t : triangles_under(ratio, mesh)) {
-    const auto p = corners(mesh, t);
-    if (radius_ratio(p[0], p[1], p[2]) < ratio)
-      for (int k = 0; k < 3; ++k) marked[mesh.triangles[t][k]] = 1;
-  }
-  return marked;
 }
 
 }  // namespace nacre

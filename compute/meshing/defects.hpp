@@ -26,6 +26,9 @@ struct DefectRule {
 inline constexpr DefectRule worst_defects{0, 0.31, 0.21, false};
 /// Triangles with a smaller ratio are worth further rounds of smoothing.
 inline constexpr double wanted_ratio = 0.5;
+inline constexpr DefectRule mediocre{0, wanted_ratio, wanted_ratio, false};
+/// What is aimed at where time does not matter.
+inline constexpr DefectRule not_fine{30, wanted_ratio, wanted_ratio, false};
 
 /// What to change about the particles of a mesh before they are triangulated again.
 struct MeshDefects {
@@ -55,6 +58,9 @@ struct MeshDefects {
 MeshDefects find_defects(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, std::span<const float> size,
                          std::span<const std::array<std::uint32_t, 2>> touching, const DefectRule& rule = {});
 
+/// Gives the points of `defects` the numbers that they have where only the points `kept`, theirs among them, are left.
+void renumber(std::vector<std::array<std::uint32_t, 2>>& defects, std::span<const std::uint32_t> kept);
+
 /// A point of a junction counts as a surface's where the mesh has no junction: too little of a third material comes
 /// there for a cell of its own. So triangles are judged by what the mesh shows. `order` is per point of the mesh.
 void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& order);
@@ -62,17 +68,23 @@ void lift_off_junctions(const SurfaceMesh& mesh, std::vector<std::uint8_t>& orde
 /// Triangles with a radius ratio of `ratio` or less, ascending.
 std::vector<std::uint32_t> triangles_under(double ratio, const SurfaceMesh& mesh);
 
-/// How far a triangle is above the least ratio of `rule`, as a multiple of it; below 1 where it is bad.
+/// The highest ratio of a triangle that can be bad by `rule`.
+double highest_bad_ratio(const DefectRule& rule);
+
+/// How far a triangle is above what `rule` asks, as a multiple of it; below 1 where it is bad. Its angles count only
+/// where no corner is on a junction.
+double triangle_fitness(const std::array<Vec3d, 3>& corners, bool at_junction, const DefectRule& rule);
 double triangle_fitness(const SurfaceMesh& mesh, std::size_t t, std::span<const std::uint8_t> order,
                         const DefectRule& rule);
 
 /// The largest fitness: better triangles are not distinguished.
-inline double best_fitness(const DefectRule& rule) { return wanted_ratio / rule.ratio; }
+inline double best_fitness(const DefectRule& rule) { return rule.ratio < wanted_ratio ? wanted_ratio / rule.ratio : 1; }
+
+/// Marks the points of triangles that are bad by `rule`.
+std::vector<std::uint8_t> points_at_bad(const SurfaceMesh& mesh, std::span<const std::uint8_t> order,
+                                        const DefectRule& rule);
 
 /// The least fitness of all triangles.
 double fitness(const SurfaceMesh& mesh, std::span<const std::uint8_t> order, const DefectRule& rule);
-
-/// Marks the points at triangles with a radius ratio under `ratio`.
-std::vector<std::uint8_t> points_at_triangles_under(double ratio, const SurfaceMesh& mesh);
 
 }  // namespace nacre

@@ -12,7 +12,7 @@
 #include "compute/meshing/flat_tetrahedron.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
-#include "compute/meshing/vertex_fans.hpp"
+#include "compute/meshing/vertex_facets.hpp"
 
 namespace nacre {
 namespace {
@@ -79,17 +79,15 @@ class Editor {
   Vec3d normal(const Triangle& t) const { return cross(point(t.b) - point(t.a), point(t.c) - point(t.a)); }
 
   double fitness(const Triangle& t, const DefectRule& rule) const {
-    const bool near = order_[t.a] < 2 || order_[t.b] < 2 || order_[t.c] < 2;
-    const double ratio = radius_ratio(point(t.a), point(t.b), point(t.c));
-    return std::min(ratio / (near ? rule.near : rule.ratio), best_fitness(rule));
+    const bool at_junction = order_[t.a] < 2 || order_[t.b] < 2 || order_[t.c] < 2;
+    return triangle_fitness({point(t.a), point(t.b), point(t.c)}, at_junction, rule);
   }
   double fitness(const Triangle& t) const { return fitness(t, rule_); }
 
   /// Puts a bad triangle on the list.
   void note(std::uint32_t t) {
     const Triangle& corner = mesh_.triangles[t];
-    const double bound = std::max(rule_.ratio, rule_.near);
-    if (ratio_is_above(bound, point(corner.a), point(corner.b), point(corner.c))) return;
+    if (ratio_is_above(highest_bad_, point(corner.a), point(corner.b), point(corner.c))) return;
     if (const double f = fitness(corner); f < 1) bad_.insert({f, t});
   }
 
@@ -212,9 +210,9 @@ class Editor {
   bool stays_sound(Change& change, const std::array<std::uint32_t, 4>& corners) const {
     std::vector<std::uint16_t> materials, left;
     for (const std::uint32_t v : corners) {
-      const Facets before = facets_at(v, at(v)), after = facets_after(v, change);
+      const VertexFacets before = facets_at(v, at(v)), after = facets_after(v, change);
       if (after.empty() && order_[v] == 0) return false;  // such points stay
-      if (touches_more(before, after) || !edges_pass_once(after)) return false;
+      if (touches_more(before, after) || is_pinched(after) || !edges_pass_once(after)) return false;
       for (const VertexFanCounter::Facet& f : before)
         materials.insert(materials.end(), {f.materials[0], f.materials[1]});
       for (const VertexFanCounter::Facet& f : after) left.insert(left.end(), {f.materials[0], f.materials[1]});
@@ -226,50 +224,24 @@ class Editor {
     return materials == left;
   }
 
-  using Facets = std::vector<VertexFanCounter::Facet>;
-
-  static void add_facet(Facets& facets, std::uint32_t v, const Triangle& t, const MaterialPair& materials) {
+  static void add_facet(VertexFacets& facets, std::uint32_t v, const Triangle& t, const MaterialPair& materials) {
     for (int k = 0; k < 3; ++k)
       if (t[k] == v) facets.push_back({t[(k + 1) % 3], t[(k + 2) % 3], materials});
   }
 
-  Facets facets_at(std::uint32_t v, const Triangles& some) const {
-    Facets facets;
+  VertexFacets facets_at(std::uint32_t v, const Triangles& some) const {
+    VertexFacets facets;
     for (const std::uint32_t t : some) add_facet(facets, v, mesh_.triangles[t], mesh_.materials[t]);
     return facets;
   }
 
-  Facets facets_after(std::uint32_t v, const Change& change) const {
+  VertexFacets facets_after(std::uint32_t v, const Change& change) const {
     Triangles stay = at(v);
     std::erase_if(
         stay, [&](std::uint32_t t) { return std::find(change.old.begin(), change.old.end(), t) != change.old.end(); });
-    Facets facets = facets_at(v, stay);
+    VertexFacets facets = facets_at(v, stay);
     for (const auto& [made, old] : change.made) add_facet(facets, v, made.corners, made.materials);
     return facets;
-  }
-
-  /// Whether the surface of a material passes a vertex more than once, and more often than before.
-  static bool touches_more(const Facets& before, const Facets& after) {
-    VertexFanCounter counter;
-    const std::vector<MaterialCount> fans = counter.vertex_fans(before);
-    const std::vector<MaterialCount>& now = counter.vertex_fans(after);
-    return std::any_of(now.begin(), now.end(), [&](const MaterialCount& is) {
-      const auto was = std::find_if(fans.begin(), fans.end(), [&](const auto& f) { return f.material == is.material; });
-      return is.count > std::max(1, was == fans.end() ? 0 : was->count);
-    });
-  }
-
-  /// Whether each material has two facets at each of a vertex's edges, if any.
-  static bool edges_pass_once(const Facets& facets) {
-    const auto passes = [&](std::uint32_t end, std::uint16_t m) {
-      return std::count_if(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& f) {
-        return (f.from == end || f.to == end) && (f.materials[0] == m || f.materials[1] == m);
-      });
-    };
-    return std::all_of(facets.begin(), facets.end(), [&](const VertexFanCounter::Facet& f) {
-      return passes(f.from, f.materials[0]) == 2 && passes(f.from, f.materials[1]) == 2 &&
-             passes(f.to, f.materials[0]) == 2 && passes(f.to, f.materials[1]) == 2;
-    });
   }
 
   /// Moves point `u` onto its neighbour `v`.
@@ -294,6 +266,12 @@ class Editor {
       change.made.push_back({{made, mesh_.materials[t]}, t});
     }
     if (change.made.empty()) return {};
+    if (order_[u] < 2) {  // where a curve goes, surfaces may be left that touch
+      std::vector<std::uint32_t> there = of_u;
+      std::erase(there, v), there.push_back(v);
+      if (std::any_of(there.begin(), there.end(), [&](std::uint32_t w) { return is_pinched(facets_after(w, change)); }))
+        return {};
+    }
     return judged(std::move(change));
   }
 
@@ -423,6 +401,7 @@ class Editor {
   SurfaceMesh& mesh_;
   std::span<const std::uint8_t> order_;
   const DefectRule rule_;
+  const double highest_bad_ = highest_bad_ratio(rule_);
   const VertexTable table_;                               ///< of the triangles as they were
   std::unordered_map<std::uint32_t, Triangles> changed_;  ///< those at the points that have others now
   std::set<std::pair<double, std::uint32_t>> bad_;        ///< by fitness

@@ -47,7 +47,7 @@ bool turns_away(const SurfaceMesh& mesh, std::span<const std::uint32_t> there, c
 std::vector<EdgeSplit> edges_to_split(const SurfaceMesh& mesh, std::span<const std::uint8_t> order,
                                       std::span<const float> size, const DefectRule& rule) {
   std::vector<std::pair<double, std::uint32_t>> bad;
-  for (const std::uint32_t t : triangles_under(std::max(rule.ratio, rule.near), mesh))
+  for (const std::uint32_t t : triangles_under(highest_bad_ratio(rule) + 1e-6, mesh))
     if (const double fitness = triangle_fitness(mesh, t, order, rule); fitness < 1) bad.push_back({fitness, t});
   if (bad.empty()) return {};
   std::sort(bad.begin(), bad.end());

@@ -41,8 +41,6 @@ void PatchCells::begin() {
   in_patch_.clear();
 }
 
-bool PatchCells::is_in_patch(const Vec3d& point) const { return in_patch_.contains(key_of({&point, 1})); }
-
 bool PatchCells::was_in_patch(const Vec3d& point) const { return in_patch_before_.contains(key_of({&point, 1})); }
 
 void PatchCells::keep_in_patch(const Vec3d& point) { in_patch_.insert(key_of({&point, 1})); }

@@ -45,9 +45,8 @@ class PatchCells {
   };
   void begin();  ///< a new mesh
   std::shared_ptr<const Made> make(Points points, const PatchWorld& world, const std::atomic<bool>* stop);
-  bool is_in_patch(const Vec3d& point) const;   ///< a particle there is to be in a patch of the next mesh
-  bool was_in_patch(const Vec3d& point) const;  ///< ... or was to be in one of this mesh
-  void keep_in_patch(const Vec3d& point);
+  bool was_in_patch(const Vec3d& point) const;  ///< a particle there was in one of the mesh before
+  void keep_in_patch(const Vec3d& point);       ///< ... is to be in one of the next
 
  private:
   using Kept = std::unordered_multimap<std::uint64_t, std::shared_ptr<const Made>>;

@@ -2,6 +2,7 @@
 #include "compute/pipeline/host_particles.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace nacre {
 
@@ -29,16 +30,31 @@ std::vector<std::uint32_t> replace_particles(HostParticles& particles, std::span
   return taken;
 }
 
-HostParticles take_back(std::span<const Attempt::Source> sources, const HostParticles& before,
-                        const HostParticles& now) {
-  HostParticles mixed;
-  for (const auto& [was_before, i] : sources) {
-    const HostParticles& from = was_before ? before : now;
-    mixed.position.push_back(from.position[i]);
-    mixed.direction.push_back(from.direction[i]);
-    mixed.interface.push_back(from.interface[i]);
+std::vector<std::uint32_t> same_particles(const HostParticles& before, const HostParticles& now) {
+  struct Place {
+    float x, y, z;
+    std::uint32_t interface, number;
+  };
+  const auto what = [](const Place& p) { return std::tie(p.interface, p.x, p.y, p.z); };
+  const auto ascend = [&](const Place& a, const Place& b) { return what(a) < what(b); };
+  const auto sorted = [&](const HostParticles& particles) {
+    std::vector<Place> all;
+    for (std::uint32_t i = 0; i < particles.count(); ++i) {
+      const Float4& p = particles.position[i];
+      all.push_back({p.x, p.y, p.z, particles.interface[i], i});
+    }
+    std::sort(all.begin(), all.end(), ascend);
+    return all;
+  };
+  const std::vector<Place> old = sorted(before), fresh = sorted(now);
+  std::vector<std::uint32_t> same(now.count(), none);
+  for (auto at = fresh.begin(), from = old.begin(); at != fresh.end();) {
+    const auto end = std::upper_bound(at, fresh.end(), *at, ascend);
+    const auto [first, last] = std::equal_range(from, old.end(), *at, ascend);
+    if (end - at == 1 && last - first == 1) same[at->number] = first->number;
+    at = end, from = last;
   }
-  return mixed;
+  return same;
 }
 
 HostParticles select(const HostParticles& particles, std::span<const std::uint32_t> chosen) {

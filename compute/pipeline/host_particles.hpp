@@ -9,7 +9,6 @@
 
 #include "compute/embedding/junction_table.hpp"
 #include "compute/math/lanes.hpp"
-#include "compute/meshing/attempt.hpp"
 #include "compute/meshing/defects.hpp"
 #include "compute/pipeline/volume_frame.hpp"
 
@@ -30,9 +29,9 @@ std::vector<std::uint32_t> replace_particles(HostParticles& particles, std::span
                                              std::span<const MeshDefects::NewPoint> born, const JunctionTable& table,
                                              const VolumeFrame& frame, std::size_t capacity);
 
-/// The particles that an attempt has taken back: each from `before` or from `now`.
-HostParticles take_back(std::span<const Attempt::Source> sources, const HostParticles& before,
-                        const HostParticles& now);
+/// Per particle of `now`: that of `before` in the same position and on the same interface, or `none` where there is no
+/// such particle, or more than one in either.
+std::vector<std::uint32_t> same_particles(const HostParticles& before, const HostParticles& now);
 
 /// Those of the numbers `chosen`, in that order.
 HostParticles select(const HostParticles& particles, std::span<const std::uint32_t> chosen);

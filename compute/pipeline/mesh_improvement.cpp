@@ -2,9 +2,11 @@
 #include "compute/pipeline/mesh_improvement.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "compute/device/error.hpp"
+#include "compute/math/sort_unique.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
@@ -13,40 +15,6 @@
 
 namespace nacre {
 namespace {
-
-/// Rounds of an attempt after its first. With stars, which change less from one mesh to the next than cells do, other
-/// attempts help more.
-int most_further(const ImprovementRule& rule, const StarUse& use) { return rule.stars && use.fallbacks == 0 ? 1 : 4; }
-
-constexpr int most_in_vain = 3;        // attempts
-constexpr int most_patchings = 3;      // of what is not acceptable,
-constexpr int rounds_of_patching = 6;  // of remeshing in each, at most
-
-/// Cells are tried, too, rather than that triangles of stars are so bad. Below what is aimed at: a triangle or two that
-/// nearly reach that are not worth so much.
-constexpr double least_accepted = 0.2;
-constexpr DefectRule unacceptable{0, least_accepted, least_accepted, false};
-
-/// What an attempt does to the particles around bad points.
-struct AttemptKind {
-  int turns;    ///< of smoothing; 0: none
-  bool shakes;  ///< smoothing begins from random positions
-  bool remeshes;
-  bool splits;  ///< ... the sides of curves, where that helps
-};
-/// Tried in turn: smoothing and remeshing together; fewer steps, for particles that flip to and fro; remeshing alone,
-/// which leaves the other particles where they are; and both again from a random start.
-constexpr std::array<AttemptKind, 4> attempt_kinds{
-    {{6, false, true, true}, {2, false, false, false}, {0, false, true, false}, {6, true, true, false}}};
-
-/// `defects` in terms of the mesh's points instead of particles. The mesh has some of the particles, in the same order.
-std::vector<std::array<std::uint32_t, 2>> points_of_defects(std::vector<std::array<std::uint32_t, 2>> defects,
-                                                            const std::vector<std::uint32_t>& point_of) {
-  for (auto& defect : defects)
-    for (std::uint32_t& p : defect)
-      p = std::uint32_t(std::lower_bound(point_of.begin(), point_of.end(), p) - point_of.begin());
-  return defects;
-}
 
 /// What stars ask of particles, beyond what these hold.
 struct StarInput {
@@ -95,67 +63,40 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       }) {}
 
 ImprovedMesh MeshImprovement::run() {
-  std::optional<Kept> best;
+  Kept best = whole();
   settle(best);
-  for (int k = 0; k < most_patchings && stars() && polishes() && !best->acceptable; ++k) patch(*best);
-  if (stars() && polishes() && !best->acceptable) {
+  // Cells of all particles rather than a mesh of stars that is not even acceptable.
+  if (stars() && rule_.deviation == 0 && !best.acceptable) {
     ++star_use_.fallbacks;
-    remeshed_ = 0, bad_ = most_bad, in_vain_ = 0;
-    best.reset();
+    remeshed_ = 0;
+    particles_.upload(best.particles);
+    best = whole();
     settle(best);
   }
-  if (rule_.deviation > 0) refine(*best);
-  star_use_.flips = best->flips, star_use_.contractions = best->contractions, star_use_.splits = best->splits;
-  particles_.upload(best->particles);
-  return {std::move(best->made.mesh), count_by_order(best->particles.interface, table_), star_use_, deviation_};
-}
-
-/// Triangulates and improves until the mesh is good or nothing helps. `best` is replaced by what is better, where it is
-/// the first or no deviation is asked for.
-void MeshImprovement::settle(std::optional<Kept>& best) {
-  for (bool again = true; again;) {
-    tell_("triangulate", fraction(), 0, 0);
-    Triangulated made = triangulate();
-    if (attempt_) {
-      if (continue_attempt(made)) continue;
-      if (take_back_attempt()) made = triangulate();
-    }
-    if (smoothed_ >= rule_.smooth) {
-      Kept now;
-      if (polishes())
-        now = polished(made);
-      else
-        now.made = made, now.particles = particles_.download();
-      now.acceptable = is_acceptable(now.made);
-      if (stars() && polishes() && !now.acceptable) patch_at_unacceptable(made);
-      in_vain_ = best && !nearer_to_good(now, *best) ? in_vain_ + 1 : 0;
-      if (!best || !better_shaped(*best, now)) best = std::move(now);
-      if (polishes() && (is_good(*best) || in_vain_ == most_in_vain)) return;
-    }
-    again = improve(made);
-  }
-}
-
-bool MeshImprovement::is_acceptable(const Triangulated& made) {
-  return made.touching.empty() && fitness(made.mesh, made.order, unacceptable) >= 1;
-}
-
-/// Makes the mesh again with cells where it is not acceptable, of the same particles, and improves it: triangles of one
-/// kind may be good where those of the other are bad. `best` is replaced where that is better.
-void MeshImprovement::patch(Kept& best) {
+  if (rule_.deviation > 0) refine(best);
+  star_use_.flips = best.flips, star_use_.contractions = best.contractions, star_use_.splits = best.splits;
   particles_.upload(best.particles);
-  patch_at_unacceptable(best.made);
-  remeshed_ = std::max(1, rule_.remesh - rounds_of_patching), bad_ = most_bad, in_vain_ = 0;
-  std::optional<Kept> now;
-  settle(now);
-  if (stars() && better_shaped(*now, best)) best = std::move(*now);
+  return {std::move(best.made.mesh), count_by_order(best.particles.interface, table_), star_use_, deviation_};
 }
 
-/// The next mesh has cells where `made`, of the particles as they are, is not acceptable.
-void MeshImprovement::patch_at_unacceptable(const Triangulated& made) {
-  const std::vector<std::uint8_t> bad = bad_points(made, unacceptable.near);
-  for (std::size_t v = 0; v < bad.size(); ++v)
-    if (bad[v]) patch_cells_.keep_in_patch(made.mesh.points[v]);
+/// A mesh of all particles, which are remeshed and smoothed until that is done; polished.
+MeshImprovement::Kept MeshImprovement::whole() {
+  Triangulated made;
+  do {
+    tell_("triangulate", fraction(), 0, 0);
+    made = triangulate();
+  } while (improve(made));
+  return rule_.stars && rule_.deviation == 0 ? polished(made) : as_made(std::move(made));
+}
+
+/// A mesh with its particles as they are.
+MeshImprovement::Kept MeshImprovement::as_made(Triangulated made) {
+  Kept kept;
+  kept.particles = select(particles_.download(), made.point_of);
+  std::iota(made.point_of.begin(), made.point_of.end(), 0u);
+  kept.made = std::move(made);
+  judge(kept);
+  return kept;
 }
 
 double MeshImprovement::fraction() const {
@@ -170,14 +111,19 @@ MeshImprovement::Triangulated MeshImprovement::triangulate() {
     // Once cells were needed, all later meshes are of cells, too: triangles good in one kind may be bad in the other.
     if (!stars() || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
     check_stop(rule_.stop);
-    for (const std::uint32_t i : made.point_of) {
-      made.order.push_back(table_.order[particles.interface[i]]);
-      made.size.push_back(particles.position[i].w * float(frame_.unit));
-    }
-    lift_off_junctions(made.mesh, made.order);
-    made.fitness = fitness_of(made);
+    finish(made, particles);
   });
   return made;
+}
+
+/// What follows from the mesh and the particles.
+void MeshImprovement::finish(Triangulated& made, const HostParticles& particles) const {
+  for (const std::uint32_t i : made.point_of) {
+    made.order.push_back(table_.order[particles.interface[i]]);
+    made.size.push_back(particles.position[i].w * float(frame_.unit));
+  }
+  lift_off_junctions(made.mesh, made.order);
+  made.fitness = fitness_of(made);
 }
 
 double MeshImprovement::fitness_of(const Triangulated& made) {
@@ -202,17 +148,27 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   star_use_.last = stars.counts;
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;
+  take_triangles(points, std::move(stars), std::move(touching), made);
+  return true;
+}
+
+void MeshImprovement::take_triangles(std::span<const Vec3d> points, StarMesh stars,
+                                     std::vector<std::array<std::uint32_t, 2>> touching, Triangulated& made) {
   made.mesh = mesh_of_triangles(points, std::move(stars.triangles), std::move(stars.materials), &made.point_of);
   std::erase_if(touching, [&](const auto& defect) {  // of particles that no triangle has
     return !std::all_of(defect.begin(), defect.end(), [&](std::uint32_t p) {
       return std::binary_search(made.point_of.begin(), made.point_of.end(), p);
     });
   });
-  made.touching = points_of_defects(std::move(touching), made.point_of);
+  made.touching = std::move(touching);
+  renumber(made.touching, made.point_of);
+  add_pinched(made);
+}
+
+/// Points are where the mesh touches itself, too.
+void MeshImprovement::add_pinched(Triangulated& made) {
   for (const std::uint32_t v : pinched_points(made.mesh)) made.touching.push_back({v, v});
-  std::sort(made.touching.begin(), made.touching.end());
-  made.touching.erase(std::unique(made.touching.begin(), made.touching.end()), made.touching.end());
-  return true;
+  sort_unique(made.touching);
 }
 
 void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triangulated& made) {
@@ -220,69 +176,20 @@ void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triang
   std::vector<std::uint16_t> label = particles_.material_at(cells.circumcentres);
   LabelRepair repair = repair_labels(points, cells, label, rule_.stop);
   made.mesh = extract_interfaces(points, cells, label, &made.point_of);
-  made.touching = points_of_defects(std::move(repair.defects), made.point_of);
+  made.touching = std::move(repair.defects);
+  renumber(made.touching, made.point_of);
 }
 
-/// Changes the particles before they are triangulated again; false where there is nothing to change.
+/// Changes all particles before they are triangulated again; false where that has been done as often as is asked.
 bool MeshImprovement::improve(Triangulated& made) {
   if (smoothed_ + remeshed_ == 0 && rule_.remesh > 0) {
     ++remeshed_;
-    if (remesh(made, DefectRule())) return true;
+    if (!remesh(made, DefectRule()).empty()) return true;
   }
-  if (smoothed_ < rule_.smooth) {
-    ++smoothed_;
-    smooth(made, std::vector<std::uint8_t>(made.mesh.points.size(), 1));
-    if (smoothed_ == rule_.smooth && rule_.remesh > 0) remesh(made, worst_defects);
-    return true;
-  }
-  const std::vector<std::uint8_t> bad = bad_points(made);
-  const std::int64_t count = std::count(bad.begin(), bad.end(), 1);
-  const bool worth = made.fitness < 1 || (count > 0 && 4 * count < 3 * bad_);
-  if (remeshed_ >= rule_.remesh || !worth) return false;
-  ++remeshed_;
-  bad_ = count;
-  return begin_attempt(made, bad);
-}
-
-/// Changes what is around the points `bad`, by the next of the kinds of attempts. False where none changes anything.
-bool MeshImprovement::begin_attempt(Triangulated& made, std::span<const std::uint8_t> bad) {
-  before_ = particles_.download();
-  attempt_.emplace(before_.count(), made.view(), bad, worst_defects);
-  further_ = 0;
-  for (std::size_t k = 0; k < attempt_kinds.size(); ++k) {
-    const std::uint32_t number = tried_++;
-    const AttemptKind& kind = attempt_kinds[number % attempt_kinds.size()];
-    const bool moves = kind.turns > 0 && rule_.smooth > 0;
-    const bool moved = moves && smooth(made, bad, {kind.turns, kind.shakes ? number : 0}) > 0;
-    DefectRule rule = worst_defects;
-    rule.splits = kind.splits;
-    const bool remeshed = kind.remeshes && remesh(made, rule);
-    if (moved || remeshed) return true;
-  }
-  attempt_.reset();
-  return false;
-}
-
-/// Goes on with an attempt where triangles have become no better: it may take more than one round. False where it has
-/// ended.
-bool MeshImprovement::continue_attempt(Triangulated& made) {
-  attempt_->judge(made.view());
-  const std::vector<std::uint8_t> open = attempt_->open(made.view());
-  if (open.empty() || further_ == most_further(rule_, star_use_) || remeshed_ >= rule_.remesh) return false;
-  ++further_, ++remeshed_;
-  std::vector<std::uint8_t> moving = bad_points(made);
-  for (std::size_t v = 0; v < moving.size(); ++v) moving[v] &= open[v];
-  const bool moved = rule_.smooth > 0 && smooth(made, moving) > 0;
-  return remesh(made, worst_defects, open) || moved;
-}
-
-/// Ends an attempt: particles go back to where they were before, in those patches whose triangles are no better since.
-/// True where there are some.
-bool MeshImprovement::take_back_attempt() {
-  const std::vector<Attempt::Source> sources = attempt_->taken_back();
-  attempt_.reset();
-  if (sources.empty()) return false;
-  particles_.upload(take_back(sources, before_, particles_.download()));
+  if (smoothed_ >= rule_.smooth) return false;
+  ++smoothed_;
+  smooth(made, std::vector<std::uint8_t>(made.mesh.points.size(), 1));
+  if (smoothed_ == rule_.smooth && rule_.remesh > 0) remesh(made, worst_defects);
   return true;
 }
 
@@ -301,32 +208,30 @@ std::int64_t MeshImprovement::smooth(Triangulated& made, std::span<const std::ui
     const Vec3d position(b.x, b.y, b.z);
     const double moved = length(position - Vec3d(a.x, a.y, a.z));
     far += moved > 0.01 * a.w;
-    const Vec3d was = std::exchange(made.mesh.points[v], frame_.to_world(position));
-    // What an attempt moves stays in its patch, which would else begin to grow anew.
-    if (attempt_ && moved > 0 && patch_cells_.is_in_patch(was)) patch_cells_.keep_in_patch(made.mesh.points[v]);
+    made.mesh.points[v] = frame_.to_world(position);
     made.size[v] = b.w * float(frame_.unit);
   }
   return far;
 }
 
 /// Takes away the particles that spoil triangles, and adds some where a surface touches itself or a rim has a gap; only
-/// at the mesh's points `there`, where these are marked. False where nothing is to be changed.
-bool MeshImprovement::remesh(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there) {
-  bool changed = false;
+/// at the mesh's points `there`, where these are marked. Marks those that are gone; empty where nothing is to be
+/// changed.
+std::vector<std::uint8_t> MeshImprovement::remesh(const Triangulated& made, const DefectRule& rule,
+                                                  std::span<const std::uint8_t> there) {
+  std::vector<std::uint8_t> gone;
   particles_.in_stage("remesh", [&] {
     MeshDefects defects = find_defects(made.mesh, made.order, made.size, made.touching, rule);
     if (!there.empty()) {
       std::erase_if(defects.remove, [&](std::uint32_t v) { return !there[v]; });
       std::erase_if(defects.insert, [&](const MeshDefects::NewPoint& p) { return !there[p.at]; });
     }
-    changed = !defects.remove.empty() || !defects.insert.empty();
-    if (!changed) return;
-    std::vector<std::uint8_t> gone(std::size_t(particles_.count()), 0);
+    if (defects.remove.empty() && defects.insert.empty()) return;
+    gone.assign(std::size_t(particles_.count()), 0);
     for (const std::uint32_t v : defects.remove) gone[made.point_of[v]] = 1;
     particles_.replace(gone, defects.insert);
-    if (attempt_) attempt_->change(gone, std::size_t(particles_.count()));
   });
-  return changed;
+  return gone;
 }
 
 }  // namespace nacre

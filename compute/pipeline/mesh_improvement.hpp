@@ -3,7 +3,8 @@
 // Each operation has one name:
 // - to smooth: particles move within the rings of triangles around them;
 // - to remesh: particles that spoil triangles are removed, and missing ones are added;
-// - an attempt: smoothing or remeshing at bad triangles only, undone where the triangles are no better afterwards;
+// - an attempt: what is around bad triangles is cut out, its particles are changed and triangulated anew; the outcome
+//   is taken where its triangles are better (better_parts.hpp);
 // - to project: particles are brought onto their interfaces, on the fields themselves;
 // - to edit: edges of bad triangles are flipped or contracted (edge_edits.hpp); particles stay where they are;
 // - to polish: edits and smoothing at bad triangles in turn; nothing is triangulated again;
@@ -20,7 +21,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "compute/meshing/attempt.hpp"
+#include "compute/meshing/better_parts.hpp"
 #include "compute/meshing/defects.hpp"
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/repair.hpp"
@@ -41,7 +42,7 @@ struct ImprovementRule {
   int remesh = 12;                          ///< rounds of remeshing, at most; each attempt counts as one
   bool stars = false;                       ///< triangles from stars, where these are sound, and polished
   double most_unsettled = 1;                ///< share of the stars: with more, cells are used from the start
-  bool thorough = false;                    ///< goes on until no triangle is below wanted_ratio, not worst_defects
+  DefectRule aim = worst_defects;           ///< goes on until no triangle is bad by this
   int threads = 0;                          ///< of the Delaunay triangulation; 0: all
   const std::atomic<bool>* stop = nullptr;  ///< throws Interrupted soon after it is set
   double deviation = 0;                     ///< largest of triangles from their interface, voxels; 0: any
@@ -57,10 +58,9 @@ struct ImprovedMesh {
 };
 
 /// Triangulates particles and changes them until the triangles are good, or get no better. First the clear defects are
-/// remeshed, then all particles are smoothed, then there are attempts at what is still bad. The best mesh after
-/// smoothing is kept. With `rule.stars`, each of these is polished, and no more is done once one is as good as is
-/// asked; without, all triangles are facets of Delaunay cells. Where the deviation is bounded, particles are added in
-/// the triangles above the bound, in turn with further attempts.
+/// remeshed, then all particles are smoothed, and the mesh is polished; then there are attempts at what is still bad,
+/// which leave all else as it is. Where the deviation is bounded, particles are added in the triangles above the bound,
+/// in turn with further attempts.
 class MeshImprovement {
  public:
   /// All arguments must outlive the object.
@@ -80,49 +80,74 @@ class MeshImprovement {
     std::vector<float> size;                             ///< per point, world units
     double fitness = 0;  ///< see nacre::fitness; below 0: the number of positions where it touches itself
 
-    Attempt::View view() const { return {mesh, point_of, order, touching}; }
+    JudgedMesh judged() const { return {mesh, order, touching}; }
   };
 
   /// The mesh that is the best so far, and its particles.
   struct Kept {
     Triangulated made;
     HostParticles particles;
-    std::int64_t mediocre = 0;                             ///< of its points, at triangles below wanted_ratio
+    std::int64_t mediocre = 0;                             ///< of its points, at triangles that could be better
     bool acceptable = false;                               ///< as it is, nothing is to be tried with cells
     std::int64_t flips = 0, contractions = 0, splits = 0;  ///< of edges
     DeviationRefinement further;                           ///< what would bring it nearer to its interfaces
     MeshDeviation deviation;
   };
 
-  void settle(std::optional<Kept>& best);
+  /// A mesh with all that is around some of its points, cut out of another.
+  struct Cut {
+    Kept piece;                           ///< points and triangles in the order of the whole
+    std::vector<std::uint32_t> point;     ///< per point: its number in the whole
+    std::vector<std::uint32_t> triangle;  ///< ... per triangle
+    std::vector<std::uint8_t> bad;        ///< per point: what was cut out for
+    std::vector<std::uint8_t> on_rim;     ///< per point: not all of its triangles are here
+  };
+  /// What an attempt does to the particles around bad points, before cells triangulate them anew.
+  struct AttemptKind {
+    int turns;    ///< of smoothing; 0: none
+    bool shakes;  ///< smoothing begins from random positions
+    bool remeshes;
+    bool splits;  ///< ... the sides of curves, where that helps
+  };
+
+  Kept whole();
+  Kept as_made(Triangulated made);
+  void settle(Kept& best);
+  bool attempt(Kept& best);
+  bool attempt_at(Kept& best, std::span<const std::uint32_t> bad, const AttemptKind& kind);
+  static Cut cut_out(const Kept& best, std::span<const std::uint32_t> bad);
+  std::optional<Kept> attempted(const Cut& cut, const AttemptKind& kind);
+  bool take_better(Kept& best, const Cut& cut, const Kept& now) const;
+  static std::uint32_t put(Kept& best, const Kept& now, std::uint32_t v, std::uint32_t number);
+  void drop_unused(Kept& best) const;
+  std::optional<Triangulated> triangulate_again(const Triangulated& made, std::span<const std::uint8_t> gone,
+                                                std::span<const std::uint8_t> loose);
+  void judge(Kept& kept) const;
+  DefectRule polish_rule() const;
   void refine(Kept& best);
   Kept polished(const Triangulated& made);
   std::int64_t edit(Kept& kept, std::vector<std::uint8_t>& fixed);
   std::int64_t split(Kept& kept, std::vector<std::uint8_t>& fixed);
-  bool is_good(const Kept& kept) const;
-  bool nearer_to_good(const Kept& a, const Kept& b) const;
-  static bool is_acceptable(const Triangulated& made);
-  void patch(Kept& best);
-  void patch_at_unacceptable(const Triangulated& made);
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
-  bool polishes() const { return rule_.stars && rule_.deviation == 0; }
   void forget_tried(DeviationRefinement& further);
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
-  static std::vector<std::uint8_t> bad_points(const Triangulated& made, double ratio = wanted_ratio);
+  static std::vector<std::uint8_t> bad_points(const Triangulated& made, const DefectRule& rule);
   static double fitness_of(const Triangulated& made);
   static bool better_shaped(const Kept& a, const Kept& b);
   static bool better(const Kept& a, const Kept& b);
   void measure(Kept& kept);
 
   Triangulated triangulate();
+  void finish(Triangulated& made, const HostParticles& particles) const;
   bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, Triangulated& made);
+  static void take_triangles(std::span<const Vec3d> points, StarMesh stars,
+                             std::vector<std::array<std::uint32_t, 2>> touching, Triangulated& made);
+  static void add_pinched(Triangulated& made);
   void triangulate_by_cells(std::span<const Vec3d> points, Triangulated& made);
   bool improve(Triangulated& made);
-  bool begin_attempt(Triangulated& made, std::span<const std::uint8_t> bad);
-  bool continue_attempt(Triangulated& made);
-  bool take_back_attempt();
   std::int64_t smooth(Triangulated& made, std::span<const std::uint8_t> moving, const SmoothingRule& rule = {});
-  bool remesh(const Triangulated& made, const DefectRule& rule, std::span<const std::uint8_t> there = {});
+  std::vector<std::uint8_t> remesh(const Triangulated& made, const DefectRule& rule,
+                                   std::span<const std::uint8_t> there = {});
   double fraction() const;
 
   MovableParticles& particles_;
@@ -136,13 +161,7 @@ class MeshImprovement {
   PatchCells patch_cells_;  ///< and of those where stars do not settle
   StarUse star_use_;
   int smoothed_ = 0, remeshed_ = 0;  ///< rounds so far
-  static constexpr std::int64_t most_bad = std::int64_t(1) << 40;
-  std::int64_t bad_ = most_bad;     ///< points at bad triangles when the last attempt began
-  int in_vain_ = 0;                 ///< polished meshes in a row that were no better
-  std::uint32_t tried_ = 0;         ///< kinds of attempts so far
-  std::optional<Attempt> attempt_;  ///< the one in progress,
-  HostParticles before_;            ///< what was there before it,
-  int further_ = 0;                 ///< and its rounds after the first
+  std::uint32_t tried_ = 0;          ///< attempts so far
   DeviationInfo deviation_;
   KeptNearest on_junctions_;                      ///< where the deviation is measured
   std::unordered_set<std::uint64_t> refined_at_;  ///< hashes of the points that were added for it

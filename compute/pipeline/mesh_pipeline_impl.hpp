@@ -16,6 +16,15 @@ namespace nacre {
 /// Above this share of unsettled stars, surfaces are sampled so coarsely that cells are quicker, and better.
 constexpr double most_unsettled_stars = 0.065;
 
+/// What is asked of triangles.
+inline DefectRule triangles_asked(QualityLevel quality) {
+  switch (quality) {
+    case QualityLevel::draft: return worst_defects;
+    case QualityLevel::standard: return mediocre;
+    default: return not_fine;
+  }
+}
+
 template <class Backend>
 class MeshPipelineOf : public MeshPipeline {
  public:
@@ -67,7 +76,7 @@ class MeshPipelineOf : public MeshPipeline {
                                .remesh = used.remesh,
                                .stars = stars,
                                .most_unsettled = quality == QualityLevel::draft ? 1 : most_unsettled_stars,
-                               .thorough = quality == QualityLevel::best,
+                               .aim = triangles_asked(quality),
                                .threads = exec_.device().threads(),
                                .stop = stop_,
                                .deviation = used.max_deviation,

@@ -1,6 +1,5 @@
 // Nacre: a mesh made better without triangulating it again: edges are edited and split and points smoothed in turn.
 #include <algorithm>
-#include <cassert>
 #include <numeric>
 
 #include "compute/meshing/edge_edits.hpp"
@@ -11,42 +10,22 @@ namespace nacre {
 namespace {
 
 constexpr int most_rounds = 8;
-/// What edits aim at, everywhere.
-constexpr DefectRule mediocre{0, wanted_ratio, wanted_ratio, false};
-
-/// The numbers that the points of `defects` have where only the points `kept`, theirs among them, are left.
-void renumber(std::vector<std::array<std::uint32_t, 2>>& defects, std::span<const std::uint32_t> kept) {
-  for (auto& defect : defects)
-    for (std::uint32_t& v : defect) {
-      const auto at = std::lower_bound(kept.begin(), kept.end(), v);
-      assert(at != kept.end() && *at == v);
-      v = std::uint32_t(at - kept.begin());
-    }
-}
-
 }  // namespace
 
-/// Marks the points of a mesh at triangles with a lower ratio, and where it touches itself.
-std::vector<std::uint8_t> MeshImprovement::bad_points(const Triangulated& made, double ratio) {
-  std::vector<std::uint8_t> bad = points_at_triangles_under(ratio, made.mesh);
+/// Marks the points of a mesh at triangles that are bad by `rule`, and where it touches itself.
+std::vector<std::uint8_t> MeshImprovement::bad_points(const Triangulated& made, const DefectRule& rule) {
+  std::vector<std::uint8_t> bad = points_at_bad(made.mesh, made.order, rule);
   for (const auto& defect : made.touching)
     for (const std::uint32_t point : defect) bad[point] = 1;
   return bad;
 }
 
+/// What polishing aims at: what is asked, or more.
+DefectRule MeshImprovement::polish_rule() const { return rule_.aim.ratio < wanted_ratio ? mediocre : rule_.aim; }
+
 bool MeshImprovement::better_shaped(const Kept& a, const Kept& b) {
   if (a.acceptable != b.acceptable) return a.acceptable;
   return a.made.fitness != b.made.fitness ? a.made.fitness > b.made.fitness : a.mediocre < b.mediocre;
-}
-
-bool MeshImprovement::is_good(const Kept& kept) const {
-  return kept.made.fitness >= 1 && (!rule_.thorough || kept.mediocre == 0);
-}
-
-bool MeshImprovement::nearer_to_good(const Kept& a, const Kept& b) const {
-  constexpr double worth = 0.01;  // a mesh
-  return a.acceptable > b.acceptable || a.made.fitness > b.made.fitness + worth ||
-         (rule_.thorough && better_shaped(a, b));
 }
 
 /// Changes bad triangles by their edges. `fixed` marks points; those are added where a curve goes that their particles
@@ -56,7 +35,7 @@ std::int64_t MeshImprovement::edit(Kept& kept, std::vector<std::uint8_t>& fixed)
   std::vector<std::uint8_t> order = made.order;
   for (const auto& defect : made.touching)
     for (const std::uint32_t point : defect) order[point] = 0;  // stays: remeshing has to find it
-  const EdgeEdits edits = edit_edges(made.mesh, order, mediocre);
+  const EdgeEdits edits = edit_edges(made.mesh, order, polish_rule());
   const auto keep = [&](auto& of_points) {
     for (std::size_t v = 0; v < edits.kept.size(); ++v) of_points[v] = of_points[edits.kept[v]];
     of_points.resize(edits.kept.size());
@@ -71,7 +50,7 @@ std::int64_t MeshImprovement::edit(Kept& kept, std::vector<std::uint8_t>& fixed)
 /// Splits long edges of bad triangles by new particles. Returns how many.
 std::int64_t MeshImprovement::split(Kept& kept, std::vector<std::uint8_t>& fixed) {
   Triangulated& made = kept.made;
-  std::vector<EdgeSplit> splits = edges_to_split(made.mesh, made.order, made.size, mediocre);
+  std::vector<EdgeSplit> splits = edges_to_split(made.mesh, made.order, made.size, polish_rule());
   if (splits.empty()) return 0;
   std::vector<Vec3d> middle;
   std::vector<Junction> junction;
@@ -94,7 +73,7 @@ std::int64_t MeshImprovement::split(Kept& kept, std::vector<std::uint8_t>& fixed
   std::vector<Vec3d> at;
   for (std::size_t i = before; i < position.size(); ++i)
     at.push_back(frame_.to_world({position[i].x, position[i].y, position[i].z}));
-  const std::vector<std::uint32_t> done = split_edges(made.mesh, made.order, splits, at, mediocre);
+  const std::vector<std::uint32_t> done = split_edges(made.mesh, made.order, splits, at, polish_rule());
   for (const std::uint32_t k : done) {
     made.point_of.push_back(std::uint32_t(before + k));
     made.order.push_back(splits[k].point.third == 0xffff ? 2 : 1);
@@ -105,10 +84,8 @@ std::int64_t MeshImprovement::split(Kept& kept, std::vector<std::uint8_t>& fixed
   return std::int64_t(done.size());
 }
 
-/// The best that edits and smoothing make of a mesh of the particles, which stay as they are. What is kept has the
-/// particles of its mesh alone.
+/// The best that edits and smoothing make of a mesh of the particles. What is kept has the particles of its mesh alone.
 MeshImprovement::Kept MeshImprovement::polished(const Triangulated& made) {
-  const HostParticles before = particles_.download();
   Kept now, best;
   now.made = made;
   std::vector<std::uint8_t> fixed(made.mesh.points.size(), 0), bad;
@@ -116,18 +93,16 @@ MeshImprovement::Kept MeshImprovement::polished(const Triangulated& made) {
     std::int64_t changes = 0;
     particles_.in_stage("remesh", [&] {
       changes = edit(now, fixed) + split(now, fixed);
-      bad = bad_points(now.made);
-      now.mediocre = std::count(bad.begin(), bad.end(), 1);
-      now.made.fitness = fitness_of(now.made);
+      bad = bad_points(now.made, polish_rule());
+      judge(now);
     });
     const bool better = round == 0 || better_shaped(now, best);
     if (better) best = now, best.particles = select(particles_.download(), now.made.point_of);
-    if (now.mediocre == 0 || rule_.smooth == 0 || !(better || changes > 0)) break;
+    if (std::count(bad.begin(), bad.end(), 1) == 0 || rule_.smooth == 0 || !(better || changes > 0)) break;
     for (std::size_t v = 0; v < bad.size(); ++v) bad[v] &= !fixed[v];
     smooth(now.made, bad);
   }
-  std::iota(best.made.point_of.begin(), best.made.point_of.end(), 0);
-  particles_.upload(before);
+  std::iota(best.made.point_of.begin(), best.made.point_of.end(), 0u);
   return best;
 }
 

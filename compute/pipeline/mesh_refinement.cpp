@@ -94,16 +94,12 @@ void MeshImprovement::refine(Kept& best) {
     }
     if (better(best, answer)) answer = best;
     if (best.made.fitness >= 1 || turn + 1 == most_turns) break;
-    particles_.upload(best.particles);
     remeshed_ = std::max(1, std::min(remeshed_, rule_.remesh - remeshing_of_turn));
-    bad_ = std::int64_t(1) << 40;
-    std::optional<Kept> improved = best;
-    settle(improved);
-    if (!(improved->made.fitness > best.made.fitness)) break;
-    best = std::move(*improved);
+    const double fitness_before = best.made.fitness;
+    settle(best);
     measure(best);
     if (better(best, answer)) answer = best;
-    if (best.further.insert.empty()) break;
+    if (best.further.insert.empty() || !(best.made.fitness > fitness_before)) break;
   }
   best = std::move(answer);
   deviation_.max = best.deviation.max;

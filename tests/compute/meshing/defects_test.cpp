@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/quality.hpp"
@@ -279,9 +281,26 @@ TEST(Defects, FitnessIsTheLeastRatioByWhatIsAsked) {
   EXPECT_NEAR(fitness(ball.mesh, ball.order, worst_defects), worst / worst_defects.near, 1e-9);
   const Ball good(test::points_on_sphere(400, 1));
   EXPECT_EQ(fitness(good.mesh, good.order, worst_defects), wanted_ratio / worst_defects.ratio) << "good ones are alike";
-  const std::vector<std::uint8_t> marked = points_at_triangles_under(worst + 1e-9, ball.mesh);
+  const DefectRule just_above{0, worst + 1e-9, worst + 1e-9, false};
+  const std::vector<std::uint8_t> marked = points_at_bad(ball.mesh, ball.order, just_above);
   EXPECT_EQ(std::count(marked.begin(), marked.end(), 1), 3);
   EXPECT_TRUE(marked[400] && marked[7]);
+}
+
+TEST(Defects, AnglesCountAwayFromJunctions) {
+  const auto isosceles = [](double degrees) {  // the least angle between two sides of length 1
+    const double a = degrees * M_PI / 180;
+    return std::array<Vec3d, 3>{Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(std::cos(a), std::sin(a), 0)};
+  };
+  for (const double degrees : {24.0, 29.0}) {
+    EXPECT_NEAR(triangle_fitness(isosceles(degrees), false, not_fine), degrees / 30, 1e-9);
+    EXPECT_EQ(triangle_fitness(isosceles(degrees), true, not_fine), 1);
+    EXPECT_EQ(triangle_fitness(isosceles(degrees), false, mediocre), 1);
+  }
+  EXPECT_EQ(triangle_fitness(isosceles(31), false, not_fine), 1);
+  const auto at_bound = isosceles(30);
+  EXPECT_NEAR(highest_bad_ratio(not_fine), radius_ratio(at_bound[0], at_bound[1], at_bound[2]), 1e-9);
+  EXPECT_EQ(highest_bad_ratio(mediocre), wanted_ratio);
 }
 
 }  // namespace

@@ -59,12 +59,15 @@ TEST(HostParticles, SomeAreSelected) {
   EXPECT_EQ(some.interface.size(), 2u);
 }
 
-TEST(HostParticles, AreTakenBackOneByOne) {
-  const HostParticles before = in_a_row(3);
-  HostParticles now = in_a_row(3);
-  for (Float4& p : now.position) p.x += 10;
-  const std::vector<Attempt::Source> sources{{true, 2}, {false, 0}, {true, 1}};
-  EXPECT_EQ(xs(take_back(sources, before, now)), (std::vector<float>{2, 10, 1}));
+TEST(HostParticles, AreTheSameInOnePositionOnOneInterface) {
+  const HostParticles before = in_a_row(5);
+  HostParticles now = select(before, std::vector<std::uint32_t>{4, 0, 1, 2});
+  now.position[1].x += 0.25f;  // moved
+  now.interface[2] += 1;       // on another interface
+  EXPECT_EQ(same_particles(before, now), (std::vector<std::uint32_t>{4, none, none, 2}));
+  now.position[0] = now.position[3], now.interface[0] = now.interface[3];
+  EXPECT_EQ(same_particles(before, now), std::vector<std::uint32_t>(4, none)) << "two in one position are neither";
+  EXPECT_TRUE(same_particles(before, {}).empty());
 }
 
 TEST(HostParticles, AreDescribedInTheWorld) {

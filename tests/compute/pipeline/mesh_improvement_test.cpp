@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 
 #include "compute/device/error.hpp"
 #include "compute/device/executor_cpu.hpp"
+#include "compute/device/random.hpp"
 #include "compute/meshing/device_stars.hpp"
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/topology.hpp"
@@ -103,8 +105,10 @@ class SphereParticles : public MovableParticles {
   Executor<Cpu> exec_{*device_};
 };
 
-ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0, bool stars = false) {
-  const ImprovementRule rule{.smooth = smooth, .remesh = remesh, .stars = stars, .threads = 1, .deviation = deviation};
+ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double deviation = 0, bool stars = false,
+                     const DefectRule& aim = worst_defects) {
+  const ImprovementRule rule{
+      .smooth = smooth, .remesh = remesh, .stars = stars, .aim = aim, .threads = 1, .deviation = deviation};
   const TellStage tell = [](std::string_view, double fraction, int, double) {
     EXPECT_GE(fraction, 0.85);
     EXPECT_LE(fraction, 0.94);
@@ -161,6 +165,35 @@ TEST(MeshImprovement, PolishingEditsEdgesInPlaceOfParticles) {
   EXPECT_GT(surface_quality(made.mesh).all.radius_ratio_min, wanted_ratio);
   EXPECT_LT(surface_quality(improve(cells, 0, 0).mesh).all.radius_ratio_min, 0.1);
   EXPECT_EQ(std::size_t(particles.count()), made.mesh.points.size()) << "the particles are those of the mesh";
+}
+
+/// Particles that are shaken, and barely smoothed: attempts make bad triangles better, and leave all else as it is.
+TEST(MeshImprovement, AttemptsLeaveAllElseAsItIs) {
+  for (const bool stars : {false, true}) {
+    const double asked = stars ? 0.8 : 0.65;  // without attempts, polishing reaches more than smoothing
+    const DefectRule aim{0, asked, asked, false};
+    const auto bad = [&](const ImprovedMesh& made) { return triangles_under(asked, made.mesh).size(); };
+    std::size_t bad_before = 0, bad_after = 0, all = 0, same = 0;
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+      std::vector<Vec3d> directions = even_directions(even);
+      for (std::uint32_t i = 0; i < directions.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+          directions[i][axis] += 0.2 * (uniform_random(seed, i, std::uint32_t(axis)) - 0.5);
+      SphereParticles before(directions), after(directions);
+      const ImprovedMesh without = improve(before, 1, 1, 0, stars, aim), with = improve(after, 1, 12, 0, stars, aim);
+      EXPECT_TRUE(check_topology(with.mesh, 2).sound());
+      EXPECT_EQ(std::size_t(after.count()), with.mesh.points.size()) << "the particles are those of the mesh";
+      EXPECT_EQ(with.stars.meshes, without.stars.meshes) << "nothing else is triangulated again";
+      bad_before += bad(without), bad_after += bad(with);
+      all += without.mesh.points.size();
+      for (const Vec3d& p : without.mesh.points)
+        same += std::find(with.mesh.points.begin(), with.mesh.points.end(), p) != with.mesh.points.end();
+    }
+    EXPECT_GT(bad_before, 4u);
+    EXPECT_LT(2 * bad_after, bad_before);
+    EXPECT_GT(3 * same, 2 * all);
+    EXPECT_LT(same, all);
+  }
 }
 
 /// A part of the sphere where particles are half as dense: there are more in the end, and nowhere else.
