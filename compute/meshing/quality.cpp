@@ -1,6 +1,8 @@
 // Nacre: how well shaped the triangles and tetrahedra of a mesh are.
 #include "compute/meshing/quality.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -60,6 +62,21 @@ class Tally {
     sum_.share_under_25 += *smallest < small_angle;
   }
 
+  void add(const Tally& other) {
+    const TriangleQuality& more = other.sum_;
+    if (more.triangles == 0) return;
+    for (std::size_t k = 0; k < sum_.radius_ratio_histogram.size(); ++k)
+      sum_.radius_ratio_histogram[k] += more.radius_ratio_histogram[k];
+    const bool first = sum_.triangles == 0;
+    sum_.triangles += more.triangles;
+    sum_.radius_ratio_mean += more.radius_ratio_mean;
+    sum_.radius_ratio_min = first ? more.radius_ratio_min : std::min(sum_.radius_ratio_min, more.radius_ratio_min);
+    sum_.angle_min = first ? more.angle_min : std::min(sum_.angle_min, more.angle_min);
+    sum_.angle_max = std::max(sum_.angle_max, more.angle_max);
+    sum_.angle_mean_min += more.angle_mean_min;
+    sum_.share_under_25 += more.share_under_25;
+  }
+
   TriangleQuality result() const {
     TriangleQuality q = sum_;
     if (q.triangles == 0) return q;
@@ -106,14 +123,21 @@ std::vector<std::uint8_t> junction_points(const SurfaceMesh& mesh) {
 
 SurfaceQuality surface_quality(const SurfaceMesh& mesh) {
   const std::vector<std::uint8_t> at_junction = junction_points(mesh);
+  constexpr std::size_t part = 1 << 14;  // whatever the number of threads is: sums depend on it
+  std::vector<std::array<Tally, 2>> tallies((mesh.triangles.size() + part - 1) / part);
+  tbb::parallel_for(std::size_t(0), tallies.size(), [&](std::size_t k) {
+    auto& [all, away] = tallies[k];
+    for (std::size_t i = k * part; i < std::min(mesh.triangles.size(), (k + 1) * part); ++i) {
+      const Triangle& t = mesh.triangles[i];
+      const Shape shape(mesh.points[t.a], mesh.points[t.b], mesh.points[t.c]);
+      const double ratio = ratio_of(shape);
+      const std::array<double, 3> angles = angles_of(shape);
+      all.add(ratio, angles);
+      if (!at_junction[t.a] && !at_junction[t.b] && !at_junction[t.c]) away.add(ratio, angles);
+    }
+  });
   Tally all, away;
-  for (const Triangle& t : mesh.triangles) {
-    const Shape shape(mesh.points[t.a], mesh.points[t.b], mesh.points[t.c]);
-    const double ratio = ratio_of(shape);
-    const std::array<double, 3> angles = angles_of(shape);
-    all.add(ratio, angles);
-    if (!at_junction[t.a] && !at_junction[t.b] && !at_junction[t.c]) away.add(ratio, angles);
-  }
+  for (const auto& [some, some_away] : tallies) all.add(some), away.add(some_away);
   return {all.result(), away.result()};
 }
 

@@ -77,7 +77,7 @@ bool MeshImprovement::attempt(Kept& best) {
     check_stop(rule_.stop);
     tell_("remesh", fraction(), remeshed_, 0);
     const AttemptKind& kind = kinds[tried_++ % kinds.size()];
-    ++remeshed_;
+    ++remeshed_, ++star_use_.attempts;
     if (!attempt_at(best, bad, kind)) continue;
     changed = true;
     particles_.in_stage("remesh", [&] { drop_unused(best); });
@@ -251,7 +251,6 @@ bool MeshImprovement::take_better(Kept& best, const Cut& cut, const Kept& now) c
     mesh.triangles.push_back({number[t.a], number[t.b], number[t.c]});
     mesh.materials.push_back(now.made.mesh.materials[i]);
   }
-  best.flips += now.flips, best.contractions += now.contractions, best.splits += now.splits;
   return true;
 }
 

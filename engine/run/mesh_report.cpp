@@ -93,6 +93,7 @@ json particles_json(const MeshInfo& info, bool interrupted) {
 json stars_json(const StarUse& use) {
   return {{"meshes", use.meshes},
           {"fallbacks", use.fallbacks},
+          {"attempts", use.attempts},
           {"edge_flips", use.flips},
           {"edge_contractions", use.contractions},
           {"edge_splits", use.splits},
