@@ -22,6 +22,10 @@ constexpr DefectRule unacceptable{0, least_accepted, least_accepted, false};
 /// How far from bad points is cut, sizes: patches of cells reach three around what has changed, and may grow.
 constexpr double reach = 10;
 
+/// Rounds of an attempt after its first, where nothing is better by then: where a particle has gone, triangles are often
+/// worse before they get better.
+constexpr int most_further = 3;
+
 using Marks = std::vector<std::uint8_t>;
 
 /// `marks`, and what has a triangle with a marked point.
@@ -91,10 +95,23 @@ bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad,
   if (bad.empty()) return false;
   Cut cut;
   particles_.in_stage("remesh", [&] { cut = cut_out(best, bad); });
-  if (const std::optional<Kept> now = attempted(cut, kind)) {
-    bool better = false;
-    particles_.in_stage("remesh", [&] { better = take_better(best, cut, *now); });
-    return better;
+  const auto further_on = [&](const Kept& now) {
+    Cut next;
+    next.piece = now;
+    next.bad = bad_points(now.made, rule_.aim);
+    const std::vector<std::uint32_t> same = same_particles(cut.piece.particles, now.particles);
+    for (const std::uint32_t v : same) next.on_rim.push_back(v != none && cut.on_rim[v]);
+    return next;
+  };
+  std::optional<Kept> now = attempted(cut, kind);
+  if (now) {
+    for (int further = 0; now; ++further) {
+      bool better = false;
+      particles_.in_stage("remesh", [&] { better = take_better(best, cut, *now); });
+      if (better || further == most_further) return better;
+      now = attempted(further_on(*now), {6, false, true, true});
+    }
+    return false;
   }
   // Where cells do not settle, they shall not keep the others from it.
   DisjointSets parts(cut.point.size());
