@@ -22,8 +22,8 @@ constexpr DefectRule unacceptable{0, least_accepted, least_accepted, false};
 /// How far from bad points is cut, sizes: patches of cells reach three around what has changed, and may grow.
 constexpr double reach = 10;
 
-/// Rounds of an attempt after its first, where nothing is better by then: where a particle has gone, triangles are often
-/// worse before they get better.
+/// Rounds of an attempt after its first, where nothing is better by then: where a particle has gone, triangles are
+/// often worse before they get better.
 constexpr int most_further = 3;
 
 using Marks = std::vector<std::uint8_t>;

@@ -14,7 +14,7 @@
 namespace nacre {
 
 /// Above this share of unsettled stars, surfaces are sampled so coarsely that cells are quicker, and better.
-constexpr double most_unsettled_stars = 0.065;
+constexpr double most_unsettled_stars = 0.08;
 
 /// What is asked of triangles.
 inline DefectRule triangles_asked(QualityLevel quality) {
