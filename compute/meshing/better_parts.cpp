@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
 
 #include "compute/math/disjoint_sets.hpp"
-#include "compute/meshing/incidence.hpp"
 
 namespace nacre {
 namespace {
@@ -23,7 +23,10 @@ struct Named {
   std::uint32_t number;  ///< in its mesh
 };
 
-auto name_of(const Named& t) { return std::tie(t.corners.a, t.corners.b, t.corners.c, t.materials); }
+bool operator<(const Named& s, const Named& t) {
+  const auto name = [](const Named& n) { return std::tie(n.corners.a, n.corners.b, n.corners.c, n.materials); };
+  return name(s) < name(t);
+}
 
 /// The triangles of a mesh by their names, ascending; `number` has the common number of each of its points.
 std::vector<Named> named(const SurfaceMesh& mesh, std::span<const std::uint32_t> number) {
@@ -35,7 +38,7 @@ std::vector<Named> named(const SurfaceMesh& mesh, std::span<const std::uint32_t>
     while (c.a > c.b || c.a > c.c) c = {c.b, c.c, c.a};
     all.push_back({c, mesh.materials[i], i});
   }
-  std::sort(all.begin(), all.end(), [](const Named& s, const Named& t) { return name_of(s) < name_of(t); });
+  std::sort(all.begin(), all.end());
   return all;
 }
 
@@ -75,19 +78,17 @@ class Comparison {
   BetterParts choose(std::span<const std::uint8_t> stays, std::vector<std::int64_t> facets) {
     std::map<std::uint32_t, Part> parts;
     const Side empty{best_fitness(rule_), {}};
-    const auto part_of = [&](std::uint32_t number) -> Part& {
-      return parts.try_emplace(sets_.find(number), Part{empty, empty}).first->second;
+    const auto part_of = [&](const Named& t) -> Part& {
+      return parts.try_emplace(sets_.find(t.corners.a), Part{empty, empty}).first->second;
     };
-    for (const Named& t : only_first_) {
-      Part& part = part_of(t.corners.a);
-      add(part.first, first_, t);
-      for (int k = 0; k < 3; ++k) part.stays |= stays[t.corners[k]] != 0;
-    }
-    for (const Named& t : only_second_) {
-      Part& part = part_of(t.corners.a);
-      add(part.second, second_, t);
-      for (int k = 0; k < 3; ++k) part.stays |= t.corners[k] < stays.size() && stays[t.corners[k]] != 0;
-    }
+    const auto add_all = [&](const std::vector<Named>& some, const JudgedMesh& of, Side Part::*side) {
+      for (const Named& t : some) {
+        Part& part = part_of(t);
+        add(part.*side, of, t);
+        for (int k = 0; k < 3; ++k) part.stays |= t.corners[k] < stays.size() && stays[t.corners[k]] != 0;
+      }
+    };
+    add_all(only_first_, first_, &Part::first), add_all(only_second_, second_, &Part::second);
     const auto lower = [&](const JudgedMesh& mesh, std::span<const std::uint32_t> number, Side Part::*side) {
       for (const auto& ends : mesh.touching)
         for (const std::uint32_t v : ends)
@@ -103,9 +104,9 @@ class Comparison {
     }
     BetterParts chosen;
     for (const Named& t : only_first_)
-      if (part_of(t.corners.a).taken) chosen.gone.push_back(t.number);
+      if (part_of(t).taken) chosen.gone.push_back(t.number);
     for (const Named& t : only_second_)
-      if (part_of(t.corners.a).taken) chosen.taken.push_back(t.number);
+      if (part_of(t).taken) chosen.taken.push_back(t.number);
     std::sort(chosen.gone.begin(), chosen.gone.end()), std::sort(chosen.taken.begin(), chosen.taken.end());
     return chosen;
   }
@@ -113,9 +114,8 @@ class Comparison {
  private:
   void find_differences() {
     const std::vector<Named> a = named(first_.mesh, number_), b = named(second_.mesh, number_of_second_);
-    const auto before = [](const Named& s, const Named& t) { return name_of(s) < name_of(t); };
-    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(only_first_), before);
-    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(only_second_), before);
+    std::set_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(only_first_));
+    std::set_difference(b.begin(), b.end(), a.begin(), a.end(), std::back_inserter(only_second_));
     for (const auto* some : {&only_first_, &only_second_})
       for (const Named& t : *some) sets_.join(t.corners.a, t.corners.b), sets_.join(t.corners.a, t.corners.c);
   }

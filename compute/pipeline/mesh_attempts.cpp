@@ -38,11 +38,13 @@ Marks with_neighbours(const SurfaceMesh& mesh, const Marks& marks) {
 
 }  // namespace
 
-void MeshImprovement::judge(Kept& kept) const {
-  const Marks bad = bad_points(kept.made, polish_rule());
+/// Returns the marks of the points at triangles that could be better.
+std::vector<std::uint8_t> MeshImprovement::judge(Kept& kept) const {
+  Marks bad = bad_points(kept.made, polish_rule());
   kept.mediocre = std::count(bad.begin(), bad.end(), 1);
   kept.made.fitness = fitness_of(kept.made);
   kept.acceptable = kept.made.touching.empty() && fitness(kept.made.mesh, kept.made.order, unacceptable) >= 1;
+  return bad;
 }
 
 /// Attempts at what is bad. A mesh that is to be of Delaunay cells alone is then made of all particles once more: those
@@ -92,42 +94,43 @@ bool MeshImprovement::attempt(Kept& best) {
 /// True where some of the triangles at the points `bad` became better. Points that have no triangle any more remain, so
 /// that the others keep their numbers.
 bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad, const AttemptKind& kind) {
-  if (bad.empty()) return false;
   Cut cut;
   particles_.in_stage("remesh", [&] { cut = cut_out(best, bad); });
-  const auto further_on = [&](const Kept& now) {
-    Cut next;
-    next.piece = now;
-    next.bad = bad_points(now.made, rule_.aim);
-    const std::vector<std::uint32_t> same = same_particles(cut.piece.particles, now.particles);
-    for (const std::uint32_t v : same) next.on_rim.push_back(v != none && cut.on_rim[v]);
-    return next;
-  };
   std::optional<Kept> now = attempted(cut, kind);
-  if (now) {
-    for (int further = 0; now; ++further) {
-      bool better = false;
-      particles_.in_stage("remesh", [&] { better = take_better(best, cut, *now); });
-      if (better || further == most_further) return better;
-      now = attempted(further_on(*now), {6, false, true, true});
-    }
-    return false;
+  if (!now) {  // where cells do not settle, they shall not keep the others from it
+    bool any = false;
+    for (const std::vector<std::uint32_t>& half : halves(cut)) any |= attempt_at(best, half, kind);
+    return any;
   }
-  // Where cells do not settle, they shall not keep the others from it.
+  for (int further = 0; now; ++further) {
+    bool better = false;
+    particles_.in_stage("remesh", [&] { better = take_better(best, cut, *now); });
+    if (better || further == most_further) return better;
+    Cut next;
+    next.bad = bad_points(now->made, rule_.aim);
+    for (const std::uint32_t v : same_particles(cut.piece.particles, now->particles))
+      next.on_rim.push_back(v != none && cut.on_rim[v]);
+    next.piece = std::move(*now);
+    now = attempted(next, {6, false, true, true});
+  }
+  return false;
+}
+
+/// Its bad points, as points of the whole, in two halves that do not hang together; none where they all do.
+std::vector<std::vector<std::uint32_t>> MeshImprovement::halves(const Cut& cut) {
   DisjointSets parts(cut.point.size());
   for (const Triangle& t : cut.piece.made.mesh.triangles) parts.join(t.a, t.b), parts.join(t.a, t.c);
   std::map<std::uint32_t, std::vector<std::uint32_t>> bad_of;
   for (std::uint32_t v = 0; v < cut.point.size(); ++v)
     if (cut.bad[v]) bad_of[parts.find(v)].push_back(cut.point[v]);
-  if (bad_of.size() < 2) return false;
-  std::array<std::vector<std::uint32_t>, 2> halves;
+  if (bad_of.size() < 2) return {};
+  std::vector<std::vector<std::uint32_t>> halves(2);
   std::size_t k = 0;
   for (const auto& [part, points] : bad_of) {
     std::vector<std::uint32_t>& half = halves[2 * k++ / bad_of.size()];
     half.insert(half.end(), points.begin(), points.end());
   }
-  const bool first = attempt_at(best, halves[0], kind);
-  return attempt_at(best, halves[1], kind) || first;
+  return halves;
 }
 
 /// All points that are near to some, and the triangles between them.
@@ -142,7 +145,7 @@ MeshImprovement::Cut MeshImprovement::cut_out(const Kept& best, std::span<const 
   cut.point = select_where(near.size(), [&](std::size_t v) { return near[v] && used[v]; });
   cut.triangle = select_where(mesh.triangles.size(), [&](std::size_t i) {
     const Triangle& t = mesh.triangles[i];
-    return near[t.a] || near[t.b] || near[t.c];
+    return near[t.a] && near[t.b] && near[t.c];
   });
   std::vector<std::uint32_t> number(mesh.points.size(), none);
   Kept& piece = cut.piece;
@@ -158,14 +161,11 @@ MeshImprovement::Cut MeshImprovement::cut_out(const Kept& best, std::span<const 
   }
   piece.particles = select(best.particles, cut.point);
   cut.on_rim.assign(cut.point.size(), 0);
-  const auto has_all = [&](std::uint32_t i) {
-    const Triangle& t = mesh.triangles[i];
+  for (const Triangle& t : mesh.triangles) {
     const bool all = near[t.a] && near[t.b] && near[t.c];
     for (int k = 0; k < 3 && !all; ++k)
       if (number[t[k]] != none) cut.on_rim[number[t[k]]] = 1;
-    return all;
-  };
-  std::erase_if(cut.triangle, [&](std::uint32_t i) { return !has_all(i); });
+  }
   for (const std::uint32_t i : cut.triangle) {
     const Triangle& t = mesh.triangles[i];
     made.mesh.triangles.push_back({number[t.a], number[t.b], number[t.c]});
@@ -292,8 +292,8 @@ std::uint32_t MeshImprovement::put(Kept& best, const Kept& now, std::uint32_t v,
 void MeshImprovement::drop_unused(Kept& best) const {
   Triangulated& made = best.made;
   std::vector<std::uint32_t> used;
-  made.mesh = mesh_of_triangles(std::vector<Vec3d>(std::move(made.mesh.points)), std::move(made.mesh.triangles),
-                                std::move(made.mesh.materials), &used);
+  const std::vector<Vec3d> points = std::move(made.mesh.points);
+  made.mesh = mesh_of_triangles(points, std::move(made.mesh.triangles), std::move(made.mesh.materials), &used);
   best.particles = select(best.particles, used);
   for (std::size_t v = 0; v < used.size(); ++v) made.order[v] = made.order[used[v]], made.size[v] = made.size[used[v]];
   made.order.resize(used.size()), made.size.resize(used.size()), made.point_of.resize(used.size());

@@ -93,12 +93,11 @@ MeshImprovement::Kept MeshImprovement::polished(const Triangulated& made) {
     std::int64_t changes = 0;
     particles_.in_stage("remesh", [&] {
       changes = edit(now, fixed) + split(now, fixed);
-      bad = bad_points(now.made, polish_rule());
-      judge(now);
+      bad = judge(now);
     });
     const bool better = round == 0 || better_shaped(now, best);
     if (better) best = now, best.particles = select(particles_.download(), now.made.point_of);
-    if (std::count(bad.begin(), bad.end(), 1) == 0 || rule_.smooth == 0 || !(better || changes > 0)) break;
+    if (now.mediocre == 0 || rule_.smooth == 0 || !(better || changes > 0)) break;
     for (std::size_t v = 0; v < bad.size(); ++v) bad[v] &= !fixed[v];
     smooth(now.made, bad);
   }
