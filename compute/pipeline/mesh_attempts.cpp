@@ -246,7 +246,7 @@ bool MeshImprovement::take_better(Kept& best, const Cut& cut, const Kept& now) c
   }
   const BetterParts parts =
       better_parts(cut.piece.made.judged(), now.made.judged(), same, cut.on_rim, std::move(facets), rule_.aim);
-  if (parts.taken.empty()) return false;
+  if (parts.gone.empty()) return false;
   SurfaceMesh& mesh = best.made.mesh;
   Marks replaced(mesh.points.size(), 0), gone(mesh.triangles.size(), 0);
   for (const std::uint32_t i : parts.gone) {
