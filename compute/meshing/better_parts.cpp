@@ -53,6 +53,13 @@ struct Part {
   bool stays = false, taken = false;
 };
 
+/// Bodies that only the first side has. Where nothing is left, one of the materials is what is around them.
+std::int64_t specks(const Part& part) {
+  const auto gone =
+      std::ranges::count_if(part.first.facets, [&](const auto& f) { return !part.second.facets.contains(f.first); });
+  return part.second.facets.empty() ? std::max<std::int64_t>(gone - 1, 0) : gone;
+}
+
 /// Whether the second side has the materials of the first, but for a body that is no more than a speck: where one has
 /// no facets, its surface was closed within the part. `facets` has those that the whole mesh has of each material.
 bool keeps_materials(const Part& part, std::span<const std::int64_t> facets) {
@@ -103,6 +110,8 @@ class Comparison {
       for (const auto& [material, count] : part.second.facets) facets[material] += count;
     }
     BetterParts chosen;
+    for (const auto& [root, part] : parts)
+      if (part.taken) chosen.specks += specks(part);
     for (const Named& t : only_first_)
       if (part_of(t).taken) chosen.gone.push_back(t.number);
     for (const Named& t : only_second_)

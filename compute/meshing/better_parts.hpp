@@ -22,6 +22,7 @@ struct JudgedMesh {
 struct BetterParts {
   std::vector<std::uint32_t> gone;   ///< triangles of the first mesh, ascending
   std::vector<std::uint32_t> taken;  ///< of the second in their place, ascending
+  std::int64_t specks = 0;           ///< bodies of the first that the second does not have there
 };
 
 /// Compares two meshes part by part: a part is what hangs together, by common points, of the triangles that only one

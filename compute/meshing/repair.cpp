@@ -276,7 +276,7 @@ class Repair {
     if (part.cells.size() > most_cells) return;
     double sum = 0;
     for (const std::int32_t cell : part.cells) {
-      if (cell < 0) return;
+      if (cell < 0 || !may_change(cell)) return;
       sum += volume(cell);
     }
     std::vector<std::uint16_t> labels = part.beside;
@@ -343,7 +343,7 @@ class Repair {
     std::sort(pockets.begin(), pockets.end());
     for (const std::int32_t pocket : pockets) {
       const std::uint16_t wanted = largest_neighbour(pocket);
-      if (!is_alone(pocket) || wanted == label_[pocket]) continue;
+      if (!is_alone(pocket) || wanted == label_[pocket] || !may_change(pocket)) continue;
       result_.pockets += try_change({{pocket}, wanted, 0}, 0, 0);
     }
     waiting_.clear();  // all of it is checked afterwards
@@ -366,7 +366,11 @@ class Repair {
         ->second;
   }
 
-  bool is_there(std::size_t point) const { return there_.empty() || there_[point]; }
+  bool is_there(std::size_t point) const { return there_.empty() || (point < there_.size() && there_[point]); }
+
+  bool may_change(std::int32_t cell) const {
+    return there_.empty() || std::ranges::all_of(cells_.vertices[cell], [&](auto v) { return v < there_.size(); });
+  }
 
   /// Edges and vertices that touch themselves.
   std::vector<Defect> find_defects() {

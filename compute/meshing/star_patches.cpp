@@ -14,6 +14,7 @@
 #include "compute/math/disjoint_sets.hpp"
 #include "compute/math/sort_unique.hpp"
 #include "compute/meshing/labels_beside.hpp"
+#include "compute/meshing/labels_in_void.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/repair_at.hpp"
@@ -30,6 +31,8 @@ constexpr double most_work = 0.6;  // particles triangulated in all rounds, by t
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
 class Guards {
  public:
+  static constexpr int count = 8;
+
   explicit Guards(const PatchWorld& world) {
     Vec3d low = world.points[0], high = world.points[0];
     for (const Vec3d& p : world.points) low = min(low, p), high = max(high, p);
@@ -41,7 +44,7 @@ class Guards {
   }
 
   void add(PatchCells::Points& points) const {
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < count; ++k) {
       // At no corner of a cube exactly, so that no four lie in a plane with others.
       const double far = (6 + 0.37 * k) * half_;
       points.places.push_back(middle_ + Vec3d(k & 1 ? far : -far, k & 2 ? 1.1 * far : -far, k & 4 ? 0.9 * far : -far));
@@ -73,6 +76,7 @@ class Patch {
     made_ = cells.make(std::move(points), *world_, stop_);
     label_ = made_->label;
     label_beside(made_->cells, kept.triangles, kept.materials, label_);
+    label_void(made_->cells, wanted_members(), label_);
     facets_ = interface_facets(made_->cells, label_);
     defects_.clear();
   }
@@ -81,7 +85,7 @@ class Patch {
   void repair() {
     const PatchCells::Points& points = made_->points;
     std::vector<std::uint16_t> label = label_;
-    defects_ = repair_labels_at(points.wanted, points.places, made_->cells, label, stop_).defects;
+    defects_ = repair_labels_at(wanted_members(), points.places, made_->cells, label, stop_).defects;
     facets_ = interface_facets(made_->cells, label);
   }
 
@@ -89,6 +93,10 @@ class Patch {
   const std::vector<std::array<std::uint32_t, 2>>& defects() const { return defects_; }
 
  private:
+  std::span<const std::uint8_t> wanted_members() const {
+    return std::span(made_->points.wanted).first(made_->points.wanted.size() - Guards::count);
+  }
+
   const Guards* guards_;
   const PatchWorld* world_;
   const std::atomic<bool>* stop_;

@@ -75,31 +75,35 @@ struct LinkMiddles {
   const std::uint32_t* interface;
   const float* spacing;
 
-  static constexpr int most_near = 48;
+  static constexpr int most_near = 48, most_links = 24;
   static constexpr float longest = 2.2f;     ///< link, in h
   static constexpr float least_bend = 0.2f;  ///< cosine between the normals of linked particles
 
-  /// Calls visit(point) for each link that is this particle's to halve: those to others with higher numbers, or on the
-  /// rim.
-  template <class Visit>
-  NACRE_HD void visit(std::int64_t i, const Visit& visit) const {
+  /// Lists the links that are this particle's to halve, by what they lead to: others with higher numbers, or on the
+  /// rim. Returns how many these are, at most `most_links`.
+  NACRE_HD std::uint32_t list(std::int64_t i, std::uint32_t* to) const {
     const std::uint32_t group = interface[i];
-    if (!(spacing[group] > 1)) return;
-    std::uint32_t near[most_near];
+    if (!(spacing[group] > 1)) return 0;
+    std::uint32_t near[most_near], links = 0;
     const Vec3f p = at(std::uint32_t(i));
     const float h = tree.position[i].w;
     EmbeddedPoint here;  // its size is twice the field's, unless thinning was interrupted
-    if (!projector.project(group, p, 0.5f * h, here) || h < 1.5f * here.h) return;
+    if (!projector.project(group, p, 0.5f * h, here) || h < 1.5f * here.h) return 0;
     const int count = find_near(i, group, near);
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < count && links < most_links; ++k) {
       if (interface[near[k]] == group && near[k] < std::uint32_t(i)) continue;
-      const Vec3f along = at(near[k]) - p, middle = p + along * 0.5f;
-      const bool linked = is_link(i, along, k, near, count);
       EmbeddedPoint on;
-      if (!linked || !projector.project(group, middle, 0.5f * h, on) || on.margin < 0) continue;
-      const Vec3f off = on.p - middle;
-      if (dot(off, off) <= 0.25f * dot(along, along)) visit(on);
+      if (is_link(i, at(near[k]) - p, k, near, count) && middle(i, near[k], on)) to[links++] = near[k];
     }
+    return links;
+  }
+
+  /// The middle of the link to another particle; false where the interface is not there.
+  NACRE_HD bool middle(std::int64_t i, std::uint32_t other, EmbeddedPoint& on) const {
+    const Vec3f p = at(std::uint32_t(i)), along = at(other) - p, middle = p + along * 0.5f;
+    if (!projector.project(interface[i], middle, 0.5f * tree.position[i].w, on) || on.margin < 0) return false;
+    const Vec3f off = on.p - middle;
+    return dot(off, off) <= 0.25f * dot(along, along);
   }
 
  private:
@@ -149,19 +153,20 @@ struct LinkMiddles {
 };
 
 template <class Projector>
-struct CountMiddles {
+struct ListLinks {
   LinkMiddles<Projector> links;
+  std::uint32_t* to;  ///< `most_links` for each particle
   std::uint32_t* count;
   NACRE_HD void operator()(std::int64_t i) const {
-    std::uint32_t n = 0;
-    links.visit(i, [&](const EmbeddedPoint&) { ++n; });
-    count[i] = n;
+    count[i] = links.list(i, to + LinkMiddles<Projector>::most_links * i);
   }
 };
 
 template <class Projector>
 struct WriteMiddles {
   LinkMiddles<Projector> links;
+  const std::uint32_t* link_to;
+  const std::uint32_t* count;
   const std::uint32_t* start;
   std::int64_t first;  ///< number of the first new particle
   Float4* position;
@@ -171,12 +176,14 @@ struct WriteMiddles {
   NACRE_HD void operator()(std::int64_t i) const {
     std::int64_t to = first + start[i];
     const std::uint32_t group = interface[i];
-    links.visit(i, [&](const EmbeddedPoint& on) {
+    for (std::uint32_t k = 0; k < count[i]; ++k) {
+      EmbeddedPoint on{};  // there is one: the link was listed
+      links.middle(i, link_to[LinkMiddles<Projector>::most_links * i + k], on);
       position[to] = {on.p.x, on.p.y, on.p.z, on.h};
       velocity[to] = {0, 0, 0, 0};
       direction[to] = {on.direction.x, on.direction.y, on.direction.z, 0};
       interface[to++] = group;
-    });
+    }
   }
 };
 

@@ -225,13 +225,16 @@ class TreeSolver {
     Arena::Scope scope(exec.arena());
     ParticleSet& set = set_[0];
     const std::int64_t n = set.count;
-    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n);
     const detail::LinkMiddles<Projector> links{view(0), related, projector, set.interface.data(), spacing_.data()};
-    exec.for_each(n, detail::CountMiddles<Projector>{links, start.data()});
-    const std::int64_t born = exec.exclusive_scan(start.data(), start.data(), n);
+    Array<std::uint32_t> to = exec.arena().template temporary<std::uint32_t>(links.most_links * n);
+    Array<std::uint32_t> count = exec.arena().template temporary<std::uint32_t>(n);
+    Array<std::uint32_t> start = exec.arena().template temporary<std::uint32_t>(n);
+    exec.for_each(n, detail::ListLinks<Projector>{links, to.data(), count.data()});
+    const std::int64_t born = exec.exclusive_scan(count.data(), start.data(), n);
     require_capacity(set, n + born);
-    exec.for_each(n, detail::WriteMiddles<Projector>{links, start.data(), n, set.position.data(), set.direction.data(),
-                                                     set.interface.data(), velocity_[0].data()});
+    exec.for_each(n,
+                  detail::WriteMiddles<Projector>{links, to.data(), count.data(), start.data(), n, set.position.data(),
+                                                  set.direction.data(), set.interface.data(), velocity_[0].data()});
     scale_sizes(exec, related, -1, 0.5f, set, velocity_[0]);
     reset_spacing(exec);
     set.count = n + born;  // last: after an interruption there are those of before

@@ -1,11 +1,10 @@
 // Nacre: attempts at bad triangles, each in a piece that is cut out of the mesh, and taken where it made them better.
 #include <algorithm>
-#include <map>
 #include <numeric>
 #include <utility>
 
 #include "compute/device/error.hpp"
-#include "compute/math/disjoint_sets.hpp"
+#include "compute/meshing/halves.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/select_where.hpp"
@@ -99,7 +98,10 @@ bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad,
   std::optional<Kept> now = attempted(cut, kind);
   if (!now) {  // where cells do not settle, they shall not keep the others from it
     bool any = false;
-    for (const std::vector<std::uint32_t>& half : halves(cut)) any |= attempt_at(best, half, kind);
+    for (std::vector<std::uint32_t>& half : halves(cut.piece.made.mesh, cut.bad)) {
+      for (std::uint32_t& v : half) v = cut.point[v];
+      any |= attempt_at(best, half, kind);
+    }
     return any;
   }
   for (int further = 0; now; ++further) {
@@ -114,23 +116,6 @@ bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad,
     now = attempted(next, {6, false, true, true});
   }
   return false;
-}
-
-/// Its bad points, as points of the whole, in two halves that do not hang together; none where they all do.
-std::vector<std::vector<std::uint32_t>> MeshImprovement::halves(const Cut& cut) {
-  DisjointSets parts(cut.point.size());
-  for (const Triangle& t : cut.piece.made.mesh.triangles) parts.join(t.a, t.b), parts.join(t.a, t.c);
-  std::map<std::uint32_t, std::vector<std::uint32_t>> bad_of;
-  for (std::uint32_t v = 0; v < cut.point.size(); ++v)
-    if (cut.bad[v]) bad_of[parts.find(v)].push_back(cut.point[v]);
-  if (bad_of.size() < 2) return {};
-  std::vector<std::vector<std::uint32_t>> halves(2);
-  std::size_t k = 0;
-  for (const auto& [part, points] : bad_of) {
-    std::vector<std::uint32_t>& half = halves[2 * k++ / bad_of.size()];
-    half.insert(half.end(), points.begin(), points.end());
-  }
-  return halves;
 }
 
 /// All points that are near to some, and the triangles between them.
@@ -237,7 +222,7 @@ std::optional<MeshImprovement::Triangulated> MeshImprovement::triangulate_again(
 }
 
 /// Puts the better parts of a piece back into the mesh; false where there are none.
-bool MeshImprovement::take_better(Kept& best, const Cut& cut, const Kept& now) const {
+bool MeshImprovement::take_better(Kept& best, const Cut& cut, const Kept& now) {
   const std::vector<std::uint32_t> same = same_particles(cut.piece.particles, now.particles);
   std::vector<std::int64_t> facets;
   for (const auto& [low, high] : best.made.mesh.materials) {
@@ -247,6 +232,7 @@ bool MeshImprovement::take_better(Kept& best, const Cut& cut, const Kept& now) c
   const BetterParts parts =
       better_parts(cut.piece.made.judged(), now.made.judged(), same, cut.on_rim, std::move(facets), rule_.aim);
   if (parts.gone.empty()) return false;
+  star_use_.specks += parts.specks;
   SurfaceMesh& mesh = best.made.mesh;
   Marks replaced(mesh.points.size(), 0), gone(mesh.triangles.size(), 0);
   for (const std::uint32_t i : parts.gone) {

@@ -115,10 +115,9 @@ class MeshImprovement {
   void settle(Kept& best);
   bool attempt(Kept& best);
   bool attempt_at(Kept& best, std::span<const std::uint32_t> bad, const AttemptKind& kind);
-  static std::vector<std::vector<std::uint32_t>> halves(const Cut& cut);
   static Cut cut_out(const Kept& best, std::span<const std::uint32_t> bad);
   std::optional<Kept> attempted(const Cut& cut, const AttemptKind& kind);
-  bool take_better(Kept& best, const Cut& cut, const Kept& now) const;
+  bool take_better(Kept& best, const Cut& cut, const Kept& now);
   static std::uint32_t put(Kept& best, const Kept& now, std::uint32_t v, std::uint32_t number);
   void drop_unused(Kept& best) const;
   std::optional<Triangulated> triangulate_again(const Triangulated& made, std::span<const std::uint8_t> gone,

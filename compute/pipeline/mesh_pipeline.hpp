@@ -41,7 +41,7 @@ struct MeshParameters {
   double theta = 0.5;                  ///< tree: a node smaller than theta times its distance counts as one particle
   int coarse_iterations = 40;          ///< tree: of a quarter of the particles, before; 0: none
   int iterations = 70;                 ///< at most, per junction order
-  double stagnation = 0.0001;          ///< ends when the energy falls by less, (E_prev - E) / E
+  double stagnation = 0.000125;        ///< ends when the energy falls by less, (E_prev - E) / E
   double step = 1.2;                   ///< tree: share of the Newton step
   double momentum = 0.85;              ///< tree: heavy ball
   double ideal_energy = 0;             ///< of a particle; 0: that of a hexagonal lattice with spacing h (0.7108)

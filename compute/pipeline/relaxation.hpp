@@ -245,6 +245,7 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
   }
   bool controls = true, sorted = false;
   double before = 0;
+  int resting = 0;  // iterations in a row
   for (int k = 0; k < iterations; ++k) {
     const bool control = controls && k > 0 && k % every == 0 && k <= last_control;
     double energy = 0;
@@ -266,7 +267,9 @@ void Relaxation<Backend>::relax_by_tree(const Run& run, const Phase& phase) {
     }
     note_iteration(run, phase, k + 1, energy, movers);
     const bool settled = !coarse && (!controls || k > last_control);
-    if (settled && k % every == every - 1 && before > 0 && std::fabs(before - energy) < stagnation * energy) break;
+    const bool rests = settled && before > 0 && std::fabs(before - energy) < stagnation * energy;
+    resting = rests ? resting + 1 : 0;  // energies go up and down a little
+    if (resting == 3) break;
     before = energy;
   }
   if (coarse && order == 2) crowded_out_ = std::max(0.0, 1 - double(movers) / double(begun));

@@ -94,6 +94,7 @@ json stars_json(const StarUse& use) {
   return {{"meshes", use.meshes},
           {"fallbacks", use.fallbacks},
           {"attempts", use.attempts},
+          {"specks", use.specks},
           {"edge_flips", use.flips},
           {"edge_contractions", use.contractions},
           {"edge_splits", use.splits},

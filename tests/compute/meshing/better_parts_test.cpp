@@ -142,18 +142,20 @@ struct Body {
 TEST(BetterParts, OnlySpecksOfMaterialsThatAreElsewhereMayVanish) {
   const SurfaceMesh nothing{Body(3, 1).mesh.points, {}, {}};
   const Marks order(nothing.points.size(), 2);
-  const auto gone = [&](const Body& body, std::int64_t elsewhere) {
+  const auto compared = [&](const Body& body, std::int64_t elsewhere) {
     const auto facets = std::int64_t(body.mesh.triangles.size());
     const std::vector<std::uint32_t> same(nothing.points.size(), none);
     return better_parts({body.mesh, body.order, {}}, {nothing, order, {}}, same, Marks(body.order.size(), 0),
-                        {facets + 100, facets + elsewhere}, worst_defects)
-        .gone.size();
+                        {facets + 100, facets + elsewhere}, worst_defects);
   };
+  const auto gone = [&](const Body& body, std::int64_t elsewhere) { return compared(body, elsewhere).gone.size(); };
   EXPECT_EQ(gone(Body(4, 20), 4), 8u) << "a speck of needles";
   EXPECT_EQ(gone(Body(4, 20), 0), 0u) << "all that there is of the material";
   EXPECT_EQ(gone(Body(10, 20), 4), 20u);
   EXPECT_EQ(gone(Body(11, 20), 4), 0u) << "too large";
   EXPECT_EQ(gone(Body(4, 1), 4), 0u) << "good triangles";
+  EXPECT_EQ(compared(Body(4, 20), 4).specks, 1);
+  EXPECT_EQ(compared(Body(11, 20), 4).specks, 0);
 }
 
 TEST(BetterParts, MaterialsDoNotAppear) {
