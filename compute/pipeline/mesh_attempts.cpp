@@ -83,10 +83,9 @@ bool MeshImprovement::attempt(Kept& best) {
     tell_("remesh", fraction(), remeshed_, 0);
     const AttemptKind& kind = kinds[tried_++ % kinds.size()];
     ++remeshed_, ++star_use_.attempts;
-    if (!attempt_at(best, bad, kind)) continue;
-    changed = true;
-    particles_.in_stage("remesh", [&] { drop_unused(best); });
+    changed |= attempt_at(best, bad, kind);
   }
+  if (changed) particles_.in_stage("remesh", [&] { drop_unused(best); });
   return changed;
 }
 
