@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace nacre {
@@ -22,6 +23,11 @@ std::vector<std::uint32_t> select_where(std::size_t count, const Test& test, std
   std::vector<std::uint32_t> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());
   return all;
+}
+
+/// The numbers that are marked, ascending.
+inline std::vector<std::uint32_t> marked(std::span<const std::uint8_t> marks) {
+  return select_where(marks.size(), [&](std::size_t i) { return marks[i] != 0; });
 }
 
 }  // namespace nacre

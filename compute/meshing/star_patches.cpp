@@ -136,12 +136,12 @@ class Settling {
   /// Parts of the patch that have no particle within reach in common. Returns how many particles those have that are
   /// new or have grown since they were asked for last: these are to be made again.
   std::size_t regroup() {
-    std::vector<std::uint32_t> all = select_where(bad_.size(), [&](std::size_t i) { return bad_[i] != 0; });
+    std::vector<std::uint32_t> all = marked(bad_);
     std::vector<std::uint32_t> more;
     std::set_difference(all.begin(), all.end(), all_bad_.begin(), all_bad_.end(), std::back_inserter(more));
     all_bad_ = std::move(all);
     mark_near(world_.points, more, world_.size, around, near_);
-    const std::vector<std::uint32_t> members = select_where(near_.size(), [&](std::size_t i) { return near_[i] != 0; });
+    const std::vector<std::uint32_t> members = marked(near_);
     join_around(more, members);
     std::vector<std::uint32_t> roots;
     for (const std::uint32_t i : members) roots.push_back(sets_.find(i));

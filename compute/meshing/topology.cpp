@@ -218,7 +218,7 @@ std::vector<std::uint32_t> pinched_points(const SurfaceMesh& mesh) {
       pinched[v] = counter.is_pinched(facets);
     }
   });
-  return select_where(pinched.size(), [&](std::size_t v) { return pinched[v] != 0; });
+  return marked(pinched);
 }
 
 }  // namespace nacre

@@ -74,8 +74,7 @@ bool MeshImprovement::attempt(Kept& best) {
   std::size_t least = best.made.mesh.points.size() + 1, in_vain = 0;
   bool changed = false;
   while (in_vain < kinds.size() && remeshed_ < rule_.remesh) {
-    const Marks marks = bad_points(best.made, rule_.aim);
-    const std::vector<std::uint32_t> bad = select_where(marks.size(), [&](std::size_t v) { return marks[v] != 0; });
+    const std::vector<std::uint32_t> bad = marked(bad_points(best.made, rule_.aim));
     if (bad.empty()) break;
     in_vain = bad.size() < least ? 0 : in_vain + 1;
     least = std::min(least, bad.size());
@@ -207,7 +206,7 @@ std::optional<MeshImprovement::Triangulated> MeshImprovement::triangulate_again(
     for (int k = 0; k < 3; ++k)
       if (now[k] != none) unsettled[now[k]] = 1;
   }
-  kept.unsettled = select_where(unsettled.size(), [&](std::size_t i) { return unsettled[i] != 0; });
+  kept.unsettled = marked(unsettled);
   std::vector<double> size;
   for (const Float4& p : particles.position) size.push_back(p.w * frame_.unit);
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };

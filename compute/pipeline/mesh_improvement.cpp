@@ -86,7 +86,9 @@ MeshImprovement::Kept MeshImprovement::whole() {
     tell_("triangulate", fraction(), 0, 0);
     made = triangulate();
   } while (improve(made));
-  return rule_.stars && rule_.deviation == 0 ? polished(made) : as_made(std::move(made));
+  Kept best = as_made(std::move(made));
+  if (rule_.stars && rule_.deviation == 0) polish(best);
+  return best;
 }
 
 /// A mesh with its particles as they are.

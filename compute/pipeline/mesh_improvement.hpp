@@ -125,6 +125,7 @@ class MeshImprovement {
   std::vector<std::uint8_t> judge(Kept& kept) const;
   DefectRule polish_rule() const;
   void refine(Kept& best);
+  void polish(Kept& best);
   Kept polished(const Triangulated& made);
   std::int64_t edit(Kept& kept, std::vector<std::uint8_t>& fixed);
   std::int64_t split(Kept& kept, std::vector<std::uint8_t>& fixed);

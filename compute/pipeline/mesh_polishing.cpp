@@ -4,6 +4,7 @@
 
 #include "compute/meshing/edge_edits.hpp"
 #include "compute/meshing/edge_splits.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/pipeline/mesh_improvement.hpp"
 
 namespace nacre {
@@ -82,6 +83,19 @@ std::int64_t MeshImprovement::split(Kept& kept, std::vector<std::uint8_t>& fixed
   }
   kept.splits += std::int64_t(done.size());
   return std::int64_t(done.size());
+}
+
+/// Polishes what is around bad triangles, cut out of the mesh, and puts back what became better.
+void MeshImprovement::polish(Kept& best) {
+  Cut cut;
+  particles_.in_stage("remesh", [&] { cut = cut_out(best, marked(bad_points(best.made, polish_rule()))); });
+  if (cut.point.empty()) return;
+  particles_.upload(cut.piece.particles);
+  const Kept now = polished(cut.piece.made);
+  particles_.in_stage("remesh", [&] {
+    if (take_better(best, cut, now)) drop_unused(best);
+  });
+  best.flips = now.flips, best.contractions = now.contractions, best.splits = now.splits;
 }
 
 /// The best that edits and smoothing make of a mesh of the particles. What is kept has the particles of its mesh alone.
