@@ -20,7 +20,7 @@ struct StarUse {
   std::int64_t meshes = 0;                               ///< from stars
   std::int64_t fallbacks = 0;                            ///< by the Delaunay triangulation of all particles
   std::int64_t attempts = 0;                             ///< rounds of them, in pieces of the last mesh
-  std::int64_t specks = 0;                               ///< bodies of at most 20 facets that attempts left out
+  std::int64_t specks = 0;                               ///< bodies of at most 20 facets that are gone
   std::int64_t flips = 0, contractions = 0, splits = 0;  ///< of edges of the whole mesh, before the attempts
   StarCounts last;                                       ///< of the last mesh that was tried
 };

@@ -29,10 +29,10 @@ mesh() {
   "$nacre" mesh "$work/labels.seg.nrrd" --max-size 6 --min-size 4 --quiet --out "$work/$1" "${@:2}" >/dev/null
 }
 mesh cells.vtu
-for file in cells.msh cells.msh4 cells.inp cells.mesh cells.feb cells.xdmf case/liver.foam surface.glb; do mesh "$file"; done
-mesh surface.msh4 --surface-only
-mesh surface.inp --surface-only
-mesh surface.xdmf --surface-only
+for file in cells.msh cells.msh4 cells.inp cells.mesh cells.feb cells.xdmf case/liver.foam; do mesh "$file"; done
+# The surface of those cells, to compare with: one made from stars has other triangles where these are bad.
+mesh surface.glb --triangulation delaunay
+for file in surface.msh4 surface.inp surface.xdmf; do mesh "$file" --surface-only --triangulation delaunay; done
 "$python" "$here/read_meshes.py" "$work"
 mesh curved.vtu --element-order 2 --report "$work/curved.json"
 for file in curved.msh curved.msh4 curved.inp curved.mesh curved.feb; do mesh "$file" --element-order 2; done
