@@ -10,7 +10,8 @@ namespace nacre {
 
 /// Cells with a corner beyond the end of `wanted` (a guard) lie in the void around the points of a patch. Near a wanted
 /// point all particles are in the patch, so that no interface is in the void there: void cells that meet in facets with
-/// a wanted corner get the material that most of them have, the lowest of several. `label` holds one per cell.
+/// a guard and a wanted corner get the material that most of them have, the lowest of several. `label` holds one per
+/// cell.
 void label_void(const DelaunayCells& cells, std::span<const std::uint8_t> wanted, std::span<std::uint16_t> label);
 
 }  // namespace nacre
