@@ -1,4 +1,6 @@
 // Nacre: Delaunay cells of patches, kept from one mesh to the next.
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -45,9 +47,8 @@ bool PatchCells::was_in_patch(const Vec3d& point) const { return in_patch_before
 
 void PatchCells::keep_in_patch(const Vec3d& point) { in_patch_.insert(key_of({&point, 1})); }
 
-std::shared_ptr<const PatchCells::Made> PatchCells::make(Points points, const PatchWorld& world,
-                                                         const std::atomic<bool>* stop) {
-  const std::uint64_t key = key_of(points.places);
+/// Those of this mesh or the one before, or none.
+std::shared_ptr<const PatchCells::Made> PatchCells::find(std::uint64_t key, const Points& points) {
   for (Kept* kept : {&now_, &before_}) {
     const auto [first, last] = kept->equal_range(key);
     const auto same = std::find_if(first, last, [&](const auto& made) { return made.second->points == points; });
@@ -56,12 +57,44 @@ std::shared_ptr<const PatchCells::Made> PatchCells::make(Points points, const Pa
     if (kept == &before_) now_.insert(before_.extract(same));
     return made;
   }
-  const auto made = std::make_shared<Made>();
-  made->points = std::move(points);
-  made->cells = delaunay_.cells(made->points.places, stop);
-  made->label = world.material_at(label_points(made->points, made->cells));
-  now_.insert({key, made});
-  return made;
+  return nullptr;
+}
+
+std::vector<std::shared_ptr<const PatchCells::Made>> PatchCells::make(std::vector<Wanted> wanted,
+                                                                      const PatchWorld& world,
+                                                                      const std::atomic<bool>* stop) {
+  std::vector<std::shared_ptr<const Made>> all(wanted.size());
+  struct Fresh {
+    std::size_t number;
+    std::uint64_t key;
+    std::shared_ptr<Made> made = std::make_shared<Made>();
+    std::vector<Vec3d> label_points = {};
+  };
+  std::vector<Fresh> fresh;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const std::uint64_t key = key_of(wanted[i].points.places);
+    all[i] = find(key, wanted[i].points);
+    if (!all[i]) fresh.push_back({i, key});
+  }
+  tbb::parallel_for(std::size_t(0), fresh.size(), [&](std::size_t k) {
+    Made& made = *fresh[k].made;
+    Wanted& of = wanted[fresh[k].number];
+    made.points = std::move(of.points);
+    made.cells = of.delaunay->cells(made.points.places, stop);
+    fresh[k].label_points = label_points(made.points, made.cells);
+  });
+  std::vector<Vec3d> at;
+  for (const Fresh& f : fresh) at.insert(at.end(), f.label_points.begin(), f.label_points.end());
+  const std::vector<std::uint16_t> label = at.empty() ? std::vector<std::uint16_t>() : world.material_at(at);
+  auto from = label.begin();
+  for (Fresh& f : fresh) {
+    const auto to = from + std::ptrdiff_t(f.label_points.size());
+    f.made->label.assign(from, to);
+    from = to;
+    now_.insert({f.key, f.made});
+    all[f.number] = std::move(f.made);
+  }
+  return all;
 }
 
 }  // namespace nacre

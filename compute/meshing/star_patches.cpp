@@ -1,18 +1,19 @@
 // Nacre: where stars do not settle, the Delaunay triangulation of the particles around decides.
 #include "compute/meshing/star_patches.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "compute/math/disjoint_sets.hpp"
 #include "compute/math/sort_unique.hpp"
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/labels_in_void.hpp"
 #include "compute/meshing/near_points.hpp"
@@ -26,6 +27,7 @@ namespace {
 
 constexpr int patch_rounds = 100;
 constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
+constexpr int rings_beyond = 2;    // triangles of stars are listed so much farther, so that patches may grow
 constexpr double most_work = 0.6;  // particles triangulated in all rounds, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
@@ -61,31 +63,20 @@ class Guards {
 /// Delaunay cells of some of the particles, and the facets between materials.
 class Patch {
  public:
-  Patch(const Guards& guards, const PatchWorld& world, const std::atomic<bool>* stop)
-      : guards_(&guards), world_(&world), stop_(stop) {}
-
-  /// Of `members`, ascending; facets are wanted at those that are `wanted`. `kept` are triangles of stars that settled,
-  /// corners as numbers of members: the cells beside them have the materials on their sides, wherever the centres are.
-  void make(std::span<const std::uint32_t> members, std::vector<std::uint8_t> wanted, const StarMesh& kept,
-            PatchCells& cells) {
-    PatchCells::Points points;
-    for (const std::uint32_t i : members)
-      points.places.push_back(world_->points[i]), points.size.push_back(world_->size[i]);
-    points.wanted = std::move(wanted);
-    guards_->add(points);
-    made_ = cells.make(std::move(points), *world_, stop_);
-    label_ = made_->label;
+  /// `kept` are triangles of stars that settled, corners as numbers of points: the cells beside them have the materials
+  /// on their sides, wherever the centres are.
+  Patch(std::shared_ptr<const PatchCells::Made> made, const StarMesh& kept)
+      : made_(std::move(made)), label_(made_->label) {
     label_beside(made_->cells, kept.triangles, kept.materials, label_);
     label_void(made_->cells, wanted_members(), label_);
     facets_ = interface_facets(made_->cells, label_);
-    defects_.clear();
   }
 
   /// At the wanted members only: between the parts of the patch, where particles are missing, labels mean nothing.
-  void repair() {
+  void repair(const std::atomic<bool>* stop) {
     const PatchCells::Points& points = made_->points;
     std::vector<std::uint16_t> label = label_;
-    defects_ = repair_labels_at(wanted_members(), points.places, made_->cells, label, stop_).defects;
+    defects_ = repair_labels_at(wanted_members(), points.places, made_->cells, label, stop).defects;
     facets_ = interface_facets(made_->cells, label);
   }
 
@@ -97,9 +88,6 @@ class Patch {
     return std::span(made_->points.wanted).first(made_->points.wanted.size() - Guards::count);
   }
 
-  const Guards* guards_;
-  const PatchWorld* world_;
-  const std::atomic<bool>* stop_;
   std::shared_ptr<const PatchCells::Made> made_;
   std::vector<std::uint16_t> label_;  // per cell
   InterfaceFacets facets_;
@@ -116,21 +104,39 @@ void add_pinched(StarMesh& mesh, std::size_t particles) {
   mesh.unsettled.erase(std::unique(mesh.unsettled.begin(), mesh.unsettled.end()), mesh.unsettled.end());
 }
 
+/// Removes the elements of these numbers, which ascend.
+template <class T>
+void remove_at(std::vector<T>& all, std::span<const std::uint32_t> numbers) {
+  if (numbers.empty()) return;
+  auto to = all.begin() + numbers[0];
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const auto end = k + 1 < numbers.size() ? all.begin() + numbers[k + 1] : all.end();
+    to = std::copy(all.begin() + numbers[k] + 1, end, to);
+  }
+  all.erase(to, all.end());
+}
+
+/// Groups of bad particles, which grow until their facets meet the triangles of stars around them.
 class Settling {
  public:
-  Settling(const StarMesh& stars, const PatchWorld& world, const PatchCells& cells)
+  Settling(const StarMesh& stars, const PatchWorld& world, PatchCells& cells, const std::atomic<bool>* stop)
       : stars_(stars),
         world_(world),
+        cells_(cells),
+        stop_(stop),
         guards_(world),
         bad_(world.points.size(), 0),
         near_(bad_),
         sets_(bad_.size()),
         group_of_(bad_.size(), none),
         number_(group_of_),
-        wide_(bad_) {
+        marked_(bad_),
+        listed_(bad_) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
     unsettled_ = bad_;
-    for (std::size_t i = 0; i < bad_.size(); ++i) bad_[i] = bad_[i] || cells.was_in_patch(world.points[i]);
+    for (const std::uint32_t i :
+         select_where(bad_.size(), [&](std::size_t i) { return cells.was_in_patch(world.points[i]); }))
+      bad_[i] = 1;
   }
 
   /// Parts of the patch that have no particle within reach in common. Returns how many particles those have that are
@@ -147,48 +153,57 @@ class Settling {
     for (const std::uint32_t i : members) roots.push_back(sets_.find(i));
     std::vector<Group> groups;
     for (std::size_t k = 0; k < members.size(); ++k) {
-      if (roots[k] == members[k]) group_of_[members[k]] = std::uint32_t(groups.size()), groups.emplace_back();
+      const std::uint32_t i = members[k];
+      const std::uint32_t before = group_of_[i];
+      if (roots[k] == i) group_of_[i] = std::uint32_t(groups.size()), groups.emplace_back();
       Group& group = groups[group_of_[roots[k]]];
-      group_of_[members[k]] = group_of_[roots[k]];
-      number_[members[k]] = std::uint32_t(group.members.size());
-      group.members.push_back(members[k]);
-      group.bad += bad_[members[k]];
+      group_of_[i] = group_of_[roots[k]];
+      number_[i] = std::uint32_t(group.members.size());
+      group.members.push_back(i);
+      group.bad += bad_[i];
+      if (before != none && (group.before == none || size_of(group.before) < size_of(before))) group.before = before;
     }
     std::size_t changed = 0;
-    std::map<std::uint32_t, std::size_t> known;  // by the first member
-    for (std::size_t k = 0; k < groups_.size(); ++k) known[groups_[k].members[0]] = k;
     for (Group& group : groups) {
-      const auto at = known.find(group.members[0]);
+      Group* before = group.before == none ? nullptr : &groups_[group.before];
+      group.before = none;
       // Groups only grow: as many are the same.
-      if (at != known.end() && groups_[at->second].bad == group.bad &&
-          groups_[at->second].members.size() == group.members.size())
-        group = std::move(groups_[at->second]);
-      else
-        changed += group.members.size();
+      if (before && before->bad == group.bad && before->members.size() == group.members.size()) {
+        group = std::move(*before);
+        continue;
+      }
+      changed += group.members.size();
+      group.delaunay = before ? std::move(before->delaunay) : cells_.delaunay();
     }
     groups_ = std::move(groups);
+    if (!std::all_of(members.begin(), members.end(), [&](std::uint32_t i) { return listed_[i] != 0; })) list_around();
     return changed;
   }
 
   /// Makes the cells of groups that have none.
-  void make(PatchCells& cells, const std::atomic<bool>* stop, bool repairs) {
+  void make(bool repairs) {
     std::vector<StarMesh> kept(groups_.size());
     list_kept(kept);
-    for (std::size_t k = 0; k < groups_.size(); ++k) {
-      Group& group = groups_[k];
-      if (group.patch) continue;
-      group.patch.emplace(guards_, world_, stop);
-      group.patch->make(group.members, marks(group.members), kept[k], cells);
-      if (repairs) group.patch->repair();
+    std::vector<std::uint32_t> fresh;
+    std::vector<PatchCells::Wanted> wanted;
+    for (std::uint32_t k = 0; k < groups_.size(); ++k)
+      if (!groups_[k].patch) fresh.push_back(k), wanted.push_back({points_of(groups_[k]), groups_[k].delaunay.get()});
+    const auto made = cells_.make(std::move(wanted), world_, stop_);
+    tbb::parallel_for(std::size_t(0), fresh.size(), [&](std::size_t i) {
+      Group& group = groups_[fresh[i]];
+      group.patch.emplace(made[i], kept[fresh[i]]);
+      if (repairs) group.patch->repair(stop_);
       list_at_bad(group);
-    }
+    });
   }
 
   void repair() {
-    for (Group& group : groups_) {
-      group.patch->repair();
+    tbb::parallel_for(std::size_t(0), groups_.size(), [&](std::size_t k) {
+      Group& group = groups_[k];
+      group.patch->repair(stop_);
       list_at_bad(group);
-    }
+      group.edges_match = group.no_pinches = false;
+    });
   }
 
   /// Edges and vertices at bad particles where the surface still touches itself.
@@ -200,69 +215,51 @@ class Settling {
         const std::array<std::uint32_t, 2> particles = {group.members[defect[0]], group.members[defect[1]]};
         if (bad_[particles[0]] || bad_[particles[1]]) touching.push_back(particles);
       }
-    touching.insert(touching.end(), touching_.begin(), touching_.end());
+    for (const Group& group : groups_) touching.insert(touching.end(), group.touching.begin(), group.touching.end());
     sort_unique(touching);
     return touching;
   }
 
-  /// Facets at bad particles, and the triangles of stars beside them.
-  StarMesh join() {
-    StarMesh at_bad;
-    for (const Group& group : groups_) {
-      at_bad.triangles.insert(at_bad.triangles.end(), group.at_bad.triangles.begin(), group.at_bad.triangles.end());
-      at_bad.materials.insert(at_bad.materials.end(), group.at_bad.materials.begin(), group.at_bad.materials.end());
-    }
-    while (!mark_corners(at_bad)) look_around();
-    StarMesh joined;
-    for (const std::uint32_t i : around_) {
-      const Triangle& t = stars_.triangles[i];
-      if ((!marked_[t.a] && !marked_[t.b] && !marked_[t.c]) || at_bad_one(t)) continue;
-      joined.triangles.push_back(t);
-      joined.materials.push_back(stars_.materials[i]);
-    }
-    beside_ = joined.triangles.size();
-    joined.triangles.insert(joined.triangles.end(), at_bad.triangles.begin(), at_bad.triangles.end());
-    joined.materials.insert(joined.materials.end(), at_bad.materials.begin(), at_bad.materials.end());
-    return joined;
-  }
-
-  /// Adds what lies at edges of the mesh joined last that do not match, or at pinched vertices; false where that is
-  /// nothing new.
-  bool grow(const StarMesh& joined, bool repaired) {
+  /// Adds what lies at edges that do not match, or at pinched vertices; false where that is nothing new. Only where
+  /// groups have changed since all was well there.
+  bool grow(bool repaired) {
     std::vector<std::uint32_t> open;
-    touching_.clear();
-    for (const EdgeFault& fault : edge_faults(joined, marked_)) {
+    const StarMesh at_changed = join(&Group::edges_match);
+    for (Group& group : groups_)
+      if (!group.edges_match) group.edges_match = true, group.touching.clear();
+    for (const EdgeFault& fault : edge_faults(at_changed, marked_)) {
+      const bool inside = bad_[fault.ends[0]] && bad_[fault.ends[1]];
       // Cells alone may touch themselves, too: then that is how the particles are.
-      const bool stays = !fault.open && repaired && bad_[fault.ends[0]] && bad_[fault.ends[1]];
-      if (stays)
-        touching_.push_back(fault.ends);
-      else
-        open.insert(open.end(), fault.ends.begin(), fault.ends.end());
+      if (!fault.open && repaired && inside) {
+        groups_[group_of_[fault.ends[0]]].touching.push_back(fault.ends);
+        continue;
+      }
+      open.insert(open.end(), fault.ends.begin(), fault.ends.end());
+      if (inside) groups_[group_of_[fault.ends[0]]].edges_match = false;
     }
     bool any = false;
     for (const std::uint32_t i : open) any = any || !bad_[i], bad_[i] = 1;
     stuck_ = !open.empty() && !any;
     if (!open.empty()) return any;
     pinched_ = false;
-    for (const std::uint32_t i : at_pinched_vertices(joined, marked_)) {
-      pinched_ = pinched_ || bad_[i];
+    const StarMesh beside_fans = join(&Group::no_pinches);
+    for (Group& group : groups_) group.no_pinches = true;
+    for (const std::uint32_t i : at_pinched_vertices(beside_fans, marked_)) {
+      if (bad_[i]) pinched_ = true, groups_[group_of_[i]].no_pinches = false;
       any = any || !bad_[i], bad_[i] = 1;
     }
     return any;
   }
 
-  /// In `stars`, facets of the mesh joined last in place of the triangles at bad particles.
-  void replace(StarMesh& stars, const StarMesh& joined) const {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < stars.triangles.size(); ++i) {
-      if (at_bad_one(stars.triangles[i])) continue;
-      stars.triangles[kept] = stars.triangles[i];
-      stars.materials[kept++] = stars.materials[i];
+  /// In `stars`, facets of cells in place of the triangles at bad particles.
+  void replace(StarMesh& stars) const {
+    const std::vector<std::uint32_t> gone =
+        select_where(stars.triangles.size(), [&](std::size_t i) { return at_bad_one(stars.triangles[i]); });
+    remove_at(stars.triangles, gone), remove_at(stars.materials, gone);
+    for (const Group& group : groups_) {
+      stars.triangles.insert(stars.triangles.end(), group.at_bad.triangles.begin(), group.at_bad.triangles.end());
+      stars.materials.insert(stars.materials.end(), group.at_bad.materials.begin(), group.at_bad.materials.end());
     }
-    stars.triangles.resize(kept), stars.materials.resize(kept);
-    const auto facets = std::ptrdiff_t(beside_);
-    stars.triangles.insert(stars.triangles.end(), joined.triangles.begin() + facets, joined.triangles.end());
-    stars.materials.insert(stars.materials.end(), joined.materials.begin() + facets, joined.materials.end());
   }
 
   bool stuck() const { return stuck_; }  ///< edges do not match where all is of cells
@@ -275,9 +272,60 @@ class Settling {
   struct Group {
     std::vector<std::uint32_t> members;  // ascending
     std::int64_t bad = 0;                // of these
+    std::uint32_t before = none;         // the largest group that it has grown from, while groups are made
+    std::unique_ptr<Delaunay> delaunay;
     std::optional<Patch> patch;
-    StarMesh at_bad;  // facets at bad ones; corners are particles
+    StarMesh at_bad;                                     // facets at bad ones; corners are particles
+    std::vector<std::array<std::uint32_t, 2>> touching;  // edges where its cells alone touch themselves
+    bool edges_match = false, no_pinches = false;        // as far as is known
   };
+
+  std::size_t size_of(std::uint32_t group) const { return groups_[group].members.size(); }
+
+  PatchCells::Points points_of(const Group& group) const {
+    PatchCells::Points points;
+    for (const std::uint32_t i : group.members) {
+      points.places.push_back(world_.points[i]);
+      points.size.push_back(world_.size[i]);
+      points.wanted.push_back(bad_[i]);
+    }
+    guards_.add(points);
+    return points;
+  }
+
+  /// Facets at bad particles, and the triangles of stars beside them: all that have a corner near those groups for
+  /// which `well` is false. Marks these corners.
+  StarMesh join(bool Group::*well) {
+    std::fill(marked_.begin(), marked_.end(), 0);
+    const auto mark = [&](const Triangle& t) { marked_[t.a] = marked_[t.b] = marked_[t.c] = 1; };
+    for (const Group& group : groups_) {
+      if (group.*well) continue;
+      for (const Triangle& t : group.at_bad.triangles) mark(t);
+      for (const std::uint32_t i : group.members) {
+        if (!bad_[i]) continue;
+        marked_[i] = 1;
+        // A triangle of a star that is gone leaves its edges to facets that may not be there.
+        for (const std::uint32_t corner : triangles_at_->corners(i)) mark(around_[corner / 3]);
+      }
+    }
+    StarMesh joined;
+    for (const std::uint32_t v : marked(marked_))
+      for (const std::uint32_t corner : triangles_at_->corners(v)) {
+        const Triangle& t = around_[corner / 3];
+        const bool seen = (t.a < v && marked_[t.a]) || (t.b < v && marked_[t.b]) || (t.c < v && marked_[t.c]);
+        if (seen || at_bad_one(t)) continue;
+        joined.triangles.push_back(t);
+        joined.materials.push_back(stars_.materials[number_around_[corner / 3]]);
+      }
+    for (const Group& group : groups_)
+      for (std::size_t i = 0; i < group.at_bad.triangles.size(); ++i) {
+        const Triangle& t = group.at_bad.triangles[i];
+        if (!marked_[t.a] && !marked_[t.b] && !marked_[t.c]) continue;
+        joined.triangles.push_back(t);
+        joined.materials.push_back(group.at_bad.materials[i]);
+      }
+    return joined;
+  }
 
   /// Joins what is within reach of each of `more`; all of that is among `members`.
   void join_around(std::span<const std::uint32_t> more, std::span<const std::uint32_t> members) {
@@ -298,15 +346,13 @@ class Settling {
   /// grown over them, its cells are to follow them.
   void list_kept(std::vector<StarMesh>& kept) const {
     const auto is_kept = [&](std::uint32_t i) { return near_[i] && !unsettled_[i] && !groups_[group_of_[i]].patch; };
-    for (const std::uint32_t i : select_where(stars_.triangles.size(), [&](std::size_t i) {
-           const Triangle& t = stars_.triangles[i];
-           return is_kept(t.a) && is_kept(t.b) && is_kept(t.c) && group_of_[t.a] == group_of_[t.b] &&
-                  group_of_[t.a] == group_of_[t.c];
-         })) {
-      const Triangle& t = stars_.triangles[i];
+    for (std::size_t i = 0; i < around_.size(); ++i) {
+      const Triangle& t = around_[i];
+      if (!is_kept(t.a) || !is_kept(t.b) || !is_kept(t.c)) continue;
+      if (group_of_[t.a] != group_of_[t.b] || group_of_[t.a] != group_of_[t.c]) continue;
       StarMesh& of_group = kept[group_of_[t.a]];
       of_group.triangles.push_back({number_[t.a], number_[t.b], number_[t.c]});
-      of_group.materials.push_back(stars_.materials[i]);
+      of_group.materials.push_back(stars_.materials[number_around_[i]]);
     }
   }
 
@@ -321,41 +367,33 @@ class Settling {
     }
   }
 
-  std::vector<std::uint8_t> marks(std::span<const std::uint32_t> members) const {
-    std::vector<std::uint8_t> marks;
-    for (const std::uint32_t i : members) marks.push_back(bad_[i]);
-    return marks;
-  }
-
-  /// Marks what the triangles at bad particles have for corners; false where `around_` lacks triangles at one of them.
-  bool mark_corners(const StarMesh& at_bad) {
-    marked_ = bad_;
-    bool all = wide_reach_ > 0;
-    const auto mark = [&](const Triangle& t) {
-      for (int k = 0; k < 3; ++k) marked_[t[k]] = 1, all = all && wide_[t[k]];
-    };
-    for (const std::uint32_t i : all_bad_) all = all && wide_[i];
-    for (const Triangle& t : at_bad.triangles) mark(t);
-    // A triangle of a star that is gone leaves its edges to facets that may not be there.
-    for (const std::uint32_t i : around_)
-      if (at_bad_one(stars_.triangles[i])) mark(stars_.triangles[i]);
-    return all;
-  }
-
-  /// Lists the triangles of stars at particles around bad ones, twice as far as is needed at first.
-  void look_around() {
-    wide_reach_ = wide_reach_ > 0 ? 2 * wide_reach_ : 2 * around;
-    mark_near(world_.points, all_bad_, world_.size, wide_reach_, wide_);
-    around_ = select_where(stars_.triangles.size(), [&](std::size_t i) {
+  /// Lists the triangles of stars at all that is within reach, and a few rings of triangles beyond.
+  void list_around() {
+    listed_ = near_;
+    const auto at_listed = [&](std::size_t i) {
       const Triangle& t = stars_.triangles[i];
-      return wide_[t.a] || wide_[t.b] || wide_[t.c];
-    });
+      return listed_[t.a] || listed_[t.b] || listed_[t.c];
+    };
+    for (int ring = 0; ring < rings_beyond; ++ring)
+      for (const std::uint32_t i : select_where(stars_.triangles.size(), at_listed)) mark_listed(stars_.triangles[i]);
+    // One ring more: triangles at neighbours are needed, too.
+    const std::vector<std::uint8_t> listed = listed_;
+    for (const std::uint32_t i : select_where(stars_.triangles.size(), at_listed)) mark_listed(stars_.triangles[i]);
+    number_around_ = select_where(stars_.triangles.size(), at_listed);
+    listed_ = listed;
+    around_.clear();
+    for (const std::uint32_t i : number_around_) around_.push_back(stars_.triangles[i]);
+    triangles_at_.emplace(around_, bad_.size());
   }
+
+  void mark_listed(const Triangle& t) { listed_[t.a] = listed_[t.b] = listed_[t.c] = 1; }
 
   bool at_bad_one(const Triangle& t) const { return bad_[t.a] || bad_[t.b] || bad_[t.c]; }
 
   const StarMesh& stars_;
   const PatchWorld& world_;
+  PatchCells& cells_;
+  const std::atomic<bool>* stop_;
   Guards guards_;
   std::vector<std::uint8_t> bad_;
   std::vector<std::uint8_t> unsettled_;  // those that were bad from the start
@@ -363,13 +401,12 @@ class Settling {
   std::vector<std::uint8_t> near_;       // within reach of these
   DisjointSets sets_;                    // particles within reach of the same ones
   std::vector<Group> groups_;
-  std::vector<std::array<std::uint32_t, 2>> touching_;  // edges where cells of the patch alone touch themselves
   std::vector<std::uint32_t> group_of_, number_;  // per particle near: its group, and its place in the list of this
   std::vector<std::uint8_t> marked_;              // corners of triangles at bad ones, of stars or facets
-  std::vector<std::uint8_t> wide_;                // particles whose triangles are listed:
-  std::vector<std::uint32_t> around_;             // triangles of stars
-  double wide_reach_ = 0;                         // sizes; 0: none are listed yet
-  std::size_t beside_ = 0;                        // triangles of stars in the mesh joined last
+  std::vector<std::uint8_t> listed_;          // particles whose triangles are listed, as are those of their neighbours:
+  std::vector<Triangle> around_;              // triangles of stars
+  std::vector<std::uint32_t> number_around_;  // of each: its number among the stars'
+  std::optional<VertexTable> triangles_at_;   // of these
   bool stuck_ = false, pinched_ = false;
 };
 
@@ -383,25 +420,23 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
     for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
   add_pinched(mesh, world.points.size());
   cells.begin();
-  Settling settling(mesh, world, cells);
+  Settling settling(mesh, world, cells, stop);
   if (settling.count() == 0) return !mesh.triangles.empty();
   bool repairs = false;
   double work = 0;  // particles triangulated
   for (int round = 0; round < patch_rounds; ++round) {
     work += double(settling.regroup());
     if (world.points.size() > 1000 && work >= most_work * double(world.points.size())) return false;
-    settling.make(cells, stop, repairs);
-    StarMesh joined = settling.join();
-    if (settling.grow(joined, repairs)) continue;
+    settling.make(repairs);
+    if (settling.grow(repairs)) continue;
     if (settling.touches() && !repairs) {
       repairs = true;
       settling.repair();
-      joined = settling.join();
-      if (settling.grow(joined, repairs)) continue;
+      if (settling.grow(repairs)) continue;
     }
     if (settling.stuck()) return false;
     touching = settling.touching();
-    settling.replace(mesh, joined);
+    settling.replace(mesh);
     if (mesh.triangles.empty()) return false;
     mesh.counts.in_patches = settling.count();
     for (std::size_t i = 0; i < world.points.size(); ++i)

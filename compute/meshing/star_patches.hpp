@@ -29,7 +29,7 @@ struct PatchWorld {
 /// grow; cells of the mesh before are used again where they have the same particles.
 class PatchCells {
  public:
-  explicit PatchCells(int threads = 0) : delaunay_(threads) {}
+  explicit PatchCells(int threads = 0) : threads_(threads) {}
 
   /// What a patch is made of: guards, too.
   struct Points {
@@ -43,15 +43,24 @@ class PatchCells {
     DelaunayCells cells;
     std::vector<std::uint16_t> label;  ///< per cell, where it is looked up
   };
+  struct Wanted {
+    Points points;
+    Delaunay* delaunay;  ///< makes their cells: quickly, where it made those of most of them before
+  };
   void begin();  ///< a new mesh
-  std::shared_ptr<const Made> make(Points points, const PatchWorld& world, const std::atomic<bool>* stop);
+  std::unique_ptr<Delaunay> delaunay() const { return std::make_unique<Delaunay>(threads_); }
+  /// Side by side.
+  std::vector<std::shared_ptr<const Made>> make(std::vector<Wanted> wanted, const PatchWorld& world,
+                                                const std::atomic<bool>* stop);
   bool was_in_patch(const Vec3d& point) const;  ///< a particle there was in one of the mesh before
   void keep_in_patch(const Vec3d& point);       ///< ... is to be in one of the next
 
  private:
   using Kept = std::unordered_multimap<std::uint64_t, std::shared_ptr<const Made>>;
 
-  Delaunay delaunay_;
+  std::shared_ptr<const Made> find(std::uint64_t key, const Points& points);
+
+  int threads_;
   Kept now_, before_;  // of this mesh, and of the one before what this has not asked for, by their places
   std::unordered_set<std::uint64_t> in_patch_, in_patch_before_;  // keys of points: of this mesh, and of the one before
 };
