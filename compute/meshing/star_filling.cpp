@@ -48,24 +48,48 @@ std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vecto
   return odd;
 }
 
+struct FilledHole {
+  StarHole hole;
+  std::vector<Triangle> triangles;  ///< none where it cannot be filled
+};
+
+/// Fills holes. Those that were there `before` are filled as then where none of their items has `changed` (ascending)
+/// since.
+std::vector<FilledHole> fill_each(const StarItems& items, const std::vector<Star>& stars, std::vector<StarHole> holes,
+                                  std::span<const FilledHole> before, std::span<const std::uint32_t> changed) {
+  const auto has_changed = [&](std::uint32_t i) { return std::binary_search(changed.begin(), changed.end(), i); };
+  const auto filled_before = [&](const StarHole& hole) -> const FilledHole* {
+    if (std::ranges::any_of(hole.loop, has_changed) || std::ranges::any_of(hole.within, has_changed)) return nullptr;
+    const auto begin =
+        std::ranges::lower_bound(before, hole.loop[0], {}, [](const FilledHole& f) { return f.hole.loop[0]; });
+    for (auto f = begin; f != before.end() && f->hole.loop[0] == hole.loop[0]; ++f)
+      if (f->hole == hole) return &*f;
+    return nullptr;
+  };
+  std::vector<FilledHole> filled(holes.size());
+  tbb::parallel_for(std::size_t(0), holes.size(), [&](std::size_t i) {
+    const FilledHole* as_before = filled_before(holes[i]);
+    filled[i].triangles = as_before ? as_before->triangles : fill_hole(items, stars, holes[i]);
+    filled[i].hole = std::move(holes[i]);
+  });
+  return filled;
+}
+
 /// Items of holes that could not be filled.
 struct Failed {
   std::vector<std::uint32_t> wider;     ///< of those that are worth widening
   std::vector<std::uint32_t> hopeless;  ///< of the others
 };
 
-/// Fills what can be filled. Holes that have one of the items `hopeless`, which ascend, are not worth widening.
-Failed fill(const StarItems& items, const std::vector<Star>& stars, const std::vector<StarHole>& holes,
-            std::span<const std::uint32_t> hopeless, std::vector<Triangle>& triangles) {
-  std::vector<std::vector<Triangle>> fillings(holes.size());
-  tbb::parallel_for(std::size_t(0), holes.size(),
-                    [&](std::size_t i) { fillings[i] = fill_hole(items, stars, holes[i]); });
+/// Collects the triangles. Holes that have one of the items `hopeless`, which ascend, are not worth widening.
+Failed collect(const StarItems& items, const std::vector<Star>& stars, std::span<const FilledHole> holes,
+               std::span<const std::uint32_t> hopeless, std::vector<Triangle>& triangles) {
   const auto is_hopeless = [&](std::uint32_t i) { return std::binary_search(hopeless.begin(), hopeless.end(), i); };
   Failed failed;
-  for (std::size_t i = 0; i < holes.size(); ++i) {
-    const auto &loop = holes[i].loop, &within = holes[i].within;
-    triangles.insert(triangles.end(), fillings[i].begin(), fillings[i].end());
-    if (!fillings[i].empty()) continue;
+  for (const auto& [hole, filling] : holes) {
+    const auto &loop = hole.loop, &within = hole.within;
+    triangles.insert(triangles.end(), filling.begin(), filling.end());
+    if (!filling.empty()) continue;
     const bool no_hope =
         std::any_of(loop.begin(), loop.end(), is_hopeless) || std::any_of(within.begin(), within.end(), is_hopeless);
     for (const auto* some : {&loop, &within}) {
@@ -153,14 +177,17 @@ StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomp
   const StarItems& items = finder.items();
   const std::vector<Star>& stars = finder.stars();
   StarFilling filling;
+  std::vector<FilledHole> filled;
+  std::vector<std::uint32_t> changed;
   for (int round = 0;; ++round) {
-    const StarHoles holes = find_holes(items, stars, incomplete);
-    filling.holes = std::int64_t(holes.holes.size());
+    StarHoles holes = find_holes(items, stars, incomplete);
+    filled = fill_each(items, stars, std::move(holes.holes), filled, changed);
+    filling.holes = std::int64_t(filled.size());
     filling.triangles.clear();
-    Failed now = fill(items, stars, holes.holes, hopeless, filling.triangles);
-    if (now.wider.empty() || round == widenings || now.wider.size() > most_opened * holes.holes.size()) {
+    Failed now = collect(items, stars, filled, hopeless, filling.triangles);
+    if (now.wider.empty() || round == widenings || now.wider.size() > most_opened * filled.size()) {
       failed = std::move(now.wider);
-      for (const StarHole& hole : holes.holes)
+      for (const auto& [hole, triangles] : filled)
         filling.around.insert(filling.around.end(), hole.loop.begin(), hole.loop.end());
       filling.unsettled = failed;
       const std::vector<std::uint32_t> left = close_bodies(items, stars, holes.alone, filling.triangles);
@@ -171,7 +198,8 @@ StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomp
       sort_unique(filling.opened);
       return filling;
     }
-    const std::vector<std::uint32_t> changed = finder.open(now.wider);
+    changed = finder.open(now.wider);
+    sort_unique(changed);
     incomplete.insert(incomplete.end(), changed.begin(), changed.end());
     sort_unique(incomplete);
     filling.opened.insert(filling.opened.end(), now.wider.begin(), now.wider.end());

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
+#include <unordered_map>
 
 #include "compute/meshing/incidence.hpp"
 
@@ -85,6 +85,7 @@ class Orphans {
   }
 
   void distribute(StarHoles& found) {
+    if (waiting_.empty()) return;
     for (std::uint32_t h = 0; h < found.holes.size(); ++h)
       for (const std::uint32_t v : found.holes[h].loop) holes_at_[v].push_back(h);
     for (bool any = true; any;) {
@@ -113,8 +114,8 @@ class Orphans {
   }
 
   const std::vector<Star>& stars_;
-  std::vector<std::uint32_t> waiting_;                            // ascending
-  std::map<std::uint32_t, std::vector<std::uint32_t>> holes_at_;  // of items at a hole or within it
+  std::vector<std::uint32_t> waiting_;                                      // ascending
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> holes_at_;  // of items at a hole or within it
 };
 
 /// Fills one hole: the cheapest triangulation of its loop, then its inner items, then flips.

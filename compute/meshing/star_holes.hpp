@@ -14,6 +14,7 @@ namespace nacre {
 /// items within it that no triangle has yet. Begins with its smallest item.
 struct StarHole {
   std::vector<std::uint32_t> loop, within;
+  friend bool operator==(const StarHole&, const StarHole&) = default;
 };
 
 struct StarHoles {
