@@ -13,7 +13,6 @@
 
 #include "compute/math/disjoint_sets.hpp"
 #include "compute/math/sort_unique.hpp"
-#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/labels_in_void.hpp"
 #include "compute/meshing/near_points.hpp"
@@ -21,13 +20,13 @@
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_seams.hpp"
+#include "compute/meshing/triangles_around.hpp"
 
 namespace nacre {
 namespace {
 
 constexpr int patch_rounds = 100;
 constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
-constexpr int rings_beyond = 2;    // triangles of stars are listed so much farther, so that patches may grow
 constexpr double most_work = 0.6;  // particles triangulated in all rounds, by those that there are
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
@@ -131,7 +130,7 @@ class Settling {
         group_of_(bad_.size(), none),
         number_(group_of_),
         marked_(bad_),
-        listed_(bad_) {
+        around_(stars.triangles, bad_.size()) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
     unsettled_ = bad_;
     for (const std::uint32_t i :
@@ -176,7 +175,7 @@ class Settling {
       group.delaunay = before ? std::move(before->delaunay) : cells_.delaunay();
     }
     groups_ = std::move(groups);
-    if (!std::all_of(members.begin(), members.end(), [&](std::uint32_t i) { return listed_[i] != 0; })) list_around();
+    around_.include(near_, members);
     return changed;
   }
 
@@ -305,18 +304,18 @@ class Settling {
         if (!bad_[i]) continue;
         marked_[i] = 1;
         // A triangle of a star that is gone leaves its edges to facets that may not be there.
-        for (const std::uint32_t corner : triangles_at_->corners(i)) mark(around_[corner / 3]);
+        around_.visit(i, [&](std::size_t k) { mark(around_[k]); });
       }
     }
     StarMesh joined;
     for (const std::uint32_t v : marked(marked_))
-      for (const std::uint32_t corner : triangles_at_->corners(v)) {
-        const Triangle& t = around_[corner / 3];
+      around_.visit(v, [&](std::size_t k) {
+        const Triangle& t = around_[k];
         const bool seen = (t.a < v && marked_[t.a]) || (t.b < v && marked_[t.b]) || (t.c < v && marked_[t.c]);
-        if (seen || at_bad_one(t)) continue;
+        if (seen || at_bad_one(t)) return;
         joined.triangles.push_back(t);
-        joined.materials.push_back(stars_.materials[number_around_[corner / 3]]);
-      }
+        joined.materials.push_back(stars_.materials[around_.numbers()[k]]);
+      });
     for (const Group& group : groups_)
       for (std::size_t i = 0; i < group.at_bad.triangles.size(); ++i) {
         const Triangle& t = group.at_bad.triangles[i];
@@ -346,13 +345,13 @@ class Settling {
   /// grown over them, its cells are to follow them.
   void list_kept(std::vector<StarMesh>& kept) const {
     const auto is_kept = [&](std::uint32_t i) { return near_[i] && !unsettled_[i] && !groups_[group_of_[i]].patch; };
-    for (std::size_t i = 0; i < around_.size(); ++i) {
+    for (std::size_t i = 0; i < around_.numbers().size(); ++i) {
       const Triangle& t = around_[i];
       if (!is_kept(t.a) || !is_kept(t.b) || !is_kept(t.c)) continue;
       if (group_of_[t.a] != group_of_[t.b] || group_of_[t.a] != group_of_[t.c]) continue;
       StarMesh& of_group = kept[group_of_[t.a]];
       of_group.triangles.push_back({number_[t.a], number_[t.b], number_[t.c]});
-      of_group.materials.push_back(stars_.materials[number_around_[i]]);
+      of_group.materials.push_back(stars_.materials[around_.numbers()[i]]);
     }
   }
 
@@ -366,27 +365,6 @@ class Settling {
       if (at_bad_one(t)) group.at_bad.triangles.push_back(t), group.at_bad.materials.push_back(facets.materials[i]);
     }
   }
-
-  /// Lists the triangles of stars at all that is within reach, and a few rings of triangles beyond.
-  void list_around() {
-    listed_ = near_;
-    const auto at_listed = [&](std::size_t i) {
-      const Triangle& t = stars_.triangles[i];
-      return listed_[t.a] || listed_[t.b] || listed_[t.c];
-    };
-    for (int ring = 0; ring < rings_beyond; ++ring)
-      for (const std::uint32_t i : select_where(stars_.triangles.size(), at_listed)) mark_listed(stars_.triangles[i]);
-    // One ring more: triangles at neighbours are needed, too.
-    const std::vector<std::uint8_t> listed = listed_;
-    for (const std::uint32_t i : select_where(stars_.triangles.size(), at_listed)) mark_listed(stars_.triangles[i]);
-    number_around_ = select_where(stars_.triangles.size(), at_listed);
-    listed_ = listed;
-    around_.clear();
-    for (const std::uint32_t i : number_around_) around_.push_back(stars_.triangles[i]);
-    triangles_at_.emplace(around_, bad_.size());
-  }
-
-  void mark_listed(const Triangle& t) { listed_[t.a] = listed_[t.b] = listed_[t.c] = 1; }
 
   bool at_bad_one(const Triangle& t) const { return bad_[t.a] || bad_[t.b] || bad_[t.c]; }
 
@@ -403,10 +381,7 @@ class Settling {
   std::vector<Group> groups_;
   std::vector<std::uint32_t> group_of_, number_;  // per particle near: its group, and its place in the list of this
   std::vector<std::uint8_t> marked_;              // corners of triangles at bad ones, of stars or facets
-  std::vector<std::uint8_t> listed_;          // particles whose triangles are listed, as are those of their neighbours:
-  std::vector<Triangle> around_;              // triangles of stars
-  std::vector<std::uint32_t> number_around_;  // of each: its number among the stars'
-  std::optional<VertexTable> triangles_at_;   // of these
+  TrianglesAround around_;                        // of stars, at all that is within reach
   bool stuck_ = false, pinched_ = false;
 };
 

@@ -104,7 +104,8 @@ TEST(StarPatches, MaterialsAreLookedUpNearParticles) {
       patch.places.push_back(points[i]), patch.size.push_back(size[i]);
       patch.wanted.push_back(length(points[i] - points[200]) < 1);
     }
-  const auto made = cells.make(patch, world, nullptr);
+  const auto delaunay = cells.delaunay();
+  const auto made = cells.make({{patch, delaunay.get()}}, world, nullptr).at(0);
   ASSERT_EQ(asked.size(), made->cells.vertices.size());
   std::size_t far = 0;
   for (std::size_t i = 0; i < asked.size(); ++i) {
