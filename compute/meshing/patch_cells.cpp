@@ -47,7 +47,6 @@ bool PatchCells::was_in_patch(const Vec3d& point) const { return in_patch_before
 
 void PatchCells::keep_in_patch(const Vec3d& point) { in_patch_.insert(key_of({&point, 1})); }
 
-/// Those of this mesh or the one before, or none.
 std::shared_ptr<const PatchCells::Made> PatchCells::find(std::uint64_t key, const Points& points) {
   for (Kept* kept : {&now_, &before_}) {
     const auto [first, last] = kept->equal_range(key);

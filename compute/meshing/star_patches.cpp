@@ -99,8 +99,7 @@ void add_pinched(StarMesh& mesh, std::size_t particles) {
   for (const std::uint32_t i : mesh.joined) marked[i] = 1;
   const std::vector<std::uint32_t> pinched = at_pinched_vertices(mesh, marked);
   mesh.unsettled.insert(mesh.unsettled.end(), pinched.begin(), pinched.end());
-  std::sort(mesh.unsettled.begin(), mesh.unsettled.end());
-  mesh.unsettled.erase(std::unique(mesh.unsettled.begin(), mesh.unsettled.end()), mesh.unsettled.end());
+  sort_unique(mesh.unsettled);
 }
 
 /// Removes the elements of these numbers, which ascend.
@@ -151,21 +150,23 @@ class Settling {
     std::vector<std::uint32_t> roots;
     for (const std::uint32_t i : members) roots.push_back(sets_.find(i));
     std::vector<Group> groups;
+    std::vector<std::uint32_t> grown_from;  // of each: the largest group that is part of it now, or none
     for (std::size_t k = 0; k < members.size(); ++k) {
       const std::uint32_t i = members[k];
-      const std::uint32_t before = group_of_[i];
-      if (roots[k] == i) group_of_[i] = std::uint32_t(groups.size()), groups.emplace_back();
-      Group& group = groups[group_of_[roots[k]]];
+      const std::uint32_t was_in = group_of_[i];
+      if (roots[k] == i) group_of_[i] = std::uint32_t(groups.size()), groups.emplace_back(), grown_from.push_back(none);
       group_of_[i] = group_of_[roots[k]];
+      Group& group = groups[group_of_[i]];
       number_[i] = std::uint32_t(group.members.size());
       group.members.push_back(i);
       group.bad += bad_[i];
-      if (before != none && (group.before == none || size_of(group.before) < size_of(before))) group.before = before;
+      std::uint32_t& largest = grown_from[group_of_[i]];
+      if (was_in != none && (largest == none || size_of(largest) < size_of(was_in))) largest = was_in;
     }
     std::size_t changed = 0;
-    for (Group& group : groups) {
-      Group* before = group.before == none ? nullptr : &groups_[group.before];
-      group.before = none;
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      Group& group = groups[k];
+      Group* before = grown_from[k] == none ? nullptr : &groups_[grown_from[k]];
       // Groups only grow: as many are the same.
       if (before && before->bad == group.bad && before->members.size() == group.members.size()) {
         group = std::move(*before);
@@ -219,8 +220,8 @@ class Settling {
     return touching;
   }
 
-  /// Adds what lies at edges that do not match, or at pinched vertices; false where that is nothing new. Only where
-  /// groups have changed since all was well there.
+  /// Adds what lies at edges that do not match, or at pinched vertices; false where that is nothing new. Looks only at
+  /// groups whose cells were made since they were found to be without such.
   bool grow(bool repaired) {
     std::vector<std::uint32_t> open;
     const StarMesh at_changed = join(&Group::edges_match);
@@ -271,12 +272,11 @@ class Settling {
   struct Group {
     std::vector<std::uint32_t> members;  // ascending
     std::int64_t bad = 0;                // of these
-    std::uint32_t before = none;         // the largest group that it has grown from, while groups are made
     std::unique_ptr<Delaunay> delaunay;
     std::optional<Patch> patch;
     StarMesh at_bad;                                     // facets at bad ones; corners are particles
     std::vector<std::array<std::uint32_t, 2>> touching;  // edges where its cells alone touch themselves
-    bool edges_match = false, no_pinches = false;        // as far as is known
+    bool edges_match = false, no_pinches = false;        // checked since its cells were made
   };
 
   std::size_t size_of(std::uint32_t group) const { return groups_[group].members.size(); }
@@ -292,13 +292,13 @@ class Settling {
     return points;
   }
 
-  /// Facets at bad particles, and the triangles of stars beside them: all that have a corner near those groups for
-  /// which `well` is false. Marks these corners.
-  StarMesh join(bool Group::*well) {
+  /// Facets at the bad particles of those groups for which `checked` is false, and all triangles that have a corner in
+  /// common with them or with the triangles of stars that they replace. Marks these corners.
+  StarMesh join(bool Group::*checked) {
     std::fill(marked_.begin(), marked_.end(), 0);
     const auto mark = [&](const Triangle& t) { marked_[t.a] = marked_[t.b] = marked_[t.c] = 1; };
     for (const Group& group : groups_) {
-      if (group.*well) continue;
+      if (group.*checked) continue;
       for (const Triangle& t : group.at_bad.triangles) mark(t);
       for (const std::uint32_t i : group.members) {
         if (!bad_[i]) continue;

@@ -43,13 +43,14 @@ class PatchCells {
     DelaunayCells cells;
     std::vector<std::uint16_t> label;  ///< per cell, where it is looked up
   };
+  /// Points whose cells are asked for.
   struct Wanted {
     Points points;
     Delaunay* delaunay;  ///< makes their cells: quickly, where it made those of most of them before
   };
   void begin();  ///< a new mesh
   std::unique_ptr<Delaunay> delaunay() const { return std::make_unique<Delaunay>(threads_); }
-  /// Side by side.
+  /// The cells of each, made side by side where they are not known.
   std::vector<std::shared_ptr<const Made>> make(std::vector<Wanted> wanted, const PatchWorld& world,
                                                 const std::atomic<bool>* stop);
   bool was_in_patch(const Vec3d& point) const;  ///< a particle there was in one of the mesh before
@@ -58,7 +59,7 @@ class PatchCells {
  private:
   using Kept = std::unordered_multimap<std::uint64_t, std::shared_ptr<const Made>>;
 
-  std::shared_ptr<const Made> find(std::uint64_t key, const Points& points);
+  std::shared_ptr<const Made> find(std::uint64_t key, const Points& points);  // known ones, or none
 
   int threads_;
   Kept now_, before_;  // of this mesh, and of the one before what this has not asked for, by their places
