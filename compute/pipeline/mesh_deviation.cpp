@@ -7,7 +7,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/quality.hpp"
+#include "compute/meshing/select_where.hpp"
 
 namespace nacre {
 namespace {
@@ -114,9 +116,11 @@ class Samples {
       }
       next = i + 1;
       if (curve == Junction()) return;
-      largest = std::max(largest, away(next++));
+      largest = std::max(largest, away(next));
+      const Vec3d nearest = is_finite(on[next]) ? on[next] : points_[next];
+      ++next;
       for (const Side& s : at) {
-        result.on_rim[s.triangle][s.k] = {largest, third_of(curve, s)};
+        result.on_rim[s.triangle][s.k] = {largest, third_of(curve, s), nearest};
         result.triangle[s.triangle] = std::max(result.triangle[s.triangle], largest);
       }
     });
@@ -137,11 +141,50 @@ class Samples {
   std::vector<Junction> junctions_;
 };
 
+/// The points of a mesh at edges on junction curves.
+class PointsOnCurves {
+ public:
+  PointsOnCurves(const SurfaceMesh& mesh, const MeshDeviation& deviation)
+      : mesh_(mesh),
+        number_(numbers_of(mesh, deviation)),
+        tree_(points_of(mesh, number_), std::vector<std::uint32_t>{0, std::uint32_t(number_.size())}) {}
+
+  /// Whether one of these points, not a or b, is nearer to `position` than both a and b.
+  bool nearer_to_others(const Vec3d& position, std::uint32_t a, std::uint32_t b) const {
+    const double to_ends = std::min(length(mesh_.points[a] - position), length(mesh_.points[b] - position));
+    std::vector<PointTree::Found> found;
+    tree_.within(0, position, to_ends, found);
+    return std::any_of(found.begin(), found.end(),
+                       [&](const PointTree::Found& f) { return number_[f.point] != a && number_[f.point] != b; });
+  }
+
+ private:
+  static std::vector<std::uint32_t> numbers_of(const SurfaceMesh& mesh, const MeshDeviation& deviation) {
+    std::vector<std::uint8_t> on_curve(mesh.points.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (int k = 0; k < 3; ++k)
+        if (deviation.on_rim[t][std::size_t(k)].away >= 0)
+          on_curve[mesh.triangles[t][k]] = on_curve[mesh.triangles[t][(k + 1) % 3]] = 1;
+    return marked(on_curve);
+  }
+
+  static std::vector<Vec3d> points_of(const SurfaceMesh& mesh, std::span<const std::uint32_t> numbers) {
+    std::vector<Vec3d> points;
+    points.reserve(numbers.size());
+    for (const std::uint32_t v : numbers) points.push_back(mesh.points[v]);
+    return points;
+  }
+
+  const SurfaceMesh& mesh_;
+  std::vector<std::uint32_t> number_;
+  PointTree tree_;
+};
+
 /// Chooses new points one after the other.
 class Insertion {
  public:
   Insertion(const SurfaceMesh& mesh, const MeshDeviation& deviation, const DeviationRule& rule)
-      : mesh_(mesh), deviation_(deviation), rule_(rule), beside_(mesh.points.size()) {}
+      : mesh_(mesh), deviation_(deviation), rule_(rule), on_curves_(mesh, deviation), beside_(mesh.points.size()) {}
 
   /// False where the triangle is too small.
   bool divide(std::uint32_t t) {
@@ -163,9 +206,10 @@ class Insertion {
     }
     if (rim >= 0) {
       const std::uint32_t a = c[rim], b = c[(rim + 1) % 3];
-      const auto& [away, third] = deviation_.on_rim[t][std::size_t(rim)];
-      return insert(0.5 * (mesh_.points[a] + mesh_.points[b]), 0.5 * length(mesh_.points[b] - mesh_.points[a]), away, t,
-                    third);
+      const MeshDeviation::Rim& on = deviation_.on_rim[t][std::size_t(rim)];
+      const Vec3d middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+      const Vec3d start = on_curves_.nearer_to_others(on.nearest, a, b) ? 2 * middle - on.nearest : middle;
+      return insert(start, 0.5 * length(mesh_.points[b] - mesh_.points[a]), on.away, t, on.third);
     }
     return insert(centre, radius, deviation_.triangle[t], t, 0xffff);
   }
@@ -188,6 +232,7 @@ class Insertion {
   const SurfaceMesh& mesh_;
   const MeshDeviation& deviation_;
   const DeviationRule& rule_;
+  const PointsOnCurves on_curves_;
   std::vector<std::vector<std::uint32_t>> beside_;  ///< per point: new points in triangles at it
   std::vector<MeshDefects::NewPoint> found_;
 };

@@ -24,6 +24,7 @@ struct MeshDeviation {
   struct Rim {
     float away = -1;
     std::uint16_t third = 0xffff;
+    Vec3d nearest;  ///< where on the curve its middle is nearest to
   };
   std::vector<std::array<Rim, 3>> on_rim;  ///< the edges 01 12 20
   double max = 0, mean = 0;                ///< of `triangle`
@@ -59,8 +60,9 @@ struct DeviationRefinement {
 };
 
 /// New points in the triangles above the bound: at the middle of an edge on a junction curve, where that is too far
-/// away or where the triangle's circumcentre is nearer to the edge's middle than its ends; else at the circumcentre,
-/// which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
+/// away or where the triangle's circumcentre is nearer to the edge's middle than its ends (on the other side of that
+/// middle, where the curve's nearest position is nearer to other points on curves than to the ends: that is the other
+/// side of a small loop); else at the circumcentre, which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
 /// 2005, "Provably good sampling and meshing of surfaces"). Points of one call keep 1.3 times that distance from each
 /// other.
 DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,

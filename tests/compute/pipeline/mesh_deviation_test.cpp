@@ -58,6 +58,38 @@ TEST(MeshDeviation, EdgesOfCurvesAreMeasuredFromTheCurve) {
   EXPECT_EQ(further.above_junctions, 3);
 }
 
+TEST(MeshDeviation, TheFreeSideOfASmallLoopGetsThePoint) {
+  // Materials 1 and 2 meet in a disc around the origin that a circle of radius 1 bounds. The chord from 0 to 2 has the
+  // upper half of the circle, with a point on it, nearer to its middle than the lower half, which has none.
+  SurfaceMesh mesh;
+  const double low = -0.1;
+  mesh.points = {
+      {-std::sqrt(1 - low * low), low, 0}, {0, 1, 0}, {std::sqrt(1 - low * low), low, 0}, {0, 0, 3}, {0, 0, -3}};
+  mesh.triangles = {{0, 1, 2}};
+  mesh.materials = {{1, 2}};
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    mesh.triangles.push_back({k, (k + 1) % 3, 3});
+    mesh.materials.push_back({1, 7});
+    mesh.triangles.push_back({k, (k + 1) % 3, 4});
+    mesh.materials.push_back({2, 7});
+  }
+  bool loop = true;
+  const auto onto = [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+    std::vector<Vec3d> on(points.begin(), points.end());
+    for (std::size_t i = 0; i < on.size(); ++i)
+      if (junctions[i] == Junction(1, 2, 7) && points[i].x == 0) on[i] = Vec3d(0, loop ? 1 : -0.8, 0);
+    return on;
+  };
+  const DeviationRule rule{0.1, 0.25};
+  const DeviationRefinement across = refine_deviation(mesh, measure_deviation(mesh, onto, 1), rule);
+  ASSERT_EQ(across.insert.size(), 1u);
+  EXPECT_NEAR(across.insert[0].position.y, 2 * low - 1, 1e-12) << "opposite the point that is there";
+  loop = false;
+  const DeviationRefinement beside = refine_deviation(mesh, measure_deviation(mesh, onto, 1), rule);
+  ASSERT_EQ(beside.insert.size(), 1u);
+  EXPECT_NEAR(beside.insert[0].position.y, low, 1e-12) << "in the middle, from where the curve is near";
+}
+
 TEST(MeshDeviation, NewPointsKeepAwayFromAllOthers) {
   const SurfaceMesh mesh = icosphere(1, radius);
   const MeshDeviation deviation = measure_deviation(mesh, onto_sphere, 1);
