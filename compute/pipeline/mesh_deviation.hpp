@@ -60,22 +60,24 @@ struct DeviationRefinement {
 };
 
 /// New points in the triangles above the bound: at the middle of an edge on a junction curve, where that is too far
-/// away or where the triangle's circumcentre is nearer to the edge's middle than its ends (on the other side of that
-/// middle, where the curve's nearest position is nearer to other points on curves than to the ends: that is the other
-/// side of a small loop); else at the circumcentre, which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
+/// away or where the triangle's circumcentre is nearer to the edge's middle than its ends; else at the circumcentre,
+/// which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
 /// 2005, "Provably good sampling and meshing of surfaces"). Points of one call keep 1.3 times that distance from each
-/// other.
+/// other. Where the curve is nearest to an edge's middle on the side on which it has other points, that is the far side
+/// of a small loop: the new point is put on the other side, as far from the middle as the ends are.
 DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,
                                      const DeviationRule& rule);
 
 /// The materials in which points of the world lie.
 using MaterialsAt = std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)>;
 
-/// New points in the place of those of `points`, on surfaces, that have not become particles (`taken`: the indices of
-/// those that have, ascending): where a third material covers the interface, the point is to be on the curve on which
-/// the three meet.
-std::vector<MeshDefects::NewPoint> points_on_rims(std::span<const MeshDefects::NewPoint> points,
-                                                  std::span<const std::uint32_t> taken, const NearestOnJunctions& onto,
-                                                  const MaterialsAt& material_at);
+/// New points in the place of those of `points`, on surfaces of `mesh`, that have not become particles (`taken`: the
+/// indices of those that have, ascending): where a third material covers the interface, points are to be on the curve
+/// on which the three meet, on all sides of the one that was wished for: that curve may be a small loop that has no
+/// point yet. They keep `spacing` from each other and from the points of the mesh on that curve.
+std::vector<MeshDefects::NewPoint> points_on_rims(const SurfaceMesh& mesh,
+                                                  std::span<const MeshDefects::NewPoint> points,
+                                                  std::span<const std::uint32_t> taken, double spacing,
+                                                  const NearestOnJunctions& onto, const MaterialsAt& material_at);
 
 }  // namespace nacre

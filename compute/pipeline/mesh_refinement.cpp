@@ -46,19 +46,22 @@ void MeshImprovement::forget_tried(DeviationRefinement& further) {
   });
 }
 
-/// Adds particles, and smooths what is around them. False where there is no room for any.
+/// Adds particles, and smooths what is around them. Those of which `made` has no point go before: new ones might come
+/// to lie beside them. False where there is no room for any.
 bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
-  const std::size_t before = std::size_t(particles_.count());
+  std::size_t before = 0;  // particles that stay
   particles_.in_stage("refine", [&] {
-    const auto add = [&](std::span<const MeshDefects::NewPoint> points) {
-      return particles_.replace(std::vector<std::uint8_t>(std::size_t(particles_.count()), 0), points);
-    };
-    const std::vector<std::uint32_t> taken = add(further.insert);
+    std::vector<std::uint8_t> gone(std::size_t(particles_.count()), 1);
+    for (const std::uint32_t i : made.point_of) gone[i] = 0;
+    before = std::size_t(std::count(gone.begin(), gone.end(), 0));
+    const std::vector<std::uint32_t> taken = particles_.replace(gone, further.insert);
     const auto onto = [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
       return particles_.onto_junctions(points, junctions, false);
     };
     const auto material_at = [&](std::span<const Vec3d> points) { return particles_.material_at(points); };
-    add(points_on_rims(further.insert, taken, onto, material_at));
+    const std::vector<MeshDefects::NewPoint> on_rims =
+        points_on_rims(made.mesh, further.insert, taken, rule_.detail * frame_.unit, onto, material_at);
+    particles_.replace(std::vector<std::uint8_t>(std::size_t(particles_.count()), 0), on_rims);
   });
   const std::size_t added = std::size_t(particles_.count()) - before;
   deviation_.inserted += std::int64_t(added);

@@ -115,8 +115,9 @@ TEST(MeshDeviation, LostPointsAreLookedForOnTheRims) {
   const auto onto = [](std::span<const Vec3d> points, std::span<const Junction> junctions) {
     std::vector<Vec3d> on;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      EXPECT_EQ(junctions[i], Junction(1, 2));
-      on.push_back(points[i].z < 5 ? Vec3d(points[i].x, 0, points[i].z) : Vec3d(NAN));
+      const bool curve = junctions[i] == Junction(1, 2, 3);
+      EXPECT_TRUE(curve || junctions[i] == Junction(1, 2));
+      on.push_back(points[i].z < 5 ? Vec3d(curve ? 1 : points[i].x, 0, points[i].z) : Vec3d(NAN));
     }
     return on;
   };
@@ -133,15 +134,59 @@ TEST(MeshDeviation, LostPointsAreLookedForOnTheRims) {
       {{2, 0.1, 1}, {1, 2}, 3, 7},  // on a curve already
       {{2, 0.1, 6}, {1, 2}, 4},     // beyond the rim, without an interface nearby
   };
-  const std::vector<NewPoint> found = points_on_rims(wished, std::vector<std::uint32_t>{0}, onto, material_at);
-  ASSERT_EQ(found.size(), 2u);
-  EXPECT_EQ(found[0].position, Vec3d(2, 0, 0)) << "on the interface, from where its curve is looked for";
-  EXPECT_EQ(found[1].position, Vec3d(2, 0.1, 6)) << "where it was wished for";
+  SurfaceMesh mesh;
+  mesh.points = {{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {2, 0, 0}, {2, 0, 5}};
+  const std::vector<NewPoint> found =
+      points_on_rims(mesh, wished, std::vector<std::uint32_t>{0}, 0.5, onto, material_at);
+  ASSERT_EQ(found.size(), 4u) << "three from the second wish, one from the last, which finds the curve on one side";
+  EXPECT_EQ(found[0].position, Vec3d(1, 0, 0)) << "on the curve, where the interface was";
   for (const NewPoint& p : found) {
+    EXPECT_EQ(p.position.x, 1);
+    EXPECT_EQ(p.position.y, 0);
     EXPECT_EQ(p.third, 3);
     EXPECT_EQ(p.materials, wished[1].materials);
   }
-  EXPECT_TRUE(points_on_rims({}, {}, onto, material_at).empty());
+  EXPECT_TRUE(points_on_rims(mesh, {}, {}, 0.5, onto, material_at).empty());
+}
+
+TEST(MeshDeviation, ALoopWithoutPointsGetsThemOnAllSides) {
+  // Materials 1 and 2 meet at z = 0; 3 covers a disc around the origin.
+  const double disc = 0.4;
+  const auto onto = [&](std::span<const Vec3d> points, std::span<const Junction> junctions) {
+    std::vector<Vec3d> on;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3d flat(points[i].x, points[i].y, 0);
+      const double r = length(flat);
+      on.push_back(junctions[i] == Junction(1, 2) ? flat : r > 0 ? flat * (disc / r) : Vec3d(disc, 0, 0));
+    }
+    return on;
+  };
+  const auto material_at = [&](std::span<const Vec3d> points) {
+    std::vector<std::uint16_t> material;
+    for (const Vec3d& p : points) material.push_back(length(p) < disc ? 3 : p.z > 0 ? 2 : 1);
+    return material;
+  };
+  SurfaceMesh mesh;
+  mesh.points = {{1, 0, 0}, {-0.5, 0.9, 0}, {-0.5, -0.9, 0}};
+  const std::vector<MeshDefects::NewPoint> wished{{{0.1, 0.05, 0.1}, {1, 2}, 0}};
+  const auto found = points_on_rims(mesh, wished, {}, 0.25, onto, material_at);
+  ASSERT_GE(found.size(), 3u) << "fewer bound no facet";
+  EXPECT_LE(found.size(), 8u);
+  Vec3d sum;
+  for (const auto& p : found) {
+    EXPECT_NEAR(length(p.position), disc, 1e-12);
+    sum = sum + p.position;
+    for (const auto& other : found) EXPECT_TRUE(&other == &p || length(other.position - p.position) >= 0.25);
+  }
+  EXPECT_LT(length(sum) / double(found.size()), 0.5 * disc) << "all lie on one side";
+  // With points of the mesh on the curve, new ones keep away from them.
+  mesh.points.insert(mesh.points.end(), {{disc, 0, 0}, {0, disc, 0}, {0, 0, 1}, {0, 0, -1}});
+  mesh.triangles = {{3, 4, 0}, {3, 4, 5}, {3, 4, 6}};
+  mesh.materials = {{1, 2}, {2, 3}, {1, 3}};
+  const auto others = points_on_rims(mesh, wished, {}, 0.25, onto, material_at);
+  EXPECT_LT(others.size(), found.size());
+  for (const auto& p : others)
+    for (const std::size_t v : {3, 4}) EXPECT_GE(length(mesh.points[v] - p.position), 0.25);
 }
 
 /// The largest distance of middles of triangles and edges, by a formula.
