@@ -6,6 +6,7 @@
 
 #include "compute/device/error.hpp"
 #include "compute/math/point_hash.hpp"
+#include "compute/meshing/point_tree.hpp"
 #include "compute/pipeline/mesh_improvement.hpp"
 
 namespace nacre {
@@ -16,6 +17,7 @@ constexpr int most_rounds = 8;        ///< of adding particles in one turn;
 constexpr int rounds_smoothed = 5;    ///< so many of them smooth around new particles
 constexpr int remeshing_of_turn = 6;  ///< rounds of remeshing in one turn, at most
 constexpr int smoothing_turns = 4;
+constexpr double crowded = 0.1;  ///< a new particle that comes as near to another as this, in `detail`, goes
 
 }  // namespace
 
@@ -46,6 +48,26 @@ void MeshImprovement::forget_tried(DeviationRefinement& further) {
   });
 }
 
+/// Takes out the particles from number `first` on that have come to lie beside others of their interface or of one that
+/// bounds it.
+void MeshImprovement::drop_crowded(std::size_t first) {
+  const HostParticles now = particles_.download();
+  const std::vector<Vec3d> position = world_positions(now.position, frame_);
+  const PointTree tree(position, std::vector<std::uint32_t>{0, std::uint32_t(now.count())});
+  std::vector<std::uint8_t> gone(now.count());
+  std::vector<PointTree::Found> found;
+  for (std::size_t i = first; i < now.count(); ++i) {
+    found.clear();
+    tree.within(0, position[i], crowded * rule_.detail * frame_.unit, found);
+    const Junction& mine = table_.junctions[now.interface[i]];
+    gone[i] = std::any_of(found.begin(), found.end(), [&](const PointTree::Found& f) {
+      const Junction& other = table_.junctions[now.interface[f.point]];
+      return f.point < i && gone[f.point] == 0 && (mine.bounds(other) || other.bounds(mine));
+    });
+  }
+  if (std::find(gone.begin(), gone.end(), 1) != gone.end()) particles_.replace(gone, {});
+}
+
 /// Adds particles, and smooths what is around them. Those of which `made` has no point go before: new ones might come
 /// to lie beside them. False where there is no room for any.
 bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
@@ -62,6 +84,7 @@ bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinemen
     const std::vector<MeshDefects::NewPoint> on_rims =
         points_on_rims(made.mesh, further.insert, taken, rule_.detail * frame_.unit, onto, material_at);
     particles_.replace(std::vector<std::uint8_t>(std::size_t(particles_.count()), 0), on_rims);
+    drop_crowded(before);
   });
   const std::size_t added = std::size_t(particles_.count()) - before;
   deviation_.inserted += std::int64_t(added);
