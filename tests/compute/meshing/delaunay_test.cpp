@@ -68,6 +68,16 @@ TEST(Delaunay, FiveCellsOrFewerOfACube) {
   EXPECT_TRUE(cells.vertices.size() == 5 || cells.vertices.size() == 6) << cells.vertices.size();
 }
 
+TEST(Delaunay, FourPointsAreOneCell) {
+  const std::vector<Vec3d> points{{0, 0, 0}, {0, 2, 0}, {2, 0, 0}, {0, 0, 2}};
+  Delaunay delaunay;
+  const DelaunayCells cells = delaunay.cells(points);
+  EXPECT_EQ(cells.vertices, (std::vector<std::array<std::uint32_t, 4>>{{0, 1, 3, 2}}));
+  EXPECT_EQ(cells.neighbours, (std::vector<std::array<std::int32_t, 4>>{{-1, -1, -1, -1}}));
+  ASSERT_EQ(cells.circumcentres.size(), 1u);
+  EXPECT_NEAR(length(cells.circumcentres[0] - Vec3d(1, 1, 1)), 0, 1e-12);
+}
+
 TEST(Delaunay, SpheresAreEmptyAndNeighboursAgree) {
   const std::vector<Vec3d> points = random_points(300);
   const DelaunayCells cells = delaunay(points);

@@ -1,5 +1,5 @@
 // Nacre: how far triangles are from their interfaces, and meshes whose deviation is bounded.
-#include "compute/pipeline/mesh_deviation.hpp"
+#include "compute/pipeline/deviation_refinement.hpp"
 
 #include <gtest/gtest.h>
 
