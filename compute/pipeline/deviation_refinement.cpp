@@ -2,6 +2,7 @@
 #include "compute/pipeline/deviation_refinement.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -37,8 +38,8 @@ constexpr std::size_t most_named = 100;
 class PointsOnCurves {
  public:
   explicit PointsOnCurves(const SurfaceMesh& mesh) : mesh_(mesh) {
-    const std::vector<Side> sides = sides_of(mesh);
-    for_each_edge(sides, [&](std::span<const Side> at) {
+    const std::vector<MeshSide> sides = sides_of(mesh);
+    for_each_edge(sides, [&](std::span<const MeshSide> at) {
       const Junction curve = curve_of(at);
       if (!(curve == Junction())) entry_.insert(entry_.end(), {{curve, at[0].a}, {curve, at[0].b}});
     });
@@ -225,7 +226,8 @@ std::vector<MeshDefects::NewPoint> points_on_rims(const SurfaceMesh& mesh,
     const auto& [a, b] = lost[k].materials;
     if (lost[k].third != a && lost[k].third != b && lost[k].third != 0xffff) covered.push_back(k);
   }
-  // From where the curve is looked for.
+  if (covered.empty()) return {};
+  // From where the curves are looked for.
   position.clear(), junction.clear();
   for (const std::uint32_t k : covered)
     for (const Vec3d& way : ways_to_rim) {

@@ -14,7 +14,7 @@ namespace nacre {
 /// Bounds of a refinement.
 struct DeviationRule {
   double most;      ///< that a triangle may deviate, in the unit of the deviation
-  double detail;    ///< no new point is put nearer to others than 0.7 of this, in the unit of the mesh
+  double detail;    ///< no new point is wished for nearer to others than 0.7 of this, in the unit of the mesh
   double unit = 1;  ///< of the deviation, in that of the mesh
 };
 

@@ -9,7 +9,7 @@ namespace nacre {
 namespace {
 
 /// The one of a curve's three materials that does not meet at this side.
-std::uint16_t third_of(const Junction& curve, const Side& side) {
+std::uint16_t third_of(const Junction& curve, const MeshSide& side) {
   for (int k = 0; k < 2; ++k)
     if (curve.material(k) != side.materials[0] && curve.material(k) != side.materials[1])
       return std::uint16_t(curve.material(k));
@@ -27,11 +27,11 @@ class Samples {
       add((mesh.points[c.a] + mesh.points[c.b] + mesh.points[c.c]) / 3.0,
           Junction(mesh.materials[t][0], mesh.materials[t][1]));
     }
-    for_each_edge(sides_, [&](std::span<const Side> at) {
+    for_each_edge(sides_, [&](std::span<const MeshSide> at) {
       const Vec3d middle = 0.5 * (mesh.points[at[0].a] + mesh.points[at[0].b]);
       const auto* last = &at[0].materials;
       add(middle, Junction((*last)[0], (*last)[1]));
-      for (const Side& s : at.subspan(1))
+      for (const MeshSide& s : at.subspan(1))
         if (s.materials != *last) last = &s.materials, add(middle, Junction((*last)[0], (*last)[1]));
       if (const Junction curve = curve_of(at); !(curve == Junction())) add(middle, curve);
     });
@@ -46,7 +46,7 @@ class Samples {
     result.on_rim.resize(n);
     for (std::size_t t = 0; t < n; ++t) result.triangle[t] = away(t);
     std::size_t next = n;
-    for_each_edge(sides_, [&](std::span<const Side> at) {
+    for_each_edge(sides_, [&](std::span<const MeshSide> at) {
       const Junction curve = curve_of(at);
       std::size_t i = next;
       float largest = 0;
@@ -60,7 +60,7 @@ class Samples {
       largest = std::max(largest, away(next));
       const Vec3d nearest = is_finite(on[next]) ? on[next] : points_[next];
       ++next;
-      for (const Side& s : at) {
+      for (const MeshSide& s : at) {
         result.on_rim[s.triangle][s.k] = {largest, third_of(curve, s), nearest};
         result.triangle[s.triangle] = std::max(result.triangle[s.triangle], largest);
       }
@@ -77,7 +77,7 @@ class Samples {
   }
 
   const SurfaceMesh& mesh_;
-  std::vector<Side> sides_;
+  std::vector<MeshSide> sides_;
   std::vector<Vec3d> points_;
   std::vector<Junction> junctions_;
 };

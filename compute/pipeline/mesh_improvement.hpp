@@ -29,8 +29,8 @@
 #include "compute/meshing/star_finder.hpp"
 #include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/surface_mesh.hpp"
-#include "compute/pipeline/kept_nearest.hpp"
 #include "compute/pipeline/deviation_refinement.hpp"
+#include "compute/pipeline/kept_nearest.hpp"
 #include "compute/pipeline/movable_particles.hpp"
 #include "compute/pipeline/stage_progress.hpp"
 
