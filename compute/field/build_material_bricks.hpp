@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -70,6 +71,16 @@ struct PaddedVolume {
   NACRE_HD std::int64_t nearest(Int3 v) const {
     for (int axis = 0; axis < 3; ++axis) v[axis] = v[axis] < 0 ? 0 : v[axis] >= dims[axis] ? dims[axis] - 1 : v[axis];
     return number(v);
+  }
+  /// Half of the most that `contrast(number)` is at the file's voxels around the one nearest to a voxel outside of the
+  /// volume, and 0 in the first layer outside.
+  template <class Contrast>
+  NACRE_HD float half_most_around(const Int3& v, const Contrast& contrast) const {
+    if (is_within(v + Int3(1), dims + Int3(2))) return 0;
+    float most = 0;
+    for (int k = 0; k < 27; ++k)
+      most = std::fmax(most, contrast(nearest(v + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1))));
+    return 0.5f * most;
   }
 };
 
@@ -160,10 +171,11 @@ struct BrickVoxels {
 
 /// Values of one material: how far it is behind the winner, cut off at 1. Beyond the volume's faces all functions go on
 /// as they end, but the outside's, which is mirrored at the winner's: the face lies half a voxel outside of the last
-/// centres, and interfaces that run into it stay straight.
+/// centres, and interfaces that run into it stay straight. Where one of the outside does, this alone would be a tie all
+/// the way out, and the interpolation's overshoot would make fins of it: hence `half_most_around`.
 struct FillIndicator {
   BrickVoxels voxels;
-  const float* top;  ///< per voxel of the file: the winner's value
+  const float* rival;  ///< per voxel of the file: the highest value, or of the other materials' for the outside
   const float* from;
   std::uint32_t from_material;
   float scale;
@@ -171,11 +183,13 @@ struct FillIndicator {
 
   NACRE_HD void operator()(std::int64_t i) const {
     if (voxels.field.brick_material[i / brick_voxels + 2] != from_material) return;
+    const PaddedVolume& volume = voxels.volume;
     const Int3 v = voxels(i) - Int3(volume_padding);
-    const std::int64_t at = voxels.volume.nearest(v);
-    const bool mirrored = from_material == 0 && !voxels.volume.inside(v);
-    const float behind = (from[at] - top[at]) * (mirrored ? -scale : scale);
-    value[i + 2 * brick_voxels] = std::fmin(std::fmax(behind, -1.0f), 1.0f);
+    const auto contrast = [&](std::int64_t at) { return std::fabs(from[at] - rival[at]); };
+    const std::int64_t at = volume.nearest(v);
+    float ahead = std::fmin(from[at] - rival[at], 0.0f);
+    if (from_material == 0 && !volume.inside(v)) ahead = std::fmax(-ahead, volume.half_most_around(v, contrast));
+    value[i + 2 * brick_voxels] = std::fmin(std::fmax(ahead * scale, -1.0f), 1.0f);
   }
 };
 
@@ -191,8 +205,10 @@ struct FillScalar {
   NACRE_HD void operator()(std::int64_t i) const {
     const int m = voxels.field.brick_material[i / brick_voxels + 2];
     const Int3 v = voxels(i) - Int3(volume_padding);
-    float x = from[voxels.volume.nearest(v)];
-    if (!voxels.volume.inside(v)) x = levels[0] - std::fabs(x - levels[0]);
+    const auto contrast = [&](std::int64_t at) { return std::fabs(from[at] - levels[0]); };
+    const std::int64_t at = voxels.volume.nearest(v);
+    float x = from[at];
+    if (!voxels.volume.inside(v)) x = levels[0] - std::fmax(contrast(at), voxels.volume.half_most_around(v, contrast));
     float f = 3e38f;
     if (m > 0) f = x - levels[m - 1];
     if (m < level_count) f = std::fmin(f, levels[m] - x);
@@ -273,16 +289,20 @@ void fill_indicators(Executor<Backend>& exec, MaterialBricks& b, std::span<const
                      std::span<const std::vector<float>> values, float range) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  std::vector<float> highest(material.size());
-  for (std::size_t i = 0; i < material.size(); ++i) highest[i] = values[material[i]][i];
-  Array<float> from = arena.temporary<float>(material.size()), top = arena.temporary<float>(material.size());
-  top.upload(highest);
+  std::vector<float> rival(material.size(), std::numeric_limits<float>::lowest());
+  for (const std::vector<float>& v : values.subspan(1))
+    for (std::size_t i = 0; i < v.size(); ++i) rival[i] = std::max(rival[i], v[i]);
+  Array<float> from = arena.temporary<float>(rival.size()), rivals = arena.temporary<float>(rival.size());
+  rivals.upload(rival);
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 0});
   const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
   for (std::size_t m = 0; m < values.size(); ++m) {
     from.upload(values[m]);
-    exec.for_each((b.bricks - 2) * brick_voxels,
-                  detail::FillIndicator{voxels, top.data(), from.data(), std::uint32_t(m), 1 / range, b.value.data()});
+    exec.for_each((b.bricks - 2) * brick_voxels, detail::FillIndicator{voxels, rivals.data(), from.data(),
+                                                                       std::uint32_t(m), 1 / range, b.value.data()});
+    if (m > 0) continue;
+    for (std::size_t i = 0; i < rival.size(); ++i) rival[i] = values[material[i]][i];
+    rivals.upload(rival);
   }
 }
 

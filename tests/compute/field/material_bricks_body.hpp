@@ -78,6 +78,25 @@ void MaterialsAreClosedAtTheFaces(Executor<Backend>& exec) {
   }
 }
 
+/// Where an interface of the outside runs into a face, no fin stands out of it: a steep step, barely over the level on
+/// one of its sides, whose interpolation overshoots.
+template <class Backend>
+void NothingStandsOutOfTheFaces(Executor<Backend>& exec) {
+  const auto inside = [](const Vec3d& p) { return p.x - 9.5 + 0.5 * (p.y - 8) < 0; };
+  const MeshVolume scalar = scalar_volume({20, 18, 16}, [&](const Vec3d& p) { return inside(p) ? 3.0 : -40.0; }, {0});
+  const MeshVolume indicators = indicator_volume({20, 18, 16}, {[&](const Vec3d& p) { return inside(p) ? 0 : 0.8; },
+                                                                [&](const Vec3d& p) { return inside(p) ? 0.08 : 0; }});
+  std::vector<Vec3f> points;
+  for (double z = -4; z < -1.9; z += 0.125)
+    for (double y = 0; y < 17; y += 0.125)
+      for (double x = 0; x < 19; x += 0.125) points.push_back(in_fields({x, y, z}));
+  for (const MeshVolume* volume : {&scalar, &indicators}) {
+    const auto found = materials_at(exec, bricks_of(exec, *volume, 1.2, CubicKernel::catmull_rom, nullptr, 1), points);
+    EXPECT_EQ(std::count_if(found.begin(), found.end(), [](auto material) { return material != 0; }), 0)
+        << "kind " << int(volume->kind);
+  }
+}
+
 /// An interface that runs into a face stays straight up to it: what closes the volume does not push it aside. (Beyond
 /// the face its functions go on as they end, which bends it a little in the last half voxel.)
 template <class Backend>
@@ -175,6 +194,7 @@ void TheSplineLeavesPlanes(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(MaterialBricks, CentresHaveTheValuesOfTheFile)
 NACRE_DEVICE_TEST(MaterialBricks, FarFromInterfacesTheValuesAreConstant)
 NACRE_DEVICE_TEST(MaterialBricks, MaterialsAreClosedAtTheFaces)
+NACRE_DEVICE_TEST(MaterialBricks, NothingStandsOutOfTheFaces)
 NACRE_DEVICE_TEST(MaterialBricks, InterfacesRunStraightIntoTheFaces)
 NACRE_DEVICE_TEST(MaterialBricks, SixtyTwoLabelsFitTogether)
 NACRE_DEVICE_TEST(MaterialBricks, TooManyInOnePlaceIsAnError)
