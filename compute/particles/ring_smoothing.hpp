@@ -30,42 +30,29 @@ struct InverseMeanRatio {
 };
 
 /// One simultaneous step of every particle that has a ring: `share` of Newton's on the sum of f over its triangles, in
-/// the tangent plane of its surface or along its curve, then back onto the interface. Points stay, as do particles that
-/// would leave their interface.
-template <class Projector>
-struct SmoothInRing {
-  Projector projector;
+/// the tangent plane of its surface or along its curve. Points stay.
+struct RingStep {
   const std::uint32_t* first;  ///< per particle, one more at the end: of its edges
   const RingEdge* edge;
   const std::uint8_t* order;  ///< per interface
   const std::uint32_t* interface;
   const Float4* from;
-  Float4* to;
-  Float4* direction;
+  const Float4* direction;
   std::uint32_t shake = 0;  ///< not 0: a step at random instead, by this seed
 
   static constexpr float share = 0.8f;
   static constexpr float longest = 0.3f;  ///< step, by the smallest height of the ring's triangles
 
-  NACRE_HD void operator()(std::int64_t i) const {
-    const Float4 at = from[i], d = direction[i];
-    to[i] = at;
-    const std::uint32_t group = interface[i];
-    if (order[group] == 0 || first[i] == first[i + 1]) return;
-    const Vec3f p(at.x, at.y, at.z), n(d.x, d.y, d.z);
-    const Vec3f v = step(i, p, n, order[group] == 2, at.w);
-    EmbeddedPoint on;
-    if (!(dot(v, v) > 1e-8f * at.w * at.w) || !projector.project(group, p + v, at.w, on) || on.margin < 0) return;
-    const Vec3f off = on.p - p - v;
-    if (!(dot(off, off) < 0.25f * at.w * at.w)) return;
-    const float sign = order[group] == 1 && dot(on.direction, n) < 0 ? -1.0f : 1.0f;
-    to[i] = {on.p.x, on.p.y, on.p.z, on.h};
-    direction[i] = {sign * on.direction.x, sign * on.direction.y, sign * on.direction.z, d.w};
+  NACRE_HD Vec3f operator()(std::int64_t i) const {
+    const std::uint8_t dimension = order[interface[i]];
+    if (dimension == 0 || first[i] == first[i + 1]) return {};
+    const Float4 d = direction[i];
+    return step(i, position(std::uint32_t(i)), Vec3f(d.x, d.y, d.z), dimension == 2, from[i].w);
   }
 
- private:
   NACRE_HD Vec3f position(std::uint32_t k) const { return {from[k].x, from[k].y, from[k].z}; }
 
+ private:
   NACRE_HD float random(std::int64_t i, std::uint32_t axis) const {
     return 2 * uniform_random(shake, std::uint32_t(i), axis) - 1;
   }
@@ -106,17 +93,66 @@ struct SmoothInRing {
   }
 };
 
+/// A step that does not end on the interface: the first of two.
+struct SlideInRing {
+  RingStep step;
+  Float4* to;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Vec3f p = step.position(std::uint32_t(i)) + step(i);
+    to[i] = {p.x, p.y, p.z, step.from[i].w};
+  }
+};
+
+/// A step from where the particles have slid to, and back onto their interface. Particles that would leave it go half
+/// as far, or stay where they were before both steps.
+template <class Projector>
+struct SettleInRing {
+  RingStep step;
+  Projector projector;
+  Float4* position;  ///< from before both steps
+  Float4* direction;
+  float* margin;  ///< the interface goes on at least so far around the particle, voxels; 0: not known
+
+  /// By how much the margin may change over a way of one voxel.
+  static constexpr float margin_slope = 3;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const Float4 at = position[i], d = direction[i];
+    const std::uint32_t group = step.interface[i];
+    const Vec3f p(at.x, at.y, at.z);
+    Vec3f v = step.position(std::uint32_t(i)) + step(i) - p;
+    EmbeddedPoint on;
+    if (!(dot(v, v) > 1e-8f * at.w * at.w)) return;
+    if (!arrives(i, p, v, at.w, on)) {
+      v *= 0.5f;
+      if (!arrives(i, p, v, at.w, on)) return;
+    }
+    const float sign = step.order[group] == 1 && dot(on.direction, Vec3f(d.x, d.y, d.z)) < 0 ? -1.0f : 1.0f;
+    position[i] = {on.p.x, on.p.y, on.p.z, on.h};
+    direction[i] = {sign * on.direction.x, sign * on.direction.y, sign * on.direction.z, d.w};
+    margin[i] = on.margin;
+  }
+
+  NACRE_HD bool arrives(std::int64_t i, const Vec3f& p, const Vec3f& v, float h, EmbeddedPoint& on) const {
+    if (!projector.project(step.interface[i], p + v, h, on, margin[i] - margin_slope * length(v))) return false;
+    const Vec3f off = on.p - p - v;
+    return on.margin >= 0 && dot(off, off) < 0.25f * h * h;
+  }
+};
+
 /// Memory to move `particles` within rings of `edges` sides, in an Arena or an AllocationPlan.
 struct SmoothingScratch {
   Array<std::uint32_t> first;
   Array<RingEdge> edge;
-  Array<Float4> moved;
+  Array<Float4> slid;
+  Array<float> margin;
 
   template <class Memory>
   SmoothingScratch(Memory& memory, std::size_t particles, std::size_t edges)
       : first(memory.template temporary<std::uint32_t>(particles + 1)),
         edge(memory.template temporary<RingEdge>(edges)),
-        moved(memory.template temporary<Float4>(particles)) {}
+        slid(memory.template temporary<Float4>(particles)),
+        margin(memory.template temporary<float>(particles)) {}
 };
 
 }  // namespace detail

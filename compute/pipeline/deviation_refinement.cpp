@@ -102,11 +102,36 @@ class Insertion {
 
   /// False where the triangle is too small.
   bool divide(std::uint32_t t) {
+    choices_.clear();
+    list_choices(t);
+    bool small = true;
+    for (const Choice& c : choices_) {
+      if (std::hypot(c.free, c.away * rule_.unit) < least_spacing * rule_.detail) continue;
+      small = false;
+      if (rule_.tried && rule_.tried(c.third, c.position)) continue;
+      insert(c, t);
+      break;
+    }
+    return !small;
+  }
+
+  std::vector<MeshDefects::NewPoint> take() { return std::move(found_); }
+
+ private:
+  struct Choice {
+    Vec3d position;
+    double free;  ///< its distance from other points
+    double away;  ///< it will be moved by about so much
+    std::uint16_t third = 0xffff;
+  };
+
+  /// Where a point may divide the triangle, the best one first.
+  void list_choices(std::uint32_t t) {
     const Triangle& c = mesh_.triangles[t];
     const std::array<Vec3d, 3> p{mesh_.points[c.a], mesh_.points[c.b], mesh_.points[c.c]};
     const Vec3d u = p[1] - p[0], v = p[2] - p[0], n = cross(u, v);
-    const double square = dot(n, n);
-    if (!(square > 0)) return false;
+    const double square = dot(n, n), away = deviation_.triangle[t];
+    if (!(square > 0)) return;
     const Vec3d centre = p[0] + (dot(u, u) * cross(v, n) + dot(v, v) * cross(n, u)) / (2 * square);
     const double radius = length(centre - p[0]);
     int rim = -1;
@@ -118,35 +143,41 @@ class Insertion {
       const bool worse = rim < 0 || off > deviation_.on_rim[t][std::size_t(rim)].away;
       if ((off > rule_.most || encroached) && worse) rim = k;
     }
-    if (rim >= 0) {
-      const std::uint32_t a = c[rim], b = c[(rim + 1) % 3];
-      const MeshDeviation::Rim& on = deviation_.on_rim[t][std::size_t(rim)];
-      const Vec3d middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
-      const Junction curve = curve_between(mesh_.materials[t][0], mesh_.materials[t][1], on.third);
-      const double half = 0.5 * length(mesh_.points[b] - mesh_.points[a]);
-      Vec3d start = middle;
-      if (on_curves_.is_across_loop(curve, on.nearest, a, b)) {
-        const Vec3d back = middle - on.nearest;
-        start += std::max(1.0, half / length(back)) * back;
-      }
-      return insert(start, half, on.away, t, on.third);
-    }
-    return insert(centre, radius, deviation_.triangle[t], t, 0xffff);
+    if (rim >= 0) choices_.push_back(on_rim(t, rim));
+    choices_.push_back({centre, radius, away});
+    const Vec3d middle = (p[0] + p[1] + p[2]) / 3.0;
+    choices_.push_back({middle, std::min({length(middle - p[0]), length(middle - p[1]), length(middle - p[2])}), away});
+    int longest = 0;
+    const auto side = [&](int k) { return p[std::size_t((k + 1) % 3)] - p[std::size_t(k)]; };
+    for (int k = 1; k < 3; ++k)
+      if (length(side(k)) > length(side(longest))) longest = k;
+    choices_.push_back({p[std::size_t(longest)] + 0.5 * side(longest), 0.5 * length(side(longest)), away});
   }
 
-  std::vector<MeshDefects::NewPoint> take() { return std::move(found_); }
+  /// At the middle of an edge on a curve.
+  Choice on_rim(std::uint32_t t, int rim) const {
+    const Triangle& c = mesh_.triangles[t];
+    const std::uint32_t a = c[rim], b = c[(rim + 1) % 3];
+    const MeshDeviation::Rim& on = deviation_.on_rim[t][std::size_t(rim)];
+    const Vec3d middle = 0.5 * (mesh_.points[a] + mesh_.points[b]);
+    const Junction curve = curve_between(mesh_.materials[t][0], mesh_.materials[t][1], on.third);
+    const double half = 0.5 * length(mesh_.points[b] - mesh_.points[a]);
+    Vec3d start = middle;
+    if (on_curves_.is_across_loop(curve, on.nearest, a, b)) {
+      const Vec3d back = middle - on.nearest;
+      start += std::max(1.0, half / length(back)) * back;
+    }
+    return {start, half, on.away, on.third};
+  }
 
- private:
-  /// `free`: the distance of `position` from other points; it will be moved by about `away`.
-  bool insert(const Vec3d& position, double free, double away, std::uint32_t t, std::uint16_t third) {
-    if (std::hypot(free, away * rule_.unit) < least_spacing * rule_.detail) return false;
+  /// Unless another new point is nearby, which comes first.
+  void insert(const Choice& choice, std::uint32_t t) {
     const Triangle& c = mesh_.triangles[t];
     for (int k = 0; k < 3; ++k)
       for (const std::uint32_t other : beside_[c[k]])
-        if (length(found_[other].position - position) < apart * free) return true;  // that one comes first
+        if (length(found_[other].position - choice.position) < apart * choice.free) return;
     for (int k = 0; k < 3; ++k) beside_[c[k]].push_back(std::uint32_t(found_.size()));
-    found_.push_back({position, mesh_.materials[t], c.a, third});
-    return true;
+    found_.push_back({choice.position, mesh_.materials[t], c.a, choice.third});
   }
 
   const SurfaceMesh& mesh_;
@@ -155,6 +186,7 @@ class Insertion {
   const PointsOnCurves on_curves_;
   std::vector<std::vector<std::uint32_t>> beside_;  ///< per point: new points in triangles at it
   std::vector<MeshDefects::NewPoint> found_;
+  std::vector<Choice> choices_;  ///< of the triangle at hand
 };
 
 /// Those of `on_curve` that are to be new points around p: the first, and others within reach that keep half the

@@ -16,6 +16,8 @@ struct DeviationRule {
   double most;      ///< that a triangle may deviate, in the unit of the deviation
   double detail;    ///< no new point is wished for nearer to others than 0.7 of this, in the unit of the mesh
   double unit = 1;  ///< of the deviation, in that of the mesh
+  /// Where a new point has been in vain, with the third material there; may be empty.
+  std::function<bool(std::uint16_t, const Vec3d&)> tried = {};
 };
 
 /// What brings the triangles above the bound nearer.
@@ -30,7 +32,8 @@ struct DeviationRefinement {
 /// New points in the triangles above the bound: at the middle of an edge on a junction curve, where that is too far
 /// away or where the triangle's circumcentre is nearer to the edge's middle than its ends; else at the circumcentre,
 /// which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
-/// 2005, "Provably good sampling and meshing of surfaces"). Points of one call keep 1.3 times that distance from each
+/// 2005, "Provably good sampling and meshing of surfaces"). Where that was tried before, at the triangle's middle, and
+/// then at that of its longest edge. Points of one call keep 1.3 times that distance from each
 /// other. Where the curve is nearest to an edge's middle on the side on which it has other points, that is the far side
 /// of a small loop: the new point is put on the other side, as far from the middle as the ends are.
 DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,

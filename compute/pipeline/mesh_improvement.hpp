@@ -130,7 +130,6 @@ class MeshImprovement {
   std::int64_t edit(Kept& kept, std::vector<std::uint8_t>& fixed);
   std::int64_t split(Kept& kept, std::vector<std::uint8_t>& fixed);
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
-  void forget_tried(DeviationRefinement& further);
   void drop_crowded(std::size_t first);
   bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
   static std::vector<std::uint8_t> bad_points(const Triangulated& made, const DefectRule& rule);

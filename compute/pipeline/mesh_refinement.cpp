@@ -33,19 +33,13 @@ bool MeshImprovement::better(const Kept& a, const Kept& b) {
 void MeshImprovement::measure(Kept& kept) {
   particles_.in_stage("refine", [&] {
     kept.deviation = measure_deviation(kept.made.mesh, std::ref(on_junctions_), frame_.unit);
+    const auto tried = [&](std::uint16_t third, const Vec3d& p) { return refined_at_.contains(hash_point(third, p)); };
     // Rules are in voxels, meshes in the world.
-    kept.further =
-        refine_deviation(kept.made.mesh, kept.deviation, {rule_.deviation, rule_.detail * frame_.unit, frame_.unit});
-    forget_tried(kept.further);
+    kept.further = refine_deviation(kept.made.mesh, kept.deviation,
+                                    {rule_.deviation, rule_.detail * frame_.unit, frame_.unit, tried});
+    for (const MeshDefects::NewPoint& p : kept.further.insert) refined_at_.insert(hash_point(p.third, p.position));
   });
   check_stop(rule_.stop);
-}
-
-/// Takes out of `further` the points that were added before: they have not helped, or found no interface.
-void MeshImprovement::forget_tried(DeviationRefinement& further) {
-  std::erase_if(further.insert, [&](const MeshDefects::NewPoint& p) {
-    return !refined_at_.insert(hash_point(p.third, p.position)).second;
-  });
 }
 
 /// Takes out the particles from number `first` on that have come to lie beside others of their interface or of one that

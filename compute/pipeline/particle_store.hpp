@@ -160,15 +160,25 @@ void ParticleStore<Backend>::smooth(const TriangleRings& rings, const SmoothingR
   detail::SmoothingScratch scratch(exec_.arena(), std::size_t(set.count), rings.edge.size());
   scratch.first.upload(rings.first);
   scratch.edge.upload(rings.edge);
-  const auto turn = [&](const Array<Float4>& from, Array<Float4>& to, std::uint32_t shake) {
-    auto stage = exec_.stage("smooth");
-    exec_.for_each(set.count, detail::SmoothInRing<FieldProjector>{
-                                  fields_.field_projector(), scratch.first.data(), scratch.edge.data(), fields_.order(),
-                                  set.interface.data(), from.data(), to.data(), set.direction.data(), shake});
+  scratch.margin.fill_bytes(0);
+  const auto step_from = [&](const Array<Float4>& from, std::uint32_t shake) {
+    return detail::RingStep{scratch.first.data(),
+                            scratch.edge.data(),
+                            fields_.order(),
+                            set.interface.data(),
+                            from.data(),
+                            set.direction.data(),
+                            shake};
   };
   for (int k = 0; k < rule.turns; k += 2) {
-    turn(set.position, scratch.moved, k == 0 ? rule.shake : 0);
-    turn(scratch.moved, set.position, 0);
+    {
+      auto stage = exec_.stage("smooth");
+      exec_.for_each(set.count,
+                     detail::SlideInRing{step_from(set.position, k == 0 ? rule.shake : 0), scratch.slid.data()});
+      exec_.for_each(set.count, detail::SettleInRing<FieldProjector>{step_from(scratch.slid, 0),
+                                                                     fields_.field_projector(), set.position.data(),
+                                                                     set.direction.data(), scratch.margin.data()});
+    }
     turned(k + 2);
   }
 }

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -83,6 +84,8 @@ class Voxels {
     c[axis] += 0.5 * spacing_[axis];
     return c;
   }
+  /// The longest edge of four voxels.
+  double nearby() const { return 4 * std::max({spacing_.x, spacing_.y, spacing_.z}); }
   double area_of_face(int axis) const { return spacing_[(axis + 1) % 3] * spacing_[(axis + 2) % 3]; }
 
   /// From `p` to the nearest face of a voxel of this material, which there must be. Where it is not among the eight
@@ -193,11 +196,24 @@ class Voxels {
   std::array<std::vector<double>, 3> centres_;  // along each axis, and one more at each end
 };
 
-/// What bounds one material.
+/// What bounds one material, of the mesh.
 struct Boundary {
-  std::vector<std::uint32_t> triangles, points;  // of the mesh
-  TriangleTree tree;
+  std::vector<std::uint32_t> triangles, points;
 };
+
+std::vector<Boundary> boundaries_of(const SurfaceMesh& mesh, std::size_t materials) {
+  std::vector<Boundary> all(materials);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint16_t m : mesh.materials[t])
+      if (m > 0) all[m].triangles.push_back(std::uint32_t(t));
+  std::vector<std::uint16_t> last(mesh.points.size(), 0);  // material that has counted a point
+  for (std::size_t m = 1; m < materials; ++m)
+    for (const std::uint32_t t : all[m].triangles)
+      for (int k = 0; k < 3; ++k)
+        if (const std::uint32_t v = mesh.triangles[t][k]; std::exchange(last[v], std::uint16_t(m)) != m)
+          all[m].points.push_back(v);
+  return all;
+}
 
 /// Points in the coordinates of Voxels.
 std::shared_ptr<const TriangleSoup> soup_of(const SurfaceMesh& mesh, const Voxels& voxels) {
@@ -207,21 +223,10 @@ std::shared_ptr<const TriangleSoup> soup_of(const SurfaceMesh& mesh, const Voxel
   return soup;
 }
 
-std::vector<Boundary> boundaries_of(const SurfaceMesh& mesh, const Voxels& voxels, std::size_t materials) {
-  std::vector<Boundary> all(materials);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint16_t m : mesh.materials[t])
-      if (m > 0) all[m].triangles.push_back(std::uint32_t(t));
-  const std::shared_ptr<const TriangleSoup> soup = soup_of(mesh, voxels);
-  std::vector<std::uint16_t> last(mesh.points.size(), 0);  // material that has counted a point
-  for (std::size_t m = 1; m < materials; ++m) {
-    for (const std::uint32_t t : all[m].triangles)
-      for (int k = 0; k < 3; ++k)
-        if (const std::uint32_t v = mesh.triangles[t][k]; std::exchange(last[v], std::uint16_t(m)) != m)
-          all[m].points.push_back(v);
-    all[m].tree = TriangleTree::of_some(soup, all[m].triangles);
-  }
-  return all;
+TriangleTree tree_of_all(std::shared_ptr<const TriangleSoup> soup) {
+  std::vector<std::uint32_t> all(soup->triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return TriangleTree::of_some(std::move(soup), std::move(all));
 }
 
 /// Triangles that were nearest to faces of one layer. Faces come row by row: the last ones of a column and of that
@@ -237,8 +242,8 @@ class LastNearest {
         if (found.material == material) return found.triangle;
     return std::nullopt;
   }
-  void keep(int column, int side, std::uint16_t material, std::uint32_t triangle) {
-    last_[std::size_t(column)][std::size_t(side)] = {material, triangle};
+  void keep(int column, std::size_t side, std::uint16_t material, std::uint32_t triangle) {
+    last_[std::size_t(column)][side] = {material, triangle};
   }
 
  private:
@@ -249,46 +254,101 @@ class LastNearest {
   std::vector<std::array<Found, 2>> last_;
 };
 
-/// From the faces of all voxels to the triangles, per material.
-std::vector<Spread> from_faces(const SurfaceMesh& mesh, const Voxels& voxels, const std::vector<Boundary>& boundaries,
-                               const Int3& dims, const std::atomic<bool>* stop) {
-  std::vector<std::map<std::uint16_t, Spread>> spread(std::size_t(dims.z) + 1);
-  tbb::parallel_for(0, dims.z + 1, [&](int n) {
-    if (stop && *stop) return;
-    LastNearest last(dims.x + 1);
-    voxels.each_face(n - 1, [&](const Int3& v, int axis) {
+/// From the faces of all voxels to the triangles, per material. Where the nearest triangle of all bounds a material, it
+/// is the nearest one of this, too; else those that do are searched nearby, and where there is none, after all others,
+/// in a tree of their own.
+class FromFaces {
+ public:
+  FromFaces(const SurfaceMesh& mesh, const Voxels& voxels, const std::vector<Boundary>& boundaries,
+            const TriangleTree& tree, std::shared_ptr<const TriangleSoup> soup)
+      : mesh_(mesh), voxels_(voxels), boundaries_(boundaries), tree_(tree), soup_(std::move(soup)) {}
+
+  std::vector<Spread> operator()(const Int3& dims, const std::atomic<bool>* stop) {
+    std::vector<Layer> layers(std::size_t(dims.z) + 1);
+    tbb::parallel_for(0, dims.z + 1, [&](int n) {
+      if (stop && *stop) return;
+      layers[std::size_t(n)] = layer(n - 1, dims.x);
+    });
+    check_stop(stop);
+    add_far_ones(layers);
+    std::vector<Spread> sum(boundaries_.size());
+    for (const Layer& layer : layers)
+      for (const auto& [m, of] : layer.spread) sum[m].add(of);
+    return sum;
+  }
+
+ private:
+  struct FarFace {
+    Vec3d centre;
+    std::uint16_t material;
+    double area;
+  };
+  struct Layer {
+    std::map<std::uint16_t, Spread> spread;
+    std::vector<FarFace> far;  // from the triangles of their material
+  };
+
+  bool bounds(std::uint32_t triangle, std::uint16_t m) const {
+    return mesh_.materials[triangle][0] == m || mesh_.materials[triangle][1] == m;
+  }
+
+  Layer layer(int k, int columns) const {
+    Layer result;
+    LastNearest last(columns + 1);
+    voxels_.each_face(k, [&](const Int3& v, int axis) {
       Int3 next = v;
       ++next[axis];
-      const Vec3d centre = voxels.centre_of_face(v, axis);
-      const std::array<std::uint16_t, 2> sides{voxels.at(v), voxels.at(next)};
-      std::optional<TriangleHit> hit;
-      for (int side = 0; side < 2; ++side) {
-        const std::uint16_t m = sides[std::size_t(side)];
-        if (m == 0) continue;
-        const bool shared = hit && (mesh.materials[hit->triangle][0] == m || mesh.materials[hit->triangle][1] == m);
-        hit = boundaries[m].tree.closest(centre, shared ? std::optional(hit->triangle) : last.near(v.x + 1, m));
-        if (hit) last.keep(v.x + 1, side, m, hit->triangle);
-        spread[std::size_t(n)][m].add(hit ? hit->distance : 0, voxels.area_of_face(axis));
+      const Vec3d centre = voxels_.centre_of_face(v, axis);
+      const double area = voxels_.area_of_face(axis);
+      const std::array<std::uint16_t, 2> sides{voxels_.at(v), voxels_.at(next)};
+      const std::array guess{last.near(v.x + 1, sides[0]), last.near(v.x + 1, sides[1])};
+      const std::optional<TriangleHit> nearest = tree_.closest(centre, guess[0] ? guess[0] : guess[1]);
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::uint16_t m = sides[side];
+        if (m == 0 || !nearest) continue;
+        std::optional<TriangleHit> hit = nearest;
+        if (!bounds(nearest->triangle, m))
+          hit = tree_.closest_of(
+              centre, nearest->distance + voxels_.nearby(), [&](std::uint32_t t) { return bounds(t, m); }, guess[side]);
+        if (!hit) {
+          if (!boundaries_[m].triangles.empty()) result.far.push_back({centre, m, area});
+          continue;
+        }
+        last.keep(v.x + 1, side, m, hit->triangle);
+        result.spread[m].add(hit->distance, area);
       }
     });
-  });
-  check_stop(stop);
-  std::vector<Spread> sum(boundaries.size());
-  for (const auto& layer : spread)
-    for (const auto& [m, of] : layer) sum[m].add(of);
-  return sum;
-}
+    return result;
+  }
+
+  void add_far_ones(std::vector<Layer>& layers) const {
+    std::map<std::uint16_t, TriangleTree> own;
+    for (const Layer& layer : layers)
+      for (const FarFace& f : layer.far) own.try_emplace(f.material);
+    for (auto& [m, tree] : own) tree = TriangleTree::of_some(soup_, boundaries_[m].triangles);
+    tbb::parallel_for(std::size_t(0), layers.size(), [&](std::size_t n) {
+      for (const FarFace& f : layers[n].far)
+        layers[n].spread[f.material].add(own.at(f.material).closest(f.centre)->distance, f.area);
+    });
+  }
+
+  const SurfaceMesh& mesh_;
+  const Voxels& voxels_;
+  const std::vector<Boundary>& boundaries_;
+  const TriangleTree& tree_;
+  std::shared_ptr<const TriangleSoup> soup_;
+};
 
 /// From those of a boundary's triangles and points that come [begin, end) to the faces of the voxels of its material.
-Spread from_triangles(const Voxels& voxels, const Boundary& boundary, std::uint16_t material, double voxel,
-                      std::size_t begin, std::size_t end) {
+Spread from_triangles(const Voxels& voxels, const TriangleSoup& soup, const Boundary& boundary, std::uint16_t material,
+                      double voxel, std::size_t begin, std::size_t end) {
   constexpr int most_parts = 64;  // of an edge
   Spread spread;
-  const auto points = boundary.tree.points();
+  const std::vector<Vec3d>& points = soup.points;
   for (std::size_t n = begin; n < std::min(end, boundary.points.size()); ++n)
     spread.most = std::max(spread.most, voxels.distance_to_faces(points[boundary.points[n]], material));
   for (std::size_t n = begin; n < std::min(end, boundary.triangles.size()); ++n) {
-    const Triangle& c = boundary.tree.triangles()[boundary.triangles[n]];
+    const Triangle& c = soup.triangles[boundary.triangles[n]];
     const Vec3d a = points[c.a], u = points[c.b] - a, w = points[c.c] - a;
     const double longest = std::max({length(u), length(w), length(u - w)});
     const int parts = std::clamp(int(std::ceil(longest / voxel - 1e-9)), 1, most_parts);
@@ -313,9 +373,10 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   const Voxels voxels(volume);
   const double voxel_volume = volume.spacing.x * volume.spacing.y * volume.spacing.z;
   const std::vector<std::int64_t> count = volume.material.counts(volume.materials());
-  const std::vector<Boundary> boundaries = boundaries_of(mesh, voxels, materials);
+  const std::vector<Boundary> boundaries = boundaries_of(mesh, materials);
+  const std::shared_ptr<const TriangleSoup> soup = soup_of(mesh, voxels);
   check_stop(stop);
-  const std::vector<Spread> faces = from_faces(mesh, voxels, boundaries, volume.dims, stop);
+  const std::vector<Spread> faces = FromFaces(mesh, voxels, boundaries, tree_of_all(soup), soup)(volume.dims, stop);
 
   struct Part {
     std::uint16_t material;
@@ -335,8 +396,8 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
     if (stop && *stop) return;
     const Part& part = parts[i];
-    spread[i] =
-        from_triangles(voxels, boundaries[part.material], part.material, voxel, part.begin, part.begin + part_size);
+    spread[i] = from_triangles(voxels, *soup, boundaries[part.material], part.material, voxel, part.begin,
+                               part.begin + part_size);
     if (i % 8 == 0) volume.material.let_go(0, volume.material.size());  // of a mapped file: what was looked at piles up
   });
   check_stop(stop);

@@ -219,25 +219,41 @@ void TriangleTree::try_closest(std::uint32_t triangle, const Vec3d& from, double
   hit = TriangleHit{triangle, 0, p, {}};
 }
 
-std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from, std::optional<std::uint32_t> guess) const {
+/// `squared`: beyond this squared distance there is no hit.
+template <class Counts>
+std::optional<TriangleHit> TriangleTree::closest_within(const Vec3d& from, double squared, const Counts& counts,
+                                                        std::optional<std::uint32_t> guess) const {
   std::optional<TriangleHit> hit;
   if (empty()) return hit;
-  double nearest = finite;  // squared
+  double nearest = squared;
   if (guess) try_closest(*guess, from, nearest, hit);
   // A little less than it is: rounding must not hide a triangle that is exactly as near as another.
   const auto away = [&](const Boxes& boxes) {
-    Doubles squared{};
+    Doubles off_squared{};
     for (int axis = 0; axis < 3; ++axis) {
       const Doubles low = to_doubles(boxes.low[std::size_t(axis)]) - from[axis],
                     high = from[axis] - to_doubles(boxes.high[std::size_t(axis)]);
       const Doubles off = larger(larger(low, high), Doubles{});
-      squared += off * off;
+      off_squared += off * off;
     }
-    return squared * (1 - 1e-12);
+    return off_squared * (1 - 1e-12);
   };
-  search(nearest, away, [&](std::uint32_t t) { try_closest(t, from, nearest, hit); });
+  search(nearest, away, [&](std::uint32_t t) {
+    if (counts(t)) try_closest(t, from, nearest, hit);
+  });
   if (hit) hit->distance = length(hit->position - from);
   return hit;
+}
+
+std::optional<TriangleHit> TriangleTree::closest(const Vec3d& from, std::optional<std::uint32_t> guess) const {
+  return closest_within(
+      from, finite, [](std::uint32_t) { return true; }, guess);
+}
+
+std::optional<TriangleHit> TriangleTree::closest_of(const Vec3d& from, double most,
+                                                    const std::function<bool(std::uint32_t)>& counts,
+                                                    std::optional<std::uint32_t> guess) const {
+  return closest_within(from, std::min(most * most, finite), counts, guess);
 }
 
 Vec3d TriangleTree::weights_at(std::uint32_t triangle, const Vec3d& position) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -46,6 +47,11 @@ class TriangleTree {
   /// saves time and changes nothing else.
   std::optional<TriangleHit> closest(const Vec3d& from, std::optional<std::uint32_t> guess = {}) const;
 
+  /// The same among the triangles that `counts`, which a `guess` must, if they are not more than `most` away.
+  std::optional<TriangleHit> closest_of(const Vec3d& from, double most,
+                                        const std::function<bool(std::uint32_t)>& counts,
+                                        std::optional<std::uint32_t> guess = {}) const;
+
   /// Of the corners of a triangle, for a point of it.
   Vec3d weights_at(std::uint32_t triangle, const Vec3d& position) const;
 
@@ -68,6 +74,9 @@ class TriangleTree {
   Boxes boxes_of_nodes(std::size_t first, std::size_t count) const;
   template <class Away, class Visit>
   void search(const double& most, const Away& away, const Visit& visit) const;
+  template <class Counts>
+  std::optional<TriangleHit> closest_within(const Vec3d& from, double squared, const Counts& counts,
+                                            std::optional<std::uint32_t> guess) const;
   void try_closest(std::uint32_t triangle, const Vec3d& from, double& nearest, std::optional<TriangleHit>& hit) const;
   void try_hit(std::uint32_t triangle, const Vec3d& from, const Vec3d& along, double near, double& far,
                std::optional<TriangleHit>& hit) const;

@@ -5,6 +5,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "compute/device/random.hpp"
+#include "compute/embedding/triangle.hpp"
 #include "tests/compute/meshes.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 
@@ -117,6 +118,56 @@ TEST(VoxelDistance, AmongVoxelsTheSearchFindsWhatAllFacesGive) {
       point.add({p, p, p});
       EXPECT_NEAR(voxel_distances(between(point, {1, 2}), volume)[2].mesh_max, to_any_face(volume, 2, p), 1e-12);
     }
+  }
+}
+
+/// Some have the nearest triangle of all for their own, some one nearby, and some one that is far.
+TEST(VoxelDistance, FromFacesTheNearestTriangleOfTheirMaterialIsFound) {
+  std::uint32_t drawn = 0;
+  const auto random = [&drawn] { return uniform_random(5, drawn++, 0); };
+  MeshVolume volume = label_volume({24, 8, 6}, 4, [&](const Vec3d&) { return int(random() * 4); });
+  volume.spacing = {0.9, 1.1, 1.3};
+  SurfaceMesh mesh;
+  for (int n = 0; n < 120; ++n) {
+    const bool third = n % 5 == 0;  // its triangles are at one end, and there are faces of it everywhere
+    const Vec3d at((third ? 2 : 22) * random(), 8.8 * random(), 7.8 * random());
+    const auto first = std::uint32_t(mesh.points.size());
+    for (int k = 0; k < 3; ++k) mesh.points.push_back(at + Vec3d(random(), random(), random()));
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.materials.push_back(third ? std::array<std::uint16_t, 2>{std::uint16_t(n % 3), 3}
+                                   : std::array<std::uint16_t, 2>{std::uint16_t(n % 2), 2});
+  }
+  const auto at = [&](const Int3& v) {
+    return is_within(v, volume.dims) ? int(volume.material[std::size_t(v.x + 24 * (v.y + 8 * v.z))]) : 0;
+  };
+  std::vector<double> sum(4), area(4), most(4);
+  for (int axis = 0; axis < 3; ++axis)
+    test::for_each_voxel(volume.dims + Int3(1), [&](std::size_t, const Vec3d& v) {
+      const Int3 before = Int3(int(v.x), int(v.y), int(v.z)) - Int3(1);
+      Int3 behind = before;
+      ++behind[axis];
+      if (at(before) == at(behind)) return;
+      Vec3d centre;
+      for (int k = 0; k < 3; ++k) centre[k] = before[k] * volume.spacing[k];
+      centre[axis] += 0.5 * volume.spacing[axis];
+      const double face = volume.spacing[(axis + 1) % 3] * volume.spacing[(axis + 2) % 3];
+      for (const int m : {at(before), at(behind)}) {
+        double best = 1e300;
+        for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+          if (mesh.materials[t][0] == m || mesh.materials[t][1] == m) {
+            const Triangle& c = mesh.triangles[t];
+            const Corners corners{mesh.points[c.a], mesh.points[c.b], mesh.points[c.c]};
+            best = std::min(best, length(closest_point(corners, centre) - centre));
+          }
+        sum[std::size_t(m)] += best * face, area[std::size_t(m)] += face;
+        most[std::size_t(m)] = std::max(most[std::size_t(m)], best);
+      }
+    });
+  const std::vector<VoxelDistance> d = voxel_distances(mesh, volume);
+  EXPECT_GT(most[3], 15) << "some are far";
+  for (std::size_t m = 1; m < 4; ++m) {
+    EXPECT_NEAR(d[m].faces_max, most[m], 1e-9) << m;
+    EXPECT_NEAR(d[m].faces_mean, sum[m] / area[m], 1e-9) << m;
   }
 }
 

@@ -171,5 +171,26 @@ TEST(TriangleTree, OfSomeTrianglesFindsOnlyTheseByTheirNumbers) {
   }
 }
 
+TEST(TriangleTree, AmongTrianglesThatCountFindsWhatATreeOfThemFinds) {
+  const Soup s = soup(400);
+  const auto counts = [](std::uint32_t t) { return t % 5 == 2; };
+  std::vector<std::uint32_t> some;
+  for (std::uint32_t t = 2; t < 400; t += 5) some.push_back(t);
+  const TriangleTree tree(s.points, s.triangles);
+  const TriangleTree own =
+      TriangleTree::of_some(std::make_shared<TriangleSoup>(TriangleSoup{s.points, s.triangles}), some);
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    const Vec3d from = random_place(k, 90);
+    const TriangleHit nearest = *own.closest(from);
+    for (const std::optional<std::uint32_t> guess : {std::optional<std::uint32_t>(), std::optional(some[k % 80])}) {
+      const auto hit = tree.closest_of(from, nearest.distance * 1.01, counts, guess);
+      ASSERT_TRUE(hit) << k;
+      EXPECT_EQ(hit->triangle, nearest.triangle) << k;
+      EXPECT_EQ(hit->distance, nearest.distance) << k;
+    }
+    EXPECT_FALSE(tree.closest_of(from, nearest.distance * 0.99, counts)) << k;
+  }
+}
+
 }  // namespace
 }  // namespace nacre
