@@ -296,14 +296,15 @@ void fill_indicators(Executor<Backend>& exec, MaterialBricks& b, std::span<const
   rivals.upload(rival);
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), -1, 0});
   const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
-  for (std::size_t m = 0; m < values.size(); ++m) {
+  const auto fill = [&](std::size_t m) {
     from.upload(values[m]);
     exec.for_each((b.bricks - 2) * brick_voxels, detail::FillIndicator{voxels, rivals.data(), from.data(),
                                                                        std::uint32_t(m), 1 / range, b.value.data()});
-    if (m > 0) continue;
-    for (std::size_t i = 0; i < rival.size(); ++i) rival[i] = values[material[i]][i];
-    rivals.upload(rival);
-  }
+  };
+  fill(0);
+  for (std::size_t i = 0; i < rival.size(); ++i) rival[i] = values[material[i]][i];
+  rivals.upload(rival);
+  for (std::size_t m = 1; m < values.size(); ++m) fill(m);
 }
 
 /// Two and a half times the mean jump of the difference of two functions from a voxel to the next, where the winner

@@ -7,6 +7,9 @@
 
 namespace nacre {
 
+/// By how much a margin may change over a way of one voxel.
+inline constexpr float margin_slope = 3;
+
 /// How particles get back onto their interface: by Newton's method on the fields themselves, for the last steps ...
 /// Where the margin is known to be at least `known` > 0 voxels, the other materials are not looked at.
 struct FieldProjector {

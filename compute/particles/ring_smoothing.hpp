@@ -113,9 +113,6 @@ struct SettleInRing {
   Float4* direction;
   float* margin;  ///< the interface goes on at least so far around the particle, voxels; 0: not known
 
-  /// By how much the margin may change over a way of one voxel.
-  static constexpr float margin_slope = 3;
-
   NACRE_HD void operator()(std::int64_t i) const {
     const Float4 at = position[i], d = direction[i];
     const std::uint32_t group = step.interface[i];

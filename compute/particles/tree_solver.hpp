@@ -36,9 +36,6 @@ struct MoveParticle {
   Float4* direction;  ///< w gets the energy
   Float4* velocity;   ///< w: the interface goes on at least so far around the particle, voxels; 0: not known
 
-  /// By how much the margin may change over a way of one voxel.
-  static constexpr float margin_slope = 3;
-
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t group = interface[i];
     if (related.order[group] != order) return;

@@ -32,10 +32,10 @@ struct DeviationRefinement {
 /// New points in the triangles above the bound: at the middle of an edge on a junction curve, where that is too far
 /// away or where the triangle's circumcentre is nearer to the edge's middle than its ends; else at the circumcentre,
 /// which is as far from all points as from the corners where triangles are facets of Delaunay cells (Boissonnat & Oudot
-/// 2005, "Provably good sampling and meshing of surfaces"). Where that was tried before, at the triangle's middle, and
-/// then at that of its longest edge. Points of one call keep 1.3 times that distance from each
-/// other. Where the curve is nearest to an edge's middle on the side on which it has other points, that is the far side
-/// of a small loop: the new point is put on the other side, as far from the middle as the ends are.
+/// 2005, "Provably good sampling and meshing of surfaces"). Where that was tried before: at the triangle's middle, then
+/// at that of its longest edge. Points of one call keep 1.3 times their distance from old points from each other. Where
+/// the curve is nearest to an edge's middle on the side on which it has other points, that is the far side of a small
+/// loop: the new point is put on the other side, as far from the middle as the ends are.
 DeviationRefinement refine_deviation(const SurfaceMesh& mesh, const MeshDeviation& deviation,
                                      const DeviationRule& rule);
 

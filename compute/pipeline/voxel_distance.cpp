@@ -84,9 +84,8 @@ class Voxels {
     c[axis] += 0.5 * spacing_[axis];
     return c;
   }
-  /// The longest edge of four voxels.
-  double nearby() const { return 4 * std::max({spacing_.x, spacing_.y, spacing_.z}); }
   double area_of_face(int axis) const { return spacing_[(axis + 1) % 3] * spacing_[(axis + 2) % 3]; }
+  double longest_edge() const { return std::max({spacing_.x, spacing_.y, spacing_.z}); }
 
   /// From `p` to the nearest face of a voxel of this material, which there must be. Where it is not among the eight
   /// voxels around `p`, they are searched shell by shell.
@@ -223,12 +222,6 @@ std::shared_ptr<const TriangleSoup> soup_of(const SurfaceMesh& mesh, const Voxel
   return soup;
 }
 
-TriangleTree tree_of_all(std::shared_ptr<const TriangleSoup> soup) {
-  std::vector<std::uint32_t> all(soup->triangles.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return TriangleTree::of_some(std::move(soup), std::move(all));
-}
-
 /// Triangles that were nearest to faces of one layer. Faces come row by row: the last ones of a column and of that
 /// before it are beside the next one.
 class LastNearest {
@@ -260,17 +253,22 @@ class LastNearest {
 class FromFaces {
  public:
   FromFaces(const SurfaceMesh& mesh, const Voxels& voxels, const std::vector<Boundary>& boundaries,
-            const TriangleTree& tree, std::shared_ptr<const TriangleSoup> soup)
-      : mesh_(mesh), voxels_(voxels), boundaries_(boundaries), tree_(tree), soup_(std::move(soup)) {}
+            std::shared_ptr<const TriangleSoup> soup)
+      : mesh_(mesh), voxels_(voxels), boundaries_(boundaries), soup_(std::move(soup)) {
+    std::vector<std::uint32_t> all(mesh.triangles.size());
+    std::iota(all.begin(), all.end(), 0u);
+    tree_ = TriangleTree::of_some(soup_, std::move(all));
+  }
 
-  std::vector<Spread> operator()(const Int3& dims, const std::atomic<bool>* stop) {
+  std::vector<Spread> spread(const Int3& dims, const std::atomic<bool>* stop) const {
     std::vector<Layer> layers(std::size_t(dims.z) + 1);
     tbb::parallel_for(0, dims.z + 1, [&](int n) {
       if (stop && *stop) return;
       layers[std::size_t(n)] = layer(n - 1, dims.x);
     });
     check_stop(stop);
-    add_far_ones(layers);
+    add_far_ones(layers, stop);
+    check_stop(stop);
     std::vector<Spread> sum(boundaries_.size());
     for (const Layer& layer : layers)
       for (const auto& [m, of] : layer.spread) sum[m].add(of);
@@ -278,6 +276,8 @@ class FromFaces {
   }
 
  private:
+  static constexpr double nearby = 4;  ///< edges of a voxel, beyond the nearest triangle of all
+
   struct FarFace {
     Vec3d centre;
     std::uint16_t material;
@@ -309,7 +309,8 @@ class FromFaces {
         std::optional<TriangleHit> hit = nearest;
         if (!bounds(nearest->triangle, m))
           hit = tree_.closest_of(
-              centre, nearest->distance + voxels_.nearby(), [&](std::uint32_t t) { return bounds(t, m); }, guess[side]);
+              centre, nearest->distance + nearby * voxels_.longest_edge(),
+              [&](std::uint32_t t) { return bounds(t, m); }, guess[side]);
         if (!hit) {
           if (!boundaries_[m].triangles.empty()) result.far.push_back({centre, m, area});
           continue;
@@ -321,12 +322,13 @@ class FromFaces {
     return result;
   }
 
-  void add_far_ones(std::vector<Layer>& layers) const {
+  void add_far_ones(std::vector<Layer>& layers, const std::atomic<bool>* stop) const {
     std::map<std::uint16_t, TriangleTree> own;
     for (const Layer& layer : layers)
       for (const FarFace& f : layer.far) own.try_emplace(f.material);
     for (auto& [m, tree] : own) tree = TriangleTree::of_some(soup_, boundaries_[m].triangles);
     tbb::parallel_for(std::size_t(0), layers.size(), [&](std::size_t n) {
+      if (stop && *stop) return;
       for (const FarFace& f : layers[n].far)
         layers[n].spread[f.material].add(own.at(f.material).closest(f.centre)->distance, f.area);
     });
@@ -335,8 +337,8 @@ class FromFaces {
   const SurfaceMesh& mesh_;
   const Voxels& voxels_;
   const std::vector<Boundary>& boundaries_;
-  const TriangleTree& tree_;
   std::shared_ptr<const TriangleSoup> soup_;
+  TriangleTree tree_;  ///< of all triangles
 };
 
 /// From those of a boundary's triangles and points that come [begin, end) to the faces of the voxels of its material.
@@ -376,7 +378,7 @@ std::vector<VoxelDistance> voxel_distances(const SurfaceMesh& mesh, const MeshVo
   const std::vector<Boundary> boundaries = boundaries_of(mesh, materials);
   const std::shared_ptr<const TriangleSoup> soup = soup_of(mesh, voxels);
   check_stop(stop);
-  const std::vector<Spread> faces = FromFaces(mesh, voxels, boundaries, tree_of_all(soup), soup)(volume.dims, stop);
+  const std::vector<Spread> faces = FromFaces(mesh, voxels, boundaries, soup).spread(volume.dims, stop);
 
   struct Part {
     std::uint16_t material;
