@@ -391,8 +391,6 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
   touching.clear();
   if (world.points.empty()) return false;
-  if (world.mirrored)
-    for (Triangle& t : mesh.triangles) std::swap(t.b, t.c);
   add_pinched(mesh, world.points.size());
   cells.begin();
   Settling settling(mesh, world, cells, stop);

@@ -21,7 +21,6 @@ namespace nacre {
 struct PatchWorld {
   std::span<const Vec3d> points;
   std::span<const double> size;
-  bool mirrored = false;  ///< the particles' own coordinates are left-handed in the world
   std::function<std::vector<std::uint16_t>(std::span<const Vec3d>)> material_at;
 };
 
@@ -71,7 +70,7 @@ class PatchCells {
 /// two kinds of triangles do not meet edge to edge, the particles there are added, and it is done again.
 /// `mesh.unsettled` becomes empty; false where edges still do not match after some rounds, or too much is unsettled for
 /// this to be worth it: the mesh is then to be made of all cells. `touching` receives where the surface touches itself
-/// in a patch (two particles, or one twice). Triangles are turned as in the world. Depends on its arguments alone.
+/// in a patch (two particles, or one twice). Triangles face as in the world. Depends on its arguments alone.
 bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop = nullptr);
 

@@ -212,7 +212,7 @@ std::optional<MeshImprovement::Triangulated> MeshImprovement::triangulate_again(
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
   PatchCells cells(rule_.threads);
   std::vector<std::array<std::uint32_t, 2>> touching;
-  if (!settle_by_cells(kept, {points, size, false, material_at}, cells, touching, rule_.stop)) return {};
+  if (!settle_by_cells(kept, {points, size, material_at}, cells, touching, rule_.stop)) return {};
   Triangulated again;
   take_triangles(points, std::move(kept), std::move(touching), again);
   finish(again, particles);

@@ -84,7 +84,7 @@ MeshImprovement::Kept MeshImprovement::whole() {
   Triangulated made;
   do {
     tell_("triangulate", fraction(), 0, 0);
-    made = triangulate();
+    made = triangulate(needs_patches());
   } while (improve(made));
   Kept best = as_made(std::move(made));
   if (rule_.stars && rule_.deviation == 0) polish(best);
@@ -105,13 +105,20 @@ double MeshImprovement::fraction() const {
   return 0.85 + 0.09 * (smoothed_ + remeshed_) / std::max(1, rule_.smooth + rule_.remesh);
 }
 
-MeshImprovement::Triangulated MeshImprovement::triangulate() {
+/// Whether what follows the next mesh needs triangles where stars do not settle, too. Before the last round of
+/// smoothing it does not: the particles there stay as they are until then.
+bool MeshImprovement::needs_patches() const {
+  const bool is_first = smoothed_ + remeshed_ == 0 && rule_.remesh > 0;
+  return !is_first && smoothed_ + 1 >= rule_.smooth;
+}
+
+MeshImprovement::Triangulated MeshImprovement::triangulate(bool patches) {
   Triangulated made;
   particles_.in_stage("triangulate", [&] {
     const HostParticles particles = particles_.download();
     const std::vector<Vec3d> points = world_positions(particles.position, frame_);
     // Once cells were needed, all later meshes are of cells, too: triangles good in one kind may be bad in the other.
-    if (!stars() || !triangulate_by_stars(particles, points, made)) triangulate_by_cells(points, made);
+    if (!stars() || !triangulate_by_stars(particles, points, patches, made)) triangulate_by_cells(points, made);
     check_stop(rule_.stop);
     finish(made, particles);
   });
@@ -133,25 +140,38 @@ double MeshImprovement::fitness_of(const Triangulated& made) {
 }
 
 /// False where the stars do not give a sound mesh.
-bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points,
+bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, bool patches,
                                            Triangulated& made) {
   const StarInput input = star_input(particles_, particles, table_);
   StarMesh stars = mesh_from_stars(input.of(particles), star_finder_);
   check_stop(rule_.stop);
+  const auto& axes = frame_.axes;
+  if (dot(axes[0], cross(axes[1], axes[2])) < 0)  // the particles' own coordinates are left-handed in the world
+    for (Triangle& t : stars.triangles) std::swap(t.b, t.c);
   std::vector<double> size;
   for (const Float4& p : particles.position) size.push_back(p.w * frame_.unit);
-  const auto& axes = frame_.axes;
-  const bool mirrored = dot(axes[0], cross(axes[1], axes[2])) < 0;
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
   std::vector<std::array<std::uint32_t, 2>> touching;
   const bool may_settle = double(stars.counts.unsettled) <= rule_.most_unsettled * double(stars.counts.stars);
-  const bool settled =
-      may_settle && settle_by_cells(stars, {points, size, mirrored, material_at}, patch_cells_, touching, rule_.stop);
+  patches |= stars.triangles.empty();
+  const bool settled = may_settle && (!patches || settle_by_cells(stars, {points, size, material_at}, patch_cells_,
+                                                                  touching, rule_.stop));
   star_use_.last = stars.counts;
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;
-  take_triangles(points, std::move(stars), std::move(touching), made);
+  if (patches)
+    take_triangles(points, std::move(stars), std::move(touching), made);
+  else
+    take_without_patches(points, std::move(stars), made);
   return true;
+}
+
+/// Triangles are missing at particles that are unsettled.
+void MeshImprovement::take_without_patches(std::span<const Vec3d> points, StarMesh stars, Triangulated& made) {
+  std::vector<std::uint8_t> settled(points.size(), 1);
+  for (const std::uint32_t i : stars.unsettled) settled[i] = 0;
+  made.mesh = mesh_of_triangles(points, std::move(stars.triangles), std::move(stars.materials), &made.point_of);
+  for (const std::uint32_t i : made.point_of) made.settled.push_back(settled[i]);
 }
 
 void MeshImprovement::take_triangles(std::span<const Vec3d> points, StarMesh stars,
@@ -186,12 +206,12 @@ void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triang
 bool MeshImprovement::improve(Triangulated& made) {
   if (smoothed_ + remeshed_ == 0 && rule_.remesh > 0) {
     ++remeshed_;
-    if (!remesh(made, DefectRule()).empty()) return true;
+    if (!remesh(made, DefectRule(), made.settled).empty()) return true;
   }
   if (smoothed_ >= rule_.smooth) return false;
   ++smoothed_;
-  smooth(made, std::vector<std::uint8_t>(made.mesh.points.size(), 1));
-  if (smoothed_ == rule_.smooth && rule_.remesh > 0) remesh(made, worst_defects);
+  smooth(made, made.settled.empty() ? std::vector<std::uint8_t>(made.mesh.points.size(), 1) : made.settled);
+  if (smoothed_ == rule_.smooth && rule_.remesh > 0) remesh(made, worst_defects, made.settled);
   return true;
 }
 

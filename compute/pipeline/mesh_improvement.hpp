@@ -78,6 +78,7 @@ class MeshImprovement {
     std::vector<std::array<std::uint32_t, 2>> touching;  ///< where it touches itself: two of its points, or one twice
     std::vector<std::uint8_t> order;                     ///< per point: of the junction that the mesh has there
     std::vector<float> size;                             ///< per point, world units
+    std::vector<std::uint8_t> settled;                   ///< per point: has all its triangles; empty: all points have
     double fitness = 0;  ///< see nacre::fitness; below 0: the number of positions where it touches itself
 
     JudgedMesh judged() const { return {mesh, order, touching}; }
@@ -138,9 +139,12 @@ class MeshImprovement {
   static bool better(const Kept& a, const Kept& b);
   void measure(Kept& kept);
 
-  Triangulated triangulate();
+  bool needs_patches() const;
+  Triangulated triangulate(bool patches = true);
   void finish(Triangulated& made, const HostParticles& particles) const;
-  bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, Triangulated& made);
+  bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, bool patches,
+                            Triangulated& made);
+  static void take_without_patches(std::span<const Vec3d> points, StarMesh stars, Triangulated& made);
   static void take_triangles(std::span<const Vec3d> points, StarMesh stars,
                              std::vector<std::array<std::uint32_t, 2>> touching, Triangulated& made);
   static void add_pinched(Triangulated& made);

@@ -32,7 +32,7 @@ Settled settle(const Cloud& cloud, double radius, const std::vector<std::uint32_
   std::vector<double> size;
   for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
   PatchCells cells;
-  const PatchWorld world{points, size, false,
+  const PatchWorld world{points, size,
                          [&](std::span<const Vec3d> at) { return material_in_halves(radius, at); }};
   settled.sound = settle_by_cells(settled.mesh, world, cells, settled.touching);
   return settled;
@@ -93,7 +93,7 @@ TEST(StarPatches, MaterialsAreLookedUpNearParticles) {
   std::vector<Vec3d> points, asked;
   std::vector<double> size;
   for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
-  const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) {
+  const PatchWorld world{points, size, [&](std::span<const Vec3d> at) {
                            asked.assign(at.begin(), at.end());
                            return material_in_halves(6, at);
                          }};
@@ -152,7 +152,7 @@ TEST(StarPatches, CellsThatAreKeptGiveTheSameMesh) {
   std::vector<double> size;
   for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
   int looked_up = 0;
-  const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) {
+  const PatchWorld world{points, size, [&](std::span<const Vec3d> at) {
                            ++looked_up;
                            return material_in_halves(6, at);
                          }};
@@ -181,7 +181,7 @@ TEST(StarPatches, ParticlesStayInThePatchOfTheMeshBefore) {
     std::vector<Vec3d> points;
     std::vector<double> size;
     for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
-    const PatchWorld world{points, size, false, [&](std::span<const Vec3d> at) { return material_in_halves(6, at); }};
+    const PatchWorld world{points, size, [&](std::span<const Vec3d> at) { return material_in_halves(6, at); }};
     StarMesh mesh = mesh_of(cloud);
     mesh.unsettled = {round == 0 ? 200u : 500u};
     std::vector<std::array<std::uint32_t, 2>> touching;
