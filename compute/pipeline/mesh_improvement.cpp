@@ -107,10 +107,10 @@ double MeshImprovement::fraction() const {
 
 /// Whether what follows the next mesh needs triangles where stars do not settle, too. Before the last round of
 /// smoothing it does not: the particles there stay as they are until then.
-bool MeshImprovement::needs_patches() const {
-  const bool is_first = smoothed_ + remeshed_ == 0 && rule_.remesh > 0;
-  return !is_first && smoothed_ + 1 >= rule_.smooth;
-}
+bool MeshImprovement::needs_patches() const { return !remeshes_first() && smoothed_ + 1 >= rule_.smooth; }
+
+/// Whether the next mesh is the first, whose clear defects are remeshed before any smoothing.
+bool MeshImprovement::remeshes_first() const { return smoothed_ + remeshed_ == 0 && rule_.remesh > 0; }
 
 MeshImprovement::Triangulated MeshImprovement::triangulate(bool patches) {
   Triangulated made;
@@ -204,7 +204,7 @@ void MeshImprovement::triangulate_by_cells(std::span<const Vec3d> points, Triang
 
 /// Changes all particles before they are triangulated again; false where that has been done as often as is asked.
 bool MeshImprovement::improve(Triangulated& made) {
-  if (smoothed_ + remeshed_ == 0 && rule_.remesh > 0) {
+  if (remeshes_first()) {
     ++remeshed_;
     if (!remesh(made, DefectRule(), made.settled).empty()) return true;
   }

@@ -140,6 +140,7 @@ class MeshImprovement {
   void measure(Kept& kept);
 
   bool needs_patches() const;
+  bool remeshes_first() const;
   Triangulated triangulate(bool patches = true);
   void finish(Triangulated& made, const HostParticles& particles) const;
   bool triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, bool patches,

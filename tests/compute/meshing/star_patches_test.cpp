@@ -32,8 +32,7 @@ Settled settle(const Cloud& cloud, double radius, const std::vector<std::uint32_
   std::vector<double> size;
   for (const Float4& p : cloud.position) points.push_back({p.x, p.y, p.z}), size.push_back(p.w);
   PatchCells cells;
-  const PatchWorld world{points, size,
-                         [&](std::span<const Vec3d> at) { return material_in_halves(radius, at); }};
+  const PatchWorld world{points, size, [&](std::span<const Vec3d> at) { return material_in_halves(radius, at); }};
   settled.sound = settle_by_cells(settled.mesh, world, cells, settled.touching);
   return settled;
 }
