@@ -2,6 +2,7 @@
 #include "compute/meshing/incidence.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 #include <limits>
@@ -60,13 +61,23 @@ EdgeTable::EdgeTable(std::span<const Triangle> triangles, std::size_t points) {
 
 VertexTable::VertexTable(std::span<const Triangle> triangles, std::size_t points) : first_(points + 1) {
   check_count(triangles);
-  for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) ++first_[t[k] + 1];
+  // Each thread looks at all triangles, for vertices of its own.
+  const std::size_t parts =
+      std::clamp<std::size_t>(triangles.size() >> 16, 1, std::size_t(tbb::this_task_arena::max_concurrency()));
+  const auto for_corners = [&](const auto& visit) {
+    tbb::parallel_for(std::size_t(0), parts, [&](std::size_t part) {
+      const std::size_t begin = points * part / parts, end = points * (part + 1) / parts;
+      for (std::size_t t = 0; t < triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+          if (const std::size_t v = triangles[t][k]; v >= begin && v < end)
+            visit(v, std::uint32_t(3 * t + std::size_t(k)));
+    });
+  };
+  for_corners([&](std::size_t v, std::uint32_t) { ++first_[v + 1]; });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   corners_.resize(first_.back());
   std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) corners_[next[triangles[t][k]]++] = std::uint32_t(3 * t + std::size_t(k));
+  for_corners([&](std::size_t v, std::uint32_t corner) { corners_[next[v]++] = corner; });
 }
 
 }  // namespace nacre

@@ -73,27 +73,35 @@ class BallBoxes {
 
 }  // namespace
 
-void mark_near(std::span<const Vec3d> points, std::span<const std::uint32_t> some, std::span<const double> size,
-               double reach, std::span<std::uint8_t> marks) {
+void for_points_near(std::span<const Vec3d> points, std::span<const std::uint32_t> some, std::span<const double> size,
+                     double reach, const std::function<void(std::uint32_t, std::span<const std::uint32_t>)>& visit) {
   if (some.empty()) return;
   const BallBoxes boxes(points, some, size, reach);
   const std::vector<std::uint32_t> candidates =
-      select_where(points.size(), [&](std::size_t i) { return !marks[i] && boxes.may_have(points[i]); });
+      select_where(points.size(), [&](std::size_t i) { return boxes.may_have(points[i]); });
   std::vector<Vec3d> centre;
   for (const std::uint32_t i : some) centre.push_back(points[i]);
   const std::uint32_t first[2] = {0, std::uint32_t(centre.size())};
   const PointTree tree(centre, first);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, candidates.size(), 256), [&](const auto& range) {
     std::vector<PointTree::Found> found;
+    std::vector<std::uint32_t> near;
     for (std::size_t k = range.begin(); k != range.end(); ++k) {
-      found.clear();
+      found.clear(), near.clear();
       tree.within(0, points[candidates[k]], boxes.radius(), found);
-      marks[candidates[k]] = std::any_of(found.begin(), found.end(), [&](const PointTree::Found& f) {
+      for (const PointTree::Found& f : found) {
         const double radius = reach * size[some[f.point]];
-        return f.distance2 <= radius * radius;
-      });
+        if (f.distance2 <= radius * radius) near.push_back(some[f.point]);
+      }
+      if (!near.empty()) visit(candidates[k], near);
     }
   });
+}
+
+void mark_near(std::span<const Vec3d> points, std::span<const std::uint32_t> some, std::span<const double> size,
+               double reach, std::span<std::uint8_t> marks) {
+  for_points_near(points, some, size, reach,
+                  [&](std::uint32_t point, std::span<const std::uint32_t>) { marks[point] = 1; });
 }
 
 }  // namespace nacre

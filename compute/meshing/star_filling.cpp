@@ -2,6 +2,7 @@
 #include "compute/meshing/star_filling.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,7 @@
 #include "compute/math/disjoint_sets.hpp"
 #include "compute/math/sort_unique.hpp"
 #include "compute/meshing/quality.hpp"
+#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/small_hull.hpp"
 #include "compute/meshing/star_holes.hpp"
 
@@ -30,21 +32,23 @@ std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vecto
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const Triangle& t : filled)
     for (int k = 0; k < 3; ++k) edges.push_back({t[k], t[(k + 1) % 3]});
-  std::sort(edges.begin(), edges.end());
+  tbb::parallel_sort(edges.begin(), edges.end());
   const auto agreed = [&](std::uint32_t a, std::uint32_t b) {
     const Star& star = stars[a];
     for (int k = 0; k < star.count; ++k)
       if (star.ring[k] == b) return (star.agreed >> k & 1) != 0;
     return false;
   };
-  std::vector<std::uint32_t> odd;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  const auto is_odd = [&](std::size_t i) {
     const auto& e = edges[i];
     const bool twice = i + 1 < edges.size() && edges[i + 1] == e;
     const bool ends = items.next[e[0]] == e[1];  // the surface ends here
-    const bool back = agreed(e[1], e[0]) || std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]});
-    if (twice || agreed(e[0], e[1]) || (!ends && !back)) odd.insert(odd.end(), e.begin(), e.end());
-  }
+    return twice || agreed(e[0], e[1]) ||
+           (!ends && !agreed(e[1], e[0]) && !std::binary_search(edges.begin(), edges.end(), std::array{e[1], e[0]}));
+  };
+  std::vector<std::uint32_t> odd;
+  for (const std::uint32_t i : select_where(edges.size(), is_odd))
+    odd.insert(odd.end(), edges[i].begin(), edges[i].end());
   return odd;
 }
 

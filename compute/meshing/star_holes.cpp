@@ -1,6 +1,8 @@
 // Nacre: what stars leave open between the triangles that they agree on, and how it is filled.
 #include "compute/meshing/star_holes.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +20,8 @@ constexpr std::size_t plain_loop = 12;    // beyond, its shape need not be given
 
 constexpr double poor = 3;  // price of a triangle with a ratio of about 0.2: too poor for a larger hole off the rims
 constexpr double aside_reach = 1.5;        // sizes: as far from a filling are the items that it leaves out
+constexpr double cheapest = 0.999;         // no triangle costs less,
+constexpr double slack = 1e-6;             // and rounding does not make a difference of so much
 constexpr double fold = 1e3, taken = 1e9;  // prices of a triangle that faces aside, and of an edge that there is
 
 /// An edge of a hole: a triangle that has it is wanted.
@@ -36,20 +40,29 @@ bool agreed_to(const Star& star, int k) {
 
 bool is_used(const Star& star) { return star.agreed != 0; }
 
+void add_sides(const StarItems& items, const std::vector<Star>& stars, std::uint32_t i, std::vector<Side>& sides) {
+  const Star& star = stars[i];
+  const std::uint32_t next = items.next[i];
+  bool has_next = false;
+  for (int k = 0; k < star.count; ++k) {
+    const std::uint32_t r = star.ring[k];
+    has_next = has_next || (r == next && agreed_from(star, k));
+    if (agreed_to(star, k) && !agreed_from(star, k) && items.next[r] != i && r != next) sides.push_back({i, r});
+  }
+  if (next != none && !has_next && items.next[next] != i) sides.push_back({i, next});
+}
+
+/// Ascending by the items that they begin at.
 std::vector<Side> list_sides(const StarItems& items, const std::vector<Star>& stars,
                              std::span<const std::uint32_t> incomplete) {
+  constexpr std::size_t part = 4096;
+  std::vector<std::vector<Side>> parts((incomplete.size() + part - 1) / part);
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t k) {
+    for (const std::uint32_t i : incomplete.subspan(k * part, std::min(part, incomplete.size() - k * part)))
+      add_sides(items, stars, i, parts[k]);
+  });
   std::vector<Side> sides;
-  for (const std::uint32_t i : incomplete) {
-    const Star& star = stars[i];
-    const std::uint32_t next = items.next[i];
-    bool has_next = false;
-    for (int k = 0; k < star.count; ++k) {
-      const std::uint32_t r = star.ring[k];
-      has_next = has_next || (r == next && agreed_from(star, k));
-      if (agreed_to(star, k) && !agreed_from(star, k) && items.next[r] != i && r != next) sides.push_back({i, r});
-    }
-    if (next != none && !has_next && items.next[next] != i) sides.push_back({i, next});
-  }
+  for (const std::vector<Side>& some : parts) sides.insert(sides.end(), some.begin(), some.end());
   return sides;
 }
 
@@ -63,10 +76,12 @@ double clockwise(const Vec3d& normal, const Vec3d& a, const Vec3d& b) {
 Side* follow(std::vector<Side>& sides, const Side& side, const StarItems& items) {
   const auto begin =
       std::lower_bound(sides.begin(), sides.end(), side.to, [](const Side& s, std::uint32_t v) { return s.from < v; });
+  const auto goes_on = [&](auto s) { return s != sides.end() && s->from == side.to; };
+  if (goes_on(begin) && !goes_on(begin + 1)) return begin->used ? nullptr : &*begin;
   Side* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   const Vec3d at = items.position[side.to], back = items.position[side.from] - at;
-  for (auto s = begin; s != sides.end() && s->from == side.to; ++s) {
+  for (auto s = begin; goes_on(s); ++s) {
     if (s->used) continue;
     const double turn = clockwise(items.normal[side.to], back, items.position[s->to] - at);
     if (turn < least) least = turn, best = &*s;
@@ -141,14 +156,17 @@ class Filling {
  private:
   Vec3d position(std::uint32_t i) const { return items_.position[i]; }
 
-  /// Sum of squared edges by area (1 where equilateral), dear where it faces aside.
-  double price(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+  /// Sum of squared edges by area (1 where equilateral), dear where it faces aside. Some number above `limit` where the
+  /// price is above it.
+  double price(std::uint32_t a, std::uint32_t b, std::uint32_t c,
+               double limit = std::numeric_limits<double>::infinity()) const {
     if (a == b || b == c || c == a) return taken;
     const Vec3d u = position(b) - position(a), v = position(c) - position(a), w = position(c) - position(b),
                 n = cross(u, v);
     const double twice_area = length(n), edges = dot(u, u) + dot(v, v) + dot(w, w);
-    const Vec3d up = normalized(items_.normal[a] + items_.normal[b] + items_.normal[c]);
     const double shape = edges / std::max(2 * std::sqrt(3.0) * twice_area, 1e-6 * edges);
+    if (shape > limit) return shape;
+    const Vec3d up = normalized(items_.normal[a] + items_.normal[b] + items_.normal[c]);
     const double facing = dot(n, up) / std::max(twice_area, 1e-300);
     return shape + (facing < 0.3 ? fold * (0.4 - facing) : 0);
   }
@@ -180,7 +198,9 @@ class Filling {
         const std::size_t j = i + span;
         double best = std::numeric_limits<double>::infinity();
         for (std::size_t k = i + 1; k < j; ++k) {
-          const double c = cost[i * n_ + k] + cost[k * n_ + j] + price(hole_.loop[i], hole_.loop[k], hole_.loop[j]);
+          const double parts = cost[i * n_ + k] + cost[k * n_ + j];
+          if (parts + cheapest > best) continue;
+          const double c = parts + price(hole_.loop[i], hole_.loop[k], hole_.loop[j], best - parts + slack);
           if (c < best) best = c, apex[i * n_ + j] = std::uint32_t(k);
         }
         cost[i * n_ + j] = best + inner_edge(i, j);

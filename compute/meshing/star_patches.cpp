@@ -13,14 +13,13 @@
 
 #include "compute/math/disjoint_sets.hpp"
 #include "compute/math/sort_unique.hpp"
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/labels_beside.hpp"
 #include "compute/meshing/labels_in_void.hpp"
 #include "compute/meshing/near_points.hpp"
-#include "compute/meshing/point_tree.hpp"
 #include "compute/meshing/repair_at.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_seams.hpp"
-#include "compute/meshing/triangles_around.hpp"
 
 namespace nacre {
 namespace {
@@ -129,7 +128,7 @@ class Settling {
         group_of_(bad_.size(), none),
         number_(group_of_),
         marked_(bad_),
-        around_(stars.triangles, bad_.size()) {
+        corners_(stars.triangles, bad_.size()) {
     for (const std::uint32_t i : stars.unsettled) bad_[i] = 1;
     unsettled_ = bad_;
     for (const std::uint32_t i :
@@ -144,9 +143,11 @@ class Settling {
     std::vector<std::uint32_t> more;
     std::set_difference(all.begin(), all.end(), all_bad_.begin(), all_bad_.end(), std::back_inserter(more));
     all_bad_ = std::move(all);
-    mark_near(world_.points, more, world_.size, around, near_);
+    for_points_near(world_.points, more, world_.size, around, [&](std::uint32_t i, std::span<const std::uint32_t> bad) {
+      near_[i] = 1;
+      for (const std::uint32_t b : bad) sets_.join(i, b);
+    });
     const std::vector<std::uint32_t> members = marked(near_);
-    join_around(more, members);
     std::vector<std::uint32_t> roots;
     for (const std::uint32_t i : members) roots.push_back(sets_.find(i));
     std::vector<Group> groups;
@@ -176,14 +177,11 @@ class Settling {
       group.delaunay = before ? std::move(before->delaunay) : cells_.delaunay();
     }
     groups_ = std::move(groups);
-    around_.include(near_, members);
     return changed;
   }
 
   /// Makes the cells of groups that have none.
   void make(bool repairs) {
-    std::vector<StarMesh> kept(groups_.size());
-    list_kept(kept);
     std::vector<std::uint32_t> fresh;
     std::vector<PatchCells::Wanted> wanted;
     for (std::uint32_t k = 0; k < groups_.size(); ++k)
@@ -191,7 +189,7 @@ class Settling {
     const auto made = cells_.make(std::move(wanted), world_, stop_);
     tbb::parallel_for(std::size_t(0), fresh.size(), [&](std::size_t i) {
       Group& group = groups_[fresh[i]];
-      group.patch.emplace(made[i], kept[fresh[i]]);
+      group.patch.emplace(made[i], kept_in(group));
       if (repairs) group.patch->repair(stop_);
       list_at_bad(group);
     });
@@ -304,18 +302,18 @@ class Settling {
         if (!bad_[i]) continue;
         marked_[i] = 1;
         // A triangle of a star that is gone leaves its edges to facets that may not be there.
-        around_.visit(i, [&](std::size_t k) { mark(around_[k]); });
+        for (const std::uint32_t corner : corners_.corners(i)) mark(stars_.triangles[corner / 3]);
       }
     }
     StarMesh joined;
     for (const std::uint32_t v : marked(marked_))
-      around_.visit(v, [&](std::size_t k) {
-        const Triangle& t = around_[k];
+      for (const std::uint32_t corner : corners_.corners(v)) {
+        const Triangle& t = stars_.triangles[corner / 3];
         const bool seen = (t.a < v && marked_[t.a]) || (t.b < v && marked_[t.b]) || (t.c < v && marked_[t.c]);
-        if (seen || at_bad_one(t)) return;
+        if (seen || at_bad_one(t)) continue;
         joined.triangles.push_back(t);
-        joined.materials.push_back(stars_.materials[around_.numbers()[k]]);
-      });
+        joined.materials.push_back(stars_.materials[corner / 3]);
+      }
     for (const Group& group : groups_)
       for (std::size_t i = 0; i < group.at_bad.triangles.size(); ++i) {
         const Triangle& t = group.at_bad.triangles[i];
@@ -326,33 +324,25 @@ class Settling {
     return joined;
   }
 
-  /// Joins what is within reach of each of `more`; all of that is among `members`.
-  void join_around(std::span<const std::uint32_t> more, std::span<const std::uint32_t> members) {
-    if (more.empty()) return;
-    std::vector<Vec3d> places;
-    for (const std::uint32_t i : members) places.push_back(world_.points[i]);
-    const std::uint32_t first[2] = {0, std::uint32_t(places.size())};
-    const PointTree tree(places, first);
-    std::vector<PointTree::Found> found;
-    for (const std::uint32_t i : more) {
-      found.clear();
-      tree.within(0, world_.points[i], around * world_.size[i], found);
-      for (const PointTree::Found& f : found) sets_.join(i, members[f.point]);
+  /// Triangles of stars within a group, all of whose corners have settled: where a patch has grown over them, its cells
+  /// are to follow them.
+  StarMesh kept_in(const Group& group) const {
+    const std::uint32_t own = group_of_[group.members[0]];
+    const auto is_kept = [&](std::uint32_t i) { return group_of_[i] == own && !unsettled_[i]; };
+    std::vector<std::uint32_t> numbers;
+    for (const std::uint32_t i : group.members)
+      for (const std::uint32_t corner : corners_.corners(i)) {
+        const Triangle& t = stars_.triangles[corner / 3];
+        if (t.a == i && is_kept(t.a) && is_kept(t.b) && is_kept(t.c)) numbers.push_back(corner / 3);
+      }
+    std::sort(numbers.begin(), numbers.end());
+    StarMesh kept;
+    for (const std::uint32_t k : numbers) {
+      const Triangle& t = stars_.triangles[k];
+      kept.triangles.push_back({number_[t.a], number_[t.b], number_[t.c]});
+      kept.materials.push_back(stars_.materials[k]);
     }
-  }
-
-  /// Triangles of stars within each group that has no cells yet, all of whose corners have settled: where a patch has
-  /// grown over them, its cells are to follow them.
-  void list_kept(std::vector<StarMesh>& kept) const {
-    const auto is_kept = [&](std::uint32_t i) { return near_[i] && !unsettled_[i] && !groups_[group_of_[i]].patch; };
-    for (std::size_t i = 0; i < around_.numbers().size(); ++i) {
-      const Triangle& t = around_[i];
-      if (!is_kept(t.a) || !is_kept(t.b) || !is_kept(t.c)) continue;
-      if (group_of_[t.a] != group_of_[t.b] || group_of_[t.a] != group_of_[t.c]) continue;
-      StarMesh& of_group = kept[group_of_[t.a]];
-      of_group.triangles.push_back({number_[t.a], number_[t.b], number_[t.c]});
-      of_group.materials.push_back(stars_.materials[around_.numbers()[i]]);
-    }
+    return kept;
   }
 
   void list_at_bad(Group& group) const {
@@ -381,7 +371,7 @@ class Settling {
   std::vector<Group> groups_;
   std::vector<std::uint32_t> group_of_, number_;  // per particle near: its group, and its place in the list of this
   std::vector<std::uint8_t> marked_;              // corners of triangles at bad ones, of stars or facets
-  TrianglesAround around_;                        // of stars, at all that is within reach
+  VertexTable corners_;                           // of the triangles of stars
   bool stuck_ = false, pinched_ = false;
 };
 

@@ -19,7 +19,7 @@ constexpr double least_accepted = 0.2;
 constexpr DefectRule unacceptable{0, least_accepted, least_accepted, false};
 
 /// How far from bad points is cut, sizes: patches of cells reach three around what has changed, and may grow.
-constexpr double reach = 10;
+constexpr double attempt_reach = 10;
 
 /// Rounds of an attempt after its first, where nothing is better by then: where a particle has gone, triangles are
 /// often worse before they get better.
@@ -92,7 +92,7 @@ bool MeshImprovement::attempt(Kept& best) {
 /// that the others keep their numbers.
 bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad, const AttemptKind& kind) {
   Cut cut;
-  particles_.in_stage("remesh", [&] { cut = cut_out(best, bad); });
+  particles_.in_stage("remesh", [&] { cut = cut_out(best, bad, attempt_reach); });
   std::optional<Kept> now = attempted(cut, kind);
   if (!now) {  // where cells do not settle, they shall not keep the others from it
     bool any = false;
@@ -116,8 +116,8 @@ bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad,
   return false;
 }
 
-/// All points that are near to some, and the triangles between them.
-MeshImprovement::Cut MeshImprovement::cut_out(const Kept& best, std::span<const std::uint32_t> bad) {
+/// All points within `reach` sizes of some, and the triangles between them.
+MeshImprovement::Cut MeshImprovement::cut_out(const Kept& best, std::span<const std::uint32_t> bad, double reach) {
   const SurfaceMesh& mesh = best.made.mesh;
   const std::vector<double> size(best.made.size.begin(), best.made.size.end());
   Marks near(mesh.points.size(), 0), used(near), is_bad(near);

@@ -116,7 +116,7 @@ class MeshImprovement {
   void settle(Kept& best);
   bool attempt(Kept& best);
   bool attempt_at(Kept& best, std::span<const std::uint32_t> bad, const AttemptKind& kind);
-  static Cut cut_out(const Kept& best, std::span<const std::uint32_t> bad);
+  static Cut cut_out(const Kept& best, std::span<const std::uint32_t> bad, double reach);
   std::optional<Kept> attempted(const Cut& cut, const AttemptKind& kind);
   bool take_better(Kept& best, const Cut& cut, const Kept& now);
   static std::uint32_t put(Kept& best, const Kept& now, std::uint32_t v, std::uint32_t number);

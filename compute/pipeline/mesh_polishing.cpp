@@ -11,6 +11,9 @@ namespace nacre {
 namespace {
 
 constexpr int most_rounds = 8;
+
+/// How far from bad points is cut, sizes: an edit looks at two rings of triangles around one, and some follow others.
+constexpr double polish_reach = 5;
 }  // namespace
 
 /// Marks the points of a mesh at triangles that are bad by `rule`, and where it touches itself.
@@ -88,7 +91,8 @@ std::int64_t MeshImprovement::split(Kept& kept, std::vector<std::uint8_t>& fixed
 /// Polishes what is around bad triangles, cut out of the mesh, and puts back what became better.
 void MeshImprovement::polish(Kept& best) {
   Cut cut;
-  particles_.in_stage("remesh", [&] { cut = cut_out(best, marked(bad_points(best.made, polish_rule()))); });
+  particles_.in_stage("remesh",
+                      [&] { cut = cut_out(best, marked(bad_points(best.made, polish_rule())), polish_reach); });
   if (cut.point.empty()) return;
   particles_.upload(cut.piece.particles);
   const Kept now = polished(cut.piece.made);
