@@ -181,6 +181,17 @@ void add_content(FileInfo& info, const fs::path& path, const VolumeChoice& choic
   add_mesh(info, std::move(file.mesh));
 }
 
+/// Of a file, or of all in a folder.
+std::uint64_t bytes_of(const fs::path& path) {
+  std::error_code code;
+  if (!fs::is_directory(path, code)) return fs::file_size(path, code);
+  std::uint64_t bytes = 0;
+  for (fs::recursive_directory_iterator it(path, fs::directory_options::skip_permission_denied, code), end;
+       !code && it != end; it.increment(code))
+    if (it->is_regular_file(code)) bytes += it->file_size(code);
+  return bytes;
+}
+
 }  // namespace
 
 FileInfo describe(const fs::path& path, const VolumeChoice& choice, const std::string& patches) {
@@ -188,8 +199,7 @@ FileInfo describe(const fs::path& path, const VolumeChoice& choice, const std::s
   if (!format || format->name != "DICOM") require_file(path);
   FileInfo info;
   info.path = path.string();
-  std::error_code code;
-  info.bytes = fs::is_directory(path, code) ? 0 : fs::file_size(path, code);
+  info.bytes = bytes_of(path);
   try {
     add_content(info, path, choice, patches);
   } catch (const std::bad_alloc&) {

@@ -44,7 +44,7 @@ struct FileInfo {
   std::string path;
   std::string format;         ///< "OBJ", "PLY", "STL", "OFF", "VTK XML", "VTK", or as in `volume_formats`
   std::string kind;           ///< "surface", "volume", "points", "lines", "series" or "unknown-empty"
-  std::uint64_t bytes = 0;    ///< of the file itself
+  std::uint64_t bytes = 0;    ///< of the file itself, or of all in the folder
   std::size_t points = 0;     ///< in the file (in the first step of a series)
   std::size_t triangles = 0;  ///< usable ones, after triangulation
   std::size_t polygons = 0;   ///< in the file; the outer faces of volume cells

@@ -10,11 +10,11 @@ measure() {
   "$build/bin/peer_measure" "$1" "$3" "${words[@]}" >"$4"
 }
 
-# mesh_3_surface PHANTOM DETAIL: rows of the surfaces, without and, where there are any, with junction curves protected.
+# mesh_3_surface NAME LABELS WORK [words of nacre mesh]: rows of the surfaces, without and, where there are any, with
+# junction curves protected.
 mesh_3_surface() {
-  local name=$1 labels=$out/$1-$2.nrrd work="surface of $1 $2" size target
-  shift 2
-  sample_ours() { ours "$out/ours.off" "$out/ours.json" "$labels" && our_seconds "$out/ours.json"; }
+  local name=$1 labels=$2 work=$3 our_words=("${@:4}") size target
+  sample_ours() { ours "$out/ours.off" "$out/ours.json" "$labels" "${our_words[@]}" && our_seconds "$out/ours.json"; }
   sample_ours >/dev/null
   target=$(report_value "$out/ours.json" mesh.vertices)
   for features in without with; do
@@ -69,7 +69,11 @@ peer_mesh_3() {
   local one
   for one in $phantoms; do
     sample "${one%:*}" "${one#*:}"
-    mesh_3_surface "${one%:*}" "${one#*:}"
+    mesh_3_surface "${one%:*}" "$out/${one%:*}-${one#*:}.nrrd" "surface of ${one%:*} ${one#*:}"
+  done
+  for one in ${PEERS_LABELS:-}; do # NAME=FILE:SIZE
+    local file=${one#*=}
+    mesh_3_surface "${one%%=*}" "${file%:*}" "surface of ${one%%=*}" --min-size "${file##*:}" --max-size "${file##*:}"
   done
   sample torso 64
   mesh_3_cells torso 64

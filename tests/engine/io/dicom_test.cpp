@@ -74,7 +74,9 @@ TEST(Dicom, WhatTheChildWritesIsRead) {
   EXPECT_EQ(volume.spacing.x, 1);
   EXPECT_EQ(volume.spacing.z, 3);
   EXPECT_EQ(volume.name, "scan");
-  EXPECT_EQ(describe(folder / "scan").format, "DICOM");
+  const FileInfo info = describe(folder / "scan");
+  EXPECT_EQ(info.format, "DICOM");
+  EXPECT_EQ(info.bytes, dicom_like().size());
 }
 
 TEST(Dicom, FailuresAreErrorsOfTheFile) {
