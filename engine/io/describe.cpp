@@ -188,7 +188,8 @@ std::uint64_t bytes_of(const fs::path& path) {
   std::uint64_t bytes = 0;
   for (fs::recursive_directory_iterator it(path, fs::directory_options::skip_permission_denied, code), end;
        !code && it != end; it.increment(code))
-    if (it->is_regular_file(code)) bytes += it->file_size(code);
+    if (std::error_code gone; it->is_regular_file(gone))
+      if (const std::uintmax_t of_file = it->file_size(gone); !gone) bytes += of_file;
   return bytes;
 }
 
