@@ -41,6 +41,13 @@ class ExecutorBase {
   void tell_share(double share) {
     if (share_) share_->store(float(share), std::memory_order_relaxed);
   }
+  /// The same from several threads at a time, which may come out of order: the share never falls.
+  void raise_share(double share) {
+    float before = share_ ? share_->load(std::memory_order_relaxed) : 0;
+    while (share_ && before < float(share) &&
+           !share_->compare_exchange_weak(before, float(share), std::memory_order_relaxed)) {
+    }
+  }
   /// The next launch is this part of the work of a long call: the share is `from`, and on the CPU grows to `to`
   /// meanwhile.
   void next_is(double from, double to) {
@@ -77,21 +84,17 @@ class ExecutorBase {
 ///                                    kernel.scratch_bytes() bytes of shared memory
 ///   exclusive_scan(in, out, n)       out[i] = in[0] + .. + in[i-1]; returns the sum of all; in == out allowed
 ///   scan(in, out, n)                 the same without the sum, which the host would have to wait for
-/// sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those
-/// below
-///                                    need not be sorted where they ascend before
+///   sort(keys, n, lowest = 0)        ascending 64-bit keys; by their bits from `lowest` up, stably, so that those
+///                                    below need not be sorted where they ascend before
 ///   sort_pairs(keys, values, n, bits = 64)  the same by the lowest `bits`, the others being alike; values go with keys
-/// reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if
-/// merge
-///                                    is exact (integers, minimum, maximum)
+///   reduce(n, identity, get, merge)  merge of get(i) over all i; the same result on any number of threads only if
+///                                    merge is exact (integers, minimum, maximum)
 ///   reduce_into(result, n, identity, get, merge)  the same into *result, on the device: nothing waits for it
 ///   fill(array, byte)                all bytes of an array, in the order of the launches
-/// known(get, most)                 get(), a number that the device holds, where it can be had without waiting (on
-/// the
-///                                    CPU); else `most`, which it does not exceed
-/// repeat(steps, body)              body(), which launches and reads nothing back. On CUDA from the second call on
-/// its
-///                                    launches become one, a graph, which is kept in `steps`
+///   known(get, most)                 get(), a number that the device holds, where it can be had without waiting (on
+///                                    the CPU); else `most`, which it does not exceed
+///   repeat(steps, body)              body(), which launches and reads nothing back. On CUDA from the second call on
+///                                    its launches become one, a graph, which is kept in `steps`
 ///   wait()                           until all is done
 ///   stage(name)                      a scope that times a stage, the device's work included
 ///
@@ -106,6 +109,17 @@ struct Add {
     return a + b;
   }
 };
+
+namespace detail {
+
+template <class T>
+void lower_to(T* to, T value) {
+  T before = __atomic_load_n(to, __ATOMIC_RELAXED);
+  while (value < before && !__atomic_compare_exchange_n(to, &before, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+}
+
+}  // namespace detail
 
 /// Adds to memory that many threads add to; exact, so the order does not matter.
 NACRE_HD_INLINE void atomic_add(std::uint64_t* to, std::uint64_t value) {
@@ -122,6 +136,22 @@ NACRE_HD_INLINE std::uint32_t atomic_add(std::uint32_t* to, std::uint32_t value)
   return atomicAdd(to, value);
 #else
   return __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Makes a number in memory, which other threads do the same to, no larger than `value`.
+NACRE_HD_INLINE void atomic_min(std::uint32_t* to, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicMin(to, value);
+#else
+  detail::lower_to(to, value);
+#endif
+}
+NACRE_HD_INLINE void atomic_min(std::uint64_t* to, std::uint64_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicMin(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(value));
+#else
+  detail::lower_to(to, value);
 #endif
 }
 

@@ -167,7 +167,7 @@ class Executor<Cpu> : public ExecutorBase {
     std::atomic<std::int64_t> done{0};
     const auto tell = [&, from = from, to = to](std::int64_t more) {
       const std::int64_t all = done.fetch_add(more, std::memory_order_relaxed) + more;
-      tell_share(from + (to - from) * double(all) / double(n));
+      raise_share(from + (to - from) * double(all) / double(n));
     };
     {
       CpuDevice::Access access(cpu_);

@@ -2,11 +2,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "compute/meshing/cut_star.hpp"
 #include "compute/meshing/item_boxes.hpp"
+#include "compute/meshing/list_items.hpp"
+#include "compute/meshing/read_stars.hpp"
 #include "compute/meshing/settle_stars.hpp"
 #include "compute/meshing/star_device.hpp"
 
@@ -79,15 +83,44 @@ class DeviceStars : public StarDevice {
   DeviceStars(const DeviceStars&) = delete;
   DeviceStars& operator=(const DeviceStars&) = delete;
 
-  std::int64_t find(const StarItems& of, const ItemChange* change, std::vector<Star>& stars) override {
-    const auto n = std::int64_t(of.count());
-    stars.resize(of.count());
-    if (n == 0) return 0;
-    if (!has_room(of.count())) change = nullptr;
+  void find(const StarParticles& particles, const TellChange& tell_change, FoundStars& found) override {
     Arena::Scope scope(exec_.arena());
-    const StarItemsView items = upload(of);
+    DeviceItems items(exec_.arena(), most_items(particles));
+    StarItems now = list(items, particles);
+    std::optional<ItemChange> change;
+    if (has_room(now.count())) change = tell_change(now);
+    if (now.count() > 0)
+      find(items.view(copy_of(now.first)), std::int64_t(now.count()), change ? &*change : nullptr, found);
+    else
+      found = {};
+    found.items = std::move(now);
+  }
+
+ private:
+  static std::size_t most_items(const StarParticles& particles) {
+    std::size_t most = 0;
+    for (const Junction& j : particles.junction) most += std::size_t(j.materials() * (j.materials() - 1) / 2);
+    return most;
+  }
+
+  StarItems list(DeviceItems& items, const StarParticles& particles) {
+    if (particles.count() == 0) return {};
+    Arena::Scope scope(exec_.arena());
+    const auto n = std::int64_t(particles.count());
+    const Junction* junction = copy_of(particles.junction);
+    const auto gradients_before = exec_.arena().template temporary<std::uint32_t>(particles.count());
+    exec_.for_each(n, detail::HasGradients{junction, gradients_before.data()});
+    exec_.scan(gradients_before.data(), gradients_before.data(), n);
+    return items.list(exec_,
+                      {copy_of(particles.position), copy_of(particles.direction), junction, copy_of(particles.gradient),
+                       gradients_before.data()},
+                      n);
+  }
+
+  /// Finds the stars of `n` items, at least one.
+  void find(const StarItemsView& items, std::int64_t n, const ItemChange* change, FoundStars& found) {
     const ItemBoxesView boxes = item_boxes(exec_, items, n);
-    const auto stale = exec_.arena().template temporary<std::uint32_t>(of.count());
+    const auto stale = exec_.arena().template temporary<std::uint32_t>(std::size_t(n));
     if (change)
       take_over(items, boxes, *change, stale);
     else
@@ -95,12 +128,13 @@ class DeviceStars : public StarDevice {
     exec_.for_each(n, detail::CutStars{items, boxes, stale.data(), stars_.data()});
     StarSettling<Backend> settling(exec_, items, stars_, spare_, n);
     settling.settle(stale);
-    exec_.device().copy_to_host(stars.data(), stars_.data(), stars.size() * sizeof(Star));
+    found.stars.resize(std::size_t(n));
+    exec_.device().copy_to_host(found.stars.data(), stars_.data(), found.stars.size() * sizeof(Star));
+    read_stars(exec_, items, stars_.data(), n, found);
     settling.put_back();
-    return exec_.reduce(n, std::int64_t(0), detail::IsMarked{stale.data()}, Add{});
+    found.cut = exec_.reduce(n, std::int64_t(0), detail::IsMarked{stale.data()}, Add{});
   }
 
- private:
   /// False where there was not, and the stars of the call before are gone.
   bool has_room(std::size_t n) {
     if (stars_.size() >= n) return true;
@@ -110,15 +144,14 @@ class DeviceStars : public StarDevice {
   }
 
   template <class T>
-  const T* copy_of(const std::vector<T>& host) {
+  const T* copy_of(std::span<const T> host) {
     auto array = exec_.arena().template temporary<T>(host.size());
     array.upload(host);
     return array.data();
   }
-
-  StarItemsView upload(const StarItems& of) {
-    return {copy_of(of.position), copy_of(of.normal), copy_of(of.size),     copy_of(of.particle),
-            copy_of(of.surface),  copy_of(of.next),   copy_of(of.previous), copy_of(of.first)};
+  template <class T>
+  const T* copy_of(const std::vector<T>& host) {
+    return copy_of(std::span<const T>(host));
   }
 
   void take_over(const StarItemsView& items, const ItemBoxesView& boxes, const ItemChange& change,

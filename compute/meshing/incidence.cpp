@@ -1,10 +1,12 @@
 // Nacre: which triangles meet at each edge and at each vertex of a mesh.
 #include "compute/meshing/incidence.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <numeric>
 
@@ -29,6 +31,15 @@ struct Use {
 };
 
 }  // namespace
+
+std::vector<std::uint8_t> mark_corners(std::span<const Triangle> triangles, std::size_t points) {
+  std::vector<std::uint8_t> marks(points, 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 1 << 12), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      for (int k = 0; k < 3; ++k) std::atomic_ref(marks[triangles[i][k]]).store(1, std::memory_order_relaxed);
+  });
+  return marks;
+}
 
 EdgeTable::EdgeTable(std::span<const Triangle> triangles, std::size_t points) {
   check_count(triangles);

@@ -12,6 +12,9 @@ namespace nacre {
 
 inline bool has_corner(const Triangle& t, std::uint32_t v) { return t.a == v || t.b == v || t.c == v; }
 
+/// Marks the points, of which there are so many, that are corners of triangles. In parallel.
+std::vector<std::uint8_t> mark_corners(std::span<const Triangle> triangles, std::size_t points);
+
 /// The edges of a mesh, ascending by (a, b), a < b. A use is 3 * triangle + k: the edge from the triangle's corner k to
 /// its next one.
 class EdgeTable {

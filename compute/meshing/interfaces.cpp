@@ -8,7 +8,9 @@
 #include <numeric>
 #include <utility>
 
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/interface_facets.hpp"
+#include "compute/meshing/select_where.hpp"
 
 namespace nacre {
 namespace {
@@ -67,23 +69,21 @@ InterfaceFacets interface_facets(const DelaunayCells& cells, std::span<const std
 SurfaceMesh mesh_of_triangles(std::span<const Vec3d> points, std::vector<Triangle> triangles,
                               std::vector<std::array<std::uint16_t, 2>> materials,
                               std::vector<std::uint32_t>* point_of) {
-  std::vector<std::uint32_t> number(points.size(), 0);
-  for (const Triangle& t : triangles)
-    for (int k = 0; k < 3; ++k) number[t[k]] = 1;
+  std::vector<std::uint32_t> used = marked(mark_corners(triangles, points.size()));
+  std::vector<std::uint32_t> number(points.size());
   SurfaceMesh mesh;
-  if (point_of) point_of->clear();
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    if (number[p] == 0) continue;
-    number[p] = std::uint32_t(mesh.points.size());
-    mesh.points.push_back(points[p]);
-    if (point_of) point_of->push_back(std::uint32_t(p));
-  }
+  mesh.points.resize(used.size());
+  tbb::parallel_for(std::size_t(0), used.size(), [&](std::size_t v) {
+    number[used[v]] = std::uint32_t(v);
+    mesh.points[v] = points[used[v]];
+  });
   mesh.triangles = std::move(triangles);
   mesh.materials = std::move(materials);
   tbb::parallel_for(std::size_t(0), mesh.triangles.size(), [&](std::size_t i) {
     Triangle& t = mesh.triangles[i];
     t = {number[t.a], number[t.b], number[t.c]};
   });
+  if (point_of) *point_of = std::move(used);
   return mesh;
 }
 

@@ -66,6 +66,21 @@ struct Star {
   }
 };
 
+/// Whether an item may be at a hole or within one: it is on a rim, or it has a triangle that is not agreed, or none.
+NACRE_HD inline bool is_incomplete(const StarItemsView& items, const Star& star, std::uint32_t i) {
+  return items.next[i] != none || star.agreed == 0 || star.agreed != (1u << star.count) - 1;
+}
+
+/// Whether a star does not do without a hole: not all its triangles are agreed. One without any does, as that of a
+/// particle beyond a rim.
+NACRE_HD inline bool is_unsettled(const StarItemsView& items, const Star& star, std::uint32_t i) {
+  if (star.count < 2 || (!star.closed && items.next[i] == none)) return true;
+  if (star.gaps != 0 && star.agreed == 0) return false;
+  for (int k = 0; k < star.count; ++k)
+    if ((star.closed || k + 1 < star.count) && !(star.agreed >> k & 1)) return true;
+  return false;
+}
+
 /// What is to be marked as agreed in `star`, of item i: the triangles that are in the stars of all their corners.
 NACRE_HD inline std::uint32_t agreed_on(const Star* stars, std::uint32_t i, const Star& star) {
   std::uint32_t agreed = 0;

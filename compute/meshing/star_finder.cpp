@@ -93,17 +93,16 @@ std::optional<ItemChange> change_of(const StarItems& before, const std::vector<S
 
 }  // namespace
 
-void StarFinder::find(StarItems items) {
-  const std::optional<ItemChange> change = change_of(items_, stars_, items);
-  cut_ = device_.find(items, change ? &*change : nullptr, stars_);
-  items_ = std::move(items);
+void StarFinder::find(const StarParticles& particles) {
   opened_.clear();
+  device_.find(
+      particles, [&](const StarItems& now) { return change_of(found_.items, found_.stars, now); }, found_);
 }
 
 std::vector<std::uint32_t> StarFinder::open(std::span<const std::uint32_t> some) {
   std::vector<std::uint32_t> changed;
   const auto forget = [&](std::uint32_t item, std::uint32_t from, std::uint32_t to) {
-    Star& star = stars_[item];
+    Star& star = found_.stars[item];
     for (int k = 0; k < star.count; ++k) {
       if (star.ring[k] != from || star.ring[star.after(k)] != to) continue;
       if (!(star.agreed >> k & 1)) continue;
@@ -113,7 +112,7 @@ std::vector<std::uint32_t> StarFinder::open(std::span<const std::uint32_t> some)
     }
   };
   for (const std::uint32_t i : some) {
-    const Star star = stars_[i];
+    const Star star = found_.stars[i];
     for (int k = 0; k < star.count; ++k) {
       if (!(star.agreed >> k & 1)) continue;
       const std::uint32_t a = star.ring[k], b = star.ring[star.after(k)];
@@ -124,7 +123,7 @@ std::vector<std::uint32_t> StarFinder::open(std::span<const std::uint32_t> some)
 }
 
 void StarFinder::close() {
-  for (; !opened_.empty(); opened_.pop_back()) stars_[opened_.back().first].agreed = opened_.back().second;
+  for (; !opened_.empty(); opened_.pop_back()) found_.stars[opened_.back().first].agreed = opened_.back().second;
 }
 
 }  // namespace nacre

@@ -19,22 +19,23 @@ class StarFinder {
   explicit StarFinder(StarDevice& device) : device_(device) {}
 
   /// All stars, settled, with what is agreed marked.
-  void find(StarItems items);
+  void find(const StarParticles& particles);
 
   /// Takes back what is agreed on at `some` items, until the next call of `find`. Returns the items whose stars change.
   std::vector<std::uint32_t> open(std::span<const std::uint32_t> some);
   void close();  ///< undoes all that `open` has done
 
-  const StarItems& items() const { return items_; }          ///< of the last call
-  const std::vector<Star>& stars() const { return stars_; }  ///< of each
-  std::int64_t cut() const { return cut_; }                  ///< stars that the last call found again
+  /// The triangles that the last call has found, once.
+  std::vector<Triangle> take_agreed() { return std::move(found_.agreed); }
+
+  const FoundStars& found() const { return found_; }  ///< by the last call
+  const StarItems& items() const { return found_.items; }
+  const std::vector<Star>& stars() const { return found_.stars; }  ///< per item
 
  private:
   StarDevice& device_;
-  StarItems items_;
-  std::vector<Star> stars_;
+  FoundStars found_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> opened_;  // items, and what they agreed on
-  std::int64_t cut_ = 0;
 };
 
 }  // namespace nacre

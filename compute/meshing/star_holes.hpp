@@ -26,11 +26,6 @@ struct StarHoles {
 /// All holes, ascending by their smallest items. `incomplete` are the items, ascending, that may be at or within one.
 StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars, std::span<const std::uint32_t> incomplete);
 
-/// Whether an item may be at a hole or within one: it is on a rim, or it has a triangle that is not agreed, or none.
-inline bool is_incomplete(const StarItems& items, const Star& star, std::uint32_t i) {
-  return items.next[i] != none || star.agreed == 0 || star.agreed != (1u << star.count) - 1;
-}
-
 /// The triangles that fill a hole, corners as items, counter-clockwise. Empty where it cannot be filled without a
 /// triangle or an edge that there is already.
 std::vector<Triangle> fill_hole(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "compute/math/vec.hpp"
-#include "compute/meshing/curve_links.hpp"
 #include "compute/meshing/star.hpp"
 
 namespace nacre {
@@ -31,8 +30,5 @@ struct StarItems {
             surface.data(),  next.data(),   previous.data(), first.data()};
   }
 };
-
-/// In parallel.
-StarItems star_items(const StarParticles& particles);
 
 }  // namespace nacre

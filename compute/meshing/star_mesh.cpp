@@ -6,61 +6,13 @@
 #include <algorithm>
 #include <tuple>
 
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_chords.hpp"
 #include "compute/meshing/star_filling.hpp"
-#include "compute/meshing/star_holes.hpp"
 
 namespace nacre {
 namespace {
-
-/// Whether a star does without a hole: all its triangles are agreed, or it has none, as a particle beyond a rim has.
-bool agrees(const StarItems& items, const Star& star, std::uint32_t i) {
-  if (star.count < 2 || (!star.closed && items.next[i] == none)) return false;
-  if (star.gaps != 0 && star.agreed == 0) return true;
-  for (int k = 0; k < star.count; ++k)
-    if ((star.closed || k + 1 < star.count) && !(star.agreed >> k & 1)) return false;
-  return true;
-}
-
-/// What one pass over all stars finds.
-struct Agreed {
-  std::vector<Triangle> triangles;        ///< that all corners agree on, each listed by its smallest item, as items
-  std::vector<std::uint32_t> incomplete;  ///< see is_incomplete; ascending
-  std::int64_t unsettled = 0;             ///< stars that do not do without a hole
-};
-
-void add_agreed(const StarItems& items, const std::vector<Star>& stars, std::uint32_t i, Agreed& found) {
-  const Star& star = stars[i];
-  for (int k = 0; k < star.count; ++k) {
-    if (!(star.agreed >> k & 1)) continue;
-    const std::uint32_t a = star.ring[k], b = star.ring[star.after(k)];
-    if (i < a && i < b) found.triangles.push_back({i, a, b});
-  }
-  if (!is_incomplete(items, star, i)) return;
-  found.incomplete.push_back(i);
-  found.unsettled += !agrees(items, star, i);
-}
-
-Agreed find_agreed(const StarItems& items, const std::vector<Star>& stars) {
-  constexpr std::size_t part = 1 << 13;
-  std::vector<Agreed> parts((stars.size() + part - 1) / part);
-  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t k) {
-    const std::size_t end = std::min(stars.size(), (k + 1) * part);
-    parts[k].triangles.reserve(2 * (end - k * part));
-    for (std::size_t i = k * part; i < end; ++i) add_agreed(items, stars, std::uint32_t(i), parts[k]);
-  });
-  Agreed all;
-  std::size_t triangles = 0;
-  for (const Agreed& some : parts) triangles += some.triangles.size();
-  all.triangles.reserve(triangles + triangles / 16);
-  for (const Agreed& some : parts) {
-    all.triangles.insert(all.triangles.end(), some.triangles.begin(), some.triangles.end());
-    all.incomplete.insert(all.incomplete.end(), some.incomplete.begin(), some.incomplete.end());
-    all.unsettled += some.unsettled;
-  }
-  return all;
-}
 
 /// Of two triangles with the same corners, what is left without the material between them: one triangle or, where the
 /// same material is on both outer sides, none. Both are used up, the first one for what is left.
@@ -124,23 +76,21 @@ std::vector<std::uint32_t> of_lost_materials(const StarItems& items, const StarM
 
 StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   StarMesh made;
-  finder.find(star_items(particles));
+  finder.find(particles);
   const StarItems& items = finder.items();
-  const std::vector<Star>& stars = finder.stars();
   made.counts.stars = std::int64_t(items.count());
   made.unsettled = items.broken;
   const auto unsettle = [&](std::span<const std::uint32_t> some) {
     for (const std::uint32_t i : some) made.unsettled.push_back(items.particle[i]);
   };
-  Agreed found = find_agreed(items, stars);
-  made.counts.unsettled = found.unsettled;
-  StarFilling filling = fill_holes(finder, std::move(found.incomplete));
+  made.counts.unsettled = finder.found().unsettled;
+  StarFilling filling = fill_holes(finder, finder.found().incomplete);
   made.counts.holes = filling.holes;
   made.counts.filled = std::int64_t(filling.triangles.size());
   unsettle(filling.unsettled);
   for (const std::uint32_t i : filling.around) made.joined.push_back(items.particle[i]);
 
-  std::vector<Triangle>& triangles = found.triangles;
+  std::vector<Triangle> triangles = finder.take_agreed();
   if (!filling.opened.empty()) {
     std::vector<std::uint8_t> opened(items.count(), 0);
     for (const std::uint32_t i : filling.opened) opened[i] = 1;
@@ -162,9 +112,7 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
   made.unsettled.insert(made.unsettled.end(), shared.begin(), shared.end());
   std::sort(made.unsettled.begin(), made.unsettled.end());
   made.unsettled.erase(std::unique(made.unsettled.begin(), made.unsettled.end()), made.unsettled.end());
-  std::vector<std::uint8_t> used(particles.count(), 0);
-  for (const Triangle& t : made.triangles)
-    for (int k = 0; k < 3; ++k) used[t[k]] = 1;
+  const std::vector<std::uint8_t> used = mark_corners(made.triangles, particles.count());
   made.counts.left_out = std::count(used.begin(), used.end(), 0);
   return made;
 }

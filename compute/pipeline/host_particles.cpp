@@ -1,6 +1,8 @@
 // Nacre: the particles on the host, where the improvement of the mesh takes some out and puts others in.
 #include "compute/pipeline/host_particles.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -59,18 +61,21 @@ std::vector<std::uint32_t> same_particles(const HostParticles& before, const Hos
 
 HostParticles select(const HostParticles& particles, std::span<const std::uint32_t> chosen) {
   HostParticles selected;
-  for (const std::uint32_t i : chosen) {
-    selected.position.push_back(particles.position[i]);
-    selected.direction.push_back(particles.direction[i]);
-    selected.interface.push_back(particles.interface[i]);
-  }
+  const std::size_t n = chosen.size();
+  selected.position.resize(n), selected.direction.resize(n), selected.interface.resize(n);
+  tbb::parallel_for(std::size_t(0), n, [&](std::size_t k) {
+    selected.position[k] = particles.position[chosen[k]];
+    selected.direction[k] = particles.direction[chosen[k]];
+    selected.interface[k] = particles.interface[chosen[k]];
+  });
   return selected;
 }
 
 std::vector<Vec3d> world_positions(std::span<const Float4> position, const VolumeFrame& frame) {
-  std::vector<Vec3d> points;
-  points.reserve(position.size());
-  for (const Float4& p : position) points.push_back(frame.to_world(Vec3d(p.x, p.y, p.z)));
+  std::vector<Vec3d> points(position.size());
+  tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t i) {
+    points[i] = frame.to_world(Vec3d(position[i].x, position[i].y, position[i].z));
+  });
   return points;
 }
 

@@ -5,6 +5,7 @@
 
 #include "compute/device/error.hpp"
 #include "compute/meshing/halves.hpp"
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/near_points.hpp"
 #include "compute/meshing/select_where.hpp"
@@ -120,10 +121,10 @@ bool MeshImprovement::attempt_at(Kept& best, std::span<const std::uint32_t> bad,
 MeshImprovement::Cut MeshImprovement::cut_out(const Kept& best, std::span<const std::uint32_t> bad, double reach) {
   const SurfaceMesh& mesh = best.made.mesh;
   const std::vector<double> size(best.made.size.begin(), best.made.size.end());
-  Marks near(mesh.points.size(), 0), used(near), is_bad(near);
+  Marks near(mesh.points.size(), 0), is_bad(near);
   for (const std::uint32_t v : bad) is_bad[v] = 1;
   mark_near(mesh.points, bad, size, reach, near);
-  for (const Triangle& t : mesh.triangles) used[t.a] = used[t.b] = used[t.c] = 1;
+  const Marks used = mark_corners(mesh.triangles, near.size());
   Cut cut;
   cut.point = select_where(near.size(), [&](std::size_t v) { return near[v] && used[v]; });
   cut.triangle = select_where(mesh.triangles.size(), [&](std::size_t i) {

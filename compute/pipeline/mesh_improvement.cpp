@@ -1,6 +1,8 @@
 // Nacre: triangles from the particles, and particles changed until the triangles are good.
 #include "compute/pipeline/mesh_improvement.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -19,7 +21,7 @@ namespace {
 /// What stars ask of particles, beyond what these hold.
 struct StarInput {
   std::vector<Junction> junction;
-  std::vector<JunctionGradients> gradient;
+  std::vector<JunctionGradients> gradient;  // of those on curves and at points
 
   StarParticles of(const HostParticles& particles) const {
     return {particles.position, particles.direction, junction, gradient};
@@ -39,9 +41,7 @@ StarInput star_input(MovableParticles& fields, const HostParticles& particles, c
     position.push_back({particles.position[i].x, particles.position[i].y, particles.position[i].z});
     junction.push_back(input.junction[i]);
   }
-  const std::vector<JunctionGradients> gradient = fields.junction_gradients(position, junction);
-  input.gradient.resize(particles.count());
-  for (std::size_t k = 0; k < on_rims.size(); ++k) input.gradient[on_rims[k]] = gradient[k];
+  input.gradient = fields.junction_gradients(position, junction);
   return input;
 }
 
@@ -127,10 +127,12 @@ MeshImprovement::Triangulated MeshImprovement::triangulate(bool patches) {
 
 /// What follows from the mesh and the particles.
 void MeshImprovement::finish(Triangulated& made, const HostParticles& particles) const {
-  for (const std::uint32_t i : made.point_of) {
-    made.order.push_back(table_.order[particles.interface[i]]);
-    made.size.push_back(particles.position[i].w * float(frame_.unit));
-  }
+  made.order.resize(made.point_of.size()), made.size.resize(made.point_of.size());
+  tbb::parallel_for(std::size_t(0), made.point_of.size(), [&](std::size_t v) {
+    const std::uint32_t i = made.point_of[v];
+    made.order[v] = table_.order[particles.interface[i]];
+    made.size[v] = particles.position[i].w * float(frame_.unit);
+  });
   lift_off_junctions(made.mesh, made.order);
   made.fitness = fitness_of(made);
 }
@@ -148,8 +150,9 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   const auto& axes = frame_.axes;
   if (dot(axes[0], cross(axes[1], axes[2])) < 0)  // the particles' own coordinates are left-handed in the world
     for (Triangle& t : stars.triangles) std::swap(t.b, t.c);
-  std::vector<double> size;
-  for (const Float4& p : particles.position) size.push_back(p.w * frame_.unit);
+  std::vector<double> size(particles.count());
+  tbb::parallel_for(std::size_t(0), size.size(),
+                    [&](std::size_t i) { size[i] = particles.position[i].w * frame_.unit; });
   const auto material_at = [&](std::span<const Vec3d> at) { return particles_.material_at(at); };
   std::vector<std::array<std::uint32_t, 2>> touching;
   const bool may_settle = double(stars.counts.unsettled) <= rule_.most_unsettled * double(stars.counts.stars);
@@ -171,7 +174,9 @@ void MeshImprovement::take_without_patches(std::span<const Vec3d> points, StarMe
   std::vector<std::uint8_t> settled(points.size(), 1);
   for (const std::uint32_t i : stars.unsettled) settled[i] = 0;
   made.mesh = mesh_of_triangles(points, std::move(stars.triangles), std::move(stars.materials), &made.point_of);
-  for (const std::uint32_t i : made.point_of) made.settled.push_back(settled[i]);
+  made.settled.resize(made.point_of.size());
+  tbb::parallel_for(std::size_t(0), made.settled.size(),
+                    [&](std::size_t v) { made.settled[v] = settled[made.point_of[v]]; });
 }
 
 void MeshImprovement::take_triangles(std::span<const Vec3d> points, StarMesh stars,

@@ -28,4 +28,11 @@ class CpuStars {
 /// Of all stars anew.
 inline StarMesh mesh_of(const Cloud& cloud, int threads = 0) { return CpuStars(threads).mesh(cloud); }
 
+/// What stars are cut of.
+inline StarItems items_of(const Cloud& cloud) {
+  CpuStars stars;
+  stars.finder().find(cloud.view());
+  return stars.finder().items();
+}
+
 }  // namespace nacre::test

@@ -15,7 +15,7 @@ namespace nacre::test {
 struct Cloud {
   std::vector<Float4> position, direction;
   std::vector<Junction> junction;
-  std::vector<JunctionGradients> gradient;
+  std::vector<JunctionGradients> gradient;  // of all; those off junctions are not read
 
   /// On the surface between materials 0 and 1; `normal` points out of 1.
   void add(const Vec3d& p, double h, const Vec3d& normal) { add(p, h, normal, Junction(0, 1)); }
@@ -25,7 +25,12 @@ struct Cloud {
     junction.push_back(j);
     gradient.push_back(g);
   }
-  StarParticles view() const { return {position, direction, junction, gradient}; }
+  StarParticles view() const {
+    on_rims_.clear();
+    for (std::size_t i = 0; i < junction.size(); ++i)
+      if (junction[i].order() < 2) on_rims_.push_back(gradient[i]);
+    return {position, direction, junction, on_rims_};
+  }
 
   SurfaceMesh mesh(const StarMesh& made) const {
     SurfaceMesh mesh;
@@ -37,6 +42,9 @@ struct Cloud {
   TopologyReport topology(const StarMesh& made, int materials = 2) const {
     return check_topology(mesh(made), materials);
   }
+
+ private:
+  mutable std::vector<JunctionGradients> on_rims_;
 };
 
 inline double spacing(double radius, std::size_t count) {

@@ -39,7 +39,7 @@ TEST(StarFilling, WideHolesAreFilledWhereTheyAreFlat) {
 std::vector<std::uint32_t> incomplete_of(const StarFinder& finder) {
   std::vector<std::uint32_t> incomplete;
   for (std::uint32_t i = 0; i < finder.stars().size(); ++i)
-    if (is_incomplete(finder.items(), finder.stars()[i], i)) incomplete.push_back(i);
+    if (is_incomplete(finder.items().view(), finder.stars()[i], i)) incomplete.push_back(i);
   return incomplete;
 }
 
@@ -47,7 +47,7 @@ TEST(StarFilling, AHoleHasAllParticlesInItsMiddle) {
   const Cloud cloud = sphere(spiral(2000), 10);
   CpuStars stars;
   StarFinder& finder = stars.finder();
-  finder.find(star_items(cloud.view()));
+  finder.find(cloud.view());
   std::vector<std::uint32_t> near_top;
   for (std::uint32_t i = 0; i < finder.items().count(); ++i)
     if (length(finder.items().position[i] - Vec3d(0, 0, 10)) < 5 * finder.items().size[i]) near_top.push_back(i);
@@ -135,7 +135,7 @@ TEST(StarFilling, ClosingUndoesAllThatWasOpened) {
   const Cloud cloud = sphere(random_directions(800, 3), 6);
   CpuStars stars;
   StarFinder& finder = stars.finder();
-  finder.find(star_items(cloud.view()));
+  finder.find(cloud.view());
   const std::vector<Star> before = finder.stars();
   for (const std::uint32_t i : {5U, 6U, 5U, 90U}) finder.open(std::vector<std::uint32_t>{i});
   finder.close();
@@ -152,7 +152,7 @@ TEST(StarFilling, WhatWasOpenedIsThereAgainTheNextTime) {
   EXPECT_GT(changed.size(), 3 * some.size());
   for (const std::uint32_t i : some) EXPECT_EQ(finder.stars()[i].agreed, 0u);
   EXPECT_EQ(stars.mesh(cloud).triangles, first.triangles);
-  EXPECT_EQ(finder.cut(), 0);
+  EXPECT_EQ(finder.found().cut, 0);
 }
 
 /// Two surfaces, 0 and 1, over the same four particles, which are their rims.

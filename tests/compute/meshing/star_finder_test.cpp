@@ -86,7 +86,7 @@ void expect_the_same_after_changes(const Cloud& first, unsigned seed) {
     }
     const StarMesh quick = stars.mesh(now);
     expect_equal(quick, mesh_of(now), round);
-    cut += stars.finder().cut(), all += quick.counts.stars;
+    cut += stars.finder().found().cut, all += quick.counts.stars;
     states.push_back(now);
   }
   EXPECT_LT(cut, all * 3 / 4) << "most are known from before";
@@ -117,9 +117,9 @@ TEST(StarFinder, WhereNothingHasChangedNoStarIsCutAgain) {
   const Cloud cloud = halves(8, 0.8);
   CpuStars stars;
   stars.mesh(cloud);
-  EXPECT_EQ(stars.finder().cut(), std::int64_t(stars.finder().stars().size()));
+  EXPECT_EQ(stars.finder().found().cut, std::int64_t(stars.finder().stars().size()));
   stars.mesh(cloud);
-  EXPECT_EQ(stars.finder().cut(), 0);
+  EXPECT_EQ(stars.finder().found().cut, 0);
 }
 
 }  // namespace

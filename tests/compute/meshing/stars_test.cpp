@@ -277,8 +277,8 @@ TEST(Stars, FoundAnewOnlyWhereSomethingChangedTheyAreTheSame) {
     const StarMesh quick = stars.mesh(changed), from_nothing = mesh_of(changed);
     EXPECT_EQ(quick.triangles, from_nothing.triangles) << round;
     EXPECT_EQ(quick.unsettled, from_nothing.unsettled) << round;
-    EXPECT_LT(stars.finder().cut(), std::int64_t(changed.position.size() / 2));
-    EXPECT_GT(stars.finder().cut(), 10);
+    EXPECT_LT(stars.finder().found().cut, std::int64_t(changed.position.size() / 2));
+    EXPECT_GT(stars.finder().found().cut, 10);
     cloud = changed;
   }
 }
@@ -301,7 +301,7 @@ TEST(Stars, OneThatWasLeftOutComesBackWhenTheOtherGoes) {
     const StarMesh made = stars.mesh(once);
     EXPECT_EQ(made.counts.left_out, 0);
     EXPECT_EQ(made.triangles, mesh_of(once).triangles);
-    EXPECT_LT(stars.finder().cut(), 100);
+    EXPECT_LT(stars.finder().found().cut, 100);
   }
 }
 
@@ -336,7 +336,7 @@ TEST(Stars, ABrokenRimIsNotPassedOver) {
   cloud.direction.erase(cloud.direction.begin(), cloud.direction.begin() + missing);
   cloud.junction.erase(cloud.junction.begin(), cloud.junction.begin() + missing);
   cloud.gradient.erase(cloud.gradient.begin(), cloud.gradient.begin() + missing);
-  const std::vector<std::uint32_t> broken = star_items(cloud.view()).broken;
+  const std::vector<std::uint32_t> broken = items_of(cloud).broken;
   EXPECT_EQ(broken.size(), 2u) << "where it begins and where it ends";
   const StarMesh made = mesh_of(cloud);
   EXPECT_FALSE(made.sound());

@@ -59,8 +59,9 @@ template <class T>
 T atomicOr(T* to, std::type_identity_t<T> bits) {
   return __atomic_fetch_or(to, bits, __ATOMIC_RELAXED);
 }
-inline int atomicMin(int* to, int v) {
-  int old = __atomic_load_n(to, __ATOMIC_RELAXED);
+template <class T>
+T atomicMin(T* to, std::type_identity_t<T> v) {
+  T old = __atomic_load_n(to, __ATOMIC_RELAXED);
   while (v < old && !__atomic_compare_exchange_n(to, &old, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
   }
   return old;
