@@ -57,7 +57,11 @@ class NearestItems {
 /// Cuts the Voronoi cell of an item out of its tangent plane.
 class StarCutter {
  public:
-  NACRE_HD StarCutter(const StarItemsView& items, const ItemBoxesView& boxes) : items_(items), boxes_(boxes) {}
+  static constexpr double first_reach = 1.7;  // sizes within which neighbours are looked for at first
+
+  /// `around` are those of the surface around all items that are cut, or null.
+  NACRE_HD StarCutter(const StarItemsView& items, const ItemBoxesView& boxes, const ItemsAround* around)
+      : items_(items), boxes_(boxes), around_(around) {}
 
   NACRE_HD Star cut(std::uint32_t item) {
     item_ = item;
@@ -86,8 +90,7 @@ class StarCutter {
   }
 
  private:
-  static constexpr double first_reach = 1.7;  // sizes within which neighbours are looked for at first,
-  static constexpr double last_reach = 5;     // and at last
+  static constexpr double last_reach = 5;     // sizes: neighbours are looked for no farther away
   static constexpr double same_side = -0.4;   // neighbours' normals differ by no more (cosine)
   static constexpr double bent = 0.5;         // cosine under which a neighbour is unfolded into the plane
   static constexpr double tie = 1e-7;         // weight of a particle at most, squares of its size
@@ -144,7 +147,10 @@ class StarCutter {
     const std::uint32_t surface = items_.surface[item_];
     const auto offer = [&](double d, std::uint32_t q) { near_.offer(d, q); };
     for (near_.begin(reach);; near_.go_on()) {
-      boxes_.within(items_.first[surface], items_.first[surface + 1], Vec3f(here_), near_.limit2(), offer);
+      if (around_ && reach <= around_->reach())
+        around_->within(Vec3f(here_), near_.limit2(), offer);
+      else
+        boxes_.within(items_.first[surface], items_.first[surface + 1], Vec3f(here_), near_.limit2(), offer);
       if (rim_) offer_beside(next_, reach), offer_beside(previous_, reach);
       for (int k = 0; k < near_.count(); ++k) {
         const std::uint32_t q = near_.item(k);
@@ -275,6 +281,7 @@ class StarCutter {
 
   const StarItemsView& items_;
   const ItemBoxesView& boxes_;
+  const ItemsAround* around_;
   std::uint32_t item_ = 0, next_ = none, previous_ = none;
   bool rim_ = false, reflex_ = false, overflows_ = false;
   Vec3d here_, normal_, u_, v_;
@@ -286,15 +293,38 @@ class StarCutter {
   int now_ = 0, corners_ = 0;
 };
 
-/// The stars of the items that are marked; what is agreed is not known yet.
+/// The stars of those of eight items, which lie together, that are marked; what is agreed is not known yet.
 struct CutStars {
   StarItemsView items;
   ItemBoxesView boxes;
+  std::int64_t n;  // items
   const std::uint32_t* stale;
   Star* star;
   NACRE_HD void operator()(std::int64_t k) const {
-    const std::uint32_t i = boxes.item(k);
-    if (stale[i]) star[i] = StarCutter(items, boxes).cut(i);
+    std::uint32_t marked[8];
+    int count = 0;
+    for (std::int64_t j = 8 * k; j < 8 * k + 8 && j < n; ++j)
+      if (const std::uint32_t i = boxes.item(j); stale[i]) marked[count++] = i;
+    ItemsAround around;
+    const bool gathered = count > 1 && gather(marked, count, around);
+    for (int j = 0; j < count; ++j)
+      star[marked[j]] = StarCutter(items, boxes, gathered ? &around : nullptr).cut(marked[j]);
+  }
+
+ private:
+  /// What is around all of them; false where they are not of one surface.
+  NACRE_HD bool gather(const std::uint32_t* some, int count, ItemsAround& around) const {
+    const std::uint32_t surface = items.surface[some[0]];
+    Vec3f low(items.position[some[0]]), high = low;
+    double size = items.size[some[0]];
+    for (int j = 1; j < count; ++j) {
+      if (items.surface[some[j]] != surface) return false;
+      const Vec3f at(items.position[some[j]]);
+      low = min(low, at), high = max(high, at);
+      if (items.size[some[j]] > size) size = items.size[some[j]];
+    }
+    return around.gather(boxes, items.first[surface], items.first[surface + 1], low, high,
+                         StarCutter::first_reach * size);
   }
 };
 

@@ -125,7 +125,7 @@ class DeviceStars : public StarDevice {
       take_over(items, boxes, *change, stale);
     else
       exec_.fill(stale, 1);
-    exec_.for_each(n, detail::CutStars{items, boxes, stale.data(), stars_.data()});
+    exec_.for_each(detail::eighth(n), detail::CutStars{items, boxes, n, stale.data(), stars_.data()});
     StarSettling<Backend> settling(exec_, items, stars_, spare_, n);
     settling.settle(stale);
     found.stars.resize(std::size_t(n));

@@ -35,11 +35,20 @@ struct ItemBoxesView {
   template <class Visit>
   NACRE_HD void within(std::uint32_t first, std::uint32_t last, const Vec3f& at, const double& radius2,
                        const Visit& visit) const {
+    for_eights(first, last, at, at, radius2,
+               [&](std::uint32_t k) { visit_points(points[k], in_range(8 * k, 0, first, last), at, radius2, visit); });
+  }
+
+  /// Calls visit(k) for the eights of points, points[k], of which some may be of the items first .. last - 1 of the
+  /// order and within a distance of the box from `low` to `high`; `visit` may make its square smaller.
+  template <class Visit>
+  NACRE_HD void for_eights(std::uint32_t first, std::uint32_t last, const Vec3f& low, const Vec3f& high,
+                           const double& radius2, const Visit& visit) const {
     if (first == last) return;
     unsigned left[most_levels];  // which of the eight are still to be entered, per level
     std::uint32_t k = 0;         // the entry that we are in
     int l = top;
-    left[l] = near_boxes(l, k, first, last, at, radius2);
+    left[l] = near_boxes(l, k, first, last, low, high, radius2);
     for (;;) {
       if (left[l] == 0) {
         if (l == top) return;
@@ -49,12 +58,34 @@ struct ItemBoxesView {
       const std::uint32_t part = 8 * k + std::uint32_t(lowest_bit(left[l]));
       left[l] &= left[l] - 1;
       if (l == 1) {
-        visit_points(part, first, last, at, radius2, visit);
+        visit(part);
       } else {
         --l, k = part;
-        left[l] = near_boxes(l, k, first, last, at, radius2);
+        left[l] = near_boxes(l, k, first, last, low, high, radius2);
       }
     }
+  }
+
+  /// Calls visit(squared distance, item) for those of eight points whose bits are in `some`, as `within` does.
+  template <class Visit>
+  NACRE_HD static void visit_points(const Points& p, unsigned some, const Vec3f& at, const double& radius2,
+                                    const Visit& visit) {
+    const Eight x = load_eight(p.x) - eight(at.x), y = load_eight(p.y) - eight(at.y), z = load_eight(p.z) - eight(at.z);
+    const Eight sum = x * x + y * y + z * z;
+    unsigned near = at_most(sum, eight(float(radius2) * slack)) & some;
+    for (; near != 0; near &= near - 1) {
+      const int j = lowest_bit(near);
+      const Vec3d r = Vec3d(p.x[j], p.y[j], p.z[j]) - Vec3d(at);
+      if (const double d = dot(r, r); d <= radius2) visit(d, p.item[j]);
+    }
+  }
+
+  /// The bits of those of eight points that are of the items first .. last - 1 of the order, and may be within a
+  /// distance of a box.
+  NACRE_HD unsigned near_points(std::uint32_t k, std::uint32_t first, std::uint32_t last, const Vec3f& low,
+                                const Vec3f& high, double radius2) const {
+    const float* const lows[3] = {points[k].x, points[k].y, points[k].z};
+    return near(lows, lows, low, high, radius2) & in_range(8 * k, 0, first, last);
   }
 
  private:
@@ -69,31 +100,71 @@ struct ItemBoxesView {
     return (from > 0 ? 0xffu << from : 0xffu) & (to < 7 ? 0xffu >> (7 - to) : 0xffu);
   }
 
-  NACRE_HD unsigned near_boxes(int l, std::uint32_t k, std::uint32_t first, std::uint32_t last, const Vec3f& at,
-                               double radius2) const {
+  NACRE_HD unsigned near_boxes(int l, std::uint32_t k, std::uint32_t first, std::uint32_t last, const Vec3f& low,
+                               const Vec3f& high, double radius2) const {
     const Boxes& boxes = level[l][k];
-    Eight sum = eight(0);
-    for (int a = 0; a < 3; ++a) {
-      const Eight gap =
-          max(max(load_eight(boxes.low[a]) - eight(at[a]), eight(at[a]) - load_eight(boxes.high[a])), eight(0));
-      sum = sum + gap * gap;
-    }
-    return at_most(sum, eight(float(radius2) * slack)) & in_range(8 * k, 3 * l, first, last);
+    const float *const lows[3] = {boxes.low[0], boxes.low[1], boxes.low[2]}, *const highs[3] = {boxes.high[0],
+                                                                                                boxes.high[1],
+                                                                                                boxes.high[2]};
+    return near(lows, highs, low, high, radius2) & in_range(8 * k, 3 * l, first, last);
   }
 
+  /// The bits of those of eight boxes that are within a distance of another.
+  NACRE_HD static unsigned near(const float* const* lows, const float* const* highs, const Vec3f& low,
+                                const Vec3f& high, double radius2) {
+    Eight sum = eight(0);
+    for (int a = 0; a < 3; ++a) {
+      const Eight gap = max(max(load_eight(lows[a]) - eight(high[a]), eight(low[a]) - load_eight(highs[a])), eight(0));
+      sum = sum + gap * gap;
+    }
+    return at_most(sum, eight(float(radius2) * slack));
+  }
+};
+
+/// Items around some others, gathered once for all of these.
+class ItemsAround {
+ public:
+  /// Those of the items first .. last - 1 of the order that are within a distance of a box. False where there are too
+  /// many.
+  NACRE_HD bool gather(const ItemBoxesView& boxes, std::uint32_t first, std::uint32_t last, const Vec3f& low,
+                       const Vec3f& high, double reach) {
+    count_ = 0, reach_ = reach;
+    double radius2 = 1.00001 * reach * reach;
+    boxes.for_eights(first, last, low, high, radius2, [&](std::uint32_t k) {
+      for (unsigned near = boxes.near_points(k, first, last, low, high, radius2); near != 0; near &= near - 1) {
+        if (count_ == 8 * most_eights) {
+          radius2 = -1, reach_ = -1;
+          return;
+        }
+        add(boxes.points[k], lowest_bit(near));
+      }
+    });
+    return reach_ >= 0;
+  }
+
+  NACRE_HD double reach() const { return reach_; }
+
+  /// As ItemBoxesView::within, for a position in the box and at most the distance that was gathered for.
   template <class Visit>
-  NACRE_HD void visit_points(std::uint32_t k, std::uint32_t first, std::uint32_t last, const Vec3f& at,
-                             const double& radius2, const Visit& visit) const {
-    const Points& p = points[k];
-    const Eight x = load_eight(p.x) - eight(at.x), y = load_eight(p.y) - eight(at.y), z = load_eight(p.z) - eight(at.z);
-    const Eight sum = x * x + y * y + z * z;
-    unsigned near = at_most(sum, eight(float(radius2) * slack)) & in_range(8 * k, 0, first, last);
-    for (; near != 0; near &= near - 1) {
-      const int j = lowest_bit(near);
-      const Vec3d r = Vec3d(p.x[j], p.y[j], p.z[j]) - Vec3d(at);
-      if (const double d = dot(r, r); d <= radius2) visit(d, p.item[j]);
+  NACRE_HD void within(const Vec3f& at, const double& radius2, const Visit& visit) const {
+    for (int k = 0; 8 * k < count_; ++k) {
+      const int left = count_ - 8 * k;
+      ItemBoxesView::visit_points(eight_[k], left < 8 ? 0xffu >> (8 - left) : 0xffu, at, radius2, visit);
     }
   }
+
+ private:
+  static constexpr int most_eights = 12;
+
+  NACRE_HD void add(const ItemBoxesView::Points& from, int j) {
+    ItemBoxesView::Points& to = eight_[count_ / 8];
+    const int k = count_++ % 8;
+    to.x[k] = from.x[j], to.y[k] = from.y[j], to.z[k] = from.z[j], to.item[k] = from.item[j];
+  }
+
+  ItemBoxesView::Points eight_[most_eights];
+  int count_ = 0;
+  double reach_ = -1;
 };
 
 namespace detail {

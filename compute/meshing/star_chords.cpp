@@ -22,16 +22,15 @@ struct Chord {
   }
 };
 
-std::vector<Chord> list_chords(const StarItems& items, std::span<const Triangle> triangles) {
-  const auto on_rim = [&](std::uint32_t i) { return items.next[i] != none; };
+bool on_rim(const StarItems& items, std::uint32_t i) { return items.next[i] != none; }
+
+std::vector<Chord> list_chords(const StarItems& items, std::span<const Triangle> triangles,
+                               std::span<const std::uint32_t> between) {
   std::vector<Chord> chords;
-  for (const std::uint32_t i : select_where(triangles.size(), [&](std::size_t i) {
-         const Triangle& t = triangles[i];
-         return on_rim(t.a) + on_rim(t.b) + on_rim(t.c) > 1;
-       }))
+  for (const std::uint32_t i : between)
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t a = triangles[i][k], b = triangles[i][(k + 1) % 3];
-      if (!on_rim(a) || !on_rim(b) || items.next[a] == b || items.next[b] == a) continue;
+      if (!on_rim(items, a) || !on_rim(items, b) || items.next[a] == b || items.next[b] == a) continue;
       const auto [low, high] = std::minmax(items.particle[a], items.particle[b]);
       chords.push_back({low, high, items.surface[a], i, k});
     }
@@ -103,8 +102,16 @@ void refuse_known_edges(std::span<const Triangle> triangles, std::vector<std::ve
 
 }  // namespace
 
-std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const Triangle> triangles) {
-  const std::vector<Chord> chords = list_chords(items, triangles);
+std::vector<std::uint32_t> triangles_between_rims(const StarItems& items, std::span<const Triangle> triangles) {
+  return select_where(triangles.size(), [&](std::size_t i) {
+    const Triangle& t = triangles[i];
+    return on_rim(items, t.a) + on_rim(items, t.b) + on_rim(items, t.c) > 1;
+  });
+}
+
+std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const Triangle> triangles,
+                                            std::span<const std::uint32_t> between) {
+  const std::vector<Chord> chords = list_chords(items, triangles, between);
   std::vector<std::uint32_t> shared;
   for_shared(chords, [&](std::size_t first, std::size_t) {
     shared.push_back(chords[first].low), shared.push_back(chords[first].high);
@@ -112,8 +119,9 @@ std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<co
   return shared;
 }
 
-void exchange_shared_chords(const StarItems& items, std::vector<Triangle>& triangles) {
-  const std::vector<Chord> chords = list_chords(items, triangles);
+void exchange_shared_chords(const StarItems& items, std::span<const std::uint32_t> between,
+                            std::vector<Triangle>& triangles) {
+  const std::vector<Chord> chords = list_chords(items, triangles, between);
   std::vector<std::vector<Exchange>> wanted;  // per shared edge, one for each surface
   for_shared(chords, [&](std::size_t first, std::size_t last) {
     wanted.emplace_back();

@@ -7,10 +7,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <unordered_map>
 
 #include "compute/meshing/incidence.hpp"
+#include "compute/meshing/select_where.hpp"
 
 namespace nacre {
 namespace {
@@ -95,42 +94,76 @@ class Orphans {
  public:
   Orphans(const StarItems& items, const std::vector<Star>& stars, std::span<const std::uint32_t> incomplete)
       : stars_(stars) {
-    for (const std::uint32_t i : incomplete)
-      if (!is_used(stars[i]) && !stars[i].hidden && items.next[i] == none) waiting_.push_back(i);
+    for (const std::uint32_t k : select_where(incomplete.size(), [&](std::size_t k) {
+           const std::uint32_t i = incomplete[k];
+           return !is_used(stars[i]) && !stars[i].hidden && items.next[i] == none;
+         }))
+      waiting_.push_back({incomplete[k], none, {}});
   }
 
   void distribute(StarHoles& found) {
     if (waiting_.empty()) return;
+    std::vector<AtHole> fresh;
     for (std::uint32_t h = 0; h < found.holes.size(); ++h)
-      for (const std::uint32_t v : found.holes[h].loop) holes_at_[v].push_back(h);
-    for (bool any = true; any;) {
-      std::vector<std::pair<std::uint32_t, std::uint32_t>> joining;  // item, hole
-      std::erase_if(waiting_, [&](std::uint32_t i) {
-        const std::uint32_t hole = hole_around(i);
-        if (hole != none) joining.push_back({i, hole});
-        return hole != none;
-      });
-      for (const auto& [i, hole] : joining) found.holes[hole].within.push_back(i), holes_at_[i].push_back(hole);
-      any = !joining.empty();
+      for (const std::uint32_t v : found.holes[h].loop) fresh.push_back({v, h});
+    std::vector<std::uint8_t> is_fresh(stars_.size(), 0);
+    while (!fresh.empty()) {
+      std::sort(fresh.begin(), fresh.end());
+      for (const AtHole& f : fresh) is_fresh[f.item] = 1;
+      const std::vector<std::uint32_t> joining = select_where(
+          waiting_.size(), [&](std::size_t k) { return vote(waiting_[k], fresh, is_fresh); }, 256);
+      for (const AtHole& f : fresh) is_fresh[f.item] = 0;
+      fresh.clear();
+      for (const std::uint32_t k : joining) {
+        fresh.push_back({waiting_[k].item, waiting_[k].hole});
+        found.holes[waiting_[k].hole].within.push_back(waiting_[k].item);
+      }
     }
-    found.alone = std::move(waiting_);
+    for (const Waiting& w : waiting_)
+      if (w.hole == none) found.alone.push_back(w.item);
   }
 
  private:
-  std::uint32_t hole_around(std::uint32_t i) const {
-    std::map<std::uint32_t, int> votes;
-    const Star& star = stars_[i];
-    for (int k = 0; k < star.count; ++k)
-      if (const auto at = holes_at_.find(star.ring[k]); at != holes_at_.end())
-        for (const std::uint32_t h : at->second) ++votes[h];
-    const auto best =
-        std::max_element(votes.begin(), votes.end(), [](const auto& s, const auto& t) { return s.second < t.second; });
-    return best != votes.end() && best->second >= 2 ? best->first : none;
+  /// An item that is at a hole or within it.
+  struct AtHole {
+    std::uint32_t item, hole;
+    friend auto operator<=>(const AtHole&, const AtHole&) = default;
+  };
+  struct Waiting {
+    std::uint32_t item, hole;
+    std::vector<std::pair<std::uint32_t, int>> votes;  // hole, how many neighbours
+  };
+
+  /// Counts neighbours that have come to a hole since the last time. True where the item goes to one now: of several
+  /// with as many votes to the first.
+  bool vote(Waiting& w, std::span<const AtHole> fresh, std::span<const std::uint8_t> is_fresh) const {
+    if (w.hole != none) return false;
+    const Star& star = stars_[w.item];
+    bool any = false;
+    for (int k = 0; k < star.count; ++k) {
+      const std::uint32_t r = star.ring[k];
+      if (!is_fresh[r]) continue;
+      any = true;
+      for (auto f = std::lower_bound(fresh.begin(), fresh.end(), AtHole{r, 0}); f != fresh.end() && f->item == r; ++f)
+        ++votes_for(w, f->hole);
+    }
+    if (!any) return false;
+    const auto better = [](const auto& s, const auto& t) {
+      return s.second != t.second ? s.second < t.second : s.first > t.first;
+    };
+    const auto best = std::max_element(w.votes.begin(), w.votes.end(), better);
+    if (best->second < 2) return false;
+    w.hole = best->first;
+    return true;
+  }
+
+  static int& votes_for(Waiting& w, std::uint32_t hole) {
+    const auto at = std::find_if(w.votes.begin(), w.votes.end(), [&](const auto& v) { return v.first == hole; });
+    return at != w.votes.end() ? at->second : w.votes.emplace_back(hole, 0).second;
   }
 
   const std::vector<Star>& stars_;
-  std::vector<std::uint32_t> waiting_;                                      // ascending
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> holes_at_;  // of items at a hole or within it
+  std::vector<Waiting> waiting_;  // ascending
 };
 
 /// Fills one hole: the cheapest triangulation of its loop, then its inner items, then flips.

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "compute/meshing/incidence.hpp"
-#include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_chords.hpp"
 #include "compute/meshing/star_filling.hpp"
 
@@ -31,14 +30,12 @@ void join_doubles(Triangle& first, std::array<std::uint16_t, 2>& first_materials
 
 /// A material that is no thicker than one triangle is taken away there: two surfaces that have it on one of their sides
 /// would have the same corners, all of which are on rims.
-void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_items, StarMesh& made) {
+void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_items,
+                    std::span<const std::uint32_t> between_rims, StarMesh& made) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::size_t>> corners;
-  const auto on_rims = [&](std::size_t i) {
+  for (const std::uint32_t i : between_rims) {
     const Triangle& t = with_items[i];
-    return items.next[t.a] != none && items.next[t.b] != none && items.next[t.c] != none;
-  };
-  for (const std::uint32_t i : select_where(with_items.size(), on_rims)) {
-    const Triangle& t = with_items[i];
+    if (items.next[t.a] == none || items.next[t.b] == none || items.next[t.c] == none) continue;
     std::array<std::uint32_t, 3> c = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
     std::sort(c.begin(), c.end());
     corners.push_back({c, i});
@@ -97,7 +94,8 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
     std::erase_if(triangles, [&](const Triangle& t) { return opened[t.a] || opened[t.b] || opened[t.c]; });
   }
   triangles.insert(triangles.end(), filling.triangles.begin(), filling.triangles.end());
-  exchange_shared_chords(items, triangles);
+  const std::vector<std::uint32_t> between_rims = triangles_between_rims(items, triangles);
+  exchange_shared_chords(items, between_rims, triangles);
 
   made.triangles.resize(triangles.size());
   made.materials.resize(triangles.size());
@@ -106,9 +104,9 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
     made.triangles[i] = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
     made.materials[i] = items.materials[items.surface[t.a]];
   });
-  remove_doubles(items, triangles, made);
+  remove_doubles(items, triangles, between_rims, made);
   unsettle(of_lost_materials(items, made));
-  const std::vector<std::uint32_t> shared = at_shared_chords(items, triangles);
+  const std::vector<std::uint32_t> shared = at_shared_chords(items, triangles, between_rims);
   made.unsettled.insert(made.unsettled.end(), shared.begin(), shared.end());
   std::sort(made.unsettled.begin(), made.unsettled.end());
   made.unsettled.erase(std::unique(made.unsettled.begin(), made.unsettled.end()), made.unsettled.end());

@@ -174,14 +174,14 @@ StarItems two_quadrilaterals(double lift) {
 TEST(StarChords, AnEdgeThatTwoSurfacesHaveIsExchangedInOne) {
   const StarItems items = two_quadrilaterals(0.3);
   const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
-  EXPECT_EQ(at_shared_chords(items, both), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(at_shared_chords(items, both, triangles_between_rims(items, both)), (std::vector<std::uint32_t>{0, 2}));
   std::vector<Triangle> triangles = both;
-  exchange_shared_chords(items, triangles);
-  EXPECT_TRUE(at_shared_chords(items, triangles).empty());
+  exchange_shared_chords(items, triangles_between_rims(items, triangles), triangles);
+  EXPECT_TRUE(at_shared_chords(items, triangles, triangles_between_rims(items, triangles)).empty());
   EXPECT_EQ(triangles[0], both[0]) << "in the flat one: the other triangles are worse";
   EXPECT_EQ(triangles[1], both[1]);
   std::vector<Triangle> one = {both[0], both[1]};
-  exchange_shared_chords(items, one);
+  exchange_shared_chords(items, triangles_between_rims(items, one), one);
   EXPECT_EQ(one, std::vector<Triangle>(both.begin(), both.begin() + 2));
 }
 
@@ -189,7 +189,7 @@ TEST(StarChords, WhereTheOtherEdgeIsThereAlreadyNothingChanges) {
   const StarItems items = two_quadrilaterals(0);
   const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {4, 5, 6}, {4, 6, 7}, {5, 7, 6}};
   std::vector<Triangle> triangles = both;
-  exchange_shared_chords(items, triangles);
+  exchange_shared_chords(items, triangles_between_rims(items, triangles), triangles);
   EXPECT_EQ(triangles, both);
 }
 
