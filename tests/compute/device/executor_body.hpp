@@ -10,6 +10,7 @@
 
 #include "compute/device/random.hpp"
 #include "tests/compute/on_devices.hpp"
+#include "tests/compute/small_cases.hpp"
 
 namespace nacre::test {
 
@@ -248,5 +249,32 @@ NACRE_DEVICE_TEST(Executor, ResultsStayOnTheDevice)
 NACRE_DEVICE_TEST(Executor, APartCanBeRepeated)
 NACRE_DEVICE_TEST(Executor, NothingIsReadBackInsideOfIt)
 NACRE_DEVICE_TEST(Executor, ARepeatedPartCanBeStopped)
+
+/// Puts the least of what comes from anywhere into one of seven numbers of either length.
+struct LeastOfSeven {
+  std::uint32_t* shorter;
+  std::uint64_t* longer;
+  NACRE_HD void operator()(std::int64_t i) const {
+    const auto value = std::uint32_t(i) * 2654435761u;
+    atomic_min(shorter + i % 7, value);
+    atomic_min(longer + i % 7, std::uint64_t(value) << 20);
+  }
+};
+
+template <class Backend>
+void the_least_of_many_is_left(Executor<Backend>& exec) {
+  const std::uint32_t n = small_cases() ? 700 : 70000;
+  Arena::Scope scope(exec.arena());
+  const auto shorter = exec.arena().template temporary<std::uint32_t>(7);
+  const auto longer = exec.arena().template temporary<std::uint64_t>(7);
+  exec.fill(shorter, 0xff), exec.fill(longer, 0xff);
+  exec.for_each(n, LeastOfSeven{shorter.data(), longer.data()});
+  std::vector<std::uint32_t> least(7, 0xffffffffu);
+  for (std::uint32_t i = 0; i < n; ++i) least[i % 7] = std::min(least[i % 7], i * 2654435761u);
+  EXPECT_EQ(shorter.download(), least);
+  const std::vector<std::uint64_t> wide = longer.download();
+  for (std::size_t k = 0; k < 7; ++k) EXPECT_EQ(wide[k], std::uint64_t(least[k]) << 20);
+}
+NACRE_DEVICE_TEST(Executor, the_least_of_many_is_left)
 
 }  // namespace nacre::test

@@ -62,6 +62,20 @@ TEST(Executor, ALongLaunchStopsWhenAsked) {
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count(), 3.0);
 }
 
+TEST(Executor, AShareToldOutOfOrderNeverFalls) {
+  const auto device = make_cpu_device(2);
+  Executor<Cpu> exec(*device);
+  exec.raise_share(0.5);  // nobody wants to know
+  std::atomic<float> share = 0;
+  exec.watch(nullptr, &share);
+  exec.raise_share(0.5), exec.raise_share(0.25);
+  EXPECT_EQ(share, 0.5f);
+  exec.raise_share(0.75);
+  EXPECT_EQ(share, 0.75f);
+  exec.tell_share(0.125);  // the next call begins
+  EXPECT_EQ(share, 0.125f);
+}
+
 /// What a program that forgets a copy does.
 std::uint64_t read_on_the_host(bool remote) {
   const auto device = make_cpu_device(1, remote);
