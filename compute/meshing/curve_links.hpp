@@ -99,11 +99,11 @@ struct PutNodes {
   }
 };
 
-/// Numbers curves: `before` holds how many have begun before each node.
+/// Numbers curves, and says where each begins.
 struct NumberCurves {
   const std::uint64_t* key;
   std::int64_t n;
-  std::uint32_t* curve;  // before: how many have begun before, the first one excepted
+  std::uint32_t* curve;  // per node: its curve; before, how many begin ahead of it, the first one excepted
   std::uint32_t* first;  // per curve and one more
   NACRE_HD void operator()(std::int64_t i) const {
     const bool begins = i == 0 || key[i] != key[i - 1];

@@ -103,9 +103,8 @@ struct ItemBoxesView {
   NACRE_HD unsigned near_boxes(int l, std::uint32_t k, std::uint32_t first, std::uint32_t last, const Vec3f& low,
                                const Vec3f& high, double radius2) const {
     const Boxes& boxes = level[l][k];
-    const float *const lows[3] = {boxes.low[0], boxes.low[1], boxes.low[2]}, *const highs[3] = {boxes.high[0],
-                                                                                                boxes.high[1],
-                                                                                                boxes.high[2]};
+    const float* const lows[3] = {boxes.low[0], boxes.low[1], boxes.low[2]};
+    const float* const highs[3] = {boxes.high[0], boxes.high[1], boxes.high[2]};
     return near(lows, highs, low, high, radius2) & in_range(8 * k, 3 * l, first, last);
   }
 

@@ -1,6 +1,7 @@
 // Nacre: items listed on a device, and the rims of surfaces.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
