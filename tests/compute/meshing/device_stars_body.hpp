@@ -55,18 +55,25 @@ inline Found found_by_trying_all(const StarItems& items, std::uint32_t i, double
   return all;
 }
 
+/// Of the items only what boxes are made of, in temporary memory.
+template <class Backend>
+StarItemsView upload_positions(Executor<Backend>& exec, const StarItems& items) {
+  auto position = exec.arena().template temporary<Vec3d>(items.count());
+  auto surface = exec.arena().template temporary<std::uint32_t>(items.count());
+  auto first = exec.arena().template temporary<std::uint32_t>(items.first.size());
+  position.upload(items.position), surface.upload(items.surface), first.upload(items.first);
+  StarItemsView view;
+  view.position = position.data(), view.surface = surface.data(), view.first = first.data();
+  return view;
+}
+
 template <class Backend>
 void boxes_find_what_is_near(Executor<Backend>& exec) {
   for (const std::uint32_t count : {1u, 2u, 8u, 9u, 65u, small_cases() ? 200u : 5000u})
     for (const double radius : {0.0, 2.5, 11.0, 100.0}) {
       const StarItems items = random_items(count);
       Arena::Scope scope(exec.arena());
-      auto position = exec.arena().template temporary<Vec3d>(count);
-      auto surface = exec.arena().template temporary<std::uint32_t>(count);
-      auto first = exec.arena().template temporary<std::uint32_t>(items.first.size());
-      position.upload(items.position), surface.upload(items.surface), first.upload(items.first);
-      StarItemsView view;
-      view.position = position.data(), view.surface = surface.data(), view.first = first.data();
+      const StarItemsView view = upload_positions(exec, items);
       const ItemBoxesView boxes = item_boxes(exec, view, count);
       const auto found = exec.arena().template temporary<Found>(count);
       exec.for_each(count, FindAround{view, boxes, radius * radius, found.data()});
@@ -80,6 +87,52 @@ void boxes_find_what_is_near(Executor<Backend>& exec) {
     }
 }
 NACRE_DEVICE_TEST(ItemBoxes, boxes_find_what_is_near)
+
+/// What is found around an item of all that was gathered around a box that it is in; `count` is 0 where that is too
+/// much.
+struct FindGathered {
+  StarItemsView items;
+  ItemBoxesView boxes;
+  double reach;
+  Found* found;
+  NACRE_HD void operator()(std::int64_t i) const {
+    Found all;
+    const std::uint32_t s = items.surface[i];
+    const Vec3f at(items.position[i]), aside(0.5f, 1, 0.25f);
+    ItemsAround around;
+    if (around.gather(boxes, items.first[s], items.first[s + 1], at - aside, at + aside, reach))
+      around.within(at, reach * reach,
+                    [&](double d, std::uint32_t k) { ++all.count, all.numbers += k, all.distances += d; });
+    found[i] = all;
+  }
+};
+
+template <class Backend>
+void what_is_gathered_has_all_that_is_near(Executor<Backend>& exec) {
+  const std::uint32_t count = small_cases() ? 200 : 5000;
+  const StarItems items = random_items(count);
+  std::uint32_t gathered = 0;
+  for (const double reach : {0.5, 3.0, 100.0}) {
+    Arena::Scope scope(exec.arena());
+    const StarItemsView view = upload_positions(exec, items);
+    const ItemBoxesView boxes = item_boxes(exec, view, count);
+    const auto found = exec.arena().template temporary<Found>(count);
+    exec.for_each(count, FindGathered{view, boxes, reach, found.data()});
+    const std::vector<Found> all = found.download();
+    for (std::uint32_t i = 2; i < count; i += 1 + count / 50) {
+      const Found expected = found_by_trying_all(items, i, reach * reach);
+      if (all[i].count == 0) {
+        EXPECT_EQ(reach, 100) << "items are far apart";
+        continue;
+      }
+      ++gathered;
+      ASSERT_EQ(all[i].count, expected.count) << i << " within " << reach;
+      ASSERT_EQ(all[i].numbers, expected.numbers);
+    }
+  }
+  EXPECT_GT(gathered, 60u);
+}
+NACRE_DEVICE_TEST(ItemBoxes, what_is_gathered_has_all_that_is_near)
 
 inline void expect_equal(const StarMesh& a, const StarMesh& b) {
   EXPECT_EQ(a.triangles, b.triangles);
