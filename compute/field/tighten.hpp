@@ -14,88 +14,133 @@ namespace nacre {
 template <int Reach>
 struct GaussianTaps {
   float tap[2 * Reach + 1];
+  float sum = 0;  ///< added up in the order of the taps: what ones are smoothed to
 
   /// `width`: standard deviation in voxels.
   explicit GaussianTaps(double width) {
-    double sum = 0;
-    for (int k = -Reach; k <= Reach; ++k) sum += std::exp(-0.5 * k * k / (width * width));
-    for (int k = -Reach; k <= Reach; ++k) tap[k + Reach] = float(std::exp(-0.5 * k * k / (width * width)) / sum);
+    double all = 0;
+    for (int k = -Reach; k <= Reach; ++k) all += std::exp(-0.5 * k * k / (width * width));
+    for (int k = -Reach; k <= Reach; ++k) tap[k + Reach] = float(std::exp(-0.5 * k * k / (width * width)) / all);
+    for (const float t : tap) sum += t;
   }
 };
 
 namespace detail {
 
-/// What of each voxel belongs to the materials of its block: all or nothing, but along slopes. The element of the
-/// voxel's own material does it for the bricks of all.
-struct StartTightening {
-  BrickVoxels voxels;
-  LabelSlopes slopes;
-  float* source;
+/// What of each voxel belongs to the material of a brick: all or nothing.
+struct FillBinary {
+  MaterialBricksView field;
+  const std::uint32_t* brick_block;
+  float* value;
 
-  NACRE_HD void operator()(std::int64_t i) const {
+  NACRE_HD void operator()(std::int64_t i) const {  // rows of bricks
+    const std::uint32_t brick = std::uint32_t(i / (block_size * block_size)) + 2;
+    const std::uint16_t own = field.brick_material[brick];
+    const std::int64_t row = i % (block_size * block_size) * block_size;
+    const std::uint16_t* material = field.materials_in(brick_block[brick]) + row;
+    float* to = value + std::size_t(brick) * brick_voxels + row;
+    for (int k = 0; k < block_size; ++k) to[k] = material[k] == own ? 1.0f : 0.0f;
+  }
+};
+
+/// Along slopes a voxel belongs in part to the materials beside it. What it gives away is taken from its own material.
+struct ShareAlongSlopes {
+  LabelSlopes slopes;
+  const std::uint32_t* listed;
+  float* value;  ///< all or nothing before
+
+  NACRE_HD void operator()(std::int64_t i) const {  // rows of blocks with a list
     const MaterialBricksView& field = slopes.field;
-    const Int3 v = voxels(i);
-    const std::uint32_t brick = std::uint32_t(i / brick_voxels) + 2, block = voxels.brick_block[brick];
+    const std::uint32_t block = listed[i / (block_size * block_size)];
     const BlockVoxels material(field, block);
-    const std::uint32_t own = material(v);
-    if (field.brick_material[brick] != own) return;
-    const std::uint32_t first = field.block_start[block], last = field.block_start[block + 1];
-    float* here = source + i % brick_voxels;
-    for (std::uint32_t k = first; k < last; ++k) here[std::size_t(k) * brick_voxels] = 0;
+    const int row = int(i % (block_size * block_size));
+    const Int3 first = field.block(block) * Int3(block_size) + Int3(0, row % block_size, row / block_size);
+    for (int x = 0; x < block_size; ++x) share(material, block, first + Int3(x, 0, 0), row * block_size + x);
+  }
+
+ private:
+  NACRE_HD void share(const BlockVoxels& material, std::uint32_t block, const Int3& v, int position) const {
+    const MaterialBricksView& field = slopes.field;
     const Int3 n = field.voxels();
+    const std::uint16_t own = material(v);
+    const std::uint32_t start = field.block_start[block], end = field.block_start[block + 1];
+    float* here = value + position;
     float all = 0;
     for (int axis = 0; axis < 3; ++axis)
       for (const int side : {-1, 1}) {
-        if (slopes.reach <= 0 || v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
+        if (v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
         Int3 beside = v;
         beside[axis] += side;
         const std::uint32_t other = material(beside);
         if (other == own) continue;
-        const float share = slopes.share_beyond(v, axis, side);
-        all += share;
-        for (std::uint32_t k = first; k < last; ++k)
-          if (field.brick_material[k] == other) here[std::size_t(k) * brick_voxels] += share;
+        const float part = slopes.share_beyond(v, axis, side);
+        all += part;
+        for (std::uint32_t k = start; k < end; ++k)
+          if (field.brick_material[k] == other) here[std::size_t(k) * brick_voxels] += part;
       }
+    if (all == 0) return;
     const float most = all > 0.5f ? 0.5f / all : 1;
-    for (std::uint32_t k = first; k < last; ++k) here[std::size_t(k) * brick_voxels] *= most;
-    here[std::size_t(brick) * brick_voxels] = std::fma(-all, most, 1.0f);
+    for (std::uint32_t k = start; k < end; ++k) {
+      float& value_here = here[std::size_t(k) * brick_voxels];
+      value_here = field.brick_material[k] == own ? std::fma(-all, most, 1.0f) : value_here * most;
+    }
   }
 };
 
-/// Adds a brick smoothed with what surrounds it, `share[k]` times by each of the Gaussians, if it or one around it has
-/// changed.
+/// Marks the bricks of the same material around bricks that have changed, and these.
+struct MarkAroundChanged {
+  MaterialBricksView field;
+  const std::uint32_t* brick_block;
+  const std::uint32_t* changed;
+  std::uint32_t* marked;  ///< per brick, like `changed`
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t brick = std::uint32_t(i) + 2;
+    if (!changed[brick]) return;
+    const Int3 b = field.block(brick_block[brick]);
+    for (int k = 0; k < 27; ++k) {
+      const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      if (is_within(c, field.blocks))
+        relaxed_store(marked + field.brick(field.block_number(c.x, c.y, c.z), field.brick_material[brick]), 1);
+    }
+  }
+};
+
+/// Adds a brick smoothed with what surrounds it, `share[k]` times by each of the Gaussians.
 template <int Reach, int Gaussians>
 struct SmoothBrick {
   static constexpr int wide = block_size + 2 * Reach;
 
   MaterialBricksView source;  ///< `value` is the unsmoothed function
   const std::uint32_t* brick_block;
-  const std::uint32_t* changed;  ///< per brick
-  std::uint32_t* smoothed;       ///< per brick: whether it was smoothed now
+  const std::uint32_t* smoothed;  ///< per brick: whether it is smoothed now
   GaussianTaps<Reach> taps[Gaussians];
   float share[Gaussians];
   float* smooth;
 
   static constexpr std::size_t scratch_bytes() {
-    return sizeof(float) * (wide * wide * wide + wide * wide * block_size + wide * block_size * block_size) +
+    return sizeof(float) * (Gaussians * wide * wide * block_size + wide * block_size * block_size) +
            27 * sizeof(std::uint32_t);
   }
 
   NACRE_HD void operator()(Team& team, std::int64_t i) const {
     const std::uint32_t brick = std::uint32_t(i) + 2;
-    float* halo = reinterpret_cast<float*>(team.scratch());
-    float* rows = halo + wide * wide * wide;
-    float* slabs = rows + wide * wide * block_size;
+    float* all_rows = reinterpret_cast<float*>(team.scratch());  // per Gaussian, in a wide stack of wide slabs
+    float* slabs = all_rows + Gaussians * wide * wide * block_size;
     auto* around = reinterpret_cast<std::uint32_t*>(slabs + wide * block_size * block_size);
-    const bool needed = find_neighbours(team, brick, around);
-    if (team.first()) smoothed[brick] = needed ? 1 : 0;
-    if (!needed) return;
-    team.each(wide * wide, [&](int line) { load_line(around, line % wide, line / wide, halo + line * wide); });
+    if (!smoothed[brick]) return;
+    find_neighbours(team, brick, around);
+    team.each(wide * wide, [&](int line) {
+      float values[wide];
+      load_line(around, line % wide, line / wide, values);
+      const bool same = is_constant(values) && (values[0] == 0 || values[0] == 1);
+      for (int g = 0; g < Gaussians; ++g)
+        store_eight(all_rows + (g * wide * wide + line) * block_size,
+                    same ? eight(values[0] * taps[g].sum) : weighted(taps[g].tap, values, 1));
+    });
     float* to = smooth + std::size_t(brick) * brick_voxels;
     for (int g = 0; g < Gaussians; ++g) {
-      const float* tap = taps[g].tap;
-      team.each(wide * wide,
-                [&](int line) { store_eight(rows + line * block_size, weighted(tap, halo + line * wide, 1)); });
+      const float *tap = taps[g].tap, *rows = all_rows + g * wide * wide * block_size;
       team.each(wide * block_size, [&](int line) {  // (y, z) of the result in a wide stack of slabs
         const int y = line % block_size, z = line / block_size;
         store_eight(slabs + line * block_size, weighted(tap, rows + (z * wide + y) * block_size, block_size));
@@ -118,8 +163,17 @@ struct SmoothBrick {
     return sum;
   }
 
-  /// Numbers of the 27 bricks of the same material around; false where none of them has changed.
-  NACRE_HD bool find_neighbours(Team& team, std::uint32_t brick, std::uint32_t* around) const {
+  /// Most lines are: what the labels started as is 0 or 1 but for slopes.
+  NACRE_HD_INLINE static bool is_constant(const float* line) {
+    static_assert(wide <= 3 * block_size);
+    const Eight first = eight(line[0]), low = load_eight(line), middle = load_eight(line + (wide - block_size) / 2),
+                high = load_eight(line + wide - block_size);
+    const Eight least = min(min(low, middle), high), most = max(max(low, middle), high);
+    return (at_most(most, first) & at_most(first, least)) == 0xff;
+  }
+
+  /// Numbers of the 27 bricks of the same material around.
+  NACRE_HD void find_neighbours(Team& team, std::uint32_t brick, std::uint32_t* around) const {
     const std::uint32_t block = brick_block[brick];
     const Int3 n = source.blocks, b = source.block(block);
     team.each(27, [&](int k) {
@@ -128,9 +182,6 @@ struct SmoothBrick {
                   : source.brick_material[brick] == 0 ? 1
                                                       : 0;
     });
-    for (int k = 0; k < 27; ++k)
-      if (changed[around[k]]) return true;
-    return false;
   }
 
   NACRE_HD void load_line(const std::uint32_t* around, int y, int z, float* line) const {
@@ -167,16 +218,27 @@ struct HoldVoxels {
     const Int3 low = smooth.block(block) * Int3(block_size);
     const std::uint16_t* material = smooth.materials_in(block);
     std::uint64_t count = 0;
-    for (int position = 0; position < brick_voxels; ++position) {
-      if (material[position] != own) continue;
-      const Int3 v =
-          low + Int3(position % block_size, position / block_size % block_size, position / (block_size * block_size));
-      count += hold(v, position, brick, first, last) ? 1 : 0;
+    for (int row = 0; row < brick_voxels; row += block_size) {
+      const unsigned close = not_far_ahead(row, brick, first, last);
+      for (int x = 0; x < block_size; ++x) {
+        const int position = row + x;
+        if (!(close >> x & 1) || material[position] != own) continue;
+        const Int3 v = low + Int3(x, row / block_size % block_size, row / (block_size * block_size));
+        count += hold(v, position, brick, first, last) ? 1 : 0;
+      }
     }
     if (count > 0) atomic_add(held, count);
   }
 
  private:
+  /// A bit for each voxel of a row: whether the brick's material is at most `thin_margin` ahead of all others.
+  NACRE_HD unsigned not_far_ahead(int row, std::uint32_t mine, std::uint32_t first, std::uint32_t last) const {
+    Eight most = eight(-3e38f);
+    for (std::uint32_t k = first; k < last; ++k)
+      if (k != mine) most = max(most, load_eight(smooth.value + std::size_t(k) * brick_voxels + row));
+    return at_most(load_eight(smooth.value + std::size_t(mine) * brick_voxels + row) - most, eight(thin_margin));
+  }
+
   NACRE_HD bool hold(const Int3& v, int position, std::uint32_t mine, std::uint32_t first, std::uint32_t last) const {
     std::uint32_t rival = first;
     float most = -3e38f;
@@ -230,11 +292,11 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
   TightenResult result;
-  const detail::BrickVoxels voxels{{b.dims, b.blocks * Int3(block_size)}, b.view(), b.brick_block.data()};
-  const std::int64_t elements = (b.bricks - 2) * brick_voxels;
+  const std::int64_t bricks = b.bricks - 2;
+  constexpr int rows = block_size * block_size;
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
   if (width <= 0) {
-    exec.for_each(elements, detail::StartTightening{voxels, {b.view(), 0}, b.value.data()});
+    exec.for_each(bricks * rows, detail::FillBinary{b.view(), b.brick_block.data(), b.value.data()});
     return result;
   }
   Array<float> source = arena.temporary<float>(b.value.size());
@@ -245,16 +307,18 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
   from.value = source.data();
   b.value.fill_bytes(0);
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{source.data(), 0, 1});
-  exec.for_each(elements, detail::StartTightening{voxels, {b.view(), float(stairs)}, source.data()});
-  changed.fill_bytes(1);
-  exec.for_each_team(b.bricks - 2, detail::SmoothBrick<reach, 2>{
-                                       from,
-                                       b.brick_block.data(),
-                                       changed.data(),
-                                       smoothed.data(),
-                                       {GaussianTaps<reach>(width), GaussianTaps<reach>(width * std::sqrt(2.0))},
-                                       {2, -1},
-                                       b.value.data()});
+  exec.for_each(bricks * rows, detail::FillBinary{b.view(), b.brick_block.data(), source.data()});
+  if (stairs > 0)
+    exec.for_each(std::int64_t(b.listed.size()) * rows,
+                  detail::ShareAlongSlopes{{b.view(), float(stairs)}, b.listed.data(), source.data()});
+  smoothed.fill_bytes(1);
+  exec.for_each_team(
+      bricks, detail::SmoothBrick<reach, 2>{from,
+                                            b.brick_block.data(),
+                                            smoothed.data(),
+                                            {GaussianTaps<reach>(width), GaussianTaps<reach>(width * std::sqrt(2.0))},
+                                            {2, -1},
+                                            b.value.data()});
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
   const GaussianTaps<narrow_reach> narrow(0.6);
   const float gain = 0.9f / (narrow.tap[narrow_reach] * narrow.tap[narrow_reach] * narrow.tap[narrow_reach]);
@@ -262,14 +326,15 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
     source.fill_bytes(0);
     changed.fill_bytes(0);
     held.fill_bytes(0);
-    exec.for_each(b.bricks - 2, detail::HoldVoxels{b.view(), b.brick_block.data(), smoothed.data(), 0.04f, 0.25f, gain,
-                                                   source.data(), changed.data(), held.data()});
+    exec.for_each(bricks, detail::HoldVoxels{b.view(), b.brick_block.data(), smoothed.data(), 0.04f, 0.25f, gain,
+                                             source.data(), changed.data(), held.data()});
     result.left = std::int64_t(held.download()[0]);
     result.held = std::max(result.held, result.left);
     if (result.left == 0) break;
-    exec.for_each_team(b.bricks - 2,
-                       detail::SmoothBrick<narrow_reach, 1>{
-                           from, b.brick_block.data(), changed.data(), smoothed.data(), {narrow}, {1}, b.value.data()});
+    smoothed.fill_bytes(0);
+    exec.for_each(bricks, detail::MarkAroundChanged{b.view(), b.brick_block.data(), changed.data(), smoothed.data()});
+    exec.for_each_team(bricks, detail::SmoothBrick<narrow_reach, 1>{
+                                   from, b.brick_block.data(), smoothed.data(), {narrow}, {1}, b.value.data()});
   }
   return result;
 }

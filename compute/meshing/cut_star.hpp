@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "compute/math/bits.hpp"
 #include "compute/math/point_hash.hpp"
 #include "compute/meshing/item_boxes.hpp"
 #include "compute/meshing/star.hpp"
@@ -97,10 +98,6 @@ class StarCutter {
   static constexpr double coincident = 1e-5;  // sizes: nearer ones count as one
   static constexpr int most_corners = 32;
 
-  struct Corner {
-    double u, v;
-    std::uint32_t after;  // the neighbour across the side that begins here; none: the frame
-  };
   struct Plane {
     double u, v;
   };
@@ -139,9 +136,8 @@ class StarCutter {
   /// False where a particle with a lower number has the same position.
   NACRE_HD bool cut_within(double reach) {
     const double frame = 2 * size_;
-    Corner* cell = cell_[now_ = 0];
-    cell[0] = {-frame, -frame, none}, cell[1] = {frame, -frame, none};
-    cell[2] = {frame, frame, none}, cell[3] = {-frame, frame, none};
+    put(0, {-frame, -frame}, none), put(1, {frame, -frame}, none);
+    put(2, {frame, frame}, none), put(3, {-frame, frame}, none);
     corners_ = 4, overflows_ = false;
     far2_ = farthest2();
     const std::uint32_t surface = items_.surface[item_];
@@ -196,40 +192,74 @@ class StarCutter {
 
   NACRE_HD double farthest2() const {
     double far2 = 0;
-    for (int k = 0; k < corners_; ++k) {
-      const Corner& c = cell_[now_][k];
-      if (!rim_ || in_sector(c.u, c.v)) far2 = max(far2, c.u * c.u + c.v * c.v);
-    }
+    for (int k = 0; k < corners_; ++k)
+      if (!rim_ || in_sector(u_of_[k], v_of_[k])) far2 = max(far2, u_of_[k] * u_of_[k] + v_of_[k] * v_of_[k]);
     return far2;
   }
 
-  /// Keeps what has a x + b y <= limit.
+  /// Keeps what has a x + b y <= limit. Corners beyond it follow each other, since cells are convex: they give way to
+  /// the two where the line cuts the cell.
   NACRE_HD bool clip(double a, double b, double limit, std::uint32_t neighbour) {
-    const Corner* cell = cell_[now_];
-    bool any = false, all = true;
-    for (int i = 0; i < corners_; ++i) {
-      beyond_[i] = a * cell[i].u + b * cell[i].v - limit;
-      any = any || beyond_[i] > 0;
-      all = all && beyond_[i] > 0;
+    const int n = corners_;
+    unsigned beyond = 0;
+    for (int i = 0; i < n; ++i) {
+      excess_[i] = a * u_of_[i] + b * v_of_[i] - limit;
+      beyond |= unsigned(excess_[i] > 0) << i;
     }
-    if (!any) return false;
-    Corner* kept = cell_[1 - now_];
-    int n = 0;
-    for (int i = 0; i < corners_ && !all; ++i) {
-      if (n + 2 > most_corners) {
-        overflows_ = true;
-        return false;
-      }
-      const int k = i + 1 == corners_ ? 0 : i + 1;
-      const Corner &from = cell[i], &to = cell[k];
-      const bool in = beyond_[i] <= 0, then_in = beyond_[k] <= 0;
-      if (in) kept[n++] = from;
-      if (in == then_in) continue;
-      const double t = beyond_[i] / (beyond_[i] - beyond_[k]);
-      kept[n++] = {from.u + t * (to.u - from.u), from.v + t * (to.v - from.v), in ? neighbour : from.after};
+    if (beyond == 0) return false;
+    const unsigned all = n < 32 ? (1u << n) - 1 : ~0u;
+    if (beyond == all) {
+      corners_ = 0;
+      return true;
     }
-    now_ = 1 - now_, corners_ = n;
+    const int first = first_of_run(beyond, (beyond << 1 | beyond >> (n - 1)) & all);
+    int end = first, count = 0;  // the corner behind the run, and how many there are in it
+    for (; beyond >> end & 1; ++count) end = end + 1 == n ? 0 : end + 1;
+    if (n - count + 2 > most_corners) {
+      overflows_ = true;
+      return false;
+    }
+    const int before = first == 0 ? n - 1 : first - 1, last = end == 0 ? n - 1 : end - 1;
+    const Plane entry = between(before, first), exit = between(last, end);
+    const std::uint32_t after_exit = after_[last];
+    if (first > 0 && first + count <= n) {
+      move(first + count, n - first - count, first + 2);
+      put(first, entry, neighbour), put(first + 1, exit, after_exit);
+    } else {
+      move(end, n - count, 1);
+      put(0, exit, after_exit), put(n - count + 1, entry, neighbour);
+    }
+    corners_ = n - count + 2;
     return true;
+  }
+
+  /// The first corner of the run that is beyond a line, from the bits of those beyond it, and those behind such. Where
+  /// rounding makes several runs, the one that goes farthest.
+  NACRE_HD int first_of_run(unsigned beyond, unsigned behind) const {
+    const unsigned starts = beyond & ~behind;
+    if ((starts & (starts - 1)) == 0) return lowest_bit(starts);
+    int at = 0;
+    for (int i = 1; i < corners_; ++i)
+      if (excess_[i] > excess_[at]) at = i;
+    while (!(starts >> at & 1)) at = at == 0 ? corners_ - 1 : at - 1;
+    return at;
+  }
+
+  /// Where the side between two corners meets the line.
+  NACRE_HD Plane between(int from, int to) const {
+    const double t = excess_[from] / (excess_[from] - excess_[to]);
+    return {u_of_[from] + t * (u_of_[to] - u_of_[from]), v_of_[from] + t * (v_of_[to] - v_of_[from])};
+  }
+
+  NACRE_HD void put(int k, const Plane& at, std::uint32_t after) {
+    u_of_[k] = at.u, v_of_[k] = at.v, after_[k] = after;
+  }
+
+  NACRE_HD void move(int from, int count, int to) {
+    if (to < from)
+      for (int k = 0; k < count; ++k) put(to + k, {u_of_[from + k], v_of_[from + k]}, after_[from + k]);
+    else if (to > from)
+      for (int k = count; k-- > 0;) put(to + k, {u_of_[from + k], v_of_[from + k]}, after_[from + k]);
   }
 
   NACRE_HD static Star hidden_star(double reach) {
@@ -244,7 +274,7 @@ class StarCutter {
     Star star;
     star.closed = true;
     for (int k = 0; k < corners_; ++k) {
-      const std::uint32_t q = cell_[now_][k].after;
+      const std::uint32_t q = after_[k];
       if (q == none) {
         star.gaps |= star.count > 0 ? 1u << (star.count - 1) : before_first;
         continue;
@@ -263,7 +293,7 @@ class StarCutter {
     // Sides are in the order of their neighbours' directions; the walk begins behind the direction to the next item.
     double angle[Star::most];
     for (int k = 0; k < corners_; ++k) {
-      const std::uint32_t q = cell_[now_][k].after;
+      const std::uint32_t q = after_[k];
       if (q == none || beside_on_rim(q)) continue;
       if (star.count + 1 == Star::most) return {};
       const Plane to = in_plane(q);
@@ -288,9 +318,11 @@ class StarCutter {
   double size_ = 0, weight_ = 0, far2_ = 0;
   Plane along_next_{}, along_previous_{};
   NearestItems near_;
-  Corner cell_[2][most_corners];
-  double beyond_[most_corners];
-  int now_ = 0, corners_ = 0;
+  // The cell's corners in order, and the neighbour across the side that begins at each; none: the frame.
+  double u_of_[most_corners], v_of_[most_corners];
+  std::uint32_t after_[most_corners];
+  double excess_[most_corners];  // by how much a corner is beyond the line that cuts
+  int corners_ = 0;
 };
 
 /// The stars of those of eight items, which lie together, that are marked; what is agreed is not known yet.

@@ -47,6 +47,46 @@ void EvenTheWorstVoxelsStay(Executor<Backend>& exec) {
               }));
 }
 
+/// A thin disc, whose voxels have to be held in several rounds, at `shift` from where it usually is: values at the
+/// voxels beside its boundary.
+template <class Backend>
+std::vector<float> values_of_disc(Executor<Backend>& exec, const Vec3d& shift) {
+  const Vec3d c(16, 16, 16);
+  const auto disc = [&](const Vec3d& p) {
+    return std::fabs(dot(p - c, Vec3d(0.6, 0.48, 0.64))) < 0.5 && length(p - c) < 8;
+  };
+  const std::size_t mark = exec.arena().mark();
+  TightenResult result;
+  const MaterialBricks b =
+      bricks_of(exec, label_volume({40, 40, 40}, 2, [&](const Vec3d& p) { return disc(p - shift); }), 1.2,
+                CubicKernel::catmull_rom, &result);
+  EXPECT_GT(result.held, 100);
+  std::vector<Vec3f> centres;
+  for_each_voxel({33, 33, 33}, [&](std::size_t, const Vec3d& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3d step;
+      step[axis] = 1;
+      if (disc(p + step) == disc(p - step)) continue;
+      centres.push_back(in_fields(p + shift));
+      return;
+    }
+  });
+  std::vector<float> values;
+  for (const FieldSample& s : sample_all(exec, b, centres, 1)) values.push_back(s.value);
+  exec.arena().rewind(mark);
+  return values;
+}
+
+template <class Backend>
+void WhereBricksBeginMakesNoDifference(Executor<Backend>& exec) {
+  const std::vector<float> values = values_of_disc(exec, {});
+  for (const Vec3d& shift : {Vec3d(3, 5, 2), Vec3d(4, 4, 4), Vec3d(7, 1, 6)}) {
+    const std::vector<float> shifted = values_of_disc(exec, shift);
+    ASSERT_EQ(shifted.size(), values.size());
+    for (std::size_t k = 0; k < values.size(); ++k) EXPECT_NEAR(shifted[k], values[k], 1e-5) << k;
+  }
+}
+
 template <class Backend>
 void WithoutWidthTheLabelsAreLeftAlone(Executor<Backend>& exec) {
   const MeshVolume volume = label_volume({16, 16, 16}, 2, [](const Vec3d& p) { return p.x + 2 * p.y > 20; });
@@ -205,6 +245,7 @@ void ABallOfLabelsBecomesRound(Executor<Backend>& exec) {
 
 NACRE_DEVICE_TEST(Tighten, EveryVoxelStaysInItsMaterial)
 NACRE_DEVICE_TEST(Tighten, EvenTheWorstVoxelsStay)
+NACRE_DEVICE_TEST(Tighten, WhereBricksBeginMakesNoDifference)
 NACRE_DEVICE_TEST(Tighten, WithoutWidthTheLabelsAreLeftAlone)
 NACRE_DEVICE_TEST(Tighten, AnObliquePlaneHasNoStaircase)
 NACRE_DEVICE_TEST(Tighten, StaircasesBecomeSlopes)
