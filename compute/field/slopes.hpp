@@ -17,11 +17,11 @@ struct LabelSlopes {
   MaterialBricksView field;
   float reach = 32;  ///< the farthest end of a tread that is looked for, in voxels; 0: staircases stay
 
-  /// What of voxel `v` belongs to another material than its own beyond face `axis`, `side` (-1 or 1): 0 to 0.5. Zero,
-  /// too, where the boundary lies beyond that face.
-  NACRE_HD float share_beyond(const Int3& v, int axis, int side) const {
+  /// How far the boundary between voxel `v` and the next one along `axis` is from the middle between both, in voxels:
+  /// -0.5 to 0.5, less than zero where it is nearer to the next one; 0 where both are of one material.
+  NACRE_HD float offset(const Int3& v, int axis) const {
     Int3 up{};
-    up[axis] = side;
+    up[axis] = 1;
     const Tread tread{v, up, label(v), label(v + up)};
     if (tread.own == tread.other) return 0;
     Ends rising, falling, other_rising, other_falling;
@@ -40,7 +40,7 @@ struct LabelSlopes {
     }
     if (rising.count == 0) rising = other_rising, falling = other_falling;
     const float r = rising.weight(falling), f = falling.weight(rising);
-    return r + f > 0 ? min(max((0.5f * (f - r) - bend) / (r + f), 0.0f), 0.5f) : 0;
+    return r + f > 0 ? min(max((0.5f * (f - r) - bend) / (r + f), -0.5f), 0.5f) : 0;
   }
 
  private:

@@ -49,36 +49,54 @@ struct ShareAlongSlopes {
   const std::uint32_t* listed;
   float* value;  ///< all or nothing before
 
-  NACRE_HD void operator()(std::int64_t i) const {  // rows of blocks with a list
-    const MaterialBricksView& field = slopes.field;
-    const std::uint32_t block = listed[i / (block_size * block_size)];
-    const BlockVoxels material(field, block);
-    const int row = int(i % (block_size * block_size));
-    const Int3 first = field.block(block) * Int3(block_size) + Int3(0, row % block_size, row / block_size);
-    for (int x = 0; x < block_size; ++x) share(material, block, first + Int3(x, 0, 0), row * block_size + x);
+  static constexpr int layer = block_size * block_size, faces = (block_size + 1) * layer;
+  static constexpr std::size_t scratch_bytes() { return 3 * faces * sizeof(float); }
+
+  NACRE_HD void operator()(Team& team, std::int64_t i) const {  // blocks with a list
+    const std::uint32_t block = listed[i];
+    const BlockVoxels material(slopes.field, block);
+    const Int3 low = slopes.field.block(block) * Int3(block_size);
+    auto* offset = reinterpret_cast<float*>(team.scratch());  // per axis and face, of the layers from the lowest on
+    team.each(3 * faces, [&](int k) { offset[k] = offset_at(material, low, k / faces, k % faces); });
+    team.each(brick_voxels, [&](int k) { share(material, block, low, offset, k); });
   }
 
  private:
-  NACRE_HD void share(const BlockVoxels& material, std::uint32_t block, const Int3& v, int position) const {
+  /// Of the boundary in a face of the block's voxels.
+  NACRE_HD float offset_at(const BlockVoxels& material, const Int3& low, int axis, int face) const {
+    Int3 v, next;
+    v[axis] = low[axis] + face / layer - 1;
+    v[(axis + 1) % 3] = low[(axis + 1) % 3] + face % block_size;
+    v[(axis + 2) % 3] = low[(axis + 2) % 3] + face / block_size % block_size;
+    next = v;
+    ++next[axis];
+    if (v[axis] < 0 || next[axis] >= slopes.field.voxels()[axis] || material(v) == material(next)) return 0;
+    return slopes.offset(v, axis);
+  }
+
+  NACRE_HD void share(const BlockVoxels& material, std::uint32_t block, const Int3& low, const float* offset,
+                      int position) const {
     const MaterialBricksView& field = slopes.field;
-    const Int3 n = field.voxels();
-    const std::uint16_t own = material(v);
+    const Int3 local(position % block_size, position / block_size % block_size, position / layer), v = low + local;
     const std::uint32_t start = field.block_start[block], end = field.block_start[block + 1];
     float* here = value + position;
     float all = 0;
-    for (int axis = 0; axis < 3; ++axis)
+    for (int axis = 0; axis < 3; ++axis) {
+      const int across = local[(axis + 2) % 3] * block_size + local[(axis + 1) % 3];
+      const float* face = offset + axis * faces + local[axis] * layer + across;
       for (const int side : {-1, 1}) {
-        if (v[axis] + 2 * side < 0 || v[axis] + 2 * side >= n[axis]) continue;
+        const float part = side < 0 ? -face[0] : face[layer];
+        if (!(part > 0)) continue;
         Int3 beside = v;
         beside[axis] += side;
         const std::uint32_t other = material(beside);
-        if (other == own) continue;
-        const float part = slopes.share_beyond(v, axis, side);
         all += part;
         for (std::uint32_t k = start; k < end; ++k)
           if (field.brick_material[k] == other) here[std::size_t(k) * brick_voxels] += part;
       }
+    }
     if (all == 0) return;
+    const std::uint32_t own = material(v);
     const float most = all > 0.5f ? 0.5f / all : 1;
     for (std::uint32_t k = start; k < end; ++k) {
       float& value_here = here[std::size_t(k) * brick_voxels];
@@ -87,20 +105,37 @@ struct ShareAlongSlopes {
   }
 };
 
-/// Marks the bricks of the same material around bricks that have changed, and these.
-struct MarkAroundChanged {
+/// A brick and those around it, by the offsets of their blocks: 13 is the brick itself.
+NACRE_HD inline Int3 step_to_brick(int k) { return {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1}; }
+
+/// The bits of those with voxels no more than `reach` away along each axis from one of the brick's.
+NACRE_HD inline std::uint64_t bricks_within(int position, int reach) {
+  const Int3 v(position % block_size, position / block_size % block_size, position / (block_size * block_size));
+  std::uint64_t bits = 0;
+  for (int k = 0; k < 27; ++k) {
+    const Int3 step = step_to_brick(k);
+    bool near = true;
+    for (int axis = 0; axis < 3; ++axis)
+      near = near && (step[axis] == 0 || (step[axis] < 0 ? v[axis] < reach : v[axis] >= block_size - reach));
+    bits |= std::uint64_t(near) << k;
+  }
+  return bits;
+}
+
+/// Marks the bricks of the same material that changes reach.
+struct MarkReached {
   MaterialBricksView field;
   const std::uint32_t* brick_block;
-  const std::uint32_t* changed;
-  std::uint32_t* marked;  ///< per brick, like `changed`
+  const std::uint64_t* changed;  ///< per brick: bits of the bricks around that its changes reach
+  std::uint32_t* marked;         ///< per brick
 
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t brick = std::uint32_t(i) + 2;
     if (!changed[brick]) return;
     const Int3 b = field.block(brick_block[brick]);
     for (int k = 0; k < 27; ++k) {
-      const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
-      if (is_within(c, field.blocks))
+      const Int3 c = b + step_to_brick(k);
+      if ((changed[brick] >> k & 1) && is_within(c, field.blocks))
         relaxed_store(marked + field.brick(field.block_number(c.x, c.y, c.z), field.brick_material[brick]), 1);
     }
   }
@@ -177,7 +212,7 @@ struct SmoothBrick {
     const std::uint32_t block = brick_block[brick];
     const Int3 n = source.blocks, b = source.block(block);
     team.each(27, [&](int k) {
-      const Int3 c = b + Int3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const Int3 c = b + step_to_brick(k);
       around[k] = is_within(c, n) ? source.brick(source.block_number(c.x, c.y, c.z), source.brick_material[brick])
                   : source.brick_material[brick] == 0 ? 1
                                                       : 0;
@@ -205,8 +240,9 @@ struct HoldVoxels {
   const std::uint32_t* smoothed;  ///< per brick
   float margin, thin_margin;      ///< by how much a voxel's own material shall win; the latter is the larger
   float gain;                     ///< what to ask for a unit of smoothed value
+  int reach;                      ///< of the Gaussian that smooths corrections
   float* correction;
-  std::uint32_t* changed;
+  std::uint64_t* changed;  ///< per brick: bits of the bricks around that its corrections reach
   std::uint64_t* held;
 
   NACRE_HD void operator()(std::int64_t i) const {
@@ -252,10 +288,11 @@ struct HoldVoxels {
     if (lead >= wanted) return false;
     const float share = 0.5f * gain * (1.2f * wanted - lead);  // a little more, so that rounds come to an end
     correction[std::size_t(mine) * brick_voxels + position] = share;
-    relaxed_store(changed + mine, 1);
+    const std::uint64_t reached = bricks_within(position, reach);
+    atomic_or(changed + mine, reached);
     // Nobody else writes to this voxel of the rival's brick: it is processed once.
     correction[std::size_t(rival) * brick_voxels + position] = -share;
-    relaxed_store(changed + rival, 1);
+    atomic_or(changed + rival, reached);
     return true;
   }
 
@@ -300,8 +337,8 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
     return result;
   }
   Array<float> source = arena.temporary<float>(b.value.size());
-  Array<std::uint32_t> changed = arena.temporary<std::uint32_t>(b.bricks),
-                       smoothed = arena.temporary<std::uint32_t>(b.bricks);
+  Array<std::uint64_t> changed = arena.temporary<std::uint64_t>(b.bricks);
+  Array<std::uint32_t> smoothed = arena.temporary<std::uint32_t>(b.bricks);
   Array<std::uint64_t> held = arena.temporary<std::uint64_t>(1);
   MaterialBricksView from = b.view();
   from.value = source.data();
@@ -309,8 +346,8 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{source.data(), 0, 1});
   exec.for_each(bricks * rows, detail::FillBinary{b.view(), b.brick_block.data(), source.data()});
   if (stairs > 0)
-    exec.for_each(std::int64_t(b.listed.size()) * rows,
-                  detail::ShareAlongSlopes{{b.view(), float(stairs)}, b.listed.data(), source.data()});
+    exec.for_each_team(std::int64_t(b.listed.size()),
+                       detail::ShareAlongSlopes{{b.view(), float(stairs)}, b.listed.data(), source.data()});
   smoothed.fill_bytes(1);
   exec.for_each_team(
       bricks, detail::SmoothBrick<reach, 2>{from,
@@ -327,12 +364,12 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
     changed.fill_bytes(0);
     held.fill_bytes(0);
     exec.for_each(bricks, detail::HoldVoxels{b.view(), b.brick_block.data(), smoothed.data(), 0.04f, 0.25f, gain,
-                                             source.data(), changed.data(), held.data()});
+                                             narrow_reach, source.data(), changed.data(), held.data()});
     result.left = std::int64_t(held.download()[0]);
     result.held = std::max(result.held, result.left);
     if (result.left == 0) break;
     smoothed.fill_bytes(0);
-    exec.for_each(bricks, detail::MarkAroundChanged{b.view(), b.brick_block.data(), changed.data(), smoothed.data()});
+    exec.for_each(bricks, detail::MarkReached{b.view(), b.brick_block.data(), changed.data(), smoothed.data()});
     exec.for_each_team(bricks, detail::SmoothBrick<narrow_reach, 1>{
                                    from, b.brick_block.data(), smoothed.data(), {narrow}, {1}, b.value.data()});
   }

@@ -161,8 +161,7 @@ struct ShareAtTop {
   int top;
   float* share;
   NACRE_HD void operator()(std::int64_t x) const {
-    const Int3 v = Int3(int(x), 8, top) + Int3(volume_padding), up(0, 0, 1);
-    share[x] = slopes.share_beyond(v + up, 2, -1) - slopes.share_beyond(v, 2, 1);
+    share[x] = -slopes.offset(Int3(int(x), 8, top) + Int3(volume_padding), 2);
   }
 };
 
