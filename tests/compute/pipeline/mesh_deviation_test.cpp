@@ -1,10 +1,9 @@
 // Nacre: how far triangles are from their interfaces, and meshes whose deviation is bounded.
-#include "compute/pipeline/deviation_refinement.hpp"
-
 #include <gtest/gtest.h>
 
 #include "compute/device/cpu_device.hpp"
 #include "compute/meshing/topology.hpp"
+#include "compute/pipeline/deviation_refinement.hpp"
 #include "tests/compute/icosphere.hpp"
 #include "tests/compute/pipeline/mesh_volumes.hpp"
 
