@@ -54,12 +54,13 @@ struct BricksAround {
   template <class Visit>
   NACRE_HD void operator()(std::int64_t i, const Visit& visit) const {
     const FoundJunction f = found[i];
+    const Int3 low = f.window.low(), high = f.window.high();
     if (f.junction.order() == 0) return;
     const std::uint64_t interface = junction_number(table, table_size, f.junction);
     const Int3 c{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
-    for (int z = f.low(2) < 3 ? -1 : 0; z <= (f.high(2) > 0 ? 1 : 0); ++z)
-      for (int y = f.low(1) < 3 ? -1 : 0; y <= (f.high(1) > 0 ? 1 : 0); ++y)
-        for (int x = f.low(0) < 3 ? -1 : 0; x <= (f.high(0) > 0 ? 1 : 0); ++x) {
+    for (int z = low.z < 3 ? -1 : 0; z <= (high.z > 0 ? 1 : 0); ++z)
+      for (int y = low.y < 3 ? -1 : 0; y <= (high.y > 0 ? 1 : 0); ++y)
+        for (int x = low.x < 3 ? -1 : 0; x <= (high.x > 0 ? 1 : 0); ++x) {
           const Int3 d = c + Int3(x, y, z);
           if (is_within(d, coarse))
             visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);

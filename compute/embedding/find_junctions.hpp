@@ -18,10 +18,7 @@ namespace nacre {
 struct FoundJunction {
   Junction junction;
   std::uint32_t coarse = 0;
-  std::uint32_t window = 0;  ///< lowest and highest of the cells, two bits each
-
-  NACRE_HD int low(int axis) const { return int(window >> 2 * axis) & 3; }
-  NACRE_HD int high(int axis) const { return int(window >> (6 + 2 * axis)) & 3; }
+  CellWindow window;
 };
 
 /// All that were found, in temporary memory of the caller's scope, and the surfaces and curves among them in order.
@@ -158,13 +155,14 @@ struct FindJunctionPoints {
   NACRE_HD void operator()(std::int64_t i) const {
     point[i] = {0, 0, 0, 0};
     const FoundJunction f = found[i / starts];
+    const Int3 low = f.window.low(), high = f.window.high();
     const int cell = int(i % starts) - 1;
     const Int3 b{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
     Vec3f middle;
     for (int axis = 0; axis < 3; ++axis) {
       const int k = cell >> 2 * axis & 3;
-      if (cell >= 0 && (k + 1 < f.low(axis) || k - 1 > f.high(axis))) return;
-      middle[axis] = b[axis] * 4 + (cell < 0 ? 0.5f * float(f.low(axis) + f.high(axis) + 1) : float(k) + 0.5f);
+      if (cell >= 0 && (k + 1 < low[axis] || k - 1 > high[axis])) return;
+      middle[axis] = b[axis] * 4 + (cell < 0 ? 0.5f * float(low[axis] + high[axis] + 1) : float(k) + 0.5f);
     }
     JunctionPoint at;
     if (!project(field, f.junction, middle / cells_per_voxel, cells_per_voxel < 1 ? 6 / cells_per_voxel : 6.0f, at))

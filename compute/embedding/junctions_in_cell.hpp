@@ -8,47 +8,59 @@
 
 namespace nacre {
 
+/// A box of some of the 4^3 cells of a coarse cell: the lowest and highest, two bits for each number.
+class CellWindow {
+ public:
+  CellWindow() = default;
+  NACRE_HD CellWindow(const Int3& low, const Int3& high)
+      : bits_(std::uint32_t(low.x | low.y << 2 | low.z << 4 | high.x << 6 | high.y << 8 | high.z << 10)) {}
+
+  NACRE_HD Int3 low() const { return at(0); }
+  NACRE_HD Int3 high() const { return at(6); }
+  NACRE_HD bool holds(const Int3& cell) const { return max(low(), cell) == cell && min(high(), cell) == cell; }
+  NACRE_HD CellWindow with(const Int3& cell) const { return {min(low(), cell), max(high(), cell)}; }
+
+ private:
+  NACRE_HD Int3 at(int shift) const {
+    return {int(bits_ >> shift) & 3, int(bits_ >> (shift + 2)) & 3, int(bits_ >> (shift + 4)) & 3};
+  }
+
+  std::uint32_t bits_ = 0;
+};
+
 namespace detail {
 
 /// The junctions of one coarse cell: at most this many different ones are distinguished.
 struct CellJunctions {
   static constexpr int capacity = 64;
   Junction junction[capacity];
-  std::uint32_t window[capacity];
+  CellWindow window[capacity];
   int count = 0;
   bool complete = true;  // nothing was left out, neither a junction nor a material that could have made some
 
   /// Adding it would change nothing.
   NACRE_HD bool holds(const Junction& j, const Int3& cell) const {
-    int k = 0;
-    while (k < count && !(junction[k] == j)) ++k;
-    if (k == count) return false;
-    for (int axis = 0; axis < 3; ++axis)
-      if (cell[axis] < low(k, axis) || cell[axis] > high(k, axis)) return false;
-    return true;
+    const int k = find(j);
+    return k < count && window[k].holds(cell);
   }
 
   NACRE_HD void add(const Junction& j, const Int3& cell) {
-    int k = 0;
-    while (k < count && !(junction[k] == j)) ++k;
-    if (k == count) {
-      if (count == capacity) {
-        complete = false;
-        return;
-      }
-      junction[count++] = j;
-      window[k] = pack(cell, cell);
-      return;
+    const int k = find(j);
+    if (k < count) {
+      window[k] = window[k].with(cell);
+    } else if (count < capacity) {
+      junction[k] = j, window[k] = {cell, cell};
+      ++count;
+    } else {
+      complete = false;
     }
-    const Int3 first(low(k, 0), low(k, 1), low(k, 2)), last(high(k, 0), high(k, 1), high(k, 2));
-    window[k] = pack(min(first, cell), max(last, cell));
   }
 
  private:
-  NACRE_HD int low(int k, int axis) const { return int(window[k] >> 2 * axis) & 3; }
-  NACRE_HD int high(int k, int axis) const { return int(window[k] >> (6 + 2 * axis)) & 3; }
-  NACRE_HD static std::uint32_t pack(const Int3& low, const Int3& high) {
-    return std::uint32_t(low.x | low.y << 2 | low.z << 4 | high.x << 6 | high.y << 8 | high.z << 10);
+  NACRE_HD int find(const Junction& j) const {
+    int k = 0;
+    while (k < count && !(junction[k] == j)) ++k;
+    return k;
   }
 };
 
