@@ -105,8 +105,9 @@ struct CellsBesidePoint {
   static constexpr float rounding = 1e-5f;
 };
 
-/// Finds for all cells of a tile the nearest point: from the points of the tiles around, those are listed that can be
-/// the nearest to any of its cells; then each lane goes through this list for a block of 2^3 cells.
+/// Finds for all cells of a tile the nearest point. Of the points of the tiles around, those are listed that can be the
+/// nearest to one of its cells; of these, for each octant of the tile, those that can be for one of the octant's; and
+/// each lane goes through them for a block of 2^3 cells.
 struct FindNearestPoints {
   PointsInTilesView points;
   TilesView tiles;
@@ -123,13 +124,9 @@ struct FindNearestPoints {
       found.nearest[k] = none;
     });
     const Int3 at = tiles.lattice.tile_at(tiles.tile[s]);
-    const Vec3f spacing = tiles.lattice.spacing, half = spacing * (0.5f * (n - 1));
-    const Vec3f centre = tiles.lattice.centre(at * Int3(n)) + half;
-    Vec3f first;
-    if (find_near(team, at, centre, first)) {
-      const CellsBesidePoint cells(centre, half, first);
-      list_and_search(team, at, cells, found);
-    }
+    const Vec3f half = half_of(n), centre = tiles.lattice.centre(at * Int3(n)) + half;
+    Vec3f near;
+    if (find_near(team, at, centre, near)) list_and_search(team, at, {centre, half, near}, found);
     team.each(Lattice::tile_cells, [&](int k) {
       const bool holds = tiles.lattice.holds(at * Int3(n) + Int3(k % n, k / n % n, k / (n * n)));
       nearest[s * Lattice::tile_cells + k] = holds ? found.nearest[k] : none;
@@ -140,12 +137,24 @@ struct FindNearestPoints {
   static constexpr int n = Lattice::tile;
   static constexpr int capacity = int(LeastOf::most), group = 16;
 
-  struct Found {
-    float x[capacity], y[capacity], z[capacity];  ///< of the points listed, from the centre of the tile
+  /// Points, as they lie from the centre of the tile.
+  struct List {
+    float x[capacity], y[capacity], z[capacity];
     std::uint32_t number[capacity];
+    NACRE_HD Vec3f at(int k) const { return {x[k], y[k], z[k]}; }
+    NACRE_HD_INLINE LeastOf square(int k, const Vec3f& from) const {
+      const float rx = x[k] - from.x, ry = y[k] - from.y, rz = z[k] - from.z;
+      return LeastOf(rx * rx + ry * ry + rz * rz, k);
+    }
+  };
+  struct Found {
+    List of_tile, of_octant;
     float least[Lattice::tile_cells];  ///< per cell: its squared distance from the nearest one so far
     std::uint32_t nearest[Lattice::tile_cells];
   };
+
+  /// Of so many cells along each axis.
+  NACRE_HD Vec3f half_of(int cells) const { return tiles.lattice.spacing * (0.5f * float(cells - 1)); }
 
   /// visit(stored tile) of those around that have points; the tile itself first.
   template <class Visit>
@@ -189,22 +198,23 @@ struct FindNearestPoints {
     return any;
   }
 
-  /// Lists the points that can be the nearest to one of the cells, and looks at them whenever the list is full.
+  /// Lists the points that can be the nearest to one of the tile's cells, and looks at them whenever the list is full.
   NACRE_HD void list_and_search(Team& team, const Int3& at, const CellsBesidePoint& cells, Found& found) const {
     const float farthest = min(cells.farthest(), reach);
+    List& list = found.of_tile;
     int count = 0;
     each_tile_around(at, [&](std::uint32_t t) {
       if (distance(t, cells.centre, cells.half) > farthest) return;
       const std::uint32_t end = points.first[t + 1];
       for (std::uint32_t i = points.first[t]; i < end; i += Team::lanes) {
         count += team.compact(
-            int(end - i < std::uint32_t(Team::lanes) ? end - i : Team::lanes),
+            int(end - i < std::uint32_t(Team::lanes) ? end - i : std::uint32_t(Team::lanes)),
             [&](int k) { return cells.may_be_nearer(points.x[i + k], points.y[i + k], points.z[i + k]); },
             [&](int k, int place) {
-              found.x[count + place] = points.x[i + k] - cells.centre.x;
-              found.y[count + place] = points.y[i + k] - cells.centre.y;
-              found.z[count + place] = points.z[i + k] - cells.centre.z;
-              found.number[count + place] = i + std::uint32_t(k);
+              list.x[count + place] = points.x[i + k] - cells.centre.x;
+              list.y[count + place] = points.y[i + k] - cells.centre.y;
+              list.z[count + place] = points.z[i + k] - cells.centre.z;
+              list.number[count + place] = i + std::uint32_t(k);
             });
         if (count > capacity - Team::lanes) {
           search(team, count, found);
@@ -215,16 +225,37 @@ struct FindNearestPoints {
     if (count > 0) search(team, count, found);
   }
 
+  /// Looks at the `count` points listed for the tile, octant by octant.
   NACRE_HD void search(Team& team, int count, Found& found) const {
-    const int filled = (count + group - 1) / group * group;
-    team.each(filled - count, [&](int k) {
-      found.x[count + k] = found.y[count + k] = found.z[count + k] = PointsInTilesView::nowhere;
-    });
-    constexpr int blocks = n / 2;
-    team.each(blocks * blocks * blocks, [&](int b) {
-      search_block(Int3(b % blocks, b / blocks % blocks, b / (blocks * blocks)) * Int3(2), filled, found);
-    });
+    const List& all = found.of_tile;
+    List& some = found.of_octant;
+    for (int octant = 0; octant < 8; ++octant) {
+      const Int3 first = Int3(octant & 1, octant >> 1 & 1, octant >> 2) * Int3(n / 2);
+      const Vec3f half = half_of(n / 2), centre = centre_of(first) + half;
+      const LeastOf least = team.sum(count, LeastOf(), [&](int k) { return all.square(k, centre); });
+      const CellsBesidePoint cells(centre, half, all.at(least.index()));
+      int kept = 0;
+      for (int i = 0; i < count; i += Team::lanes)
+        kept += team.compact(
+            count - i < Team::lanes ? count - i : Team::lanes,
+            [&](int k) { return cells.may_be_nearer(all.x[i + k], all.y[i + k], all.z[i + k]); },
+            [&](int k, int place) {
+              some.x[kept + place] = all.x[i + k];
+              some.y[kept + place] = all.y[i + k];
+              some.z[kept + place] = all.z[i + k];
+              some.number[kept + place] = all.number[i + k];
+            });
+      const int filled = (kept + group - 1) / group * group;
+      team.each(filled - kept,
+                [&](int k) { some.x[kept + k] = some.y[kept + k] = some.z[kept + k] = PointsInTilesView::nowhere; });
+      team.each(8, [&](int block) {
+        search_block(first + Int3(block & 1, block >> 1 & 1, block >> 2) * Int3(2), filled, found);
+      });
+    }
   }
+
+  /// Centre of a cell in the tile, from the centre of the tile.
+  NACRE_HD Vec3f centre_of(const Int3& cell) const { return Vec3f(cell) * tiles.lattice.spacing - half_of(n); }
 
   /// The 2^3 cells from `first` on, in the tile.
   struct Cells {
@@ -245,17 +276,21 @@ struct FindNearestPoints {
     }
   };
 
+  /// Looks at `count` points of the octant, a multiple of `group`.
   NACRE_HD void search_block(const Int3& first, int count, Found& found) const {
-    const Vec3f spacing = tiles.lattice.spacing, low = (Vec3f(first) - Vec3f(0.5f * (n - 1))) * spacing;
-    const CellsBesidePoint block = beside_nearest(low + spacing * 0.5f, spacing * 0.5f, count, found);
+    const List& list = found.of_octant;
+    const Vec3f spacing = tiles.lattice.spacing, begin = centre_of(first), half = half_of(2), centre = begin + half;
+    LeastOf least;
+    for (int k = 0; k < count; ++k) least = least + list.square(k, centre);
+    const CellsBesidePoint block(centre, half, list.at(least.index()));
     const auto place = [&](int k) {
       return Lattice::place(first.x + (k & 1), first.y + (k >> 1 & 1), first.z + (k >> 2));
     };
     Cells cells;
     for (int k = 0; k < Cells::count; ++k) {
-      cells.x[k] = low.x + float(k & 1) * spacing.x;
-      cells.y[k] = low.y + float(k >> 1 & 1) * spacing.y;
-      cells.z[k] = low.z + float(k >> 2) * spacing.z;
+      cells.x[k] = begin.x + float(k & 1) * spacing.x;
+      cells.y[k] = begin.y + float(k >> 1 & 1) * spacing.y;
+      cells.z[k] = begin.z + float(k >> 2) * spacing.z;
       cells.least[k] = found.least[place(k)];
       cells.nearest[k] = found.nearest[place(k)];
     }
@@ -265,29 +300,17 @@ struct FindNearestPoints {
 #pragma omp simd reduction(| : any)
 #endif
       for (int k = 0; k < group; ++k) {
-        near[k] = block.may_be_nearer(found.x[i + k], found.y[i + k], found.z[i + k]) ? 1 : 0;
+        near[k] = block.may_be_nearer(list.x[i + k], list.y[i + k], list.z[i + k]) ? 1 : 0;
         any |= near[k];
       }
       if (!any) continue;
       for (int k = 0; k < group; ++k)
-        if (near[k]) cells.look_at(found.x[i + k], found.y[i + k], found.z[i + k], found.number[i + k]);
+        if (near[k]) cells.look_at(list.x[i + k], list.y[i + k], list.z[i + k], list.number[i + k]);
     }
     for (int k = 0; k < Cells::count; ++k) {
       found.least[place(k)] = cells.least[k];
       found.nearest[place(k)] = cells.nearest[k];
     }
-  }
-
-  /// With that of the points listed which is about the nearest to `centre`.
-  NACRE_HD static CellsBesidePoint beside_nearest(const Vec3f& centre, const Vec3f& half, int count,
-                                                  const Found& found) {
-    LeastOf least;
-    for (int k = 0; k < count; ++k) {
-      const float x = found.x[k] - centre.x, y = found.y[k] - centre.y, z = found.z[k] - centre.z;
-      least = least + LeastOf(x * x + y * y + z * z, k);
-    }
-    const int k = least.index();
-    return {centre, half, {found.x[k], found.y[k], found.z[k]}};
   }
 };
 
