@@ -70,7 +70,7 @@ MemoryEstimate estimate_memory(const VolumeFacts& facts, const MeshParameters& p
   MemoryEstimate estimate;
   estimate.fields =
       double(facts.bricks) * brick + 2 * double(facts.lattice_tiles) * tile + points * sizeof(InterfacePoint);
-  estimate.building = std::max(tightens ? double(facts.bricks) * brick : 0.0, double(facts.lattice_tiles) * tile);
+  estimate.building = tightens ? double(facts.bricks) * brick : 0;
   estimate.particles = cells_on_area * facts.boundary.usual * cells_per_voxel * cells_per_voxel * bytes_of_cell +
                        solver_bytes(std::int64_t(std::min(particles, 4e9)), 1, parameters);
   estimate.triangulation = particles * host_bytes_of_particle;
