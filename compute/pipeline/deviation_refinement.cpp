@@ -147,11 +147,10 @@ class Insertion {
     choices_.push_back({centre, radius, away});
     const Vec3d middle = (p[0] + p[1] + p[2]) / 3.0;
     choices_.push_back({middle, std::min({length(middle - p[0]), length(middle - p[1]), length(middle - p[2])}), away});
-    int longest = 0;
+    std::array<int, 3> sides{0, 1, 2};
     const auto side = [&](int k) { return p[std::size_t((k + 1) % 3)] - p[std::size_t(k)]; };
-    for (int k = 1; k < 3; ++k)
-      if (length(side(k)) > length(side(longest))) longest = k;
-    choices_.push_back({p[std::size_t(longest)] + 0.5 * side(longest), 0.5 * length(side(longest)), away});
+    std::stable_sort(sides.begin(), sides.end(), [&](int k, int l) { return length(side(k)) > length(side(l)); });
+    for (const int k : sides) choices_.push_back({p[std::size_t(k)] + 0.5 * side(k), 0.5 * length(side(k)), away});
   }
 
   /// At the middle of an edge on a curve.

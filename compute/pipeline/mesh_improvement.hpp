@@ -132,7 +132,7 @@ class MeshImprovement {
   std::int64_t split(Kept& kept, std::vector<std::uint8_t>& fixed);
   bool stars() const { return rule_.stars && star_use_.fallbacks == 0; }
   void drop_crowded(std::size_t first);
-  bool add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
+  void add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths);
   static std::vector<std::uint8_t> bad_points(const Triangulated& made, const DefectRule& rule);
   static double fitness_of(const Triangulated& made);
   static bool better_shaped(const Kept& a, const Kept& b);

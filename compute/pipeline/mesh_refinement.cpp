@@ -13,7 +13,7 @@ namespace nacre {
 namespace {
 
 constexpr int most_turns = 4;         ///< of adding particles and then improving triangles
-constexpr int most_rounds = 8;        ///< of adding particles in one turn;
+constexpr int most_rounds = 16;       ///< of adding particles in one turn;
 constexpr int rounds_smoothed = 5;    ///< so many of them smooth around new particles
 constexpr int remeshing_of_turn = 6;  ///< rounds of remeshing in one turn, at most
 constexpr int smoothing_turns = 4;
@@ -63,8 +63,8 @@ void MeshImprovement::drop_crowded(std::size_t first) {
 }
 
 /// Adds particles, and smooths what is around them. Those of which `made` has no point go before: new ones might come
-/// to lie beside them. False where there is no room for any.
-bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
+/// to lie beside them. Where there is no room for any, the next round tries other places.
+void MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinement& further, bool smooths) {
   std::size_t before = 0;  // particles that stay
   particles_.in_stage("refine", [&] {
     std::vector<std::uint8_t> gone(std::size_t(particles_.count()), 1);
@@ -82,16 +82,14 @@ bool MeshImprovement::add_where_far(Triangulated& made, const DeviationRefinemen
   });
   const std::size_t added = std::size_t(particles_.count()) - before;
   deviation_.inserted += std::int64_t(added);
-  if (added == 0) return false;
   made = triangulate();
-  if (!smooths || rule_.smooth == 0) return true;
+  if (added == 0 || !smooths || rule_.smooth == 0) return;
   std::vector<std::uint8_t> fresh(made.mesh.points.size()), moving(made.mesh.points.size());
   for (std::size_t v = 0; v < fresh.size(); ++v) fresh[v] = made.point_of[v] >= before;
   for (const Triangle& t : made.mesh.triangles)
     if (fresh[t.a] || fresh[t.b] || fresh[t.c]) moving[t.a] = moving[t.b] = moving[t.c] = 1;
   smooth(made, moving, {smoothing_turns, 0});
   made = triangulate();
-  return true;
 }
 
 /// Adds particles in the triangles that are too far away, until there are none or nothing helps; then improves bad
@@ -107,7 +105,7 @@ void MeshImprovement::refine(Kept& best) {
     for (int round = 0; round < most_rounds && !now.further.insert.empty(); ++round) {
       tell_("refine", fraction(), round + 1, 0);
       ++deviation_.rounds;
-      if (!add_where_far(now.made, now.further, round < rounds_smoothed)) break;
+      add_where_far(now.made, now.further, round < rounds_smoothed);
       now.particles = particles_.download();
       measure(now);
       if (better(now, best)) best = now;

@@ -79,7 +79,7 @@ TEST(MeshStars, ThePatchesAreThereAfterAnyNumberOfRounds) {
   for (const int smooth : {1, 2})
     for (const int remesh : {0, 4}) {
       MeshParameters rounds;
-      rounds.min_size = rounds.max_size = 2;
+      rounds.min_size = rounds.max_size = 2.1;
       rounds.smooth = smooth, rounds.remesh = remesh;
       const MeshRun stars = run_with("stars", volume, 0, rounds);
       EXPECT_GT(stars.info.stars.last.in_patches, 0) << smooth << " " << remesh;
