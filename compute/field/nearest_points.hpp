@@ -12,13 +12,49 @@
 namespace nacre {
 namespace detail {
 
+/// The least of many squared distances, and which one of up to 512 it is: in one word, so that a minimum of integers
+/// finds both. Distances that differ by less than 2^-14 of them count as equal.
+struct LeastOf {
+  static constexpr std::uint32_t most = 512;
+  std::uint32_t word = ~std::uint32_t(0);
+  NACRE_HD_INLINE LeastOf() {}
+  NACRE_HD_INLINE LeastOf(float square, int k) {
+    std::uint32_t bits;  // ascend with the number, since it is not negative
+    std::memcpy(&bits, &square, sizeof bits);
+    word = (bits & ~(most - 1)) | std::uint32_t(k);
+  }
+  NACRE_HD_INLINE int index() const { return int(word & (most - 1)); }
+  NACRE_HD_INLINE friend LeastOf operator+(const LeastOf& a, const LeastOf& b) {
+    LeastOf least;
+    least.word = a.word < b.word ? a.word : b.word;
+    return least;
+  }
+};
+
+/// Points, each coordinate by itself, as vector instructions want them.
+struct Coordinates {
+  const float *x, *y, *z;
+
+  NACRE_HD_INLINE Vec3f at(int k) const { return {x[k], y[k], z[k]}; }
+  /// Of one of the first 512 points.
+  NACRE_HD_INLINE LeastOf square(int k, const Vec3f& from) const {
+    const float rx = x[k] - from.x, ry = y[k] - from.y, rz = z[k] - from.z;
+    return LeastOf(rx * rx + ry * ry + rz * rz, k);
+  }
+};
+
 /// Interface points by the stored tiles that their cells are in.
 struct PointsInTilesView {
-  const float *x, *y, *z;      ///< per point; `nowhere` where there is none
+  Coordinates all;             ///< `nowhere` where there is none
   const std::uint32_t* first;  ///< per stored tile and one more: its first point
   const Vec3f *low, *high;     ///< per stored tile: around its points; low > high where it has none
 
   static constexpr float nowhere = 1e18f;
+
+  NACRE_HD int count(std::uint32_t tile) const { return int(first[tile + 1] - first[tile]); }
+  NACRE_HD Coordinates of(std::uint32_t tile) const {
+    return {all.x + first[tile], all.y + first[tile], all.z + first[tile]};
+  }
 };
 
 struct SplitPosition {
@@ -57,25 +93,6 @@ struct BoxOfTile {
   }
 };
 
-/// The least of many squared distances, and which one of up to 512 it is: in one word, so that a minimum of integers
-/// finds both. Distances that differ by less than 2^-14 of them count as equal.
-struct LeastOf {
-  static constexpr std::uint32_t most = 512;
-  std::uint32_t word = ~std::uint32_t(0);
-  NACRE_HD_INLINE LeastOf() {}
-  NACRE_HD_INLINE LeastOf(float square, int k) {
-    std::uint32_t bits;  // ascend with the number, since it is not negative
-    std::memcpy(&bits, &square, sizeof bits);
-    word = (bits & ~(most - 1)) | std::uint32_t(k);
-  }
-  NACRE_HD_INLINE int index() const { return int(word & (most - 1)); }
-  NACRE_HD_INLINE friend LeastOf operator+(const LeastOf& a, const LeastOf& b) {
-    LeastOf least;
-    least.word = a.word < b.word ? a.word : b.word;
-    return least;
-  }
-};
-
 /// Cell centres from `centre` - `half` to `centre` + `half`, and a point that is near them. Another one can be nearer
 /// to one of them only on this side of the plane halfway between the two: the difference of its squared distances,
 /// which is linear in the place, is looked at where it is the smallest.
@@ -88,8 +105,8 @@ struct CellsBesidePoint {
       : centre(centre_), half(half_), seen(point - centre_), square(dot(seen, seen)) {}
 
   /// True also of points that are as near, and of some that are not.
-  NACRE_HD_INLINE bool may_be_nearer(float x, float y, float z) const {
-    const float rx = x - centre.x, ry = y - centre.y, rz = z - centre.z;
+  NACRE_HD_INLINE bool may_be_nearer(const Coordinates& points, int k) const {
+    const float rx = points.x[k] - centre.x, ry = points.y[k] - centre.y, rz = points.z[k] - centre.z;
     const float other = rx * rx + ry * ry + rz * rz;
     const float gain =
         2 * (std::fabs(rx - seen.x) * half.x + std::fabs(ry - seen.y) * half.y + std::fabs(rz - seen.z) * half.z);
@@ -141,11 +158,7 @@ struct FindNearestPoints {
   struct List {
     float x[capacity], y[capacity], z[capacity];
     std::uint32_t number[capacity];
-    NACRE_HD Vec3f at(int k) const { return {x[k], y[k], z[k]}; }
-    NACRE_HD_INLINE LeastOf square(int k, const Vec3f& from) const {
-      const float rx = x[k] - from.x, ry = y[k] - from.y, rz = z[k] - from.z;
-      return LeastOf(rx * rx + ry * ry + rz * rz, k);
-    }
+    NACRE_HD_INLINE Coordinates points() const { return {x, y, z}; }
   };
   struct Found {
     List of_tile, of_octant;
@@ -160,13 +173,13 @@ struct FindNearestPoints {
   template <class Visit>
   NACRE_HD void each_tile_around(const Int3& at, const Visit& visit) const {
     const std::uint32_t own = tiles.beside(at, Int3(0));
-    if (points.first[own] < points.first[own + 1]) visit(own);
+    if (points.count(own) > 0) visit(own);
     const Int3 low = max(at - rings, Int3(0)), high = min(at + rings, tiles.lattice.tiles() - Int3(1));
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
           const std::uint32_t t = tiles.stored[tiles.lattice.tile_number({x, y, z})];
-          if (t != none && t != own && points.first[t] < points.first[t + 1]) visit(t);
+          if (t != none && t != own && points.count(t) > 0) visit(t);
         }
   }
 
@@ -182,14 +195,10 @@ struct FindNearestPoints {
     bool any = false;
     each_tile_around(at, [&](std::uint32_t t) {
       if (distance(t, centre, Vec3f(0)) >= least) return;
-      const std::uint32_t begin = points.first[t];
-      const LeastOf of_tile = team.sum(int(points.first[t + 1] - begin), LeastOf(), [&](int k) {
-        const float x = points.x[begin + k] - centre.x, y = points.y[begin + k] - centre.y,
-                    z = points.z[begin + k] - centre.z;
-        return LeastOf(x * x + y * y + z * z, k);
-      });
-      const std::uint32_t i = begin + std::uint32_t(of_tile.index());
-      const Vec3f p{points.x[i], points.y[i], points.z[i]};
+      const Coordinates of_tile = points.of(t);
+      const LeastOf nearest_of_tile =
+          team.sum(points.count(t), LeastOf(), [&](int k) { return of_tile.square(k, centre); });
+      const Vec3f p = of_tile.at(nearest_of_tile.index());
       if (!(length(p - centre) < least)) return;
       least = length(p - centre);
       near = p;
@@ -201,21 +210,14 @@ struct FindNearestPoints {
   /// Lists the points that can be the nearest to one of the tile's cells, and looks at them whenever the list is full.
   NACRE_HD void list_and_search(Team& team, const Int3& at, const CellsBesidePoint& cells, Found& found) const {
     const float farthest = min(cells.farthest(), reach);
-    List& list = found.of_tile;
     int count = 0;
     each_tile_around(at, [&](std::uint32_t t) {
       if (distance(t, cells.centre, cells.half) > farthest) return;
-      const std::uint32_t end = points.first[t + 1];
-      for (std::uint32_t i = points.first[t]; i < end; i += Team::lanes) {
-        count += team.compact(
-            int(end - i < std::uint32_t(Team::lanes) ? end - i : std::uint32_t(Team::lanes)),
-            [&](int k) { return cells.may_be_nearer(points.x[i + k], points.y[i + k], points.z[i + k]); },
-            [&](int k, int place) {
-              list.x[count + place] = points.x[i + k] - cells.centre.x;
-              list.y[count + place] = points.y[i + k] - cells.centre.y;
-              list.z[count + place] = points.z[i + k] - cells.centre.z;
-              list.number[count + place] = i + std::uint32_t(k);
-            });
+      const Coordinates of_tile = points.of(t);
+      const int end = points.count(t);
+      for (int i = 0; i < end; i += Team::lanes) {
+        count = keep(team, cells, of_tile, i, end, cells.centre, found.of_tile, count,
+                     [&](int k) { return points.first[t] + std::uint32_t(k); });
         if (count > capacity - Team::lanes) {
           search(team, count, found);
           count = 0;
@@ -225,6 +227,21 @@ struct FindNearestPoints {
     if (count > 0) search(team, count, found);
   }
 
+  /// Adds those of a team's points from number `i` on, before `end`, that can be the nearest to one of the cells, to the
+  /// `count` in the list, as they lie from `origin`. Returns how many it has then.
+  template <class Number>
+  NACRE_HD static int keep(Team& team, const CellsBesidePoint& cells, const Coordinates& from, int i, int end,
+                           const Vec3f& origin, List& list, int count, const Number& number) {
+    return count + team.compact(
+                       end - i < Team::lanes ? end - i : Team::lanes,
+                       [&](int k) { return cells.may_be_nearer(from, i + k); },
+                       [&](int k, int place) {
+                         const Vec3f p = from.at(i + k) - origin;
+                         list.x[count + place] = p.x, list.y[count + place] = p.y, list.z[count + place] = p.z;
+                         list.number[count + place] = number(i + k);
+                       });
+  }
+
   /// Looks at the `count` points listed for the tile, octant by octant.
   NACRE_HD void search(Team& team, int count, Found& found) const {
     const List& all = found.of_tile;
@@ -232,19 +249,11 @@ struct FindNearestPoints {
     for (int octant = 0; octant < 8; ++octant) {
       const Int3 first = Int3(octant & 1, octant >> 1 & 1, octant >> 2) * Int3(n / 2);
       const Vec3f half = half_of(n / 2), centre = centre_of(first) + half;
-      const LeastOf least = team.sum(count, LeastOf(), [&](int k) { return all.square(k, centre); });
-      const CellsBesidePoint cells(centre, half, all.at(least.index()));
+      const LeastOf least = team.sum(count, LeastOf(), [&](int k) { return all.points().square(k, centre); });
+      const CellsBesidePoint cells(centre, half, all.points().at(least.index()));
       int kept = 0;
       for (int i = 0; i < count; i += Team::lanes)
-        kept += team.compact(
-            count - i < Team::lanes ? count - i : Team::lanes,
-            [&](int k) { return cells.may_be_nearer(all.x[i + k], all.y[i + k], all.z[i + k]); },
-            [&](int k, int place) {
-              some.x[kept + place] = all.x[i + k];
-              some.y[kept + place] = all.y[i + k];
-              some.z[kept + place] = all.z[i + k];
-              some.number[kept + place] = all.number[i + k];
-            });
+        kept = keep(team, cells, all.points(), i, count, Vec3f(0), some, kept, [&](int k) { return all.number[k]; });
       const int filled = (kept + group - 1) / group * group;
       team.each(filled - kept,
                 [&](int k) { some.x[kept + k] = some.y[kept + k] = some.z[kept + k] = PointsInTilesView::nowhere; });
@@ -281,8 +290,8 @@ struct FindNearestPoints {
     const List& list = found.of_octant;
     const Vec3f spacing = tiles.lattice.spacing, begin = centre_of(first), half = half_of(2), centre = begin + half;
     LeastOf least;
-    for (int k = 0; k < count; ++k) least = least + list.square(k, centre);
-    const CellsBesidePoint block(centre, half, list.at(least.index()));
+    for (int k = 0; k < count; ++k) least = least + list.points().square(k, centre);
+    const CellsBesidePoint block(centre, half, list.points().at(least.index()));
     const auto place = [&](int k) {
       return Lattice::place(first.x + (k & 1), first.y + (k >> 1 & 1), first.z + (k >> 2));
     };
@@ -300,7 +309,7 @@ struct FindNearestPoints {
 #pragma omp simd reduction(| : any)
 #endif
       for (int k = 0; k < group; ++k) {
-        near[k] = block.may_be_nearer(list.x[i + k], list.y[i + k], list.z[i + k]) ? 1 : 0;
+        near[k] = block.may_be_nearer(list.points(), i + k) ? 1 : 0;
         any |= near[k];
       }
       if (!any) continue;
@@ -338,7 +347,7 @@ void find_nearest_points(Executor<Backend>& exec, const LatticeTiles& tiles, con
     rings[axis] =
         int(std::ceil((reach + InterfacePoint::farthest + 1) / (Lattice::tile * tiles.lattice.spacing[axis])));
   exec.for_each_team(count, detail::FindNearestPoints{
-                                {at[0].data(), at[1].data(), at[2].data(), first.data(), low.data(), high.data()},
+                                {{at[0].data(), at[1].data(), at[2].data()}, first.data(), low.data(), high.data()},
                                 tiles.view(),
                                 rings,
                                 reach,
