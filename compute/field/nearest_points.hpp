@@ -227,8 +227,8 @@ struct FindNearestPoints {
     if (count > 0) search(team, count, found);
   }
 
-  /// Adds those of a team's points from number `i` on, before `end`, that can be the nearest to one of the cells, to the
-  /// `count` in the list, as they lie from `origin`. Returns how many it has then.
+  /// Adds those of a team's points from number `i` on, before `end`, that can be the nearest to one of the cells, to
+  /// the `count` in the list, as they lie from `origin`. Returns how many it has then.
   template <class Number>
   NACRE_HD static int keep(Team& team, const CellsBesidePoint& cells, const Coordinates& from, int i, int end,
                            const Vec3f& origin, List& list, int count, const Number& number) {
