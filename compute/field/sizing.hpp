@@ -8,6 +8,7 @@
 
 #include "compute/field/distance.hpp"
 #include "compute/field/size_limits.hpp"
+#include "compute/field/size_slope.hpp"
 
 namespace nacre {
 
@@ -183,118 +184,10 @@ struct SpreadSize {
   }
 };
 
-/// One Jacobi round of |grad h| <= delta: Godunov's upwind solution from the smallest neighbours on each axis. Looks at
-/// tiles that have changed, or one beside them has: elsewhere `from` and `to` are alike.
-struct LimitSlope {
-  TilesView tiles;
-  float delta;
-  const float* from;
-  float* to;
-  const std::uint32_t* had_changed;  ///< per stored tile
-  std::uint32_t* changed;
-  std::uint32_t* any;
-
-  static constexpr float least_change = 1e-3f;
-  static constexpr std::size_t scratch_bytes() { return 6 * sizeof(std::uint32_t); }
-
-  NACRE_HD void operator()(Team& team, std::int64_t s) const {
-    auto* beside = reinterpret_cast<std::uint32_t*>(team.scratch());
-    const Int3 at = tiles.lattice.tile_at(tiles.tile[s]);
-    team.each(6, [&](int k) {
-      Int3 step{};
-      step[k / 2] = k % 2 ? 1 : -1;
-      beside[k] = tiles.beside(at, step);
-    });
-    if (team.first()) changed[s] = 0;
-    team.wait();
-    if (!needed(beside, s)) return;
-    const std::int64_t first = s * Lattice::tile_cells;
-    tiles.each_in_tile(team, s, [&](const Int3&, int k) {
-      const float limited = limit(beside, first, k);
-      to[first + k] = limited;
-      if (limited == from[first + k]) return;
-      relaxed_store(changed + s, 1);
-      relaxed_store(any, 1);
-    });
-  }
-
- private:
-  NACRE_HD bool needed(const std::uint32_t* beside, std::int64_t s) const {
-    if (had_changed[s]) return true;
-    for (int k = 0; k < 6; ++k)
-      if (beside[k] != none && had_changed[beside[k]]) return true;
-    return false;
-  }
-
-  /// Of the neighbour on side `k` of the cell at this place; more than any size where none is stored: it has the
-  /// largest of all sizes, or is not there.
-  NACRE_HD float neighbour(const std::uint32_t* beside, std::int64_t first, int place, int k) const {
-    constexpr int n = Lattice::tile, stride[3] = {1, n, n * n};
-    const int axis = k / 2, step = stride[axis], local = place / step % n;
-    if (k % 2 ? local + 1 < n : local > 0) return from[first + place + (k % 2 ? step : -step)];
-    if (beside[k] == none) return 3e38f;
-    return from[std::int64_t(beside[k]) * Lattice::tile_cells + place + (k % 2 ? -(n - 1) * step : (n - 1) * step)];
-  }
-
-  NACRE_HD float limit(const std::uint32_t* beside, std::int64_t first, int place) const {
-    float low[3], step[3];
-    int count = 0;
-    const float own = from[first + place];
-    for (int axis = 0; axis < 3; ++axis) {
-      const float a = min(neighbour(beside, first, place, 2 * axis), neighbour(beside, first, place, 2 * axis + 1));
-      if (a >= own) continue;
-      int position = count++;
-      for (; position > 0 && low[position - 1] > a; --position)
-        low[position] = low[position - 1], step[position] = step[position - 1];
-      low[position] = a;
-      step[position] = tiles.lattice.spacing[axis];
-    }
-    float best = own;
-    // sum over the used axes of ((x - low) / step)^2 = delta^2; more axes as long as x lies above their values.
-    float a = 0, b = 0, c = -delta * delta;
-    for (int k = 0; k < count; ++k) {
-      const float w = 1 / (step[k] * step[k]);
-      a += w, b += w * low[k], c += w * low[k] * low[k];
-      const float root = b * b - a * c;
-      if (root < 0) break;
-      const float x = (b + std::sqrt(root)) / a;
-      if (k > 0 && x < low[k]) break;
-      best = x;
-      if (k + 1 < count && x <= low[k + 1]) break;
-    }
-    return best < own - least_change ? best : own;
-  }
-};
-
-/// Whether cells that are not stored would become smaller: a stored one beside them is smaller than all of them by more
-/// than one step of the slope, in the worst case along all three axes.
-struct SpillsOver {
-  TilesView tiles;
-  const float* h;
-  float limit;
-
-  NACRE_HD std::uint64_t operator()(std::int64_t i) const {
-    if (!(h[i] < limit)) return 0;
-    const Int3 c = tiles.cell(i);
-    for (int k = 0; k < 6; ++k) {
-      Int3 next = c;
-      next[k / 2] += k % 2 ? 1 : -1;
-      if (tiles.lattice.holds(c) && tiles.lattice.holds(next) && tiles.slot(next) < 0) return 1;
-    }
-    return 0;
-  }
-};
-
 struct CountSmaller {
   const float* value;
   float limit;
   NACRE_HD std::uint64_t operator()(std::int64_t i) const { return value[i] < limit ? 1 : 0; }
-};
-
-struct CopySize {
-  const float* from;
-  float* to;
-  NACRE_HD void operator()(std::int64_t i) const { to[i] = from[i]; }
 };
 
 struct SizeRange {
@@ -343,34 +236,6 @@ void describe_sizes(Executor<Backend>& exec, SizingField& field, const Array<flo
   field.small = low;
 }
 
-/// Limits the slope of what `spread` writes into h. False where that goes on beyond the tiles that are stored.
-template <class Backend>
-bool limit_slope(Executor<Backend>& exec, SizingField& field, const SpreadSize& spread, float delta) {
-  Arena& arena = exec.arena();
-  Arena::Scope scope(arena);
-  const TilesView view = field.tiles.view();
-  const std::int64_t tiles = field.tiles.count();
-  Array<float> other = arena.temporary<float>(field.h.size());
-  Array<std::uint32_t> changed[2] = {arena.temporary<std::uint32_t>(tiles), arena.temporary<std::uint32_t>(tiles)};
-  Array<std::uint32_t> any = arena.temporary<std::uint32_t>(1);
-  changed[0].fill_bytes(1);
-  exec.for_each(field.tiles.slots(), spread);
-  exec.for_each(field.tiles.slots(), CopySize{field.h.data(), other.data()});
-  float *from = field.h.data(), *to = other.data();
-  const Int3& cells = field.lattice().cells;
-  const int most_rounds = cells.x + cells.y + cells.z;
-  for (int round = 0; round < most_rounds || from != field.h.data(); ++round) {
-    any.fill_bytes(0);
-    exec.for_each_team(
-        tiles, LimitSlope{view, delta, from, to, changed[round % 2].data(), changed[1 - round % 2].data(), any.data()});
-    std::swap(from, to);
-    if (any.download()[0] == 0 && from == field.h.data()) break;
-  }
-  const Vec3f& s = field.lattice().spacing;
-  const float limit = field.far - 0.57f * delta * std::min({s.x, s.y, s.z});
-  return exec.reduce(field.tiles.slots(), std::uint64_t(0), SpillsOver{view, field.h.data(), limit}, Add{}) == 0;
-}
-
 }  // namespace detail
 
 /// h = epsilon * local feature size on the interfaces, where the local feature size is the radius of the medial ball
@@ -410,7 +275,8 @@ SizingField sizing_field(Executor<Backend>& exec, const DistanceField& distance,
     field.h = arena.permanent<float>(field.tiles.slots());
     const detail::SpreadSize spread{field.tiles.view(), view,          widest, largest, 1.5f * voxel,
                                     at_point.data(),    field.h.data()};
-    if (detail::limit_slope(exec, field, spread, rule.delta)) return field;
+    exec.for_each(field.tiles.slots(), spread);
+    if (limit_slope(exec, field.tiles, rule.delta, field.far, field.h)) return field;
     arena.rewind(mark);
     field.tiles = tiles_around(exec, distance.tiles, rings);
   }

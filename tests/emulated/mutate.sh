@@ -121,6 +121,6 @@ mutant "no barrier between two axes of a Gaussian" tighten '*' compute/field/tig
 mutant "no barrier behind the move of a particle" redblack "$few" compute/particles/redblack.hpp \
   $'    team.wait();\n  }\n};\n\n}  // namespace detail\n\n/// One turn' \
   $'  }\n};\n\n}  // namespace detail\n\n/// One turn'
-mutant "a tile's change is forgotten after it was noted" sizing '*' compute/field/sizing.hpp \
-  $'if (team.first()) changed[t] = 0;\n    team.wait();' 'if (team.first()) changed[t] = 0;'
+mutant "no barrier behind sizes beside a tile" sizing '*' compute/field/size_slope.hpp \
+  'team.each(6 * n * n, [&](int i) {' "$loose"'loose(6 * n * n, [&](int i) {'
 exit $missed

@@ -77,6 +77,76 @@ void TheSlopeIsBounded(Executor<Backend>& exec) {
   }
 }
 
+/// What a cell may have at most beside neighbours that have these values, by bisection.
+inline double limited_by(const std::vector<double>& low, const Vec3f& spacing, double delta) {
+  double below = std::min({low[0], low[1], low[2]}), above = below + delta * 10;
+  for (int k = 0; k < 60; ++k) {
+    const double x = 0.5 * (below + above);
+    double square = 0;
+    for (int axis = 0; axis < 3; ++axis) square += std::pow(std::max(x - low[axis], 0.0) / spacing[axis], 2);
+    (square < delta * delta ? below : above) = x;
+  }
+  return below;
+}
+
+/// Every cell has as much as the slope allows beside its neighbours, looked at one after the other until none changes;
+/// where cells are not stored, as if they had more.
+template <class Backend>
+void SizesGrowAsFastAsTheyMay(Executor<Backend>& exec) {
+  const std::size_t mark = exec.arena().mark();
+  const Lattice lattice{{29, 20, 18}, {1, 1.5f, 2}};
+  const float delta = 0.3f, far = 20;
+  std::vector<std::uint32_t> stored(lattice.tile_count(), 1);
+  stored[lattice.tile_number({1, 0, 0})] = stored[lattice.tile_number({1, 1, 1})] = 0;
+  const LatticeTiles tiles = detail::store_tiles(exec, lattice, [&](std::uint32_t* marks) {
+    exec.device().copy_to_device(marks, stored.data(), stored.size() * 4);
+  });
+  std::vector<float> start(tiles.slots(), far);
+  std::vector<double> expected(lattice.count(), far);
+  const std::vector<std::uint32_t> slot_of = tiles.stored.download();
+  const auto tile_of = [&](const Int3& c) { return slot_of[lattice.tile_number({c.x / 8, c.y / 8, c.z / 8})]; };
+  const auto slot = [&](const Int3& c) {
+    return std::size_t(tile_of(c)) * Lattice::tile_cells + Lattice::place(c.x % 8, c.y % 8, c.z % 8);
+  };
+  for (const Int3& c : {Int3(2, 3, 4), Int3(27, 18, 1), Int3(20, 2, 16), Int3(3, 4, 4)}) {
+    const float h = 0.5f + 0.25f * float(c.x % 3);
+    start[slot(c)] = h;
+    expected[lattice.number(c.x, c.y, c.z)] = h;
+  }
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::int64_t i = 0; i < lattice.count(); ++i) {
+      const Int3 c = lattice.cell(i);
+      if (tile_of(c) == none) continue;
+      std::vector<double> low(3, 1e9);
+      for (int k = 0; k < 6; ++k) {
+        Int3 next = c;
+        next[k / 2] += k % 2 ? 1 : -1;
+        if (lattice.holds(next) && tile_of(next) != none)
+          low[k / 2] = std::min(low[k / 2], expected[lattice.number(next.x, next.y, next.z)]);
+      }
+      const double h = limited_by(low, lattice.spacing, delta);
+      if (h > expected[i] - 1e-9) continue;
+      expected[i] = h;
+      changed = true;
+    }
+  }
+  Array<float> h = exec.arena().template permanent<float>(start.size());
+  h.upload(start);
+  EXPECT_FALSE(limit_slope(exec, tiles, delta, far, h));  // cells beside those that are not stored became smaller
+  const std::vector<float> limited = h.download();
+  double most = 0;
+  for (std::int64_t i = 0; i < lattice.count(); ++i) {
+    const Int3 c = lattice.cell(i);
+    if (tile_of(c) == none) continue;
+    EXPECT_NEAR(limited[slot(c)], expected[i], 0.01) << i;
+    most = std::max(most, expected[i]);
+  }
+  EXPECT_GT(most, 5);
+  EXPECT_LT(most, far);  // every cell was limited
+  exec.arena().rewind(mark);
+}
+
 /// h on the surface of a sphere of radius R inside of a large volume: epsilon R, whichever side is looked at.
 template <class Backend>
 void AMedialBallFillsASphere(Executor<Backend>& exec) {
@@ -203,6 +273,7 @@ void ExpectedParticlesAreAreaOverSize(Executor<Backend>& exec) {
 }
 
 NACRE_DEVICE_TEST(Sizing, TheSlopeIsBounded)
+NACRE_DEVICE_TEST(Sizing, SizesGrowAsFastAsTheyMay)
 NACRE_DEVICE_TEST(Sizing, AMedialBallFillsASphere)
 NACRE_DEVICE_TEST(Sizing, AMedialBallFillsHalfASlab)
 NACRE_DEVICE_TEST(Sizing, AThinSlabInAWideVolumeIsThin)
