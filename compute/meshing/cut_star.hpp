@@ -55,21 +55,35 @@ class NearestItems {
   std::uint32_t after_ = 0;
 };
 
+/// The weights of items: small ones, by the position alone, so that where four lie on a circle one choice is made.
+struct WeighItems {
+  static constexpr double tie = 1e-7;  // at most, squares of the size
+  StarItemsView items;
+  double* weight;
+  NACRE_HD void operator()(std::int64_t i) const {
+    std::uint64_t x = hash_point(0, items.position[i]);
+    x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9ull;
+    const double random = double((x ^ x >> 29) >> 11) * 0x1p-53;  // in [0, 1)
+    weight[i] = tie * random * items.size[i] * items.size[i];
+  }
+};
+
 /// Cuts the Voronoi cell of an item out of its tangent plane.
 class StarCutter {
  public:
   static constexpr double first_reach = 1.7;  // sizes within which neighbours are looked for at first
 
-  /// `around` are those of the surface around all items that are cut, or null.
-  NACRE_HD StarCutter(const StarItemsView& items, const ItemBoxesView& boxes, const ItemsAround* around)
-      : items_(items), boxes_(boxes), around_(around) {}
+  /// `weight` has that of each item; `around` are those of the surface around all items that are cut, or null.
+  NACRE_HD StarCutter(const StarItemsView& items, const double* weight, const ItemBoxesView& boxes,
+                      const ItemsAround* around)
+      : items_(items), weight_of_(weight), boxes_(boxes), around_(around) {}
 
   NACRE_HD Star cut(std::uint32_t item) {
     item_ = item;
     here_ = items_.position[item];
     normal_ = items_.normal[item];
     size_ = items_.size[item];
-    weight_ = weight_of(item);
+    weight_ = weight_of_[item];
     const Vec3d aside = std::fabs(normal_.x) < 0.6 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
     u_ = normalized(cross(aside, normal_));
     v_ = cross(normal_, u_);
@@ -94,7 +108,6 @@ class StarCutter {
   static constexpr double last_reach = 5;     // sizes: neighbours are looked for no farther away
   static constexpr double same_side = -0.4;   // neighbours' normals differ by no more (cosine)
   static constexpr double bent = 0.5;         // cosine under which a neighbour is unfolded into the plane
-  static constexpr double tie = 1e-7;         // weight of a particle at most, squares of its size
   static constexpr double coincident = 1e-5;  // sizes: nearer ones count as one
   static constexpr int most_corners = 32;
 
@@ -179,15 +192,7 @@ class StarCutter {
     if (facing < same_side) return;
     const Plane to = facing < bent ? unfolded(q) : in_plane(q);
     if (rim_ && !beside_on_rim(q) && !in_sector(to.u, to.v)) return;
-    if (clip(to.u, to.v, 0.5 * (distance2 + weight_ - weight_of(q)), q)) far2_ = farthest2();
-  }
-
-  /// A small one, by the position alone.
-  NACRE_HD double weight_of(std::uint32_t item) const {
-    std::uint64_t x = hash_point(0, items_.position[item]);
-    x = (x ^ x >> 31) * 0xbf58476d1ce4e5b9ull;
-    const double random = double((x ^ x >> 29) >> 11) * 0x1p-53;  // in [0, 1)
-    return tie * random * items_.size[item] * items_.size[item];
+    if (clip(to.u, to.v, 0.5 * (distance2 + weight_ - weight_of_[q]), q)) far2_ = farthest2();
   }
 
   NACRE_HD double farthest2() const {
@@ -310,6 +315,7 @@ class StarCutter {
   }
 
   const StarItemsView& items_;
+  const double* weight_of_;
   const ItemBoxesView& boxes_;
   const ItemsAround* around_;
   std::uint32_t item_ = 0, next_ = none, previous_ = none;
@@ -328,6 +334,7 @@ class StarCutter {
 /// The stars of those of eight items, which lie together, that are marked; what is agreed is not known yet.
 struct CutStars {
   StarItemsView items;
+  const double* weight;
   ItemBoxesView boxes;
   std::int64_t n;  // items
   const std::uint32_t* stale;
@@ -338,13 +345,23 @@ struct CutStars {
     for (std::int64_t j = 8 * k; j < 8 * k + 8 && j < n; ++j)
       if (const std::uint32_t i = boxes.item(j); stale[i]) marked[count++] = i;
     ItemsAround around;
-    const bool gathered = count > 1 && gather(marked, count, around);
-    for (int j = 0; j < count; ++j)
-      star[marked[j]] = StarCutter(items, boxes, gathered ? &around : nullptr).cut(marked[j]);
+    // What is around all is gathered once; where that is too much, once for each half, or quarter.
+    for (int first = 0, some = 8; first < count;) {
+      const int last = min(first + some, count);
+      const bool gathered = last - first > 1 && gather(marked + first, last - first, around);
+      if (!gathered && last - first > 1) {
+        some /= 2;
+        continue;
+      }
+      for (int j = first; j < last; ++j)
+        star[marked[j]] = StarCutter(items, weight, boxes, gathered ? &around : nullptr).cut(marked[j]);
+      first = last;
+      some = first & -first;
+    }
   }
 
  private:
-  /// What is around all of them; false where they are not of one surface.
+  /// What is around all of them; false where they are not of one surface, or too far apart.
   NACRE_HD bool gather(const std::uint32_t* some, int count, ItemsAround& around) const {
     const std::uint32_t surface = items.surface[some[0]];
     Vec3f low(items.position[some[0]]), high = low;
@@ -355,9 +372,13 @@ struct CutStars {
       low = min(low, at), high = max(high, at);
       if (items.size[some[j]] > size) size = items.size[some[j]];
     }
+    const Vec3f wide = high - low;
+    if (max(wide.x, max(wide.y, wide.z)) > widest * float(size)) return false;
     return around.gather(boxes, items.first[surface], items.first[surface + 1], low, high,
                          StarCutter::first_reach * size);
   }
+
+  static constexpr float widest = 6;  ///< sizes: what is farther apart has too many others around it
 };
 
 }  // namespace detail

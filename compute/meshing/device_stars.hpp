@@ -125,7 +125,9 @@ class DeviceStars : public StarDevice {
       take_over(items, boxes, *change, stale);
     else
       exec_.fill(stale, 1);
-    exec_.for_each(detail::eighth(n), detail::CutStars{items, boxes, n, stale.data(), stars_.data()});
+    const auto weight = exec_.arena().template temporary<double>(std::size_t(n));
+    exec_.for_each(n, detail::WeighItems{items, weight.data()});
+    exec_.for_each(detail::eighth(n), detail::CutStars{items, weight.data(), boxes, n, stale.data(), stars_.data()});
     StarSettling<Backend> settling(exec_, items, stars_, spare_, n);
     settling.settle(stale);
     found.stars.resize(std::size_t(n));
