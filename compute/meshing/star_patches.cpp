@@ -26,7 +26,7 @@ namespace {
 
 constexpr int patch_rounds = 100;
 constexpr double around = 3;       // sizes: as far as the particles are that a patch is made of
-constexpr double most_work = 0.6;  // particles triangulated in all rounds, by those that there are
+constexpr double most_work = 3;    // particles triangulated in all rounds, by those that there are: mostly again
 
 /// Corners of a box far around all particles: no facet at a particle is on the hull.
 class Guards {
