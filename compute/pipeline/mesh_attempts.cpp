@@ -51,10 +51,10 @@ std::vector<std::uint8_t> MeshImprovement::judge(Kept& kept) const {
 /// of a piece differ where labels were repaired.
 void MeshImprovement::settle(Kept& best) {
   if (rule_.stars) {
-    attempt(best);
+    attempt(best, rule_.aim, 1);
     return;
   }
-  for (Kept now = best; attempt(now);) {
+  for (Kept now = best; attempt(now, rule_.aim, 1);) {
     particles_.upload(now.particles);
     now = as_made(triangulate());
     if (!better_shaped(now, best)) return;
@@ -62,8 +62,17 @@ void MeshImprovement::settle(Kept& best) {
   }
 }
 
-/// Changes what is around bad triangles until there are none, or nothing helps. True where something was changed.
-bool MeshImprovement::attempt(Kept& best) {
+/// As many attempts again at those triangles alone for which all would be made of cells; more of the particles around
+/// them move.
+void MeshImprovement::settle_unacceptable(Kept& best) {
+  remeshed_ = 0;
+  attempt(best, unacceptable, 3);
+}
+
+/// Changes what is around triangles that are bad by `rule` until there are none, or each kind of attempt was made in
+/// vain in so many `turns`. In more than one, more rings of neighbours move, one more with each attempt in vain. True
+/// where something was changed.
+bool MeshImprovement::attempt(Kept& best, const DefectRule& rule, std::size_t turns) {
   // Tried in turn: cells in place of stars, for triangles of one kind may be good where those of the other are bad;
   // smoothing and remeshing together; fewer steps, for particles that flip to and fro; remeshing alone, which leaves
   // the other particles where they are; and both again from a random start.
@@ -74,14 +83,15 @@ bool MeshImprovement::attempt(Kept& best) {
                                               {6, true, true, false}}};
   std::size_t least = best.made.mesh.points.size() + 1, in_vain = 0;
   bool changed = false;
-  while (in_vain < kinds.size() && remeshed_ < rule_.remesh) {
-    const std::vector<std::uint32_t> bad = marked(bad_points(best.made, rule_.aim));
+  while (in_vain < turns * kinds.size() && remeshed_ < rule_.remesh) {
+    const std::vector<std::uint32_t> bad = marked(bad_points(best.made, rule));
     if (bad.empty()) break;
     in_vain = bad.size() < least ? 0 : in_vain + 1;
     least = std::min(least, bad.size());
     check_stop(rule_.stop);
     tell_("remesh", fraction(), remeshed_, 0);
-    const AttemptKind& kind = kinds[tried_++ % kinds.size()];
+    AttemptKind kind = kinds[tried_++ % kinds.size()];
+    if (turns > 1) kind.rings = 2 + int(in_vain);
     ++remeshed_, ++star_use_.attempts;
     changed |= attempt_at(best, bad, kind);
   }
@@ -164,7 +174,8 @@ MeshImprovement::Cut MeshImprovement::cut_out(const Kept& best, std::span<const 
 std::optional<MeshImprovement::Kept> MeshImprovement::attempted(const Cut& cut, const AttemptKind& kind) {
   particles_.upload(cut.piece.particles);
   Triangulated made = cut.piece.made;
-  Marks loose = with_neighbours(made.mesh, cut.bad);
+  Marks loose = cut.bad;
+  for (int ring = 0; ring < kind.rings; ++ring) loose = with_neighbours(made.mesh, loose);
   for (std::size_t v = 0; v < loose.size(); ++v) loose[v] = loose[v] && !cut.on_rim[v];
   if (kind.turns > 0 && rule_.smooth > 0) smooth(made, loose, {kind.turns, kind.shakes ? tried_ : 0});
   Marks gone;

@@ -65,8 +65,10 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
 ImprovedMesh MeshImprovement::run() {
   Kept best = whole();
   settle(best);
+  const auto unacceptable = [&] { return stars() && rule_.deviation == 0 && !best.acceptable; };
+  if (unacceptable()) settle_unacceptable(best);
   // Cells of all particles rather than a mesh of stars that is not even acceptable.
-  if (stars() && rule_.deviation == 0 && !best.acceptable) {
+  if (unacceptable()) {
     ++star_use_.fallbacks;
     remeshed_ = 0;
     particles_.upload(best.particles);

@@ -108,13 +108,15 @@ class MeshImprovement {
     int turns;    ///< of smoothing; 0: none
     bool shakes;  ///< smoothing begins from random positions
     bool remeshes;
-    bool splits;  ///< ... the sides of curves, where that helps
+    bool splits;    ///< ... the sides of curves, where that helps
+    int rings = 1;  ///< of neighbours that move with them
   };
 
   Kept whole();
   Kept as_made(Triangulated made);
   void settle(Kept& best);
-  bool attempt(Kept& best);
+  void settle_unacceptable(Kept& best);
+  bool attempt(Kept& best, const DefectRule& rule, std::size_t turns);
   bool attempt_at(Kept& best, std::span<const std::uint32_t> bad, const AttemptKind& kind);
   static Cut cut_out(const Kept& best, std::span<const std::uint32_t> bad, double reach);
   std::optional<Kept> attempted(const Cut& cut, const AttemptKind& kind);
