@@ -26,10 +26,11 @@ struct LimitSlope {
 
   static constexpr float least_change = 1e-3f;
   static constexpr int most_sweeps = 2 * Lattice::tile;  ///< a round; then the tiles beside it are due
+  static constexpr int n = Lattice::tile, wide = n + 2;  ///< cells of a tile, and with those beside it, along an axis
 
   struct Scratch {
     std::uint32_t beside[6];
-    float h[1000];  ///< of the tile and the cells beside its faces, x fastest
+    float h[wide * wide * wide];  ///< of the tile and the cells beside its faces, x fastest
   };
   static constexpr std::size_t scratch_bytes() { return sizeof(Scratch); }
 
@@ -64,8 +65,6 @@ struct LimitSlope {
   }
 
  private:
-  static constexpr int n = Lattice::tile, wide = n + 2;
-
   NACRE_HD static int place(int x, int y, int z) { return ((z + 1) * wide + y + 1) * wide + x + 1; }
 
   NACRE_HD bool needed(const Scratch& own, std::int64_t s) const {
@@ -102,8 +101,9 @@ struct LimitSlope {
     for (int x = 0; x < n; ++x) limited[x] = limit(row + x);
     int smaller = 0;
     for (int x = 0; x < held; ++x) {
-      smaller += limited[x] < row[x] - least_change;
-      row[x] = limited[x] < row[x] - least_change ? limited[x] : row[x];
+      if (!(limited[x] < row[x] - least_change)) continue;
+      row[x] = limited[x];
+      ++smaller;
     }
     return smaller;
   }
@@ -124,6 +124,7 @@ struct LimitSlope {
   }
 
   /// Solves sum over the axes of ((x - neighbour) / spacing)^2 = delta^2, for those axes whose neighbours x lies above.
+  /// Where one is not there, the solution that would need it is not a number, and is not taken.
   NACRE_HD_INLINE float limit(const float* h) const {
     Neighbour a = neighbour(h, 0, 1), b = neighbour(h, 1, wide), c = neighbour(h, 2, wide * wide);
     Neighbour::sort(a, b), Neighbour::sort(b, c), Neighbour::sort(a, b);
