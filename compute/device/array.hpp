@@ -40,6 +40,13 @@ class Array {
     return host;
   }
 
+  /// The first `count`, into memory that the host has, where it is enough.
+  void download_to(std::vector<T>& host, std::size_t count) const {
+    assert(count <= size_);
+    host.resize(count);
+    if (count) device_->copy_to_host(host.data(), data_, count * sizeof(T));
+  }
+
   void fill_bytes(unsigned char value) {
     if (size_) device_->fill(data_, value, bytes());
   }

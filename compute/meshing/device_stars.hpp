@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "compute/meshing/cut_star.hpp"
 #include "compute/meshing/item_boxes.hpp"
+#include "compute/meshing/known_items.hpp"
 #include "compute/meshing/list_items.hpp"
 #include "compute/meshing/read_stars.hpp"
 #include "compute/meshing/settle_stars.hpp"
@@ -52,14 +52,17 @@ struct LongerReach {
 struct MarkReaching {
   StarItemsView items;
   ItemBoxesView boxes;
-  const ItemChange::Position* position;
+  StarItemsView changed_items;       // the same, or those before
+  const std::uint32_t* new_surface;  // of theirs; null: the same
+  const std::uint32_t* changed;
   const std::uint32_t* old_of;
   const Star* star;
   double farthest2;
   std::uint32_t* stale;
   NACRE_HD void operator()(std::int64_t k) const {
-    const std::uint32_t s = position[k].surface;
-    const Vec3f at(position[k].at);
+    const std::uint32_t surface = changed_items.surface[changed[k]], s = new_surface ? new_surface[surface] : surface;
+    if (s == none) return;
+    const Vec3f at(changed_items.position[changed[k]]);
     boxes.within(items.first[s], items.first[s + 1], at, farthest2, [&](double d, std::uint32_t i) {
       if (old_of[i] == none) return;
       if (const double r = star[i].reach; d <= r * r) relaxed_store(stale + i, 1);
@@ -83,66 +86,66 @@ class DeviceStars : public StarDevice {
   DeviceStars(const DeviceStars&) = delete;
   DeviceStars& operator=(const DeviceStars&) = delete;
 
-  void find(const StarParticles& particles, const TellChange& tell_change, FoundStars& found) override {
+  FoundStars& find(const StarParticles& particles) override {
     Arena::Scope scope(exec_.arena());
-    DeviceItems items(exec_.arena(), most_items(particles));
-    StarItems now = list(items, particles);
-    std::optional<ItemChange> change;
-    if (has_room(now.count())) change = tell_change(now);
-    if (now.count() > 0)
-      find(items.view(copy_of(now.first)), std::int64_t(now.count()), change ? &*change : nullptr, found);
+    make_room(most_items(particles));
+    std::swap(items_, before_);
+    list(particles);
+    items_.download(found_.items);
+    if (items_.count() > 0)
+      find(items_.view(copy_of(items_.first())), std::int64_t(items_.count()));
     else
-      found = {};
-    found.items = std::move(now);
+      found_.stars.clear(), found_.agreed = {}, found_.incomplete.clear(), found_.unsettled = found_.cut = 0;
+    return found_;
   }
 
  private:
+  static constexpr std::size_t dear_share = 4;  // where more than this part has changed, finding all again costs less
+
   static std::size_t most_items(const StarParticles& particles) {
     std::size_t most = 0;
     for (const Junction& j : particles.junction) most += std::size_t(j.materials() * (j.materials() - 1) / 2);
     return most;
   }
 
-  StarItems list(DeviceItems& items, const StarParticles& particles) {
-    if (particles.count() == 0) return {};
+  /// Where there is not enough, what is known of the call before is gone.
+  void make_room(std::size_t n) {
+    if (items_.room() >= n) return;
+    Arena& arena = exec_.arena();
+    arena.rewind(mark_);
+    for (DeviceItems* items : {&items_, &before_}) *items = DeviceItems(arena, n + n / 8);
+    for (Array<Star>* stars : {&stars_, &spare_}) *stars = arena.template permanent<Star>(n + n / 8);
+  }
+
+  void list(const StarParticles& particles) {
     Arena::Scope scope(exec_.arena());
     const auto n = std::int64_t(particles.count());
     const Junction* junction = copy_of(particles.junction);
     const auto gradients_before = exec_.arena().template temporary<std::uint32_t>(particles.count());
-    exec_.for_each(n, detail::HasGradients{junction, gradients_before.data()});
-    exec_.scan(gradients_before.data(), gradients_before.data(), n);
-    return items.list(exec_,
-                      {copy_of(particles.position), copy_of(particles.direction), junction, copy_of(particles.gradient),
-                       gradients_before.data()},
-                      n);
+    if (n > 0) {
+      exec_.for_each(n, detail::HasGradients{junction, gradients_before.data()});
+      exec_.scan(gradients_before.data(), gradients_before.data(), n);
+    }
+    items_.list(exec_,
+                {copy_of(particles.position), copy_of(particles.direction), junction, copy_of(particles.gradient),
+                 gradients_before.data()},
+                n);
   }
 
   /// Finds the stars of `n` items, at least one.
-  void find(const StarItemsView& items, std::int64_t n, const ItemChange* change, FoundStars& found) {
+  void find(const StarItemsView& items, std::int64_t n) {
     const ItemBoxesView boxes = item_boxes(exec_, items, n);
     const auto stale = exec_.arena().template temporary<std::uint32_t>(std::size_t(n));
-    if (change)
-      take_over(items, boxes, *change, stale);
-    else
-      exec_.fill(stale, 1);
+    if (!take_over(items, boxes, stale)) exec_.fill(stale, 1);
     const auto weight = exec_.arena().template temporary<double>(std::size_t(n));
     exec_.for_each(n, detail::WeighItems{items, weight.data()});
     exec_.for_each(detail::eighth(n), detail::CutStars{items, weight.data(), boxes, n, stale.data(), stars_.data()});
     StarSettling<Backend> settling(exec_, items, stars_, spare_, n);
     settling.settle(stale);
-    found.stars.resize(std::size_t(n));
-    exec_.device().copy_to_host(found.stars.data(), stars_.data(), found.stars.size() * sizeof(Star));
-    read_stars(exec_, items, stars_.data(), n, found);
+    stars_.download_to(found_.stars, std::size_t(n));
+    read_stars(exec_, items, items_.materials(), stars_.data(), n, found_);
     settling.put_back();
-    found.cut = exec_.reduce(n, std::int64_t(0), detail::IsMarked{stale.data()}, Add{});
-  }
-
-  /// False where there was not, and the stars of the call before are gone.
-  bool has_room(std::size_t n) {
-    if (stars_.size() >= n) return true;
-    exec_.arena().rewind(mark_);
-    for (Array<Star>* stars : {&stars_, &spare_}) *stars = exec_.arena().template permanent<Star>(n + n / 8);
-    return false;
+    found_.cut = exec_.reduce(n, std::int64_t(0), detail::IsMarked{stale.data()}, Add{});
   }
 
   template <class T>
@@ -156,23 +159,34 @@ class DeviceStars : public StarDevice {
     return copy_of(std::span<const T>(host));
   }
 
-  void take_over(const StarItemsView& items, const ItemBoxesView& boxes, const ItemChange& change,
-                 const Array<std::uint32_t>& stale) {
+  /// Takes the stars over that are right still, and marks the others; false where so much has changed that finding all
+  /// again costs less.
+  bool take_over(const StarItemsView& items, const ItemBoxesView& boxes, const Array<std::uint32_t>& stale) {
+    if (before_.count() == 0) return false;
     Arena::Scope scope(exec_.arena());
-    const auto n = std::int64_t(change.old_of.size());
-    const std::uint32_t* old_of = copy_of(change.old_of);
+    const auto n = std::int64_t(items_.count());
+    const ItemChange change = item_change(exec_, before_, stars_.data(), items_);
+    if (change.come.size() + change.gone.size() > items_.count() / dear_share) return false;
+    const std::uint32_t* old_of = change.old_of.data();
     std::swap(stars_, spare_);
-    exec_.for_each(n,
-                   detail::TakeStarsOver{old_of, copy_of(change.new_of), spare_.data(), stars_.data(), stale.data()});
-    const double farthest = exec_.reduce(n, 0.0f, detail::ReachOfKnown{old_of, stars_.data()}, detail::LongerReach{});
-    exec_.for_each(std::int64_t(change.positions.size()),
-                   detail::MarkReaching{items, boxes, copy_of(change.positions), old_of, stars_.data(),
-                                        farthest * farthest, stale.data()});
+    exec_.for_each(n, detail::TakeStarsOver{old_of, change.new_of.data(), spare_.data(), stars_.data(), stale.data()});
+    const float farthest = exec_.reduce(n, 0.0f, detail::ReachOfKnown{old_of, stars_.data()}, detail::LongerReach{});
+    const detail::MarkReaching mark{
+        items,       boxes, items, nullptr, change.come.data(), old_of, stars_.data(), double(farthest) * farthest,
+        stale.data()};
+    exec_.for_each(std::int64_t(change.come.size()), mark);
+    detail::MarkReaching mark_gone = mark;
+    mark_gone.changed_items = before_.view(nullptr), mark_gone.new_surface = change.new_surface.data();
+    mark_gone.changed = change.gone.data();
+    exec_.for_each(std::int64_t(change.gone.size()), mark_gone);
+    return true;
   }
 
   Executor<Backend>& exec_;
   std::size_t mark_;
-  Array<Star> stars_, spare_;  // as they were cut, with room for more
+  DeviceItems items_, before_;
+  Array<Star> stars_, spare_;  // of `items_`, as they were cut; with room for more
+  FoundStars found_;
 };
 
 }  // namespace nacre

@@ -151,27 +151,34 @@ struct ParticleOfNode {
 
 }  // namespace detail
 
-/// Items on a device, in temporary memory.
+/// Items on a device.
 class DeviceItems {
  public:
-  /// With room for `most`.
+  DeviceItems() = default;
+  /// With room for `most`, in permanent memory.
   DeviceItems(Arena& arena, std::size_t most)
-      : position_(arena.temporary<Vec3d>(most)),
-        normal_(arena.temporary<Vec3d>(most)),
-        size_(arena.temporary<double>(most)),
-        particle_(arena.temporary<std::uint32_t>(most)),
-        surface_(arena.temporary<std::uint32_t>(most)),
-        next_(arena.temporary<std::uint32_t>(most)),
-        previous_(arena.temporary<std::uint32_t>(most)) {}
+      : position_(arena.permanent<Vec3d>(most)),
+        normal_(arena.permanent<Vec3d>(most)),
+        size_(arena.permanent<double>(most)),
+        particle_(arena.permanent<std::uint32_t>(most)),
+        surface_(arena.permanent<std::uint32_t>(most)),
+        next_(arena.permanent<std::uint32_t>(most)),
+        previous_(arena.permanent<std::uint32_t>(most)) {}
 
-  /// The items of `n` particles. Returns them as the host has them.
+  /// Those of `n` particles instead of what there was.
   template <class Backend>
-  StarItems list(Executor<Backend>& exec, const StarParticlesView& particles, std::int64_t n);
+  void list(Executor<Backend>& exec, const StarParticlesView& particles, std::int64_t n);
 
+  std::size_t room() const { return position_.size(); }
+  std::size_t count() const { return first_.empty() ? 0 : first_.back(); }
+  const std::vector<SurfaceMaterials>& materials() const { return materials_; }  ///< per surface, ascending
+  const std::vector<std::uint32_t>& first() const { return first_; }  ///< per surface and one more, if there are any
+  /// `first`: the same on the device.
   StarItemsView view(const std::uint32_t* first) const {
     return {position_.data(), normal_.data(), size_.data(),     particle_.data(),
             surface_.data(),  next_.data(),   previous_.data(), first};
   }
+  void download(StarItems& host) const;
 
  private:
   detail::ItemsToPut to_put() const {
@@ -182,41 +189,45 @@ class DeviceItems {
   Array<Vec3d> position_, normal_;
   Array<double> size_;
   Array<std::uint32_t> particle_, surface_, next_, previous_;
+  std::vector<SurfaceMaterials> materials_;
+  std::vector<std::uint32_t> first_, broken_;
 };
 
 template <class Backend>
-StarItems DeviceItems::list(Executor<Backend>& exec, const StarParticlesView& particles, std::int64_t n) {
+void DeviceItems::list(Executor<Backend>& exec, const StarParticlesView& particles, std::int64_t n) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  StarItems host;
+  materials_.clear(), first_.clear(), broken_.clear();
+  if (n == 0) return;
   const CurveNodes nodes = link_curves(exec, particles, n);
   if (nodes.count() > 0) {
     const auto broken = list_where(exec, nodes.count(), detail::IsBroken{nodes.node.data()});
     const auto particle = arena.template temporary<std::uint32_t>(broken.size());
     exec.for_each(std::int64_t(broken.size()),
                   detail::ParticleOfNode{nodes.node.data(), broken.data(), particle.data()});
-    host.broken = particle.download();
-    std::sort(host.broken.begin(), host.broken.end());
+    broken_ = particle.download();
+    std::sort(broken_.begin(), broken_.end());
   }
   const Array<std::uint64_t> key = sorted_pairs(exec, n, detail::SurfacesOf{particles.junction, nodes.view()});
-  const std::size_t count = key.size();
-  if (count == 0) return host;
-  exec.for_each(std::int64_t(count), detail::HeadFlag{key.data(), surface_.data()});
-  const std::size_t surfaces = exec.exclusive_scan(surface_.data(), surface_.data(), std::int64_t(count));
+  const auto count = std::int64_t(key.size());
+  if (count == 0) return;
+  exec.for_each(count, detail::HeadFlag{key.data(), surface_.data()});
+  const std::size_t surfaces = exec.exclusive_scan(surface_.data(), surface_.data(), count);
   const auto first = arena.template temporary<std::uint32_t>(surfaces + 1);
   const auto pair = arena.template temporary<std::uint32_t>(surfaces);
-  exec.for_each(std::int64_t(count),
-                detail::PutItems{particles, key.data(), std::int64_t(count), to_put(), first.data(), pair.data()});
-  exec.for_each(std::int64_t(count),
-                detail::LinkItems{particles.junction, nodes.view(), first.data(), pair.data(), to_put()});
-  host.position = position_.download(0, count), host.normal = normal_.download(0, count);
-  host.size = size_.download(0, count);
-  host.particle = particle_.download(0, count), host.surface = surface_.download(0, count);
-  host.next = next_.download(0, count), host.previous = previous_.download(0, count);
-  host.first = first.download();
+  exec.for_each(count, detail::PutItems{particles, key.data(), count, to_put(), first.data(), pair.data()});
+  exec.for_each(count, detail::LinkItems{particles.junction, nodes.view(), first.data(), pair.data(), to_put()});
+  first_ = first.download();
   for (const std::uint32_t materials : pair.download())
-    host.materials.push_back({std::uint16_t(materials >> 16), std::uint16_t(materials)});
-  return host;
+    materials_.push_back({std::uint16_t(materials >> 16), std::uint16_t(materials)});
+}
+
+inline void DeviceItems::download(StarItems& host) const {
+  const std::size_t n = count();
+  position_.download_to(host.position, n), normal_.download_to(host.normal, n), size_.download_to(host.size, n);
+  particle_.download_to(host.particle, n), surface_.download_to(host.surface, n);
+  next_.download_to(host.next, n), previous_.download_to(host.previous, n);
+  host.materials = materials_, host.first = first_, host.broken = broken_;
 }
 
 }  // namespace nacre

@@ -12,23 +12,36 @@ namespace nacre {
 namespace detail {
 
 /// The triangles that all corners agree on, each of its smallest item: counted, or written.
-struct AgreedTriangles {
+struct ReadAgreed {
+  StarItemsView items;
+  const SurfaceMaterials* of_surface;
   const Star* star;
-  std::uint32_t* first;  // per item: how many it has; if they are written, where they begin
-  Triangle* triangle;    // null: they are counted
+  std::uint32_t* first;      // per item: how many it has; if they are written, where they begin
+  std::uint32_t* first_rim;  // the same of those between rims
+  Triangle* triangle;        // null: they are counted
+  SurfaceMaterials* materials;
+  RimTriangle* between_rims;
   NACRE_HD void operator()(std::int64_t n) const {
     const auto i = std::uint32_t(n);
     const Star& mine = star[i];
-    std::uint32_t at = triangle ? first[i] : 0;
+    std::uint32_t at = triangle ? first[i] : 0, rim_at = triangle ? first_rim[i] : 0;
     for (int k = 0; k < mine.count; ++k) {
       if (!(mine.agreed >> k & 1)) continue;
       const std::uint32_t a = mine.ring[k], b = mine.ring[mine.after(k)];
       if (i > a || i > b) continue;
-      if (triangle) triangle[at] = {i, a, b};
-      ++at;
+      const bool between = on_rim(i) + on_rim(a) + on_rim(b) > 1;
+      if (triangle) {
+        triangle[at] = {items.particle[i], items.particle[a], items.particle[b]};
+        materials[at] = of_surface[items.surface[i]];
+        if (between) between_rims[rim_at] = {at, {i, a, b}};
+      }
+      ++at, rim_at += between;
     }
-    if (!triangle) first[i] = at;
+    if (!triangle) first[i] = at, first_rim[i] = rim_at;
   }
+
+ private:
+  NACRE_HD int on_rim(std::uint32_t i) const { return items.next[i] != none ? 1 : 0; }
 };
 
 struct IsIncomplete {
@@ -44,23 +57,41 @@ struct IsUnsettled {
   NACRE_HD std::int64_t operator()(std::int64_t k) const { return is_unsettled(items, star[item[k]], item[k]); }
 };
 
+template <class Backend>
+void read_agreed(Executor<Backend>& exec, const StarItemsView& items, const std::vector<SurfaceMaterials>& materials,
+                 const Star* star, std::int64_t n, AgreedTriangles& agreed) {
+  Arena& arena = exec.arena();
+  Arena::Scope scope(arena);
+  auto of_surface = arena.template temporary<SurfaceMaterials>(materials.size());
+  of_surface.upload(materials);
+  const auto first = arena.template temporary<std::uint32_t>(std::size_t(n));
+  const auto first_rim = arena.template temporary<std::uint32_t>(std::size_t(n));
+  ReadAgreed read{items, of_surface.data(), star, first.data(), first_rim.data(), nullptr, nullptr, nullptr};
+  exec.for_each(n, read);
+  const std::uint32_t triangles = exec.exclusive_scan(first.data(), first.data(), n);
+  const std::uint32_t between = exec.exclusive_scan(first_rim.data(), first_rim.data(), n);
+  const auto triangle = arena.template temporary<Triangle>(triangles);
+  const auto its_materials = arena.template temporary<SurfaceMaterials>(triangles);
+  const auto between_rims = arena.template temporary<RimTriangle>(between);
+  read.triangle = triangle.data(), read.materials = its_materials.data(), read.between_rims = between_rims.data();
+  if (triangles > 0) exec.for_each(n, read);
+  triangle.download_to(agreed.triangles, triangles);
+  its_materials.download_to(agreed.materials, triangles);
+  between_rims.download_to(agreed.between_rims, between);
+}
+
 }  // namespace detail
 
-/// Reads the stars of `n` items into `found`.
+/// Reads the stars of `n` items on surfaces between these `materials`.
 template <class Backend>
-void read_stars(Executor<Backend>& exec, const StarItemsView& items, const Star* star, std::int64_t n,
-                FoundStars& found) {
+void read_stars(Executor<Backend>& exec, const StarItemsView& items, const std::vector<SurfaceMaterials>& materials,
+                const Star* star, std::int64_t n, FoundStars& found) {
   Arena::Scope scope(exec.arena());
-  const auto first = exec.arena().template temporary<std::uint32_t>(std::size_t(n));
-  exec.for_each(n, detail::AgreedTriangles{star, first.data(), nullptr});
-  const std::uint32_t triangles = exec.exclusive_scan(first.data(), first.data(), n);
-  const auto triangle = exec.arena().template temporary<Triangle>(triangles);
-  exec.for_each(n, detail::AgreedTriangles{star, first.data(), triangle.data()});
-  found.agreed = triangle.download();
+  detail::read_agreed(exec, items, materials, star, n, found.agreed);
   const Array<std::uint32_t> incomplete = list_where(exec, n, detail::IsIncomplete{items, star});
   found.unsettled = exec.reduce(std::int64_t(incomplete.size()), std::int64_t(0),
                                 detail::IsUnsettled{items, star, incomplete.data()}, Add{});
-  found.incomplete = incomplete.download();
+  incomplete.download_to(found.incomplete, incomplete.size());
 }
 
 }  // namespace nacre

@@ -35,6 +35,16 @@ struct Star {
   std::uint32_t agreed = 0;  ///< bit k: triangle (item, ring[k], the one after it) is in the stars of all its corners
 
   NACRE_HD int after(int k) const { return k + 1 == count ? 0 : k + 1; }
+  /// Whether the triangle to the left of the edge to ring[k] is agreed, or the one to its right.
+  NACRE_HD bool is_agreed(int k) const { return agreed >> k & 1; }
+  NACRE_HD bool is_agreed_right(int k) const {
+    if (k > 0) return is_agreed(k - 1);
+    return closed && is_agreed(count - 1);
+  }
+  NACRE_HD bool has_agreed_edge(std::uint32_t to) const {
+    const int k = position_of(to);
+    return k >= 0 && (is_agreed(k) || is_agreed_right(k));
+  }
   /// Whether a triangle may begin with ring[k].
   NACRE_HD bool has_triangle(int k) const { return !(gaps >> k & 1) && (closed || k + 1 < count) && count > 1; }
   NACRE_HD bool has(std::uint32_t a, std::uint32_t b) const {

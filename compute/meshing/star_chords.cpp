@@ -5,8 +5,6 @@
 #include <array>
 #include <tuple>
 
-#include "compute/meshing/select_where.hpp"
-
 namespace nacre {
 namespace {
 
@@ -14,7 +12,7 @@ constexpr double least_facing = 0.3;  // cosine between a triangle and the norma
 
 /// A side of a triangle between two rims, as particles.
 struct Chord {
-  std::uint32_t low, high, surface, triangle;
+  std::uint32_t low, high, surface, triangle;  // the last one as a number among those between rims
   int side;
   bool same_ends(const Chord& other) const { return low == other.low && high == other.high; }
   friend bool operator<(const Chord& s, const Chord& t) {
@@ -24,12 +22,12 @@ struct Chord {
 
 bool on_rim(const StarItems& items, std::uint32_t i) { return items.next[i] != none; }
 
-std::vector<Chord> list_chords(const StarItems& items, std::span<const Triangle> triangles,
-                               std::span<const std::uint32_t> between) {
+std::vector<Chord> list_chords(const StarItems& items, std::span<const RimTriangle> between_rims) {
   std::vector<Chord> chords;
-  for (const std::uint32_t i : between)
+  for (std::uint32_t i = 0; i < between_rims.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = triangles[i][k], b = triangles[i][(k + 1) % 3];
+      const Triangle& t = between_rims[i].items;
+      const std::uint32_t a = t[k], b = t[(k + 1) % 3];
       if (!on_rim(items, a) || !on_rim(items, b) || items.next[a] == b || items.next[b] == a) continue;
       const auto [low, high] = std::minmax(items.particle[a], items.particle[b]);
       chords.push_back({low, high, items.surface[a], i, k});
@@ -66,8 +64,9 @@ double worth_of(const StarItems& items, const Triangle& t) {
 }
 
 /// Of the two triangles at a chord of one surface.
-Exchange exchange_of(const StarItems& items, std::span<const Triangle> triangles, const Chord& s, const Chord& t) {
-  const Triangle &first = triangles[s.triangle], &second = triangles[t.triangle];
+Exchange exchange_of(const StarItems& items, std::span<const RimTriangle> between_rims, const Chord& s,
+                     const Chord& t) {
+  const Triangle &first = between_rims[s.triangle].items, &second = between_rims[t.triangle].items;
   const std::uint32_t a = first[s.side], b = first[(s.side + 1) % 3], c = first[(s.side + 2) % 3],
                       d = second[(t.side + 2) % 3];
   Exchange exchange{{s.triangle, t.triangle}, {{{a, d, c}, {d, b, c}}}, {std::min(c, d), std::max(c, d)}};
@@ -78,19 +77,18 @@ Exchange exchange_of(const StarItems& items, std::span<const Triangle> triangles
 }
 
 /// Those of the exchanges whose edges there are already are worth nothing.
-void refuse_known_edges(std::span<const Triangle> triangles, std::vector<std::vector<Exchange>>& wanted,
-                        std::size_t items) {
+void refuse_known_edges(std::span<const Star> stars, std::span<const Triangle> filled,
+                        std::vector<std::vector<Exchange>>& wanted) {
   std::vector<std::array<std::uint32_t, 2>> edges, known;
-  std::vector<std::uint8_t> is_end(items, 0);
   for (const auto& some : wanted)
-    for (const Exchange& e : some) edges.push_back(e.edge), is_end[e.edge[0]] = is_end[e.edge[1]] = 1;
+    for (const Exchange& e : some) {
+      edges.push_back(e.edge);
+      if (stars[e.edge[0]].has_agreed_edge(e.edge[1])) known.push_back(e.edge);
+    }
   std::sort(edges.begin(), edges.end());
-  for (const std::uint32_t i : select_where(triangles.size(), [&](std::size_t i) {
-         const Triangle& t = triangles[i];
-         return is_end[t.a] + is_end[t.b] + is_end[t.c] > 1;
-       }))
+  for (const Triangle& t : filled)
     for (int k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax({triangles[i][k], triangles[i][(k + 1) % 3]});
+      const auto [low, high] = std::minmax({t[k], t[(k + 1) % 3]});
       if (std::binary_search(edges.begin(), edges.end(), std::array<std::uint32_t, 2>{low, high}))
         known.push_back({low, high});
     }
@@ -102,16 +100,8 @@ void refuse_known_edges(std::span<const Triangle> triangles, std::vector<std::ve
 
 }  // namespace
 
-std::vector<std::uint32_t> triangles_between_rims(const StarItems& items, std::span<const Triangle> triangles) {
-  return select_where(triangles.size(), [&](std::size_t i) {
-    const Triangle& t = triangles[i];
-    return on_rim(items, t.a) + on_rim(items, t.b) + on_rim(items, t.c) > 1;
-  });
-}
-
-std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const Triangle> triangles,
-                                            std::span<const std::uint32_t> between) {
-  const std::vector<Chord> chords = list_chords(items, triangles, between);
+std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<const RimTriangle> between_rims) {
+  const std::vector<Chord> chords = list_chords(items, between_rims);
   std::vector<std::uint32_t> shared;
   for_shared(chords, [&](std::size_t first, std::size_t) {
     shared.push_back(chords[first].low), shared.push_back(chords[first].high);
@@ -119,18 +109,18 @@ std::vector<std::uint32_t> at_shared_chords(const StarItems& items, std::span<co
   return shared;
 }
 
-void exchange_shared_chords(const StarItems& items, std::span<const std::uint32_t> between,
-                            std::vector<Triangle>& triangles) {
-  const std::vector<Chord> chords = list_chords(items, triangles, between);
+std::vector<std::uint32_t> exchange_shared_chords(const StarItems& items, std::span<const Star> stars,
+                                                  std::span<const Triangle> filled,
+                                                  std::vector<RimTriangle>& between_rims) {
+  const std::vector<Chord> chords = list_chords(items, between_rims);
   std::vector<std::vector<Exchange>> wanted;  // per shared edge, one for each surface
   for_shared(chords, [&](std::size_t first, std::size_t last) {
     wanted.emplace_back();
     for (std::size_t i = first; i + 1 < last; ++i)
       if (chords[i].surface == chords[i + 1].surface)
-        wanted.back().push_back(exchange_of(items, triangles, chords[i], chords[i + 1]));
+        wanted.back().push_back(exchange_of(items, between_rims, chords[i], chords[i + 1]));
   });
-  if (wanted.empty()) return;
-  refuse_known_edges(triangles, wanted, items.count());
+  refuse_known_edges(stars, filled, wanted);
   std::vector<std::uint32_t> changed;
   std::vector<std::array<std::uint32_t, 2>> made;
   for (const auto& some : wanted) {
@@ -142,9 +132,11 @@ void exchange_shared_chords(const StarItems& items, std::span<const std::uint32_
     };
     if (is_changed(best->changed[0]) || is_changed(best->changed[1])) continue;
     if (std::find(made.begin(), made.end(), best->edge) != made.end()) continue;
-    for (std::size_t k = 0; k < 2; ++k) triangles[best->changed[k]] = best->to[k], changed.push_back(best->changed[k]);
+    for (std::size_t k = 0; k < 2; ++k)
+      between_rims[best->changed[k]].items = best->to[k], changed.push_back(best->changed[k]);
     made.push_back(best->edge);
   }
+  return changed;
 }
 
 }  // namespace nacre

@@ -8,7 +8,8 @@ namespace nacre {
 /// Of one mesh.
 struct StarCounts {
   std::int64_t stars = 0;       ///< a particle has one on each of its surfaces
-  std::int64_t unsettled = 0;   ///< of these, with a triangle that another corner does not have, after all rounds
+  std::int64_t cut = 0;         ///< of these, found anew: others were known from the mesh before
+  std::int64_t unsettled = 0;   ///< of all, with a triangle that another corner does not have, after all rounds
   std::int64_t holes = 0;       ///< between agreed triangles, filled one by one
   std::int64_t filled = 0;      ///< triangles in them
   std::int64_t left_out = 0;    ///< particles that no triangle has

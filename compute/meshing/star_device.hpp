@@ -1,9 +1,7 @@
-// Nacre: who finds stars for a StarFinder.
+// Nacre: who finds stars, and what is read off from them.
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
 #include <vector>
 
 #include "compute/meshing/star.hpp"
@@ -13,23 +11,24 @@
 
 namespace nacre {
 
-/// Which of the items that there are now were there at the call before.
-struct ItemChange {
-  /// Where an item has come or gone.
-  struct Position {
-    Vec3d at;
-    std::uint32_t surface;  ///< as surfaces are numbered now
-  };
-  std::vector<std::uint32_t> old_of;  ///< per item: its number before, or `none`
-  std::vector<std::uint32_t> new_of;  ///< per item before: its number now, or `none`
-  std::vector<Position> positions;    ///< of all items that have come or gone
+/// A triangle that has two corners or more on rims.
+struct RimTriangle {
+  std::uint32_t number;  ///< in a list of triangles
+  Triangle items;        ///< its corners
+};
+
+/// The triangles that the stars of all their corners have.
+struct AgreedTriangles {
+  std::vector<Triangle> triangles;  ///< corners are particles; the first is the smallest. Ascend by surface, then by it
+  std::vector<SurfaceMaterials> materials;  ///< per triangle
+  std::vector<RimTriangle> between_rims;    ///< ascending
 };
 
 /// The stars of all items, settled, with what is agreed marked, and what is read off from them.
 struct FoundStars {
   StarItems items;
   std::vector<Star> stars;
-  std::vector<Triangle> agreed;           ///< that all corners agree on, each listed by its smallest item, as items
+  AgreedTriangles agreed;
   std::vector<std::uint32_t> incomplete;  ///< items of which is_incomplete is true; ascending
   std::int64_t unsettled = 0;             ///< stars of which is_unsettled is true
   std::int64_t cut = 0;                   ///< stars that were cut anew
@@ -39,12 +38,9 @@ class StarDevice {
  public:
   virtual ~StarDevice() = default;
 
-  /// Tells what has changed from the call before to the items that there are now.
-  using TellChange = std::function<std::optional<ItemChange>(const StarItems&)>;
-
-  /// Replaces `found`, what this call gave before, by the stars of these particles. Where a change is told, stars that
-  /// have the same items within reach as before are not cut again; what comes out is the same without.
-  virtual void find(const StarParticles& particles, const TellChange& change, FoundStars& found) = 0;
+  /// The stars of these particles, until the next call: the caller may change what it gets. Stars of the call before
+  /// that have the same items within reach are not cut again; what comes out depends on the particles alone.
+  virtual FoundStars& find(const StarParticles& particles) = 0;
 };
 
 }  // namespace nacre

@@ -16,6 +16,7 @@
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/small_hull.hpp"
 #include "compute/meshing/star_holes.hpp"
+#include "compute/meshing/star_openings.hpp"
 
 namespace nacre {
 namespace {
@@ -36,7 +37,7 @@ std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vecto
   const auto agreed = [&](std::uint32_t a, std::uint32_t b) {
     const Star& star = stars[a];
     for (int k = 0; k < star.count; ++k)
-      if (star.ring[k] == b) return (star.agreed >> k & 1) != 0;
+      if (star.ring[k] == b) return star.is_agreed(k);
     return false;
   };
   const auto is_odd = [&](std::size_t i) {
@@ -176,10 +177,11 @@ std::vector<std::uint32_t> close_bodies(const StarItems& items, const std::vecto
 
 /// Fills holes, and widens those that cannot be filled, `hopeless` ones excepted. `failed` receives the items of those
 /// that were widened in vain.
-StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomplete,
-                           std::span<const std::uint32_t> hopeless, std::vector<std::uint32_t>& failed) {
-  const StarItems& items = finder.items();
-  const std::vector<Star>& stars = finder.stars();
+StarFilling widen_and_fill(const FoundStars& found, StarOpenings& openings, std::span<const std::uint32_t> hopeless,
+                           std::vector<std::uint32_t>& failed) {
+  const StarItems& items = found.items;
+  const std::vector<Star>& stars = found.stars;
+  std::vector<std::uint32_t> incomplete = found.incomplete;
   StarFilling filling;
   std::vector<FilledHole> filled;
   std::vector<std::uint32_t> changed;
@@ -199,27 +201,27 @@ StarFilling widen_and_fill(StarFinder& finder, std::vector<std::uint32_t> incomp
            {std::span<const std::uint32_t>(now.hopeless), std::span<const std::uint32_t>(left),
             std::span<const std::uint32_t>(holes.open)})
         filling.unsettled.insert(filling.unsettled.end(), more.begin(), more.end());
-      sort_unique(filling.opened);
+      filling.removed = openings.removed();
       return filling;
     }
-    changed = finder.open(now.wider);
+    changed = openings.open(now.wider);
     sort_unique(changed);
     incomplete.insert(incomplete.end(), changed.begin(), changed.end());
     sort_unique(incomplete);
-    filling.opened.insert(filling.opened.end(), now.wider.begin(), now.wider.end());
   }
 }
 
 }  // namespace
 
-StarFilling fill_holes(StarFinder& finder, std::vector<std::uint32_t> incomplete) {
+StarFilling fill_holes(FoundStars& found) {
+  StarOpenings openings(found.stars);
   std::vector<std::uint32_t> failed;
-  StarFilling filling = widen_and_fill(finder, incomplete, {}, failed);
+  StarFilling filling = widen_and_fill(found, openings, {}, failed);
   if (failed.empty()) return filling;
   // What was widened in vain stays as small as it was.
-  finder.close();
+  openings.close();
   std::vector<std::uint32_t> again;
-  return widen_and_fill(finder, std::move(incomplete), failed, again);
+  return widen_and_fill(found, openings, failed, again);
 }
 
 }  // namespace nacre

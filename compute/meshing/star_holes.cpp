@@ -29,14 +29,6 @@ struct Side {
   bool used = false;
 };
 
-bool agreed_from(const Star& star, int k) { return star.agreed >> k & 1; }
-
-/// Whether the triangle on the far side of edge (item, ring[k]) is agreed: the one that has the edge backwards.
-bool agreed_to(const Star& star, int k) {
-  if (k > 0) return agreed_from(star, k - 1);
-  return star.closed && agreed_from(star, star.count - 1);
-}
-
 bool is_used(const Star& star) { return star.agreed != 0; }
 
 void add_sides(const StarItems& items, const std::vector<Star>& stars, std::uint32_t i, std::vector<Side>& sides) {
@@ -45,8 +37,8 @@ void add_sides(const StarItems& items, const std::vector<Star>& stars, std::uint
   bool has_next = false;
   for (int k = 0; k < star.count; ++k) {
     const std::uint32_t r = star.ring[k];
-    has_next = has_next || (r == next && agreed_from(star, k));
-    if (agreed_to(star, k) && !agreed_from(star, k) && items.next[r] != i && r != next) sides.push_back({i, r});
+    has_next = has_next || (r == next && star.is_agreed(k));
+    if (star.is_agreed_right(k) && !star.is_agreed(k) && items.next[r] != i && r != next) sides.push_back({i, r});
   }
   if (next != none && !has_next && items.next[next] != i) sides.push_back({i, next});
 }
@@ -205,9 +197,7 @@ class Filling {
   }
 
   bool is_there(std::uint32_t a, std::uint32_t b) const {
-    const Star& star = stars_[a];
-    for (int k = 0; k < star.count; ++k)
-      if (star.ring[k] == b) return agreed_from(star, k) || agreed_to(star, k);
+    if (stars_[a].position_of(b) >= 0) return stars_[a].has_agreed_edge(b);
     return items_.next[a] == b || items_.previous[a] == b;
   }
 
@@ -255,8 +245,7 @@ class Filling {
   bool stars_has_backwards() const {
     const Star& star = stars_[hole_.loop[0]];
     for (int k = 0; k < star.count; ++k)
-      if (star.ring[k] == hole_.loop[2] && agreed_from(star, k) && star.ring[star.after(k)] == hole_.loop[1])
-        return true;
+      if (star.ring[k] == hole_.loop[2] && star.is_agreed(k) && star.ring[star.after(k)] == hole_.loop[1]) return true;
     return false;
   }
 

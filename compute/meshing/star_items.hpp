@@ -10,6 +10,8 @@
 
 namespace nacre {
 
+using SurfaceMaterials = std::array<std::uint16_t, 2>;  ///< the two beside a surface, ascending
+
 /// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
 /// particle.
 struct StarItems {
@@ -19,9 +21,9 @@ struct StarItems {
   std::vector<std::uint32_t> surface;         ///< number of its surface
   std::vector<std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the left
                                               ///< of the rim, seen against the normal; `none` off the rims
-  std::vector<std::array<std::uint16_t, 2>> materials;  ///< per surface, ascending
-  std::vector<std::uint32_t> first;                     ///< per surface and one more: its first item
-  std::vector<std::uint32_t> broken;                    ///< particles at which a rim begins or ends; ascending
+  std::vector<SurfaceMaterials> materials;    ///< per surface, ascending
+  std::vector<std::uint32_t> first;           ///< per surface and one more: its first item
+  std::vector<std::uint32_t> broken;          ///< particles at which a rim begins or ends; ascending
 
   std::size_t count() const { return position.size(); }
   /// For the host.

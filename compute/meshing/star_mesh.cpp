@@ -1,11 +1,13 @@
 // Nacre: the triangles between materials, read off from the particles themselves.
 #include "compute/meshing/star_mesh.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
-#include <tuple>
+#include <array>
+#include <ranges>
+#include <span>
+#include <utility>
 
+#include "compute/math/sort_unique.hpp"
 #include "compute/meshing/incidence.hpp"
 #include "compute/meshing/star_chords.hpp"
 #include "compute/meshing/star_filling.hpp"
@@ -13,48 +15,75 @@
 namespace nacre {
 namespace {
 
+constexpr SurfaceMaterials no_materials = {0, 0};  // of triangles that are to go
+
+bool is_gone(const StarMesh& mesh, std::size_t triangle) { return mesh.materials[triangle] == no_materials; }
+
+/// Marks triangles that are not agreed on any more; their corners are items, the smallest one first.
+void mark_removed(const StarItems& items, std::span<const Triangle> removed, StarMesh& made) {
+  const auto numbers = std::views::iota(std::size_t(0), made.triangles.size());
+  const auto place_of = [&](std::size_t i) { return std::pair(made.materials[i], made.triangles[i].a); };
+  std::vector<std::size_t> gone;
+  for (const Triangle& t : removed) {
+    const Triangle particles{items.particle[t.a], items.particle[t.b], items.particle[t.c]};
+    const std::pair place(items.materials[items.surface[t.a]], particles.a);
+    for (const std::size_t i : std::ranges::equal_range(numbers, place, {}, place_of))
+      if (made.triangles[i] == particles) gone.push_back(i);
+  }
+  for (const std::size_t i : gone) made.materials[i] = no_materials;
+}
+
+/// Adds triangles that have items for corners.
+void append(const StarItems& items, std::span<const Triangle> more, StarMesh& made,
+            std::vector<RimTriangle>& between_rims) {
+  const auto on_rim = [&](std::uint32_t i) { return items.next[i] != none ? 1 : 0; };
+  for (const Triangle& t : more) {
+    if (on_rim(t.a) + on_rim(t.b) + on_rim(t.c) > 1) between_rims.push_back({std::uint32_t(made.triangles.size()), t});
+    made.triangles.push_back({items.particle[t.a], items.particle[t.b], items.particle[t.c]});
+    made.materials.push_back(items.materials[items.surface[t.a]]);
+  }
+}
+
 /// Of two triangles with the same corners, what is left without the material between them: one triangle or, where the
 /// same material is on both outer sides, none. Both are used up, the first one for what is left.
-void join_doubles(Triangle& first, std::array<std::uint16_t, 2>& first_materials,
-                  std::array<std::uint16_t, 2>& second_materials) {
+void join_doubles(Triangle& first, SurfaceMaterials& first_materials, SurfaceMaterials& second_materials) {
   const auto [low, high] = first_materials;
   const bool low_between = low == second_materials[0] || low == second_materials[1];
   const std::uint16_t between = low_between ? low : high;
   const std::uint16_t beyond = second_materials[0] == between ? second_materials[1] : second_materials[0];
-  std::array<std::uint16_t, 2> left = {low_between ? beyond : low, low_between ? high : beyond};
+  SurfaceMaterials left = {low_between ? beyond : low, low_between ? high : beyond};
   if (left[0] > left[1]) std::swap(left[0], left[1]), std::swap(first.b, first.c);
   const bool gone = first_materials == second_materials;
-  first_materials = gone ? std::array<std::uint16_t, 2>{0, 0} : left;
-  second_materials = {0, 0};
+  first_materials = gone ? no_materials : left;
+  second_materials = no_materials;
 }
 
 /// A material that is no thicker than one triangle is taken away there: two surfaces that have it on one of their sides
 /// would have the same corners, all of which are on rims.
-void remove_doubles(const StarItems& items, const std::vector<Triangle>& with_items,
-                    std::span<const std::uint32_t> between_rims, StarMesh& made) {
-  std::vector<std::pair<std::array<std::uint32_t, 3>, std::size_t>> corners;
-  for (const std::uint32_t i : between_rims) {
-    const Triangle& t = with_items[i];
+void join_all_doubles(const StarItems& items, std::span<const RimTriangle> between_rims, StarMesh& made) {
+  std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> corners;
+  for (const auto& [number, t] : between_rims) {
     if (items.next[t.a] == none || items.next[t.b] == none || items.next[t.c] == none) continue;
     std::array<std::uint32_t, 3> c = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
     std::sort(c.begin(), c.end());
-    corners.push_back({c, i});
+    corners.push_back({c, number});
   }
   std::sort(corners.begin(), corners.end());
-  bool any = false;
-  const auto there = [&](std::size_t i) { return made.materials[i][1] != 0; };
   for (std::size_t i = 0; i < corners.size(); ++i)
-    for (std::size_t k = i; k > 0 && corners[k - 1].first == corners[i].first && there(corners[i].second); --k) {
+    for (std::size_t k = i; k > 0 && corners[k - 1].first == corners[i].first && !is_gone(made, corners[i].second);
+         --k) {
       const std::size_t s = corners[k - 1].second, t = corners[i].second;
-      if (!there(s)) continue;
+      if (is_gone(made, s)) continue;
       join_doubles(made.triangles[t], made.materials[t], made.materials[s]);
       made.joined.insert(made.joined.end(), corners[k].first.begin(), corners[k].first.end());
-      any = true;
     }
-  if (!any) return;
+}
+
+void drop_gone(StarMesh& made) {
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < made.triangles.size(); ++i)
-    if (there(i)) made.triangles[kept] = made.triangles[i], made.materials[kept++] = made.materials[i];
+  while (kept < made.triangles.size() && !is_gone(made, kept)) ++kept;
+  for (std::size_t i = kept; i < made.triangles.size(); ++i)
+    if (!is_gone(made, i)) made.triangles[kept] = made.triangles[i], made.materials[kept++] = made.materials[i];
   made.triangles.resize(kept), made.materials.resize(kept);
 }
 
@@ -71,45 +100,38 @@ std::vector<std::uint32_t> of_lost_materials(const StarItems& items, const StarM
 
 }  // namespace
 
-StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder) {
+StarMesh mesh_from_stars(const StarParticles& particles, StarDevice& device) {
   StarMesh made;
-  finder.find(particles);
-  const StarItems& items = finder.items();
+  FoundStars& found = device.find(particles);
+  const StarItems& items = found.items;
   made.counts.stars = std::int64_t(items.count());
+  made.counts.cut = found.cut;
   made.unsettled = items.broken;
   const auto unsettle = [&](std::span<const std::uint32_t> some) {
     for (const std::uint32_t i : some) made.unsettled.push_back(items.particle[i]);
   };
-  made.counts.unsettled = finder.found().unsettled;
-  StarFilling filling = fill_holes(finder, finder.found().incomplete);
+  made.counts.unsettled = found.unsettled;
+  const StarFilling filling = fill_holes(found);
   made.counts.holes = filling.holes;
   made.counts.filled = std::int64_t(filling.triangles.size());
   unsettle(filling.unsettled);
   for (const std::uint32_t i : filling.around) made.joined.push_back(items.particle[i]);
 
-  std::vector<Triangle> triangles = finder.take_agreed();
-  if (!filling.opened.empty()) {
-    std::vector<std::uint8_t> opened(items.count(), 0);
-    for (const std::uint32_t i : filling.opened) opened[i] = 1;
-    std::erase_if(triangles, [&](const Triangle& t) { return opened[t.a] || opened[t.b] || opened[t.c]; });
+  made.triangles = std::move(found.agreed.triangles), made.materials = std::move(found.agreed.materials);
+  std::vector<RimTriangle>& between_rims = found.agreed.between_rims;
+  mark_removed(items, filling.removed, made);
+  std::erase_if(between_rims, [&](const RimTriangle& t) { return is_gone(made, t.number); });
+  append(items, filling.triangles, made, between_rims);
+  for (const std::uint32_t k : exchange_shared_chords(items, found.stars, filling.triangles, between_rims)) {
+    const auto& [number, t] = between_rims[k];
+    made.triangles[number] = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
   }
-  triangles.insert(triangles.end(), filling.triangles.begin(), filling.triangles.end());
-  const std::vector<std::uint32_t> between_rims = triangles_between_rims(items, triangles);
-  exchange_shared_chords(items, between_rims, triangles);
-
-  made.triangles.resize(triangles.size());
-  made.materials.resize(triangles.size());
-  tbb::parallel_for(std::size_t(0), triangles.size(), [&](std::size_t i) {
-    const Triangle& t = triangles[i];
-    made.triangles[i] = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
-    made.materials[i] = items.materials[items.surface[t.a]];
-  });
-  remove_doubles(items, triangles, between_rims, made);
+  join_all_doubles(items, between_rims, made);
+  drop_gone(made);
   unsettle(of_lost_materials(items, made));
-  const std::vector<std::uint32_t> shared = at_shared_chords(items, triangles, between_rims);
+  const std::vector<std::uint32_t> shared = at_shared_chords(items, between_rims);
   made.unsettled.insert(made.unsettled.end(), shared.begin(), shared.end());
-  std::sort(made.unsettled.begin(), made.unsettled.end());
-  made.unsettled.erase(std::unique(made.unsettled.begin(), made.unsettled.end()), made.unsettled.end());
+  sort_unique(made.unsettled);
   const std::vector<std::uint8_t> used = mark_corners(made.triangles, particles.count());
   made.counts.left_out = std::count(used.begin(), used.end(), 0);
   return made;

@@ -5,14 +5,14 @@
 #include <vector>
 
 #include "compute/meshing/star_counts.hpp"
-#include "compute/meshing/star_finder.hpp"
+#include "compute/meshing/star_device.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
 
 struct StarMesh {
-  std::vector<Triangle> triangles;  ///< corners are particles; counter-clockwise seen from the lower material
-  std::vector<std::array<std::uint16_t, 2>> materials;  ///< per triangle, ascending
+  std::vector<Triangle> triangles;          ///< corners are particles; counter-clockwise seen from the lower material
+  std::vector<SurfaceMaterials> materials;  ///< per triangle
   StarCounts counts;
   /// Particles around which triangles are missing, or overlap, ascending: a rim is broken, a hole is too large or
   /// cannot be filled, or what may be a body is left out. Where there are none, the mesh is closed around every
@@ -25,7 +25,7 @@ struct StarMesh {
 };
 
 /// The surfaces between all materials as one mesh. Quicker where the particles are much as they were at the last call
-/// with this finder; the result depends on the particles alone. In parallel.
-StarMesh mesh_from_stars(const StarParticles& particles, StarFinder& finder);
+/// with this device; the result depends on the particles alone. In parallel.
+StarMesh mesh_from_stars(const StarParticles& particles, StarDevice& device);
 
 }  // namespace nacre

@@ -56,7 +56,6 @@ MeshImprovement::MeshImprovement(MovableParticles& particles, const JunctionTabl
       tell_(tell),
       delaunay_(rule.threads),
       star_device_(particles.star_device()),
-      star_finder_(*star_device_),
       patch_cells_(rule.threads),
       on_junctions_([this](std::span<const Vec3d> points, std::span<const Junction> junctions) {
         return particles_.onto_junctions(points, junctions, false);
@@ -147,7 +146,7 @@ double MeshImprovement::fitness_of(const Triangulated& made) {
 bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::span<const Vec3d> points, bool patches,
                                            Triangulated& made) {
   const StarInput input = star_input(particles_, particles, table_);
-  StarMesh stars = mesh_from_stars(input.of(particles), star_finder_);
+  StarMesh stars = mesh_from_stars(input.of(particles), *star_device_);
   check_stop(rule_.stop);
   const auto& axes = frame_.axes;
   if (dot(axes[0], cross(axes[1], axes[2])) < 0)  // the particles' own coordinates are left-handed in the world

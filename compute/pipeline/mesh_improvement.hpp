@@ -26,7 +26,7 @@
 #include "compute/meshing/delaunay.hpp"
 #include "compute/meshing/repair.hpp"
 #include "compute/meshing/star_counts.hpp"
-#include "compute/meshing/star_finder.hpp"
+#include "compute/meshing/star_device.hpp"
 #include "compute/meshing/star_patches.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 #include "compute/pipeline/deviation_refinement.hpp"
@@ -165,7 +165,6 @@ class MeshImprovement {
   const TellStage& tell_;
   Delaunay delaunay_;  ///< of all particles,
   std::unique_ptr<StarDevice> star_device_;
-  StarFinder star_finder_;
   PatchCells patch_cells_;  ///< and of those where stars do not settle
   StarUse star_use_;
   int smoothed_ = 0, remeshed_ = 0;  ///< rounds so far

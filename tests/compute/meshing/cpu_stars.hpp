@@ -12,27 +12,21 @@ namespace nacre::test {
 /// Finds stars on the CPU.
 class CpuStars {
  public:
-  explicit CpuStars(int threads = 0)
-      : device_(make_cpu_device(threads)), exec_(*device_), stars_(exec_), finder_(stars_) {}
+  explicit CpuStars(int threads = 0) : device_(make_cpu_device(threads)), exec_(*device_), stars_(exec_) {}
 
-  StarFinder& finder() { return finder_; }
-  StarMesh mesh(const Cloud& cloud) { return mesh_from_stars(cloud.view(), finder_); }
+  FoundStars& find(const Cloud& cloud) { return stars_.find(cloud.view()); }
+  StarMesh mesh(const Cloud& cloud) { return mesh_from_stars(cloud.view(), stars_); }
 
  private:
   std::unique_ptr<Device> device_;
   Executor<Cpu> exec_;
   DeviceStars<Cpu> stars_;
-  StarFinder finder_;
 };
 
 /// Of all stars anew.
 inline StarMesh mesh_of(const Cloud& cloud, int threads = 0) { return CpuStars(threads).mesh(cloud); }
 
 /// What stars are cut of.
-inline StarItems items_of(const Cloud& cloud) {
-  CpuStars stars;
-  stars.finder().find(cloud.view());
-  return stars.finder().items();
-}
+inline StarItems items_of(const Cloud& cloud) { return CpuStars().find(cloud).items; }
 
 }  // namespace nacre::test

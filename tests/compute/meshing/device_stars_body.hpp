@@ -147,9 +147,8 @@ void stars_of_a_sphere_are_its_convex_hull(Executor<Backend>& exec) {
   const int count = small_cases() ? 60 : 400;
   const Cloud cloud = sphere(random_directions(count, 5), 5);
   DeviceStars<Backend> stars(exec);
-  StarFinder finder(stars);
   const StarParticles particles = cloud.view();
-  const StarMesh made = mesh_from_stars(particles, finder);
+  const StarMesh made = mesh_from_stars(particles, stars);
   ASSERT_TRUE(made.sound());
   EXPECT_EQ(made.triangles.size(), std::size_t(2 * count - 4));
   for (const Triangle& t : made.triangles) {
@@ -164,11 +163,10 @@ template <class Backend>
 void stars_known_from_before_change_nothing(Executor<Backend>& exec) {
   Cloud cloud = halves(small_cases() ? 3 : 8, 0.8);
   DeviceStars<Backend> stars(exec);
-  StarFinder finder(stars);
-  const StarMesh first = mesh_from_stars(cloud.view(), finder);
+  const StarMesh first = mesh_from_stars(cloud.view(), stars);
   EXPECT_TRUE(first.sound());
   EXPECT_TRUE(cloud.topology(first, 3).sound());
-  EXPECT_EQ(finder.found().cut, first.counts.stars);
+  EXPECT_EQ(first.counts.cut, first.counts.stars);
   std::mt19937 generator(7);
   std::uniform_real_distribution<float> random(-0.2f, 0.2f);
   for (int round = 0; round < 3; ++round) {
@@ -176,11 +174,10 @@ void stars_known_from_before_change_nothing(Executor<Backend>& exec) {
       Float4& p = cloud.position[generator() % cloud.position.size()];
       p.x += random(generator), p.y += random(generator);
     }
-    const StarMesh quick = mesh_from_stars(cloud.view(), finder);
-    EXPECT_LT(finder.found().cut, first.counts.stars);
+    const StarMesh quick = mesh_from_stars(cloud.view(), stars);
+    EXPECT_LT(quick.counts.cut, first.counts.stars);
     DeviceStars<Backend> others(exec);
-    StarFinder other(others);
-    expect_equal(quick, mesh_from_stars(cloud.view(), other));
+    expect_equal(quick, mesh_from_stars(cloud.view(), others));
   }
 }
 NACRE_DEVICE_TEST(DeviceStars, stars_known_from_before_change_nothing)

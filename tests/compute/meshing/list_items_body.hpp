@@ -214,8 +214,12 @@ void items_are_particles_once_for_each_surface(Executor<Backend>& exec) {
     Arena::Scope scope(exec.arena());
     const CurveNodes curves = link_curves(exec, particles.view(), n);
     const std::vector<CurveNode> nodes = curves.node.download();
+    const std::size_t mark = exec.arena().mark();
     DeviceItems device(exec.arena(), 6 * cloud.position.size());
-    const StarItems items = device.list(exec, particles.view(), n);
+    device.list(exec, particles.view(), n);
+    StarItems items;
+    device.download(items);
+    exec.arena().rewind(mark);
     std::vector<std::uint8_t> idle(cloud.position.size(), 0);
     for (const CurveNode& node : nodes) idle[node.particle] |= node.is_idle();
     std::vector<Item> expected;

@@ -3,9 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+#include <tuple>
+
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/star_chords.hpp"
 #include "compute/meshing/star_holes.hpp"
+#include "compute/meshing/star_openings.hpp"
 #include "tests/compute/meshing/cpu_stars.hpp"
 
 namespace nacre::test {
@@ -36,29 +41,28 @@ TEST(StarFilling, WideHolesAreFilledWhereTheyAreFlat) {
   }
 }
 
-std::vector<std::uint32_t> incomplete_of(const StarFinder& finder) {
+std::vector<std::uint32_t> incomplete_of(const FoundStars& found) {
   std::vector<std::uint32_t> incomplete;
-  for (std::uint32_t i = 0; i < finder.stars().size(); ++i)
-    if (is_incomplete(finder.items().view(), finder.stars()[i], i)) incomplete.push_back(i);
+  for (std::uint32_t i = 0; i < found.stars.size(); ++i)
+    if (is_incomplete(found.items.view(), found.stars[i], i)) incomplete.push_back(i);
   return incomplete;
 }
 
 TEST(StarFilling, AHoleHasAllParticlesInItsMiddle) {
   const Cloud cloud = sphere(spiral(2000), 10);
   CpuStars stars;
-  StarFinder& finder = stars.finder();
-  finder.find(cloud.view());
+  FoundStars& found = stars.find(cloud);
   std::vector<std::uint32_t> near_top;
-  for (std::uint32_t i = 0; i < finder.items().count(); ++i)
-    if (length(finder.items().position[i] - Vec3d(0, 0, 10)) < 5 * finder.items().size[i]) near_top.push_back(i);
-  finder.open(near_top);
-  const StarHoles holes = find_holes(finder.items(), finder.stars(), incomplete_of(finder));
+  for (std::uint32_t i = 0; i < found.items.count(); ++i)
+    if (length(found.items.position[i] - Vec3d(0, 0, 10)) < 5 * found.items.size[i]) near_top.push_back(i);
+  StarOpenings(found.stars).open(near_top);
+  const StarHoles holes = find_holes(found.items, found.stars, incomplete_of(found));
   ASSERT_EQ(holes.holes.size(), 1U);
   EXPECT_TRUE(holes.alone.empty());
   std::vector<std::uint32_t> within = holes.holes[0].within;
   std::sort(within.begin(), within.end());
   EXPECT_EQ(within, near_top);
-  EXPECT_EQ(fill_hole(finder.items(), finder.stars(), holes.holes[0]).size(),
+  EXPECT_EQ(fill_hole(found.items, found.stars, holes.holes[0]).size(),
             holes.holes[0].loop.size() + 2 * within.size() - 2);
 }
 
@@ -134,25 +138,45 @@ TEST(StarFilling, NoParticleIsInTwoBodies) {
 TEST(StarFilling, ClosingUndoesAllThatWasOpened) {
   const Cloud cloud = sphere(random_directions(800, 3), 6);
   CpuStars stars;
-  StarFinder& finder = stars.finder();
-  finder.find(cloud.view());
-  const std::vector<Star> before = finder.stars();
-  for (const std::uint32_t i : {5U, 6U, 5U, 90U}) finder.open(std::vector<std::uint32_t>{i});
-  finder.close();
-  for (std::size_t i = 0; i < before.size(); ++i) ASSERT_EQ(finder.stars()[i].agreed, before[i].agreed) << i;
+  FoundStars& found = stars.find(cloud);
+  const std::vector<Star> before = found.stars;
+  StarOpenings openings(found.stars);
+  for (const std::uint32_t i : {5U, 6U, 5U, 90U}) openings.open(std::vector<std::uint32_t>{i});
+  openings.close();
+  for (std::size_t i = 0; i < before.size(); ++i) ASSERT_EQ(found.stars[i].agreed, before[i].agreed) << i;
+  EXPECT_TRUE(openings.removed().empty());
+}
+
+TEST(StarFilling, WhatIsOpenedAreTheTrianglesAtTheseItems) {
+  const Cloud cloud = sphere(random_directions(800, 3), 6);
+  CpuStars stars;
+  FoundStars& found = stars.find(cloud);
+  const std::vector<std::uint32_t> some = {5, 6, 90};
+  std::vector<Triangle> expected = found.agreed.triangles;  // one surface: items are particles
+  std::erase_if(expected, [&](const Triangle& t) {
+    return std::ranges::none_of(some, [&](std::uint32_t i) { return t.a == i || t.b == i || t.c == i; });
+  });
+  StarOpenings openings(found.stars);
+  openings.open(some);
+  std::vector<Triangle> removed = openings.removed();
+  const auto by_corners = [](const Triangle& s, const Triangle& t) {
+    return std::tie(s.a, s.b, s.c) < std::tie(t.a, t.b, t.c);
+  };
+  std::sort(removed.begin(), removed.end(), by_corners), std::sort(expected.begin(), expected.end(), by_corners);
+  EXPECT_EQ(removed, expected);
 }
 
 TEST(StarFilling, WhatWasOpenedIsThereAgainTheNextTime) {
   const Cloud cloud = sphere(random_directions(800, 3), 6);
   CpuStars stars;
-  StarFinder& finder = stars.finder();
   const StarMesh first = stars.mesh(cloud);
   const std::vector<std::uint32_t> some = {5, 6, 90};
-  const std::vector<std::uint32_t> changed = finder.open(some);
-  EXPECT_GT(changed.size(), 3 * some.size());
-  for (const std::uint32_t i : some) EXPECT_EQ(finder.stars()[i].agreed, 0u);
-  EXPECT_EQ(stars.mesh(cloud).triangles, first.triangles);
-  EXPECT_EQ(finder.found().cut, 0);
+  FoundStars& found = stars.find(cloud);
+  EXPECT_GT(StarOpenings(found.stars).open(some).size(), 3 * some.size());
+  for (const std::uint32_t i : some) EXPECT_EQ(found.stars[i].agreed, 0u);
+  const StarMesh again = stars.mesh(cloud);
+  EXPECT_EQ(again.triangles, first.triangles);
+  EXPECT_EQ(again.counts.cut, 0);
 }
 
 /// Two surfaces, 0 and 1, over the same four particles, which are their rims.
@@ -171,26 +195,40 @@ StarItems two_quadrilaterals(double lift) {
   return items;
 }
 
-TEST(StarChords, AnEdgeThatTwoSurfacesHaveIsExchangedInOne) {
-  const StarItems items = two_quadrilaterals(0.3);
-  const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
-  EXPECT_EQ(at_shared_chords(items, both, triangles_between_rims(items, both)), (std::vector<std::uint32_t>{0, 2}));
-  std::vector<Triangle> triangles = both;
-  exchange_shared_chords(items, triangles_between_rims(items, triangles), triangles);
-  EXPECT_TRUE(at_shared_chords(items, triangles, triangles_between_rims(items, triangles)).empty());
-  EXPECT_EQ(triangles[0], both[0]) << "in the flat one: the other triangles are worse";
-  EXPECT_EQ(triangles[1], both[1]);
-  std::vector<Triangle> one = {both[0], both[1]};
-  exchange_shared_chords(items, triangles_between_rims(items, one), one);
-  EXPECT_EQ(one, std::vector<Triangle>(both.begin(), both.begin() + 2));
+std::vector<RimTriangle> numbered(std::span<const Triangle> triangles) {
+  std::vector<RimTriangle> all;
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) all.push_back({i, triangles[i]});
+  return all;
 }
 
+TEST(StarChords, AnEdgeThatTwoSurfacesHaveIsExchangedInOne) {
+  const StarItems items = two_quadrilaterals(0.3);
+  const std::vector<Star> no_stars(items.count());
+  const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  std::vector<RimTriangle> triangles = numbered(both);
+  EXPECT_EQ(at_shared_chords(items, triangles), (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(exchange_shared_chords(items, no_stars, {}, triangles), (std::vector<std::uint32_t>{2, 3}))
+      << "in the flat one: the other triangles are worse";
+  EXPECT_TRUE(at_shared_chords(items, triangles).empty());
+  EXPECT_EQ(triangles[0].items, both[0]);
+  EXPECT_EQ(triangles[1].items, both[1]);
+  std::vector<RimTriangle> one = numbered(std::span(both).first(2));
+  EXPECT_TRUE(exchange_shared_chords(items, no_stars, {}, one).empty());
+}
+
+/// Of another triangle of a filled hole, or of one that stars agree on.
 TEST(StarChords, WhereTheOtherEdgeIsThereAlreadyNothingChanges) {
   const StarItems items = two_quadrilaterals(0);
-  const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {1, 3, 2}, {4, 5, 6}, {4, 6, 7}, {5, 7, 6}};
-  std::vector<Triangle> triangles = both;
-  exchange_shared_chords(items, triangles_between_rims(items, triangles), triangles);
-  EXPECT_EQ(triangles, both);
+  const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, others = {{1, 3, 2}, {5, 7, 6}};
+  std::vector<RimTriangle> triangles = numbered(both);
+  EXPECT_TRUE(exchange_shared_chords(items, std::vector<Star>(8), others, triangles).empty());
+  std::vector<Star> stars(8);
+  for (const Triangle& t : others) {
+    Star& star = stars[t.a];
+    star.ring[0] = t.b, star.ring[1] = t.c, star.count = 2, star.agreed = 1;
+  }
+  EXPECT_TRUE(exchange_shared_chords(items, stars, {}, triangles).empty());
+  EXPECT_EQ(exchange_shared_chords(items, std::vector<Star>(8), {}, triangles).size(), 2u);
 }
 
 }  // namespace

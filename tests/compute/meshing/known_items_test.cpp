@@ -1,5 +1,5 @@
 // Nacre: stars of which most are known from before give the mesh that all of them anew would give.
-#include "compute/meshing/star_finder.hpp"
+#include "compute/meshing/known_items.hpp"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/task_arena.h>
@@ -86,20 +86,20 @@ void expect_the_same_after_changes(const Cloud& first, unsigned seed) {
     }
     const StarMesh quick = stars.mesh(now);
     expect_equal(quick, mesh_of(now), round);
-    cut += stars.finder().found().cut, all += quick.counts.stars;
+    cut += quick.counts.cut, all += quick.counts.stars;
     states.push_back(now);
   }
   EXPECT_LT(cut, all * 3 / 4) << "most are known from before";
 }
 
-TEST(StarFinder, AfterRandomChangesTheMeshIsThatOfAllStarsAnew) {
+TEST(KnownItems, AfterRandomChangesTheMeshIsThatOfAllStarsAnew) {
   for (const unsigned seed : {1u, 2u, 3u}) {
     expect_the_same_after_changes(halves(8, 0.8), seed);
     expect_the_same_after_changes(sphere(random_directions(1500, seed), 8), seed);
   }
 }
 
-TEST(StarFinder, NorDoesTheNumberOfThreadsMatter) {
+TEST(KnownItems, NorDoesTheNumberOfThreadsMatter) {
   const auto on = [](int threads) {
     return tbb::task_arena(threads).execute([=] {
       std::mt19937 generator(9);
@@ -113,13 +113,12 @@ TEST(StarFinder, NorDoesTheNumberOfThreadsMatter) {
   expect_equal(on(1), on(3), 0);
 }
 
-TEST(StarFinder, WhereNothingHasChangedNoStarIsCutAgain) {
+TEST(KnownItems, WhereNothingHasChangedNoStarIsCutAgain) {
   const Cloud cloud = halves(8, 0.8);
   CpuStars stars;
-  stars.mesh(cloud);
-  EXPECT_EQ(stars.finder().found().cut, std::int64_t(stars.finder().stars().size()));
-  stars.mesh(cloud);
-  EXPECT_EQ(stars.finder().found().cut, 0);
+  const StarCounts first = stars.mesh(cloud).counts;
+  EXPECT_EQ(first.cut, first.stars);
+  EXPECT_EQ(stars.mesh(cloud).counts.cut, 0);
 }
 
 }  // namespace
