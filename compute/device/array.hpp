@@ -12,7 +12,7 @@
 namespace nacre {
 
 /// `size` elements on a device, inside an Arena's block (which owns them). The host may not look at the elements:
-/// `upload` and `download` are the only ways across.
+/// `upload`, `download` and `seen_by_host` are the only ways across.
 template <class T>
 class Array {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -45,6 +45,16 @@ class Array {
     assert(count <= size_);
     host.resize(count);
     if (count) device_->copy_to_host(host.data(), data_, count * sizeof(T));
+  }
+
+  /// The first `count` as they are now: where the host shares the memory in place, which kernels may change; else a
+  /// copy, in `copy`.
+  std::span<T> seen_by_host(std::size_t count, std::vector<T>& copy) const {
+    assert(count <= size_);
+    if (count == 0) return {};
+    if (device_->shares_host_memory()) return {data_, count};
+    download_to(copy, count);
+    return copy;
   }
 
   void fill_bytes(unsigned char value) {

@@ -20,7 +20,7 @@ class CpuDevice final : public Device {
   int threads() const override { return threads_; }
   void* allocate(std::size_t bytes) override;
   void deallocate(void* block, std::size_t bytes) noexcept override;
-  bool shares_host_memory() const override { return true; }
+  bool shares_host_memory() const override { return !remote_; }
   void give_back(void* block, std::size_t from, std::size_t to) override;
   void copy_to_device(void* to, const void* host, std::size_t bytes) override;
   void copy_to_host(void* host, const void* from, std::size_t bytes) override;

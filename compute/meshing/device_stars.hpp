@@ -88,14 +88,15 @@ class DeviceStars : public StarDevice {
 
   FoundStars& find(const StarParticles& particles) override {
     Arena::Scope scope(exec_.arena());
+    put_back();
     make_room(most_items(particles));
     std::swap(items_, before_);
     list(particles);
-    items_.download(found_.items);
+    found_.items = items_.seen_by_host();
     if (items_.count() > 0)
       find(items_.view(copy_of(items_.first())), std::int64_t(items_.count()));
     else
-      found_.stars.clear(), found_.agreed = {}, found_.incomplete.clear(), found_.unsettled = found_.cut = 0;
+      found_ = {};
     return found_;
   }
 
@@ -115,6 +116,12 @@ class DeviceStars : public StarDevice {
     arena.rewind(mark_);
     for (DeviceItems* items : {&items_, &before_}) *items = DeviceItems(arena, n + n / 8);
     for (Array<Star>* stars : {&stars_, &spare_}) *stars = arena.template permanent<Star>(n + n / 8);
+    settled_ = arena.template permanent<std::uint32_t>(n + n / 8);
+  }
+
+  /// Makes stars what they were before they settled.
+  void put_back() {
+    exec_.for_each(std::exchange(changed_, 0), detail::PutBackStars{settled_.data(), spare_.data(), stars_.data()});
   }
 
   void list(const StarParticles& particles) {
@@ -140,11 +147,11 @@ class DeviceStars : public StarDevice {
     const auto weight = exec_.arena().template temporary<double>(std::size_t(n));
     exec_.for_each(n, detail::WeighItems{items, weight.data()});
     exec_.for_each(detail::eighth(n), detail::CutStars{items, weight.data(), boxes, n, stale.data(), stars_.data()});
-    StarSettling<Backend> settling(exec_, items, stars_, spare_, n);
+    StarSettling<Backend> settling(exec_, items, stars_, spare_, settled_, n);
     settling.settle(stale);
-    stars_.download_to(found_.stars, std::size_t(n));
+    changed_ = settling.changed();
+    found_.stars = stars_.seen_by_host(std::size_t(n), copy_);
     read_stars(exec_, items, items_.materials(), stars_.data(), n, found_);
-    settling.put_back();
     found_.cut = exec_.reduce(n, std::int64_t(0), detail::IsMarked{stale.data()}, Add{});
   }
 
@@ -185,7 +192,11 @@ class DeviceStars : public StarDevice {
   Executor<Backend>& exec_;
   std::size_t mark_;
   DeviceItems items_, before_;
-  Array<Star> stars_, spare_;  // of `items_`, as they were cut; with room for more
+  Array<Star> stars_;             // of `items_`, settled; with room for more
+  Array<Star> spare_;             // those that changed then, as they were cut
+  Array<std::uint32_t> settled_;  // which these are,
+  std::int64_t changed_ = 0;      // and how many
+  std::vector<Star> copy_;        // for a host that does not share the memory
   FoundStars found_;
 };
 

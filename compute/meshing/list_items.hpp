@@ -178,9 +178,16 @@ class DeviceItems {
     return {position_.data(), normal_.data(), size_.data(),     particle_.data(),
             surface_.data(),  next_.data(),   previous_.data(), first};
   }
-  void download(StarItems& host) const;
+  /// As the host reads them, until the next call of this or `list`.
+  StarItems seen_by_host();
 
  private:
+  struct Copies {
+    std::vector<Vec3d> position, normal;
+    std::vector<double> size;
+    std::vector<std::uint32_t> particle, surface, next, previous;
+  };
+
   detail::ItemsToPut to_put() const {
     return {position_.data(), normal_.data(), size_.data(),    particle_.data(),
             surface_.data(),  next_.data(),   previous_.data()};
@@ -191,6 +198,7 @@ class DeviceItems {
   Array<std::uint32_t> particle_, surface_, next_, previous_;
   std::vector<SurfaceMaterials> materials_;
   std::vector<std::uint32_t> first_, broken_;
+  Copies copies_;  // for a host that does not share the memory
 };
 
 template <class Backend>
@@ -222,12 +230,18 @@ void DeviceItems::list(Executor<Backend>& exec, const StarParticlesView& particl
     materials_.push_back({std::uint16_t(materials >> 16), std::uint16_t(materials)});
 }
 
-inline void DeviceItems::download(StarItems& host) const {
+inline StarItems DeviceItems::seen_by_host() {
   const std::size_t n = count();
-  position_.download_to(host.position, n), normal_.download_to(host.normal, n), size_.download_to(host.size, n);
-  particle_.download_to(host.particle, n), surface_.download_to(host.surface, n);
-  next_.download_to(host.next, n), previous_.download_to(host.previous, n);
-  host.materials = materials_, host.first = first_, host.broken = broken_;
+  return {position_.seen_by_host(n, copies_.position),
+          normal_.seen_by_host(n, copies_.normal),
+          size_.seen_by_host(n, copies_.size),
+          particle_.seen_by_host(n, copies_.particle),
+          surface_.seen_by_host(n, copies_.surface),
+          next_.seen_by_host(n, copies_.next),
+          previous_.seen_by_host(n, copies_.previous),
+          materials_,
+          first_,
+          broken_};
 }
 
 }  // namespace nacre

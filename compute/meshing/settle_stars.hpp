@@ -119,7 +119,7 @@ struct AgreeTouched {
   }
 };
 
-struct PutBack {
+struct PutBackStars {
   const std::uint32_t* item;
   const Star* before;
   Star* star;
@@ -134,9 +134,10 @@ struct PutBack {
 template <class Backend>
 class StarSettling {
  public:
-  /// `n` items at least one; memory is temporary, of the caller's scope. `before` has room for all stars.
+  /// `n` items at least one; memory is temporary, of the caller's scope. `before` and `kept` have room for all stars:
+  /// they receive those that change, as they were, and which these are.
   StarSettling(Executor<Backend>& exec, const StarItemsView& items, const Array<Star>& stars, const Array<Star>& before,
-               std::int64_t n)
+               const Array<std::uint32_t>& kept, std::int64_t n)
       : exec_(exec),
         items_(items),
         stars_(stars),
@@ -145,7 +146,7 @@ class StarSettling {
         open_(list()),
         next_open_(list()),
         touched_(list()),
-        kept_(list()),
+        kept_(kept),
         is_touched_(list()),
         is_kept_(list()),
         changed_at_(list()),
@@ -163,8 +164,8 @@ class StarSettling {
     }
   }
 
-  /// Makes the stars what they were before any was settled.
-  void put_back() { exec_.for_each(read(kept), detail::PutBack{kept_.data(), before_.data(), stars_.data()}); }
+  /// How many stars have changed.
+  std::int64_t changed() const { return read(kept); }
 
  private:
   static constexpr std::uint32_t rounds = 6;

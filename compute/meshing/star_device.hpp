@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compute/meshing/star.hpp"
@@ -27,7 +28,7 @@ struct AgreedTriangles {
 /// The stars of all items, settled, with what is agreed marked, and what is read off from them.
 struct FoundStars {
   StarItems items;
-  std::vector<Star> stars;
+  std::span<Star> stars;
   AgreedTriangles agreed;
   std::vector<std::uint32_t> incomplete;  ///< items of which is_incomplete is true; ascending
   std::int64_t unsettled = 0;             ///< stars of which is_unsettled is true
@@ -38,8 +39,9 @@ class StarDevice {
  public:
   virtual ~StarDevice() = default;
 
-  /// The stars of these particles, until the next call: the caller may change what it gets. Stars of the call before
-  /// that have the same items within reach are not cut again; what comes out depends on the particles alone.
+  /// The stars of these particles, until the next call. Those of the call before that have the same items within reach
+  /// are not cut again; what comes out depends on the particles alone. The caller may change what it gets, but is to
+  /// put stars back (StarOpenings).
   virtual FoundStars& find(const StarParticles& particles) = 0;
 };
 

@@ -16,7 +16,6 @@
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/small_hull.hpp"
 #include "compute/meshing/star_holes.hpp"
-#include "compute/meshing/star_openings.hpp"
 
 namespace nacre {
 namespace {
@@ -28,7 +27,7 @@ constexpr double least_ratio = 0.2;   // of these triangles
 constexpr std::size_t most_opened = 50;  // items for each hole: beyond, it is no hole but something else
 
 /// Items at edges of filled holes that are not passed once each way, counting the agreed triangles beside them.
-std::vector<std::uint32_t> at_odd_edges(const StarItems& items, const std::vector<Star>& stars,
+std::vector<std::uint32_t> at_odd_edges(const StarItems& items, std::span<const Star> stars,
                                         std::span<const Triangle> filled) {
   std::vector<std::array<std::uint32_t, 2>> edges;
   for (const Triangle& t : filled)
@@ -60,7 +59,7 @@ struct FilledHole {
 
 /// Fills holes. Those that were there `before` are filled as then where none of their items has `changed` (ascending)
 /// since.
-std::vector<FilledHole> fill_each(const StarItems& items, const std::vector<Star>& stars, std::vector<StarHole> holes,
+std::vector<FilledHole> fill_each(const StarItems& items, std::span<const Star> stars, std::vector<StarHole> holes,
                                   std::span<const FilledHole> before, std::span<const std::uint32_t> changed) {
   const auto has_changed = [&](std::uint32_t i) { return std::binary_search(changed.begin(), changed.end(), i); };
   const auto filled_before = [&](const StarHole& hole) -> const FilledHole* {
@@ -87,7 +86,7 @@ struct Failed {
 };
 
 /// Collects the triangles. Holes that have one of the items `hopeless`, which ascend, are not worth widening.
-Failed collect(const StarItems& items, const std::vector<Star>& stars, std::span<const FilledHole> holes,
+Failed collect(const StarItems& items, std::span<const Star> stars, std::span<const FilledHole> holes,
                std::span<const std::uint32_t> hopeless, std::vector<Triangle>& triangles) {
   const auto is_hopeless = [&](std::uint32_t i) { return std::binary_search(hopeless.begin(), hopeless.end(), i); };
   Failed failed;
@@ -130,7 +129,7 @@ std::vector<Triangle> hull_of(const StarItems& items, std::span<const std::uint3
 }
 
 /// Items that are neighbours of each other, one of the other at least, in groups; all of `alone`, which ascends.
-std::vector<std::vector<std::uint32_t>> group_neighbours(const std::vector<Star>& stars,
+std::vector<std::vector<std::uint32_t>> group_neighbours(std::span<const Star> stars,
                                                          std::span<const std::uint32_t> alone) {
   DisjointSets sets(alone.size());
   std::vector<std::uint8_t> is_among(alone.size(), 0);  // several such
@@ -160,7 +159,7 @@ std::vector<std::vector<std::uint32_t>> group_neighbours(const std::vector<Star>
 /// Items that have no triangle and neighbours of which this is true, too, are a body of a few particles: it gets the
 /// hull of these. A smaller one without such a hull bounds nothing, and is left out, as are items beside a surface that
 /// does without them. Returns the items of larger ones.
-std::vector<std::uint32_t> close_bodies(const StarItems& items, const std::vector<Star>& stars,
+std::vector<std::uint32_t> close_bodies(const StarItems& items, std::span<const Star> stars,
                                         std::span<const std::uint32_t> alone, std::vector<Triangle>& triangles) {
   std::vector<std::uint32_t> left;
   for (const std::vector<std::uint32_t>& body : group_neighbours(stars, alone)) {
@@ -180,7 +179,7 @@ std::vector<std::uint32_t> close_bodies(const StarItems& items, const std::vecto
 StarFilling widen_and_fill(const FoundStars& found, StarOpenings& openings, std::span<const std::uint32_t> hopeless,
                            std::vector<std::uint32_t>& failed) {
   const StarItems& items = found.items;
-  const std::vector<Star>& stars = found.stars;
+  const std::span<const Star> stars = found.stars;
   std::vector<std::uint32_t> incomplete = found.incomplete;
   StarFilling filling;
   std::vector<FilledHole> filled;
@@ -213,8 +212,7 @@ StarFilling widen_and_fill(const FoundStars& found, StarOpenings& openings, std:
 
 }  // namespace
 
-StarFilling fill_holes(FoundStars& found) {
-  StarOpenings openings(found.stars);
+StarFilling fill_holes(const FoundStars& found, StarOpenings& openings) {
   std::vector<std::uint32_t> failed;
   StarFilling filling = widen_and_fill(found, openings, {}, failed);
   if (failed.empty()) return filling;

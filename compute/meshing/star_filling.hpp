@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "compute/meshing/star_device.hpp"
+#include "compute/meshing/star_openings.hpp"
 #include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
@@ -20,7 +21,7 @@ struct StarFilling {
 
 /// Fills the holes between the triangles that stars agree on. One that cannot be filled, or not without
 /// edges that are there already, is widened by the triangles at its items, and so again for some rounds; a triangle
-/// that stands alone goes. The stars do not agree on what is removed any more.
-StarFilling fill_holes(FoundStars& found);
+/// that stands alone goes. What is removed is open in `openings`, which are of these stars.
+StarFilling fill_holes(const FoundStars& found, StarOpenings& openings);
 
 }  // namespace nacre

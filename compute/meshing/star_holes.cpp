@@ -31,7 +31,7 @@ struct Side {
 
 bool is_used(const Star& star) { return star.agreed != 0; }
 
-void add_sides(const StarItems& items, const std::vector<Star>& stars, std::uint32_t i, std::vector<Side>& sides) {
+void add_sides(const StarItems& items, std::span<const Star> stars, std::uint32_t i, std::vector<Side>& sides) {
   const Star& star = stars[i];
   const std::uint32_t next = items.next[i];
   bool has_next = false;
@@ -44,7 +44,7 @@ void add_sides(const StarItems& items, const std::vector<Star>& stars, std::uint
 }
 
 /// Ascending by the items that they begin at.
-std::vector<Side> list_sides(const StarItems& items, const std::vector<Star>& stars,
+std::vector<Side> list_sides(const StarItems& items, std::span<const Star> stars,
                              std::span<const std::uint32_t> incomplete) {
   constexpr std::size_t part = 4096;
   std::vector<std::vector<Side>> parts((incomplete.size() + part - 1) / part);
@@ -84,7 +84,7 @@ Side* follow(std::vector<Side>& sides, const Side& side, const StarItems& items)
 /// that a wide hole gets all that is in its middle.
 class Orphans {
  public:
-  Orphans(const StarItems& items, const std::vector<Star>& stars, std::span<const std::uint32_t> incomplete)
+  Orphans(const StarItems& items, std::span<const Star> stars, std::span<const std::uint32_t> incomplete)
       : stars_(stars) {
     for (const std::uint32_t k : select_where(incomplete.size(), [&](std::size_t k) {
            const std::uint32_t i = incomplete[k];
@@ -154,14 +154,14 @@ class Orphans {
     return at != w.votes.end() ? at->second : w.votes.emplace_back(hole, 0).second;
   }
 
-  const std::vector<Star>& stars_;
+  std::span<const Star> stars_;
   std::vector<Waiting> waiting_;  // ascending
 };
 
 /// Fills one hole: the cheapest triangulation of its loop, then its inner items, then flips.
 class Filling {
  public:
-  Filling(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole)
+  Filling(const StarItems& items, std::span<const Star> stars, const StarHole& hole)
       : items_(items), stars_(stars), hole_(hole), n_(hole.loop.size()) {}
 
   std::vector<Triangle> run() {
@@ -312,7 +312,7 @@ class Filling {
   }
 
   const StarItems& items_;
-  const std::vector<Star>& stars_;
+  std::span<const Star> stars_;
   const StarHole& hole_;
   std::size_t n_;
   std::vector<Triangle> triangles_;
@@ -321,8 +321,7 @@ class Filling {
 
 }  // namespace
 
-StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars,
-                     std::span<const std::uint32_t> incomplete) {
+StarHoles find_holes(const StarItems& items, std::span<const Star> stars, std::span<const std::uint32_t> incomplete) {
   std::vector<Side> sides = list_sides(items, stars, incomplete);
   StarHoles found;
   for (std::size_t s = 0; s < sides.size(); ++s) {
@@ -345,7 +344,7 @@ StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars,
   return found;
 }
 
-std::vector<Triangle> fill_hole(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole) {
+std::vector<Triangle> fill_hole(const StarItems& items, std::span<const Star> stars, const StarHole& hole) {
   return Filling(items, stars, hole).run();
 }
 

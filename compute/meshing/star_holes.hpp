@@ -24,10 +24,10 @@ struct StarHoles {
 };
 
 /// All holes, ascending by their smallest items. `incomplete` are the items, ascending, that may be at or within one.
-StarHoles find_holes(const StarItems& items, const std::vector<Star>& stars, std::span<const std::uint32_t> incomplete);
+StarHoles find_holes(const StarItems& items, std::span<const Star> stars, std::span<const std::uint32_t> incomplete);
 
 /// The triangles that fill a hole, corners as items, counter-clockwise. Empty where it cannot be filled without a
 /// triangle or an edge that there is already.
-std::vector<Triangle> fill_hole(const StarItems& items, const std::vector<Star>& stars, const StarHole& hole);
+std::vector<Triangle> fill_hole(const StarItems& items, std::span<const Star> stars, const StarHole& hole);
 
 }  // namespace nacre

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "compute/math/vec.hpp"
@@ -13,17 +14,17 @@ namespace nacre {
 using SurfaceMaterials = std::array<std::uint16_t, 2>;  ///< the two beside a surface, ascending
 
 /// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
-/// particle.
+/// particle. What the spans show belongs to others.
 struct StarItems {
-  std::vector<Vec3d> position, normal;  ///< the unit normal towards the lower material
-  std::vector<double> size;
-  std::vector<std::uint32_t> particle;
-  std::vector<std::uint32_t> surface;         ///< number of its surface
-  std::vector<std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the left
-                                              ///< of the rim, seen against the normal; `none` off the rims
-  std::vector<SurfaceMaterials> materials;    ///< per surface, ascending
-  std::vector<std::uint32_t> first;           ///< per surface and one more: its first item
-  std::vector<std::uint32_t> broken;          ///< particles at which a rim begins or ends; ascending
+  std::span<const Vec3d> position, normal;  ///< the unit normal towards the lower material
+  std::span<const double> size;
+  std::span<const std::uint32_t> particle;
+  std::span<const std::uint32_t> surface;         ///< number of its surface
+  std::span<const std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the
+                                                  ///< left of the rim, seen against the normal; `none` off the rims
+  std::vector<SurfaceMaterials> materials;        ///< per surface, ascending
+  std::vector<std::uint32_t> first;               ///< per surface and one more: its first item
+  std::vector<std::uint32_t> broken;              ///< particles at which a rim begins or ends; ascending
 
   std::size_t count() const { return position.size(); }
   /// For the host.

@@ -111,7 +111,8 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarDevice& device) {
     for (const std::uint32_t i : some) made.unsettled.push_back(items.particle[i]);
   };
   made.counts.unsettled = found.unsettled;
-  const StarFilling filling = fill_holes(found);
+  StarOpenings openings(found.stars);
+  const StarFilling filling = fill_holes(found, openings);
   made.counts.holes = filling.holes;
   made.counts.filled = std::int64_t(filling.triangles.size());
   unsettle(filling.unsettled);

@@ -26,7 +26,4 @@ class CpuStars {
 /// Of all stars anew.
 inline StarMesh mesh_of(const Cloud& cloud, int threads = 0) { return CpuStars(threads).mesh(cloud); }
 
-/// What stars are cut of.
-inline StarItems items_of(const Cloud& cloud) { return CpuStars().find(cloud).items; }
-
 }  // namespace nacre::test

@@ -7,6 +7,7 @@
 
 #include "compute/meshing/device_stars.hpp"
 #include "compute/meshing/star_mesh.hpp"
+#include "tests/compute/meshing/own_items.hpp"
 #include "tests/compute/meshing/star_clouds.hpp"
 #include "tests/compute/on_devices.hpp"
 #include "tests/compute/small_cases.hpp"
@@ -14,8 +15,8 @@
 namespace nacre::test::device_stars {
 
 /// Items at random positions on three surfaces, of which one has very few and one has none.
-inline StarItems random_items(std::uint32_t count) {
-  StarItems items;
+inline OwnItems random_items(std::uint32_t count) {
+  OwnItems items;
   std::mt19937 generator(count);
   std::uniform_real_distribution<float> random(-3, 30);
   items.first = {0, std::min(count, 2u), std::min(count, 2u), count};
@@ -46,7 +47,7 @@ struct FindAround {
   }
 };
 
-inline Found found_by_trying_all(const StarItems& items, std::uint32_t i, double radius2) {
+inline Found found_by_trying_all(const OwnItems& items, std::uint32_t i, double radius2) {
   Found all;
   for (std::uint32_t k = items.first[items.surface[i]]; k < items.first[items.surface[i] + 1]; ++k) {
     const Vec3d r = items.position[k] - items.position[i];
@@ -57,7 +58,7 @@ inline Found found_by_trying_all(const StarItems& items, std::uint32_t i, double
 
 /// Of the items only what boxes are made of, in temporary memory.
 template <class Backend>
-StarItemsView upload_positions(Executor<Backend>& exec, const StarItems& items) {
+StarItemsView upload_positions(Executor<Backend>& exec, const OwnItems& items) {
   auto position = exec.arena().template temporary<Vec3d>(items.count());
   auto surface = exec.arena().template temporary<std::uint32_t>(items.count());
   auto first = exec.arena().template temporary<std::uint32_t>(items.first.size());
@@ -71,7 +72,7 @@ template <class Backend>
 void boxes_find_what_is_near(Executor<Backend>& exec) {
   for (const std::uint32_t count : {1u, 2u, 8u, 9u, 65u, small_cases() ? 200u : 5000u})
     for (const double radius : {0.0, 2.5, 11.0, 100.0}) {
-      const StarItems items = random_items(count);
+      const OwnItems items = random_items(count);
       Arena::Scope scope(exec.arena());
       const StarItemsView view = upload_positions(exec, items);
       const ItemBoxesView boxes = item_boxes(exec, view, count);
@@ -110,7 +111,7 @@ struct FindGathered {
 template <class Backend>
 void what_is_gathered_has_all_that_is_near(Executor<Backend>& exec) {
   const std::uint32_t count = small_cases() ? 200 : 5000;
-  const StarItems items = random_items(count);
+  const OwnItems items = random_items(count);
   std::uint32_t gathered = 0;
   for (const double reach : {0.5, 3.0, 100.0}) {
     Arena::Scope scope(exec.arena());

@@ -12,6 +12,7 @@
 #include "compute/meshing/star_holes.hpp"
 #include "compute/meshing/star_openings.hpp"
 #include "tests/compute/meshing/cpu_stars.hpp"
+#include "tests/compute/meshing/own_items.hpp"
 
 namespace nacre::test {
 namespace {
@@ -55,7 +56,8 @@ TEST(StarFilling, AHoleHasAllParticlesInItsMiddle) {
   std::vector<std::uint32_t> near_top;
   for (std::uint32_t i = 0; i < found.items.count(); ++i)
     if (length(found.items.position[i] - Vec3d(0, 0, 10)) < 5 * found.items.size[i]) near_top.push_back(i);
-  StarOpenings(found.stars).open(near_top);
+  StarOpenings openings(found.stars);
+  openings.open(near_top);
   const StarHoles holes = find_holes(found.items, found.stars, incomplete_of(found));
   ASSERT_EQ(holes.holes.size(), 1U);
   EXPECT_TRUE(holes.alone.empty());
@@ -69,13 +71,13 @@ TEST(StarFilling, AHoleHasAllParticlesInItsMiddle) {
 /// A square hole, and a particle beside it, which no triangle of the filling can have.
 TEST(StarFilling, AHoleIsNotFilledWhereThatWouldCutOffWhatGoesOn) {
   for (const double aside : {0.5, 4.0}) {
-    StarItems items;
+    OwnItems items;
     items.materials = {{0, 1}};
     for (const Vec3d& p : {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(1, 1, 0), Vec3d(0, 1, 0), Vec3d(1 + aside, 0.5, 0)}) {
       items.position.push_back(p), items.normal.push_back({0, 0, 1}), items.size.push_back(1);
       items.next.push_back(none), items.previous.push_back(none);
     }
-    const std::vector<Triangle> filling = fill_hole(items, std::vector<Star>(5), {{0, 1, 2, 3}, {4}});
+    const std::vector<Triangle> filling = fill_hole(items.items(), std::vector<Star>(5), {{0, 1, 2, 3}, {4}});
     EXPECT_EQ(filling.size(), aside > 1 ? 0U : 2U) << aside;
   }
 }
@@ -139,7 +141,7 @@ TEST(StarFilling, ClosingUndoesAllThatWasOpened) {
   const Cloud cloud = sphere(random_directions(800, 3), 6);
   CpuStars stars;
   FoundStars& found = stars.find(cloud);
-  const std::vector<Star> before = found.stars;
+  const std::vector<Star> before(found.stars.begin(), found.stars.end());
   StarOpenings openings(found.stars);
   for (const std::uint32_t i : {5U, 6U, 5U, 90U}) openings.open(std::vector<std::uint32_t>{i});
   openings.close();
@@ -172,16 +174,19 @@ TEST(StarFilling, WhatWasOpenedIsThereAgainTheNextTime) {
   const StarMesh first = stars.mesh(cloud);
   const std::vector<std::uint32_t> some = {5, 6, 90};
   FoundStars& found = stars.find(cloud);
-  EXPECT_GT(StarOpenings(found.stars).open(some).size(), 3 * some.size());
-  for (const std::uint32_t i : some) EXPECT_EQ(found.stars[i].agreed, 0u);
+  {
+    StarOpenings openings(found.stars);
+    EXPECT_GT(openings.open(some).size(), 3 * some.size());
+    for (const std::uint32_t i : some) EXPECT_EQ(found.stars[i].agreed, 0u);
+  }
   const StarMesh again = stars.mesh(cloud);
   EXPECT_EQ(again.triangles, first.triangles);
   EXPECT_EQ(again.counts.cut, 0);
 }
 
 /// Two surfaces, 0 and 1, over the same four particles, which are their rims.
-StarItems two_quadrilaterals(double lift) {
-  StarItems items;
+OwnItems two_quadrilaterals(double lift) {
+  OwnItems items;
   items.materials = {{0, 1}, {0, 2}};
   items.first = {0, 4, 8};
   for (std::uint32_t s = 0; s < 2; ++s)
@@ -202,7 +207,8 @@ std::vector<RimTriangle> numbered(std::span<const Triangle> triangles) {
 }
 
 TEST(StarChords, AnEdgeThatTwoSurfacesHaveIsExchangedInOne) {
-  const StarItems items = two_quadrilaterals(0.3);
+  const OwnItems own = two_quadrilaterals(0.3);
+  const StarItems items = own.items();
   const std::vector<Star> no_stars(items.count());
   const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
   std::vector<RimTriangle> triangles = numbered(both);
@@ -218,7 +224,8 @@ TEST(StarChords, AnEdgeThatTwoSurfacesHaveIsExchangedInOne) {
 
 /// Of another triangle of a filled hole, or of one that stars agree on.
 TEST(StarChords, WhereTheOtherEdgeIsThereAlreadyNothingChanges) {
-  const StarItems items = two_quadrilaterals(0);
+  const OwnItems own = two_quadrilaterals(0);
+  const StarItems items = own.items();
   const std::vector<Triangle> both = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, others = {{1, 3, 2}, {5, 7, 6}};
   std::vector<RimTriangle> triangles = numbered(both);
   EXPECT_TRUE(exchange_shared_chords(items, std::vector<Star>(8), others, triangles).empty());

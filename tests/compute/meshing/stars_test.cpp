@@ -11,6 +11,7 @@
 #include "compute/meshing/settle_star.hpp"
 #include "compute/meshing/star_mesh.hpp"
 #include "tests/compute/meshing/cpu_stars.hpp"
+#include "tests/compute/meshing/own_items.hpp"
 
 namespace nacre::test {
 namespace {
@@ -196,7 +197,7 @@ TEST(Stars, TheRuleOfAQuadrilateralIsTheSameFromAllItsCorners) {
   std::int64_t first = 0;
   constexpr int rounds = 200000;
   for (int round = 0; round < rounds; ++round) {
-    StarItems items;
+    OwnItems items;
     for (std::uint32_t k = 0; k < 4; ++k) {
       const double angle = 0.5 * M_PI * (k + 0.8 * random(generator));
       Vec3d p(std::cos(angle), std::sin(angle), 0.3 * random(generator));
@@ -230,7 +231,7 @@ TEST(Stars, ASettledStarHasEachNeighbourOnce) {
   constexpr std::uint32_t count = 9;
   int changes = 0;
   for (int round = 0; round < 100000; ++round) {
-    StarItems items;
+    OwnItems items;
     std::vector<Star> stars(count);
     for (std::uint32_t i = 0; i < count; ++i) {
       items.position.push_back({random(generator), random(generator), random(generator)});
@@ -336,7 +337,8 @@ TEST(Stars, ABrokenRimIsNotPassedOver) {
   cloud.direction.erase(cloud.direction.begin(), cloud.direction.begin() + missing);
   cloud.junction.erase(cloud.junction.begin(), cloud.junction.begin() + missing);
   cloud.gradient.erase(cloud.gradient.begin(), cloud.gradient.begin() + missing);
-  const std::vector<std::uint32_t> broken = items_of(cloud).broken;
+  CpuStars stars;
+  const std::vector<std::uint32_t> broken = stars.find(cloud).items.broken;
   EXPECT_EQ(broken.size(), 2u) << "where it begins and where it ends";
   const StarMesh made = mesh_of(cloud);
   EXPECT_FALSE(made.sound());
