@@ -196,7 +196,7 @@ struct HasNone {
 /// Numbers in `to` of the surfaces of `from`, or `none`.
 inline std::vector<std::uint32_t> same_surfaces(const DeviceItems& from, const DeviceItems& to) {
   std::vector<std::uint32_t> same;
-  for (const SurfaceMaterials& pair : from.materials()) {
+  for (const MaterialPair& pair : from.materials()) {
     const auto at = std::lower_bound(to.materials().begin(), to.materials().end(), pair);
     const bool there = at != to.materials().end() && *at == pair;
     same.push_back(there ? std::uint32_t(at - to.materials().begin()) : none);

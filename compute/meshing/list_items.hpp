@@ -171,7 +171,7 @@ class DeviceItems {
 
   std::size_t room() const { return position_.size(); }
   std::size_t count() const { return first_.empty() ? 0 : first_.back(); }
-  const std::vector<SurfaceMaterials>& materials() const { return materials_; }  ///< per surface, ascending
+  const std::vector<MaterialPair>& materials() const { return materials_; }  ///< per surface, ascending
   const std::vector<std::uint32_t>& first() const { return first_; }  ///< per surface and one more, if there are any
   /// `first`: the same on the device.
   StarItemsView view(const std::uint32_t* first) const {
@@ -196,7 +196,7 @@ class DeviceItems {
   Array<Vec3d> position_, normal_;
   Array<double> size_;
   Array<std::uint32_t> particle_, surface_, next_, previous_;
-  std::vector<SurfaceMaterials> materials_;
+  std::vector<MaterialPair> materials_;
   std::vector<std::uint32_t> first_, broken_;
   Copies copies_;  // for a host that does not share the memory
 };

@@ -14,12 +14,12 @@ namespace detail {
 /// The triangles that all corners agree on, each of its smallest item: counted, or written.
 struct ReadAgreed {
   StarItemsView items;
-  const SurfaceMaterials* of_surface;
+  const MaterialPair* of_surface;
   const Star* star;
   std::uint32_t* first;      // per item: how many it has; if they are written, where they begin
   std::uint32_t* first_rim;  // the same of those between rims
   Triangle* triangle;        // null: they are counted
-  SurfaceMaterials* materials;
+  MaterialPair* materials;
   RimTriangle* between_rims;
   NACRE_HD void operator()(std::int64_t n) const {
     const auto i = std::uint32_t(n);
@@ -58,11 +58,11 @@ struct IsUnsettled {
 };
 
 template <class Backend>
-void read_agreed(Executor<Backend>& exec, const StarItemsView& items, const std::vector<SurfaceMaterials>& materials,
+void read_agreed(Executor<Backend>& exec, const StarItemsView& items, const std::vector<MaterialPair>& materials,
                  const Star* star, std::int64_t n, AgreedTriangles& agreed) {
   Arena& arena = exec.arena();
   Arena::Scope scope(arena);
-  auto of_surface = arena.template temporary<SurfaceMaterials>(materials.size());
+  auto of_surface = arena.template temporary<MaterialPair>(materials.size());
   of_surface.upload(materials);
   const auto first = arena.template temporary<std::uint32_t>(std::size_t(n));
   const auto first_rim = arena.template temporary<std::uint32_t>(std::size_t(n));
@@ -71,7 +71,7 @@ void read_agreed(Executor<Backend>& exec, const StarItemsView& items, const std:
   const std::uint32_t triangles = exec.exclusive_scan(first.data(), first.data(), n);
   const std::uint32_t between = exec.exclusive_scan(first_rim.data(), first_rim.data(), n);
   const auto triangle = arena.template temporary<Triangle>(triangles);
-  const auto its_materials = arena.template temporary<SurfaceMaterials>(triangles);
+  const auto its_materials = arena.template temporary<MaterialPair>(triangles);
   const auto between_rims = arena.template temporary<RimTriangle>(between);
   read.triangle = triangle.data(), read.materials = its_materials.data(), read.between_rims = between_rims.data();
   if (triangles > 0) exec.for_each(n, read);
@@ -84,7 +84,7 @@ void read_agreed(Executor<Backend>& exec, const StarItemsView& items, const std:
 
 /// Reads the stars of `n` items on surfaces between these `materials`.
 template <class Backend>
-void read_stars(Executor<Backend>& exec, const StarItemsView& items, const std::vector<SurfaceMaterials>& materials,
+void read_stars(Executor<Backend>& exec, const StarItemsView& items, const std::vector<MaterialPair>& materials,
                 const Star* star, std::int64_t n, FoundStars& found) {
   Arena::Scope scope(exec.arena());
   detail::read_agreed(exec, items, materials, star, n, found.agreed);

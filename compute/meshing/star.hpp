@@ -93,13 +93,20 @@ NACRE_HD inline bool is_unsettled(const StarItemsView& items, const Star& star, 
 
 /// What is to be marked as agreed in `star`, of item i: the triangles that are in the stars of all their corners.
 NACRE_HD inline std::uint32_t agreed_on(const Star* stars, std::uint32_t i, const Star& star) {
-  std::uint32_t agreed = 0;
+  std::uint32_t mine = 0, by_first = 0, by_second = 0;  // who has triangle k: this star, those of its other corners
   for (int k = 0; k < star.count; ++k) {
-    if (!star.has_triangle(k)) continue;
-    const std::uint32_t a = star.ring[k], b = star.ring[star.after(k)];
-    if (stars[a].has(b, i) && stars[b].has(i, a)) agreed |= 1u << k;
+    if (star.has_triangle(k)) mine |= 1u << k;
+    const Star& other = stars[star.ring[k]];
+    const int at = other.position_of(i);
+    if (at < 0) continue;
+    // On a rim of two this item is the other's next and its previous one: triangles end at the latter.
+    const bool twice = !other.closed && other.ring[other.count - 1] == i;
+    const int end = twice ? other.count - 1 : at;
+    const int before = end == 0 ? other.count - 1 : end - 1, k_before = k == 0 ? star.count - 1 : k - 1;
+    if (other.has_triangle(before) && other.ring[before] == star.ring[star.after(k)]) by_first |= 1u << k;
+    if (other.has_triangle(at) && other.ring[other.after(at)] == star.ring[k_before]) by_second |= 1u << k_before;
   }
-  return agreed;
+  return mine & by_first & by_second;
 }
 
 }  // namespace nacre

@@ -21,8 +21,8 @@ struct RimTriangle {
 /// The triangles that the stars of all their corners have.
 struct AgreedTriangles {
   std::vector<Triangle> triangles;  ///< corners are particles; the first is the smallest. Ascend by surface, then by it
-  std::vector<SurfaceMaterials> materials;  ///< per triangle
-  std::vector<RimTriangle> between_rims;    ///< ascending
+  std::vector<MaterialPair> materials;    ///< per triangle
+  std::vector<RimTriangle> between_rims;  ///< ascending
 };
 
 /// The stars of all items, settled, with what is agreed marked, and what is read off from them.

@@ -1,17 +1,15 @@
 // Nacre: particles once for each surface that they are on.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "compute/math/vec.hpp"
 #include "compute/meshing/star.hpp"
+#include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
-
-using SurfaceMaterials = std::array<std::uint16_t, 2>;  ///< the two beside a surface, ascending
 
 /// A particle on each of the surfaces that it belongs to, once per surface: an item. Items ascend by surface, then by
 /// particle. What the spans show belongs to others.
@@ -22,7 +20,7 @@ struct StarItems {
   std::span<const std::uint32_t> surface;         ///< number of its surface
   std::span<const std::uint32_t> next, previous;  ///< on a rim: items beside it on the same surface, which lies to the
                                                   ///< left of the rim, seen against the normal; `none` off the rims
-  std::vector<SurfaceMaterials> materials;        ///< per surface, ascending
+  std::vector<MaterialPair> materials;            ///< per surface, ascending
   std::vector<std::uint32_t> first;               ///< per surface and one more: its first item
   std::vector<std::uint32_t> broken;              ///< particles at which a rim begins or ends; ascending
 

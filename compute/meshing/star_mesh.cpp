@@ -15,7 +15,7 @@
 namespace nacre {
 namespace {
 
-constexpr SurfaceMaterials no_materials = {0, 0};  // of triangles that are to go
+constexpr MaterialPair no_materials = {0, 0};  // of triangles that are to go
 
 bool is_gone(const StarMesh& mesh, std::size_t triangle) { return mesh.materials[triangle] == no_materials; }
 
@@ -46,12 +46,12 @@ void append(const StarItems& items, std::span<const Triangle> more, StarMesh& ma
 
 /// Of two triangles with the same corners, what is left without the material between them: one triangle or, where the
 /// same material is on both outer sides, none. Both are used up, the first one for what is left.
-void join_doubles(Triangle& first, SurfaceMaterials& first_materials, SurfaceMaterials& second_materials) {
+void join_doubles(Triangle& first, MaterialPair& first_materials, MaterialPair& second_materials) {
   const auto [low, high] = first_materials;
   const bool low_between = low == second_materials[0] || low == second_materials[1];
   const std::uint16_t between = low_between ? low : high;
   const std::uint16_t beyond = second_materials[0] == between ? second_materials[1] : second_materials[0];
-  SurfaceMaterials left = {low_between ? beyond : low, low_between ? high : beyond};
+  MaterialPair left = {low_between ? beyond : low, low_between ? high : beyond};
   if (left[0] > left[1]) std::swap(left[0], left[1]), std::swap(first.b, first.c);
   const bool gone = first_materials == second_materials;
   first_materials = gone ? no_materials : left;

@@ -96,10 +96,8 @@ class Patch {
 };
 
 /// Particles where surfaces are pinched are unsettled, too.
-void add_pinched(StarMesh& mesh, std::size_t particles) {
-  std::vector<std::uint8_t> marked(particles, 0);
-  for (const std::uint32_t i : mesh.joined) marked[i] = 1;
-  const std::vector<std::uint32_t> pinched = at_pinched_vertices(mesh, marked);
+void unsettle_pinched(StarMesh& mesh, std::size_t particles) {
+  const std::vector<std::uint32_t> pinched = at_pinched_joints(mesh, particles);
   mesh.unsettled.insert(mesh.unsettled.end(), pinched.begin(), pinched.end());
   sort_unique(mesh.unsettled);
 }
@@ -257,8 +255,11 @@ class Settling {
   void replace(StarMesh& stars) const {
     const std::vector<std::uint32_t> gone =
         select_where(stars.triangles.size(), [&](std::size_t i) { return at_bad_one(stars.triangles[i]); });
+    const auto join = [&](const Triangle& t) { stars.joined.insert(stars.joined.end(), {t.a, t.b, t.c}); };
+    for (const std::uint32_t i : gone) join(stars.triangles[i]);
     remove_at(stars.triangles, gone), remove_at(stars.materials, gone);
     for (const Group& group : groups_) {
+      for (const Triangle& t : group.at_bad.triangles) join(t);
       stars.triangles.insert(stars.triangles.end(), group.at_bad.triangles.begin(), group.at_bad.triangles.end());
       stars.materials.insert(stars.materials.end(), group.at_bad.materials.begin(), group.at_bad.materials.end());
     }
@@ -387,7 +388,7 @@ bool settle_by_cells(StarMesh& mesh, const PatchWorld& world, PatchCells& cells,
                      std::vector<std::array<std::uint32_t, 2>>& touching, const std::atomic<bool>* stop) {
   touching.clear();
   if (world.points.empty()) return false;
-  add_pinched(mesh, world.points.size());
+  unsettle_pinched(mesh, world.points.size());
   cells.begin();
   Settling settling(mesh, world, cells, stop);
   if (settling.count() == 0) return !mesh.triangles.empty();

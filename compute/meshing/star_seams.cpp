@@ -68,4 +68,10 @@ std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<c
   return pinched;
 }
 
+std::vector<std::uint32_t> at_pinched_joints(const StarMesh& mesh, std::size_t particles) {
+  std::vector<std::uint8_t> marked(particles, 0);
+  for (const std::uint32_t i : mesh.joined) marked[i] = 1;
+  return at_pinched_vertices(mesh, marked);
+}
+
 }  // namespace nacre

@@ -21,5 +21,7 @@ std::vector<EdgeFault> edge_faults(const StarMesh& mesh, std::span<const std::ui
 
 /// Marked particles off the junctions that the surface of a material passes more than once.
 std::vector<std::uint32_t> at_pinched_vertices(const StarMesh& mesh, std::span<const std::uint8_t> marked);
+/// The same of all that may be, `mesh.joined`.
+std::vector<std::uint32_t> at_pinched_joints(const StarMesh& mesh, std::size_t particles);
 
 }  // namespace nacre

@@ -9,13 +9,14 @@
 
 namespace nacre {
 
+/// The materials on the two sides of a triangle, or of an interface; the smaller number first.
+using MaterialPair = std::array<std::uint16_t, 2>;
+
 /// The interfaces of all materials as one conformal mesh. Materials are numbers as in MeshVolume: 0 is the outside.
 struct SurfaceMesh {
   std::vector<Vec3d> points;
-  std::vector<Triangle> triangles;  ///< seen from the side of materials[0], corners run counter-clockwise
-  std::vector<std::array<std::uint16_t, 2>>
-      materials;  ///< per triangle: on its two sides, the smaller number first; so
-                  ///< normals point out of the higher one
+  std::vector<Triangle> triangles;      ///< seen from the side of materials[0], corners run counter-clockwise
+  std::vector<MaterialPair> materials;  ///< per triangle: normals point out of the higher one
 };
 
 /// Tetrahedra with positive volume; the facets between different materials are exactly those of a SurfaceMesh.

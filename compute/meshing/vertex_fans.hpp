@@ -8,11 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "compute/math/vec.hpp"
+#include "compute/meshing/surface_mesh.hpp"
 
 namespace nacre {
-
-using MaterialPair = std::array<std::uint16_t, 2>;
 
 /// Count of one material's facets, or vertex fans.
 struct MaterialCount {

@@ -227,6 +227,7 @@ std::optional<MeshImprovement::Triangulated> MeshImprovement::triangulate_again(
   if (!settle_by_cells(kept, {points, size, material_at}, cells, touching, rule_.stop)) return {};
   Triangulated again;
   take_triangles(points, std::move(kept), std::move(touching), again);
+  add_pinched(again);
   finish(again, particles);
   return again;
 }

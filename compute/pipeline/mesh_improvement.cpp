@@ -12,6 +12,7 @@
 #include "compute/meshing/interfaces.hpp"
 #include "compute/meshing/select_where.hpp"
 #include "compute/meshing/star_mesh.hpp"
+#include "compute/meshing/star_seams.hpp"
 #include "compute/meshing/topology.hpp"
 #include "compute/meshing/triangle_rings.hpp"
 
@@ -163,10 +164,12 @@ bool MeshImprovement::triangulate_by_stars(const HostParticles& particles, std::
   star_use_.last = stars.counts;
   ++(settled ? star_use_.meshes : star_use_.fallbacks);
   if (!settled) return false;
-  if (patches)
+  if (patches) {
+    for (const std::uint32_t i : at_pinched_joints(stars, points.size())) touching.push_back({i, i});
     take_triangles(points, std::move(stars), std::move(touching), made);
-  else
+  } else {
     take_without_patches(points, std::move(stars), made);
+  }
   return true;
 }
 
@@ -190,10 +193,10 @@ void MeshImprovement::take_triangles(std::span<const Vec3d> points, StarMesh sta
   });
   made.touching = std::move(touching);
   renumber(made.touching, made.point_of);
-  add_pinched(made);
+  sort_unique(made.touching);
 }
 
-/// Points are where the mesh touches itself, too.
+/// Points are where the mesh touches itself, too: all are looked at.
 void MeshImprovement::add_pinched(Triangulated& made) {
   for (const std::uint32_t v : pinched_points(made.mesh)) made.touching.push_back({v, v});
   sort_unique(made.touching);

@@ -12,7 +12,7 @@ struct OwnItems {
   std::vector<Vec3d> position, normal;
   std::vector<double> size;
   std::vector<std::uint32_t> particle, surface, next, previous, first;
-  std::vector<SurfaceMaterials> materials;
+  std::vector<MaterialPair> materials;
 
   std::size_t count() const { return position.size(); }
   StarItems items() const { return {position, normal, size, particle, surface, next, previous, materials, first, {}}; }
