@@ -18,8 +18,8 @@ struct StarMesh {
   /// cannot be filled, or what may be a body is left out. Where there are none, the mesh is closed around every
   /// material.
   std::vector<std::uint32_t> unsettled;
-  /// Particles at filled holes, at patches, and where a material of no thickness was taken away: surfaces may be pinched
-  /// there. Elsewhere they are not: the triangles at a particle are those that it and its neighbours agree on.
+  /// Particles at filled holes, at patches, and where a material of no thickness was taken away: surfaces may be
+  /// pinched there. Elsewhere they are not: the triangles at a particle are those that it and its neighbours agree on.
   std::vector<std::uint32_t> joined;
 
   bool sound() const { return unsettled.empty() && !triangles.empty(); }
