@@ -154,10 +154,10 @@ struct ForgetTwins {
   NACRE_HD void operator()(std::int64_t i) const {
     const std::uint32_t old = old_of[i];
     if (old == none) return;
-    const bool first = new_of[old] == std::uint32_t(i);
+    const bool first = relaxed_load(new_of + old) == std::uint32_t(i);
     if (first && !before[old].hidden) return;
     old_of[i] = none;
-    if (first) new_of[old] = none;
+    if (first) relaxed_store(new_of + old, none);
   }
 };
 

@@ -19,9 +19,9 @@ constexpr double cells_on_area = 18, bytes_of_cell = 18;
 /// Of cells of the lattice that a boundary runs through, on both of its sides, for the area of one.
 constexpr double boundary_cells = 1.7;
 /// Delaunay's cells, triangles, their neighbours and what repair and improvement keep beside them.
-constexpr double host_bytes_of_particle = 1250;
-/// Stars twice, what they are cut from, and boxes; some particles have several.
-constexpr double device_bytes_of_particle = 400;
+constexpr double host_bytes_of_particle = 1150;
+/// Stars and what they are cut from, each twice, and boxes; some particles have several.
+constexpr double device_bytes_of_particle = 500;
 
 double largest_size(const MeshParameters& parameters) { return std::max(parameters.min_size, parameters.max_size); }
 

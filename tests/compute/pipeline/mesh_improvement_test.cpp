@@ -119,6 +119,14 @@ ImprovedMesh improve(SphereParticles& particles, int smooth, int remesh, double 
 /// About a particle to the area of a hexagonal lattice with spacing 1.
 const int even = int(4 * M_PI * 36 / 0.866);
 
+std::vector<Vec3d> shaken(double by, std::uint32_t seed) {
+  std::vector<Vec3d> directions = even_directions(even);
+  for (std::uint32_t i = 0; i < directions.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      directions[i][axis] += by * (uniform_random(seed, i, std::uint32_t(axis)) - 0.5);
+  return directions;
+}
+
 TEST(MeshImprovement, MakesAClosedMeshOfTheParticles) {
   SphereParticles particles(even_directions(even));
   const ImprovedMesh made = improve(particles, 0, 0);
@@ -175,10 +183,7 @@ TEST(MeshImprovement, AttemptsLeaveAllElseAsItIs) {
     const auto bad = [&](const ImprovedMesh& made) { return triangles_under(asked, made.mesh).size(); };
     std::size_t bad_before = 0, bad_after = 0, all = 0, same = 0;
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
-      std::vector<Vec3d> directions = even_directions(even);
-      for (std::uint32_t i = 0; i < directions.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis)
-          directions[i][axis] += 0.2 * (uniform_random(seed, i, std::uint32_t(axis)) - 0.5);
+      const std::vector<Vec3d> directions = shaken(0.2, seed);
       SphereParticles before(directions), after(directions);
       const ImprovedMesh without = improve(before, 1, 1, 0, stars, aim), with = improve(after, 1, 12, 0, stars, aim);
       EXPECT_TRUE(check_topology(with.mesh, 2).sound());
@@ -194,6 +199,21 @@ TEST(MeshImprovement, AttemptsLeaveAllElseAsItIs) {
     EXPECT_GT(3 * same, 2 * all);
     EXPECT_LT(same, all);
   }
+}
+
+/// Particles nearly at random, and one round of remeshing, which is made before triangles are judged: attempts that are
+/// left are those at triangles for which all would be made of cells.
+TEST(MeshImprovement, ThereAreAttemptsAtUnacceptableTrianglesBeforeAllIsMadeOfCells) {
+  std::int64_t attempts = 0;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    SphereParticles particles(shaken(3, seed));
+    const ImprovedMesh made = improve(particles, 0, 1, 0, true);
+    attempts += made.stars.attempts;
+    EXPECT_LE(made.stars.attempts, 1) << seed;
+    EXPECT_EQ(made.stars.fallbacks, 0) << seed;
+    EXPECT_GE(surface_quality(made.mesh).all.radius_ratio_min, 0.2) << seed;
+  }
+  EXPECT_GT(attempts, 1);
 }
 
 /// A part of the sphere where particles are half as dense: there are more in the end, and nowhere else.
