@@ -45,20 +45,17 @@ class Array {
     return host;
   }
 
-  /// The first `count`, into memory that the host has, where it is enough.
-  void download_to(std::vector<T>& host, std::size_t count) const {
-    assert(count <= size_);
-    host.resize(count);
-    if (count) device_->copy_to_host(host.data(), data_, count * sizeof(T));
-  }
-
   /// The first `count` as they are now: where the host shares the memory in place, which kernels may change; else a
   /// copy, in `copy`.
   std::span<T> seen_by_host(std::size_t count, std::vector<T>& copy) const {
     assert(count <= size_);
     if (count == 0) return {};
-    if (device_->shares_host_memory()) return {data_, count};
-    download_to(copy, count);
+    if (device_->shares_host_memory()) {
+      Recording::forbid("a look from the host");
+      return {data_, count};
+    }
+    copy.resize(count);
+    device_->copy_to_host(copy.data(), data_, count * sizeof(T));
     return copy;
   }
 

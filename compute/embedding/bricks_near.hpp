@@ -5,6 +5,7 @@
 
 #include "compute/embedding/cells_near.hpp"
 #include "compute/embedding/clusters.hpp"
+#include "compute/math/bisection.hpp"
 #include "compute/math/morton.hpp"
 
 namespace nacre {
@@ -17,15 +18,8 @@ struct WantedBricks {
 
   NACRE_HD bool contains(std::uint64_t wanted) const {
     if (!code) return wanted >= first && wanted < last;
-    std::uint64_t low = 0, high = count;
-    while (low < high) {
-      const std::uint64_t middle = low + (high - low) / 2;
-      if (code[middle] < wanted)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    return low < count && code[low] == wanted;
+    const std::uint64_t at = first_not_below(code, std::uint64_t(0), count, wanted);
+    return at < count && code[at] == wanted;
   }
 };
 

@@ -13,6 +13,7 @@
 #include "compute/embedding/closest_in_brick.hpp"
 #include "compute/embedding/code_lists.hpp"
 #include "compute/embedding/octree_nodes.hpp"
+#include "compute/math/bisection.hpp"
 
 namespace nacre {
 
@@ -138,15 +139,8 @@ struct FindList {
   const std::uint64_t* run_start;
   std::uint64_t* start;
   NACRE_HD void operator()(std::int64_t i) const {
-    std::uint32_t low = i < bricks ? 0 : runs, high = runs;
-    while (low < high) {
-      const std::uint32_t middle = low + (high - low) / 2;
-      if (position[middle] < brick_code[i])
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    start[i] = low < runs ? run_start[low] : items;
+    const std::uint32_t run = i < bricks ? first_not_below(position, 0u, runs, brick_code[i]) : runs;
+    start[i] = run < runs ? run_start[run] : items;
   }
 };
 

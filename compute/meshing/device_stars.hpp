@@ -92,11 +92,9 @@ class DeviceStars : public StarDevice {
     make_room(most_items(particles));
     std::swap(items_, before_);
     list(particles);
+    found_ = {};
     found_.items = items_.seen_by_host();
-    if (items_.count() > 0)
-      find(items_.view(copy_of(items_.first())), std::int64_t(items_.count()));
-    else
-      found_ = {};
+    if (items_.count() > 0) find(items_.view(copy_of(items_.first())), std::int64_t(items_.count()));
     return found_;
   }
 
@@ -178,14 +176,14 @@ class DeviceStars : public StarDevice {
     std::swap(stars_, spare_);
     exec_.for_each(n, detail::TakeStarsOver{old_of, change.new_of.data(), spare_.data(), stars_.data(), stale.data()});
     const float farthest = exec_.reduce(n, 0.0f, detail::ReachOfKnown{old_of, stars_.data()}, detail::LongerReach{});
-    const detail::MarkReaching mark{
-        items,       boxes, items, nullptr, change.come.data(), old_of, stars_.data(), double(farthest) * farthest,
-        stale.data()};
-    exec_.for_each(std::int64_t(change.come.size()), mark);
-    detail::MarkReaching mark_gone = mark;
-    mark_gone.changed_items = before_.view(nullptr), mark_gone.new_surface = change.new_surface.data();
-    mark_gone.changed = change.gone.data();
-    exec_.for_each(std::int64_t(change.gone.size()), mark_gone);
+    const auto mark_reaching = [&](const StarItemsView& of, const std::uint32_t* new_surface,
+                                   const Array<std::uint32_t>& changed) {
+      exec_.for_each(std::int64_t(changed.size()),
+                     detail::MarkReaching{items, boxes, of, new_surface, changed.data(), old_of, stars_.data(),
+                                          double(farthest) * farthest, stale.data()});
+    };
+    mark_reaching(items, nullptr, change.come);
+    mark_reaching(before_.view(nullptr), change.new_surface.data(), change.gone);
     return true;
   }
 

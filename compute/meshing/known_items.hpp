@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute/math/bisection.hpp"
 #include "compute/math/point_hash.hpp"
 #include "compute/meshing/list_items.hpp"
 #include "compute/meshing/list_where.hpp"
@@ -64,16 +65,8 @@ struct MatchAnchors {
     const std::uint32_t i = anchor[k], s = lists.old_surface[lists.now.surface[i]];
     if (s == none) return;
     const std::uint64_t wanted = KeyAnchors::upper_half(lists.now.position[i]);
-    std::uint32_t low = 0, high = keys;
-    while (low < high) {
-      const std::uint32_t middle = low + (high - low) / 2;
-      if (key[middle] < wanted)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    for (; low < keys && key[low] >> 32 == wanted >> 32; ++low) {
-      const auto old = std::uint32_t(key[low]);
+    for (std::uint32_t at = first_not_below(key, 0u, keys, wanted); at < keys && key[at] >> 32 == wanted >> 32; ++at) {
+      const auto old = std::uint32_t(key[at]);
       if (lists.before.surface[old] != s || !lists.alike(old, i)) continue;
       const bool first = match[k] == none;
       match[k] = first ? old : none;
@@ -98,15 +91,7 @@ struct WalkItems {
     const auto s = std::uint32_t(k - anchors);
     if (lists.old_surface[s] == none) return;
     const std::uint32_t i = lists.now.first[s];
-    std::uint32_t low = 0, high = anchors;
-    while (low < high) {
-      const std::uint32_t middle = low + (high - low) / 2;
-      if (anchor[middle] < i)
-        low = middle + 1;
-      else
-        high = middle;
-    }
-    walk(s, lists.before.first[lists.old_surface[s]], i, low);
+    walk(s, lists.before.first[lists.old_surface[s]], i, first_not_below(anchor, 0u, anchors, i));
   }
 
  private:

@@ -29,7 +29,7 @@ struct ReadAgreed {
       if (!(mine.agreed >> k & 1)) continue;
       const std::uint32_t a = mine.ring[k], b = mine.ring[mine.after(k)];
       if (i > a || i > b) continue;
-      const bool between = on_rim(i) + on_rim(a) + on_rim(b) > 1;
+      const bool between = items.between_rims({i, a, b});
       if (triangle) {
         triangle[at] = {items.particle[i], items.particle[a], items.particle[b]};
         materials[at] = of_surface[items.surface[i]];
@@ -39,9 +39,6 @@ struct ReadAgreed {
     }
     if (!triangle) first[i] = at, first_rim[i] = rim_at;
   }
-
- private:
-  NACRE_HD int on_rim(std::uint32_t i) const { return items.next[i] != none ? 1 : 0; }
 };
 
 struct IsIncomplete {
@@ -75,9 +72,7 @@ void read_agreed(Executor<Backend>& exec, const StarItemsView& items, const std:
   const auto between_rims = arena.template temporary<RimTriangle>(between);
   read.triangle = triangle.data(), read.materials = its_materials.data(), read.between_rims = between_rims.data();
   if (triangles > 0) exec.for_each(n, read);
-  triangle.download_to(agreed.triangles, triangles);
-  its_materials.download_to(agreed.materials, triangles);
-  between_rims.download_to(agreed.between_rims, between);
+  agreed = {triangle.download(), its_materials.download(), between_rims.download()};
 }
 
 }  // namespace detail
@@ -91,7 +86,7 @@ void read_stars(Executor<Backend>& exec, const StarItemsView& items, const std::
   const Array<std::uint32_t> incomplete = list_where(exec, n, detail::IsIncomplete{items, star});
   found.unsettled = exec.reduce(std::int64_t(incomplete.size()), std::int64_t(0),
                                 detail::IsUnsettled{items, star, incomplete.data()}, Add{});
-  incomplete.download_to(found.incomplete, incomplete.size());
+  found.incomplete = incomplete.download();
 }
 
 }  // namespace nacre

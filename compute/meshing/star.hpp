@@ -19,6 +19,11 @@ struct StarItemsView {
   const std::uint32_t* first = nullptr;  ///< per surface and one more
 
   /// Whether two items follow each other on a rim.
+  NACRE_HD bool on_rim(std::uint32_t i) const { return next[i] != none; }
+  /// Whether two corners of a triangle or more are on rims.
+  NACRE_HD bool between_rims(const Triangle& t) const {
+    return int(on_rim(t.a)) + int(on_rim(t.b)) + int(on_rim(t.c)) > 1;
+  }
   NACRE_HD bool are_on_rim(std::uint32_t a, std::uint32_t b) const { return next[a] == b || previous[a] == b; }
 };
 

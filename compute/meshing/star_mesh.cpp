@@ -19,13 +19,17 @@ constexpr MaterialPair no_materials = {0, 0};  // of triangles that are to go
 
 bool is_gone(const StarMesh& mesh, std::size_t triangle) { return mesh.materials[triangle] == no_materials; }
 
+Triangle particles_of(const StarItems& items, const Triangle& t) {
+  return {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
+}
+
 /// Marks triangles that are not agreed on any more; their corners are items, the smallest one first.
 void mark_removed(const StarItems& items, std::span<const Triangle> removed, StarMesh& made) {
   const auto numbers = std::views::iota(std::size_t(0), made.triangles.size());
   const auto place_of = [&](std::size_t i) { return std::pair(made.materials[i], made.triangles[i].a); };
   std::vector<std::size_t> gone;
   for (const Triangle& t : removed) {
-    const Triangle particles{items.particle[t.a], items.particle[t.b], items.particle[t.c]};
+    const Triangle particles = particles_of(items, t);
     const std::pair place(items.materials[items.surface[t.a]], particles.a);
     for (const std::size_t i : std::ranges::equal_range(numbers, place, {}, place_of))
       if (made.triangles[i] == particles) gone.push_back(i);
@@ -36,10 +40,10 @@ void mark_removed(const StarItems& items, std::span<const Triangle> removed, Sta
 /// Adds triangles that have items for corners.
 void append(const StarItems& items, std::span<const Triangle> more, StarMesh& made,
             std::vector<RimTriangle>& between_rims) {
-  const auto on_rim = [&](std::uint32_t i) { return items.next[i] != none ? 1 : 0; };
+  const StarItemsView view = items.view();
   for (const Triangle& t : more) {
-    if (on_rim(t.a) + on_rim(t.b) + on_rim(t.c) > 1) between_rims.push_back({std::uint32_t(made.triangles.size()), t});
-    made.triangles.push_back({items.particle[t.a], items.particle[t.b], items.particle[t.c]});
+    if (view.between_rims(t)) between_rims.push_back({std::uint32_t(made.triangles.size()), t});
+    made.triangles.push_back(particles_of(items, t));
     made.materials.push_back(items.materials[items.surface[t.a]]);
   }
 }
@@ -125,7 +129,7 @@ StarMesh mesh_from_stars(const StarParticles& particles, StarDevice& device) {
   append(items, filling.triangles, made, between_rims);
   for (const std::uint32_t k : exchange_shared_chords(items, found.stars, filling.triangles, between_rims)) {
     const auto& [number, t] = between_rims[k];
-    made.triangles[number] = {items.particle[t.a], items.particle[t.b], items.particle[t.c]};
+    made.triangles[number] = particles_of(items, t);
   }
   join_all_doubles(items, between_rims, made);
   drop_gone(made);

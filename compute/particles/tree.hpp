@@ -7,6 +7,7 @@
 #include <string>
 
 #include "compute/device/executor.hpp"
+#include "compute/math/bisection.hpp"
 #include "compute/math/morton.hpp"
 #include "compute/particles/particle_set.hpp"
 
@@ -94,18 +95,6 @@ struct TreeKey {
   }
 };
 
-NACRE_HD inline std::uint32_t first_key_from(const std::uint64_t* key, std::uint32_t low, std::uint32_t high,
-                                             std::uint64_t value) {
-  while (low < high) {
-    const std::uint32_t middle = low + (high - low) / 2;
-    if (key[middle] < value)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low;
-}
-
 /// What the device knows of a tree while it is built; the host asks once, at the end.
 struct TreeSizes {
   std::uint32_t
@@ -122,8 +111,8 @@ struct MakeRoots {
   NACRE_HD void operator()(std::int64_t i) const {
     if (i == 0) *sizes = {{0, interfaces}, 0, 0};
     TreeNode root;
-    root.first = first_key_from(key, 0, count, std::uint64_t(i) << 48);
-    root.last = first_key_from(key, root.first, count, std::uint64_t(i + 1) << 48);
+    root.first = first_not_below(key, 0u, count, std::uint64_t(i) << 48);
+    root.last = first_not_below(key, root.first, count, std::uint64_t(i + 1) << 48);
     node[i] = root;
   }
 };
@@ -147,7 +136,7 @@ struct SplitNodes {
     std::uint32_t from = n.first;
     for (std::uint64_t octant = 0; octant < 8 && from < n.last; ++octant) {
       const std::uint32_t to =
-          octant == 7 ? n.last : first_key_from(key, from, n.last, prefix + ((octant + 1) << shift));
+          octant == 7 ? n.last : first_not_below(key, from, n.last, prefix + ((octant + 1) << shift));
       if (to > from) visit(from, to);
       from = to;
     }
