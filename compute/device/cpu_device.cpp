@@ -1,7 +1,9 @@
 // Nacre: the CPU as a device: memory by mmap, workers by oneTBB.
 #include "compute/device/cpu_device.hpp"
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -113,7 +115,17 @@ void CpuDevice::copy_to_host(void* host, const void* from, std::size_t bytes) {
 void CpuDevice::fill(void* to, unsigned char value, std::size_t bytes) {
   Recording::forbid("a fill at once");
   Access access(*this);
-  if (bytes) std::memset(to, value, bytes);
+  constexpr std::size_t piece = std::size_t(2)
+                                << 20;  // a huge page, which is cleared when it is written for the first time
+  if (bytes < 2 * piece) {
+    if (bytes) std::memset(to, value, bytes);
+    return;
+  }
+  workers().execute([&] {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, bytes, piece), [&](const auto& part) {
+      std::memset(static_cast<char*>(to) + part.begin(), value, part.size());
+    });
+  });
 }
 
 std::size_t CpuDevice::available_bytes() const { return std::min(meminfo_bytes("MemAvailable"), cgroup_free_bytes()); }

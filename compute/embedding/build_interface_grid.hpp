@@ -43,13 +43,16 @@ struct InterfaceGrid {
 
 namespace detail {
 
-/// Keys (coarse cell << 24 | interface) of the bricks that the stencils of an interface's particles can meet: those
-/// within 3 cells of a cell that it passes through.
+/// Keys (coarse cell << 24 | interface) of the bricks within `reach` cells of a cell that an interface passes through.
 struct BricksAround {
+  static constexpr int of_seeds = 1;     ///< a seed's closest point is less than a cell away
+  static constexpr int of_stencils = 3;  ///< what those of its particles can meet
+
   const FoundJunction* found;
   const Junction* table;
   std::uint32_t table_size;
   Int3 coarse;
+  int reach;
 
   template <class Visit>
   NACRE_HD void operator()(std::int64_t i, const Visit& visit) const {
@@ -58,9 +61,9 @@ struct BricksAround {
     if (f.junction.order() == 0) return;
     const std::uint64_t interface = junction_number(table, table_size, f.junction);
     const Int3 c{int(f.coarse % coarse.x), int(f.coarse / coarse.x % coarse.y), int(f.coarse / coarse.x / coarse.y)};
-    for (int z = low.z < 3 ? -1 : 0; z <= (high.z > 0 ? 1 : 0); ++z)
-      for (int y = low.y < 3 ? -1 : 0; y <= (high.y > 0 ? 1 : 0); ++y)
-        for (int x = low.x < 3 ? -1 : 0; x <= (high.x > 0 ? 1 : 0); ++x) {
+    for (int z = low.z < reach ? -1 : 0; z <= (high.z > 3 - reach ? 1 : 0); ++z)
+      for (int y = low.y < reach ? -1 : 0; y <= (high.y > 3 - reach ? 1 : 0); ++y)
+        for (int x = low.x < reach ? -1 : 0; x <= (high.x > 3 - reach ? 1 : 0); ++x) {
           const Int3 d = c + Int3(x, y, z);
           if (is_within(d, coarse))
             visit(std::uint64_t((std::int64_t(d.z) * coarse.y + d.y) * coarse.x + d.x) << 24 | interface);
@@ -157,22 +160,19 @@ struct EmbedInterface {
     const Junction j = junction[brick_interface[i / 64]];
     cell[i] = EmbeddedCell({0, 0, 0, -4}, {0, 0, 0, 0}, size_unit);
     found[i] = 0;
+    if (!field.inside(p, 3)) return;
+    float away = 0;
+    const std::uint32_t nearest = distance.closest(p, away);
+    if ((nearest == none ? distance.reach : away) > farthest()) return;
+    const bool own = nearest != none && j.order() == 2 && distance.point[nearest].surface == j;
+    const std::uint32_t known = own ? nearest : none;
+    if (own && is_too_far(known, away)) return;
     JunctionPoint at;
-    if (!field.inside(p, 3) || !first_guess(j, p, at)) return;
-    // From there to the closest point: along the tangent towards p and back onto the interface.
-    for (int k = 0; k < 2; ++k) {
-      const Vec3f r = p - at.p;
-      const Vec3f along =
-          j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
-      if (dot(along, along) < 2.5f * last_step() * last_step()) break;
-      JunctionPoint better;
-      if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
-        break;
-      at = better;
-    }
+    const bool is_foot = own && seeds_only && find_foot(j, known, p, at);
+    if (!is_foot && !find_closest(j, known, p, at)) return;
     const Vec3f o = at.p * cells_per_voxel - middle;
     if (seeds_only && dot(o, o) >= 1) return;  // no seed comes from here
-    const float margin = max(junction_margin(field, j, at.p, at.steepness), -4.0f);
+    const float margin = is_foot ? only_margin : max(junction_margin(field, j, at.p, at.steepness), -4.0f);
     cell[i] =
         EmbeddedCell({o.x, o.y, o.z, margin}, {at.direction.x, at.direction.y, at.direction.z, size(at.p)}, size_unit);
     found[i] = 1;
@@ -191,22 +191,53 @@ struct EmbedInterface {
     return (seeds_only ? 1 / cells_per_voxel : min(reach(), newton_steps * newton_stride)) + 0.35f;
   }
 
-  /// A point of the interface near p: from the nearest known one if that is on this interface, else straight from p.
-  /// False also for a surface farther away than the stencils around its points reach, two cells along each axis.
-  NACRE_HD bool first_guess(const Junction& j, const Vec3f& p, JunctionPoint& at) const {
-    float away = 0;
-    const std::uint32_t q = distance.closest(p, away);
-    if ((q == none ? distance.reach : away) > farthest()) return false;
-    if (j.order() != 2 || q == none || !(distance.point[q].surface == j))
-      return project(field, j, p, reach(), at, last_step());
-    const Float4 n = distance.point[q].normal;
-    const float stencils = 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
-    if (away > stencils) return false;
-    const Vec3f normal(n.x, n.y, n.z), on = distance.position(q), r = p - on;
+  NACRE_HD Vec3f normal_at(std::uint32_t known) const {
+    const Float4 n = distance.point[known].normal;
+    return {n.x, n.y, n.z};
+  }
+
+  /// Whether a surface is farther away than the stencils around its points reach, two cells along each axis.
+  NACRE_HD bool is_too_far(std::uint32_t known, float away) const {
+    const Vec3f n = normal_at(known);
+    return away > 2.3f / cells_per_voxel * (std::fabs(n.x) + std::fabs(n.y) + std::fabs(n.z)) + 0.35f;
+  }
+
+  /// The foot of a point on the plane through the nearest known point of its surface: as good as the closest point for
+  /// a seed to begin at. False where the known point is farther from there than a voxel, or a third material is near.
+  NACRE_HD bool find_foot(const Junction& j, std::uint32_t known, const Vec3f& p, JunctionPoint& at) const {
+    const Vec3f normal = normal_at(known), r = p - distance.position(known);
+    const float height = dot(r, normal);
+    at.p = p - normal * height;
+    at.direction = normal;
+    return dot(r, r) - height * height <= 1 && field.inside(at.p, 3) && !has_others(field, j, at.p);
+  }
+
+  /// Newton's method onto the junction, from beside a known point if there is one (not `none`), and from there to the
+  /// closest point.
+  NACRE_HD bool find_closest(const Junction& j, std::uint32_t known, const Vec3f& p, JunctionPoint& at) const {
+    if (!(known != none && project(field, j, beside(known, p), 3, at, last_step())) &&
+        !project(field, j, p, reach(), at, last_step()))
+      return false;
+    for (int k = 0; k < 2; ++k) {  // along the tangent towards p and back onto the interface
+      const Vec3f r = p - at.p;
+      const Vec3f along =
+          j.order() == 2 ? r - at.direction * dot(r, at.direction) : at.direction * dot(r, at.direction);
+      if (dot(along, along) < 2.5f * last_step() * last_step()) break;
+      JunctionPoint better;
+      if (!project(field, j, at.p + along, 4, better, last_step()) || dot(better.p - p, better.p - p) >= dot(r, r))
+        break;
+      at = better;
+    }
+    return true;
+  }
+
+  /// Beside a known point of a surface, on its plane and towards p.
+  NACRE_HD Vec3f beside(std::uint32_t known, const Vec3f& p) const {
+    const Vec3f normal = normal_at(known), on = distance.position(known), r = p - on;
     Vec3f along = r - normal * dot(r, normal);
     const float most = 2, size = length(along);
     if (size > most) along *= most / size;
-    return project(field, j, on + along, 3, at, last_step()) || project(field, j, p, reach(), at, last_step());
+    return on + along;
   }
 };
 
@@ -287,7 +318,8 @@ InterfaceGrid embed_interfaces(Executor<Backend>& exec, const MaterialBricks& b,
   grid.junctions = search.table;
   grid.junction = arena.permanent_copy<Junction>(search.table);
   const detail::BricksAround around{search.found.data(), grid.junction.data(), std::uint32_t(search.table.size()),
-                                    grid.coarse};
+                                    grid.coarse,
+                                    seeds_only ? detail::BricksAround::of_seeds : detail::BricksAround::of_stencils};
   {
     Array<std::uint64_t> start = arena.temporary<std::uint64_t>(search.found.size());
     exec.for_each(search.count, detail::CountBricks{around, start.data()});

@@ -38,12 +38,6 @@ struct CellJunctions {
   int count = 0;
   bool complete = true;  // nothing was left out, neither a junction nor a material that could have made some
 
-  /// Adding it would change nothing.
-  NACRE_HD bool holds(const Junction& j, const Int3& cell) const {
-    const int k = find(j);
-    return k < count && window[k].holds(cell);
-  }
-
   NACRE_HD void add(const Junction& j, const Int3& cell) {
     const int k = find(j);
     if (k < count) {
@@ -114,8 +108,8 @@ struct SearchCoarseCell {
     std::uint32_t material[most];
     int count = materials_around(p, material, result.complete);
     if (count < 2) return;
-    if (count == 2) {  // most often
-      search_two(p, material[0], material[1], local, result);
+    if (count == 2) {  // most often: they meet between the voxels around, and nobody else is near
+      result.add(Junction(material[0], material[1]), local);
       return;
     }
     const CubicStencil stencil(field, p);
@@ -141,15 +135,6 @@ struct SearchCoarseCell {
         result.add(Junction(material[a], material[b]), local);
         for (int c = b + 1; c < kept; ++c) add_curve(p, f, material, a, b, c, kept, first.value, local, result);
       }
-  }
-
-  /// Where there are two materials alone, one function does for both.
-  NACRE_HD void search_two(const Vec3f& p, std::uint32_t a, std::uint32_t b, const Int3& local,
-                           CellJunctions& result) const {
-    const Junction surface(a, b);
-    if (result.holds(surface, local)) return;
-    const FieldSample two[2] = {CubicStencil(field, p).difference(field, a, b), {}};
-    if (meet(p, two, a, b, max(two[0].value, 0.0f))) result.add(surface, local);
   }
 
   NACRE_HD bool meet(const Vec3f& p, const FieldSample* two, std::uint32_t a, std::uint32_t b, float highest) const {

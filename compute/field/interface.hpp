@@ -128,16 +128,25 @@ NACRE_HD inline bool project(const MaterialBricksView& field, const Junction& ju
   return false;
 }
 
+/// The margin of a junction that is the only one around, voxels.
+inline constexpr float only_margin = 4;
+
+/// Whether the block of a point lists materials that are not the junction's: where none are, it is the only one there.
+NACRE_HD inline bool has_others(const MaterialBricksView& field, const Junction& junction, const Vec3f& p) {
+  const std::int64_t block = field.block_at(p);
+  for (std::uint32_t k = field.block_start[block]; k < field.block_start[block + 1]; ++k)
+    if (!junction.has(field.brick_material[k])) return true;
+  return false;
+}
+
 /// How far the junction's materials are ahead of all others at `p`, in voxels (divided by `steepness`): negative where
 /// another material covers the position, so that the junction does not exist there.
 NACRE_HD inline float junction_margin(const MaterialBricksView& field, const Junction& junction, const Vec3f& p,
                                       float steepness) {
+  if (!has_others(field, junction, p)) return only_margin;  // its own materials may not be listed
   const std::int64_t block = field.block_at(p);
   const std::uint32_t first = field.block_start[block], last = field.block_start[block + 1];
   const int count = junction.materials();
-  bool others = false;  // however few are listed: the junction's own may not be among them
-  for (std::uint32_t k = first; k < last; ++k) others = others || !junction.has(field.brick_material[k]);
-  if (!others) return 4;
   const CubicStencil stencil(field, p);
   float own = stencil.value(field, junction.material(0));
   for (int m = 1; m < count; ++m) own = min(own, stencil.value(field, junction.material(m)));

@@ -65,6 +65,15 @@ struct MaterialBricksView {
     return voxel_material[std::size_t(brick_voxels) * content + (z % n * n + y % n) * n + x % n];
   }
 
+  /// Materials of the eight voxels of a block from `v` on, the first of a row.
+  NACRE_HD void row_of_block(const Int3& v, std::uint16_t* material) const {
+    const Int3 b(v.x / block_size, v.y / block_size, v.z / block_size);
+    const std::uint32_t content = block_content[block_number(b.x, b.y, b.z)];
+    const std::uint16_t* row = voxel_material + std::size_t(brick_voxels) * content +
+                               (v.z % block_size * block_size + v.y % block_size) * block_size;
+    for (int k = 0; k < block_size; ++k) material[k] = content & one_material ? std::uint16_t(content) : row[k];
+  }
+
   /// visit(material) for the voxels from `low` to before `high`, x fastest, until it returns false; once for several
   /// in one row of a block that is of one material. Returns whether all were visited.
   template <class Visit>
@@ -206,29 +215,34 @@ class CubicStencil {
   class Rows {
    public:
     NACRE_HD_INLINE Rows(const CubicStencil& stencil, const MaterialBricksView& field, std::uint32_t material)
-        : at_(stencil), first_(stencil.local_.x > 4 ? stencil.local_.x - 4 : 0) {
-      const Int3 b = at_.block_;
-      for (int z = 0; z < (at_.local_.z > 4 ? 2 : 1); ++z)
-        for (int y = 0; y < (at_.local_.y > 4 ? 2 : 1); ++y) {
+        : value_(field.value),
+          rows_(block_size - stencil.local_.y),
+          layers_(block_size - stencil.local_.z),
+          first_(stencil.local_.x > 4 ? stencil.local_.x - 4 : 0) {
+      const Int3 &local = stencil.local_, &b = stencil.block_;
+      for (int z = 0; z < (local.z > 4 ? 2 : 1); ++z)
+        for (int y = 0; y < (local.y > 4 ? 2 : 1); ++y) {
           const std::int64_t block = field.block_number(b.x, b.y + y, b.z + z);
-          const float* brick = field.value + std::size_t(brick_voxels) * field.brick(block, material);
-          low_[2 * z + y] = brick + at_.local_.x - first_;
-          high_[2 * z + y] = first_ == 0 ? low_[2 * z + y]
-                                         : field.value + std::size_t(brick_voxels) * field.brick(block + 1, material);
+          const int line = ((local.z - z * block_size) * block_size + local.y - y * block_size) * block_size;
+          const std::int64_t in_brick = std::int64_t(brick_voxels) * field.brick(block, material) + line;
+          low_[z][y] = in_brick + local.x - first_;
+          high_[z][y] = first_ == 0 ? low_[z][y] : std::int64_t(brick_voxels) * field.brick(block + 1, material) + line;
         }
     }
 
     NACRE_HD_INLINE Lanes operator()(int b, int c) const {
-      const int y = at_.local_.y + b, z = at_.local_.z + c;
-      const int brick = 2 * (z / block_size) + y / block_size;
-      const int line = (z % block_size * block_size + y % block_size) * block_size;
-      return four_of(low_[brick] + line, high_[brick] + line, first_);
+      const bool y = b >= rows_, z = c >= layers_;
+      const int line = (c * block_size + b) * block_size;
+      return four_of(value_ + (low_[z][y] + line), value_ + (high_[z][y] + line), first_);
     }
 
    private:
-    const CubicStencil& at_;
-    int first_;                       ///< of the eight voxels from low_ and high_
-    const float *low_[4], *high_[4];  ///< per brick along y and z: four voxels of it, and the next four
+    const float* value_;
+    int rows_, layers_;  ///< how many are in the lower bricks along y, along z
+    int first_;          ///< of the eight voxels from low_ and high_
+    /// Per brick along z and y, of the first row of the first layer, were it in this brick: numbers of four of its
+    /// values, and of the next four.
+    std::int64_t low_[2][2], high_[2][2];
   };
 
   Int3 local_, block_;  ///< the lowest voxel: its position in its block

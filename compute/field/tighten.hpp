@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "compute/field/build_material_bricks.hpp"
-#include "compute/field/slopes.hpp"
+#include "compute/field/share_along_slopes.hpp"
 #include "compute/math/eight.hpp"
 
 namespace nacre {
@@ -40,68 +40,6 @@ struct FillBinary {
     const std::uint16_t* material = field.materials_in(brick_block[brick]) + row;
     float* to = value + std::size_t(brick) * brick_voxels + row;
     for (int k = 0; k < block_size; ++k) to[k] = material[k] == own ? 1.0f : 0.0f;
-  }
-};
-
-/// Along slopes a voxel belongs in part to the materials beside it. What it gives away is taken from its own material.
-struct ShareAlongSlopes {
-  LabelSlopes slopes;
-  const std::uint32_t* listed;
-  float* value;  ///< all or nothing before
-
-  static constexpr int layer = block_size * block_size, faces = (block_size + 1) * layer;
-  static constexpr std::size_t scratch_bytes() { return 3 * faces * sizeof(float); }
-
-  NACRE_HD void operator()(Team& team, std::int64_t i) const {  // blocks with a list
-    const std::uint32_t block = listed[i];
-    const BlockVoxels material(slopes.field, block);
-    const Int3 low = slopes.field.block(block) * Int3(block_size);
-    auto* offset = reinterpret_cast<float*>(team.scratch());  // per axis and face, of the layers from the lowest on
-    team.each(3 * faces, [&](int k) { offset[k] = offset_at(material, low, k / faces, k % faces); });
-    team.each(brick_voxels, [&](int k) { share(material, block, low, offset, k); });
-  }
-
- private:
-  /// Of the boundary in a face of the block's voxels.
-  NACRE_HD float offset_at(const BlockVoxels& material, const Int3& low, int axis, int face) const {
-    Int3 v, next;
-    v[axis] = low[axis] + face / layer - 1;
-    v[(axis + 1) % 3] = low[(axis + 1) % 3] + face % block_size;
-    v[(axis + 2) % 3] = low[(axis + 2) % 3] + face / block_size % block_size;
-    next = v;
-    ++next[axis];
-    if (v[axis] < 0 || next[axis] >= slopes.field.voxels()[axis] || material(v) == material(next)) return 0;
-    return slopes.offset(v, axis);
-  }
-
-  NACRE_HD void share(const BlockVoxels& material, std::uint32_t block, const Int3& low, const float* offset,
-                      int position) const {
-    const MaterialBricksView& field = slopes.field;
-    const Int3 local(position % block_size, position / block_size % block_size, position / layer), v = low + local;
-    const std::uint32_t start = field.block_start[block], end = field.block_start[block + 1];
-    float* here = value + position;
-    float all = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const int across = local[(axis + 2) % 3] * block_size + local[(axis + 1) % 3];
-      const float* face = offset + axis * faces + local[axis] * layer + across;
-      for (const int side : {-1, 1}) {
-        const float part = side < 0 ? -face[0] : face[layer];
-        if (!(part > 0)) continue;
-        Int3 beside = v;
-        beside[axis] += side;
-        const std::uint32_t other = material(beside);
-        all += part;
-        for (std::uint32_t k = start; k < end; ++k)
-          if (field.brick_material[k] == other) here[std::size_t(k) * brick_voxels] += part;
-      }
-    }
-    if (all == 0) return;
-    const std::uint32_t own = material(v);
-    const float most = all > 0.5f ? 0.5f / all : 1;
-    for (std::uint32_t k = start; k < end; ++k) {
-      float& value_here = here[std::size_t(k) * brick_voxels];
-      value_here = field.brick_material[k] == own ? std::fma(-all, most, 1.0f) : value_here * most;
-    }
   }
 };
 
@@ -141,14 +79,49 @@ struct MarkReached {
   }
 };
 
-/// Adds a brick smoothed with what surrounds it, `share[k]` times by each of the Gaussians.
+/// Bricks of two materials that are alone in their block and in all around it: what one has, the other lacks.
+enum class Pairing : std::uint8_t { none, first, second };
+
+struct FindPairs {
+  MaterialBricksView field;
+  const std::uint32_t* listed;
+  Pairing* pairing;  ///< per brick; none before
+
+  NACRE_HD void operator()(std::int64_t i) const {  // blocks with a list
+    const std::uint32_t block = listed[i], first = field.block_start[block];
+    if (field.block_start[block + 1] - first != 2) return;
+    const std::uint32_t a = field.brick_material[first], b = field.brick_material[first + 1];
+    const Int3 at = field.block(block);
+    for (int k = 0; k < 27; ++k)
+      if (!has_no_other(at + step_to_brick(k), a, b)) return;
+    pairing[first] = Pairing::first, pairing[first + 1] = Pairing::second;
+  }
+
+ private:
+  NACRE_HD bool has_no_other(const Int3& at, std::uint32_t a, std::uint32_t b) const {
+    if (!is_within(at, field.blocks)) return a == 0;  // the lower one: material 0 is outside
+    const std::int64_t block = field.block_number(at.x, at.y, at.z);
+    if (!field.is_listed(block)) {
+      const std::uint16_t only = std::uint16_t(field.block_content[block]);
+      return only == a || only == b;
+    }
+    for (std::uint32_t k = field.block_start[block]; k < field.block_start[block + 1]; ++k)
+      if (field.brick_material[k] != a && field.brick_material[k] != b) return false;
+    return true;
+  }
+};
+
+/// Adds a brick smoothed with what surrounds it, `share[k]` times by each of the Gaussians. Of a pair, the first one
+/// smooths for both.
 template <int Reach, int Gaussians>
 struct SmoothBrick {
   static constexpr int wide = block_size + 2 * Reach;
 
   MaterialBricksView source;  ///< `value` is the unsmoothed function
   const std::uint32_t* brick_block;
-  const std::uint32_t* smoothed;  ///< per brick: whether it is smoothed now
+  const std::uint32_t* smoothed;  ///< per brick: whether it is smoothed now; both of a pair are, or none
+  const Pairing* pairing;         ///< per brick
+  float pair_sum;                 ///< of both functions of a pair, anywhere
   GaussianTaps<Reach> taps[Gaussians];
   float share[Gaussians];
   float* smooth;
@@ -163,7 +136,7 @@ struct SmoothBrick {
     float* all_rows = reinterpret_cast<float*>(team.scratch());  // per Gaussian, in a wide stack of wide slabs
     float* slabs = all_rows + Gaussians * wide * wide * block_size;
     auto* around = reinterpret_cast<std::uint32_t*>(slabs + wide * block_size * block_size);
-    if (!smoothed[brick]) return;
+    if (!smoothed[brick] || pairing[brick] == Pairing::second) return;
     find_neighbours(team, brick, around);
     team.each(wide * wide, [&](int line) {
       float values[wide];
@@ -175,6 +148,7 @@ struct SmoothBrick {
     });
     float* to = smooth + std::size_t(brick) * brick_voxels;
     for (int g = 0; g < Gaussians; ++g) {
+      const float smooth_sum = pair_sum * taps[g].sum * taps[g].sum * taps[g].sum;
       const float *tap = taps[g].tap, *rows = all_rows + g * wide * wide * block_size;
       team.each(wide * block_size, [&](int line) {  // (y, z) of the result in a wide stack of slabs
         const int y = line % block_size, z = line / block_size;
@@ -184,6 +158,9 @@ struct SmoothBrick {
         const Eight sum = weighted(tap, slabs + line * block_size, block_size * block_size);
         float* at = to + line * block_size;
         store_eight(at, load_eight(at) + sum * share[g]);
+        if (pairing[brick] != Pairing::first) return;
+        float* other = at + brick_voxels;
+        store_eight(other, load_eight(other) + (eight(smooth_sum) - sum) * share[g]);
       });
     }
   }
@@ -229,6 +206,19 @@ struct SmoothBrick {
     for (int x = 0; x < Reach; ++x) line[x] = part[0][block_size - Reach + x];
     for (int x = 0; x < block_size; ++x) line[Reach + x] = part[1][x];
     for (int x = 0; x < Reach; ++x) line[Reach + block_size + x] = part[2][x];
+  }
+};
+
+/// Of the bricks that have some.
+struct ClearCorrections {
+  const std::uint64_t* changed;
+  float* correction;
+
+  NACRE_HD void operator()(std::int64_t i) const {
+    const std::uint32_t brick = std::uint32_t(i) + 2;
+    if (!changed[brick]) return;
+    float* here = correction + std::size_t(brick) * brick_voxels;
+    for (int k = 0; k < brick_voxels; ++k) here[k] = 0;
   }
 };
 
@@ -339,6 +329,7 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
   Array<float> source = arena.temporary<float>(b.value.size());
   Array<std::uint64_t> changed = arena.temporary<std::uint64_t>(b.bricks);
   Array<std::uint32_t> smoothed = arena.temporary<std::uint32_t>(b.bricks);
+  Array<detail::Pairing> pairing = arena.temporary<detail::Pairing>(b.bricks);
   Array<std::uint64_t> held = arena.temporary<std::uint64_t>(1);
   MaterialBricksView from = b.view();
   from.value = source.data();
@@ -349,18 +340,22 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
     exec.for_each_team(std::int64_t(b.listed.size()),
                        detail::ShareAlongSlopes{{b.view(), float(stairs)}, b.listed.data(), source.data()});
   smoothed.fill_bytes(1);
+  pairing.fill_bytes(0);
+  exec.for_each(std::int64_t(b.listed.size()), detail::FindPairs{b.view(), b.listed.data(), pairing.data()});
   exec.for_each_team(
       bricks, detail::SmoothBrick<reach, 2>{from,
                                             b.brick_block.data(),
                                             smoothed.data(),
+                                            pairing.data(),
+                                            1,
                                             {GaussianTaps<reach>(width), GaussianTaps<reach>(width * std::sqrt(2.0))},
                                             {2, -1},
                                             b.value.data()});
   exec.for_each(2 * brick_voxels, detail::FillConstantBricks{b.value.data(), 0, 1});
   const GaussianTaps<narrow_reach> narrow(0.6);
   const float gain = 0.9f / (narrow.tap[narrow_reach] * narrow.tap[narrow_reach] * narrow.tap[narrow_reach]);
+  source.fill_bytes(0);  // from now on corrections
   for (int round = 0; round < 60; ++round) {
-    source.fill_bytes(0);
     changed.fill_bytes(0);
     held.fill_bytes(0);
     exec.for_each(bricks, detail::HoldVoxels{b.view(), b.brick_block.data(), smoothed.data(), 0.04f, 0.25f, gain,
@@ -370,8 +365,10 @@ TightenResult tighten(Executor<Backend>& exec, MaterialBricks& b, double width, 
     if (result.left == 0) break;
     smoothed.fill_bytes(0);
     exec.for_each(bricks, detail::MarkReached{b.view(), b.brick_block.data(), changed.data(), smoothed.data()});
-    exec.for_each_team(bricks, detail::SmoothBrick<narrow_reach, 1>{
-                                   from, b.brick_block.data(), smoothed.data(), {narrow}, {1}, b.value.data()});
+    exec.for_each_team(
+        bricks, detail::SmoothBrick<narrow_reach, 1>{
+                    from, b.brick_block.data(), smoothed.data(), pairing.data(), 0, {narrow}, {1}, b.value.data()});
+    exec.for_each(bricks, detail::ClearCorrections{changed.data(), source.data()});
   }
   return result;
 }

@@ -115,6 +115,9 @@ void ArraysComeBackAsTheyWent(Executor<Backend>& exec) {
   EXPECT_EQ(array.download(), std::vector<std::uint32_t>(host.size(), 0xffffffffu));
   array.upload(std::span<const std::uint32_t>(host).first(2));
   EXPECT_EQ(array.download(0, 3), (std::vector<std::uint32_t>{5, 6, 0xffffffffu}));
+  Array<std::uint8_t> large = arena.temporary<std::uint8_t>((std::size_t(5) << 20) + 3);  // filled in pieces
+  large.fill_bytes(7);
+  EXPECT_EQ(large.download(), std::vector<std::uint8_t>(large.size(), 7));
   EXPECT_TRUE(arena.temporary<float>(0).download().empty());
   EXPECT_FALSE(Array<float>());
 }

@@ -22,12 +22,12 @@ struct Embedding {
 
 template <class Backend>
 Embedding embedding_of(Executor<Backend>& exec, const MeshVolume& volume, const SizingRule& rule = {},
-                       double cells_per_voxel = 2) {
+                       double cells_per_voxel = 2, bool seeds_only = false) {
   Embedding e;
   e.bricks = bricks_of(exec, volume);
   e.distance = distance_field(exec, e.bricks, 0.5f * rule.min_size, std::min(rule.reach() + 2, 64.0f));
   e.size = sizing_field(exec, e.distance, rule);
-  e.grid = embed_interfaces(exec, e.bricks, e.distance, e.size, cells_per_voxel);
+  e.grid = embed_interfaces(exec, e.bricks, e.distance, e.size, cells_per_voxel, seeds_only);
   return e;
 }
 

@@ -204,6 +204,86 @@ void WallsAreNoSteps(Executor<Backend>& exec) {
   }));
 }
 
+/// Counts faces in lines of eight whose ends are others than each face alone has.
+struct CompareEnds {
+  LabelSlopes slopes;
+  std::uint64_t* different;
+  std::uint64_t* found;  ///< ends that are steps
+
+  NACRE_HD void operator()(std::int64_t i) const {  // voxels
+    const Int3 n = slopes.field.voxels(), v(int(i % n.x), int(i / n.x % n.y), int(i / n.x / n.y));
+    const auto label = [&](const Int3& at) { return slopes.field.material(at); };
+    for (int axis = 0; axis < 3; ++axis)
+      for (int k = 1; k <= 2; ++k) {
+        const int along = (axis + k) % 3;
+        Int3 up{}, on{};
+        up[axis] = 1, on[along] = 1;
+        if (!is_within(v + up + on * Int3(7), n)) continue;
+        unsigned boundary = 0;
+        for (int face = 0; face < 8; ++face)
+          boundary |= unsigned(label(v + on * Int3(face)) != label(v + on * Int3(face) + up)) << face;
+        LabelSlopes::End ahead[8], behind[8], own_ahead, own_behind;
+        slopes.find_ends(label, boundary, v, axis, along, 1, ahead, behind);
+        for (int face = 0; face < 8; ++face) {
+          if (!(boundary >> face & 1)) continue;
+          slopes.find_ends(label, 1, v + on * Int3(face), axis, along, 1, &own_ahead, &own_behind);
+          const bool same = ahead[face] == own_ahead && behind[face] == own_behind;
+          atomic_add(different, std::uint64_t(same ? 0 : 1));
+          atomic_add(found, std::uint64_t(own_ahead.step != 0) + std::uint64_t(own_behind.step != 0));
+        }
+      }
+  }
+};
+
+/// Faces of one tread share its ends: as each would find them by itself, also where these are out of reach.
+template <class Backend>
+void FacesOfATreadShareItsEnds(Executor<Backend>& exec) {
+  const MeshVolume volume = label_volume({33, 29, 31}, 3, [](const Vec3d& p) {
+    const double height = 8 + 0.3 * p.x + 0.17 * p.y + 2 * std::sin(0.4 * p.x) * std::cos(0.3 * p.y);
+    return p.z < height ? 0 : p.x + 0.4 * p.z < 24 ? 1 : 2;
+  });
+  const std::size_t mark = exec.arena().mark();
+  Arena::Scope scope(exec.arena());
+  const MaterialBricks b = bricks_of(exec, volume, 0);
+  const Int3 n = b.view().voxels();
+  Array<std::uint64_t> counts = exec.arena().template temporary<std::uint64_t>(2);
+  for (const float reach : {32.0f, 4.0f, 2.0f}) {
+    counts.fill_bytes(0);
+    exec.for_each(std::int64_t(n.x) * n.y * n.z, CompareEnds{{b.view(), reach}, counts.data(), counts.data() + 1});
+    EXPECT_EQ(counts.download()[0], 0u) << reach;
+    EXPECT_GT(counts.download()[1], 1000u) << reach;
+  }
+  exec.arena().rewind(mark);
+}
+
+/// Where two materials are alone in a block and in all around it, one function is made from the other. The values are
+/// those of a volume where a third material is in a block beside it, and too far away to have a share.
+template <class Backend>
+void PairsAreSmoothedAsOthersAre(Executor<Backend>& exec) {
+  const auto wavy = [](const Vec3d& p) { return p.z < 20 + 2.3 * std::sin(0.9 * p.x) * std::cos(1.1 * p.y) ? 1 : 2; };
+  const Int3 n(64, 40, 40);
+  const auto values = [&](bool third) {
+    const std::size_t mark = exec.arena().mark();
+    TightenResult result;
+    const MaterialBricks b =
+        bricks_of(exec, label_volume(n, 4, [&](const Vec3d& p) { return third && p.x > 35 ? 3 : wavy(p); }), 1.2,
+                  CubicKernel::catmull_rom, &result);
+    EXPECT_GT(result.held, 20);
+    std::vector<Vec3f> centres;
+    for_each_voxel(n, [&](std::size_t, const Vec3d& p) {
+      if (p.x >= 24 && p.x < 26 && p.y >= 16 && p.y < 24 && std::fabs(p.z - 20) < 4) centres.push_back(in_fields(p));
+    });
+    std::vector<float> all;
+    for (const std::uint32_t material : {1, 2})
+      for (const FieldSample& s : sample_all(exec, b, centres, material)) all.push_back(s.value);
+    exec.arena().rewind(mark);
+    return all;
+  };
+  const std::vector<float> pairs = values(false), others = values(true);
+  ASSERT_EQ(pairs.size(), others.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) ASSERT_NEAR(pairs[k], others[k], 1e-5) << k;
+}
+
 /// The cube between eight voxel centres that holds a point has corners of both materials: its voxel shell.
 inline bool in_shell(const MeshVolume& volume, const Vec3f& p) {
   const Vec3d at = Vec3d(p) - Vec3d(volume_padding + 0.5);
@@ -250,6 +330,8 @@ NACRE_DEVICE_TEST(Tighten, AnObliquePlaneHasNoStaircase)
 NACRE_DEVICE_TEST(Tighten, StaircasesBecomeSlopes)
 NACRE_DEVICE_TEST(Tighten, ATreadIsReadAsASlope)
 NACRE_DEVICE_TEST(Tighten, WallsAreNoSteps)
+NACRE_DEVICE_TEST(Tighten, FacesOfATreadShareItsEnds)
+NACRE_DEVICE_TEST(Tighten, PairsAreSmoothedAsOthersAre)
 NACRE_DEVICE_TEST(Tighten, ABallOfLabelsBecomesRound)
 
 }  // namespace nacre::test

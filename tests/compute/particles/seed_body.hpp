@@ -49,6 +49,43 @@ SeededPlaces seeds_of(Executor<Backend>& exec, const Embedding& e, SeedsFrom fro
   return result;
 }
 
+/// An embedding for seeds alone takes most closest points from the planes at known points: there are as many seeds as
+/// in one of fine cells with exact points, and they are on the interface, nearly.
+template <class Backend>
+void SeedsNeedNoExactEmbedding(Executor<Backend>& exec) {
+  const Vec3d c(13.2, 12.7, 13.1);
+  struct Case {
+    MeshVolume volume;
+    int order;
+    double share;  ///< by which the number may differ: large cells tell rims less exactly
+    double off;    ///< at most, of seeds from the sphere; 0: there is none
+  };
+  const Case cases[] = {
+      {scalar_volume({27, 26, 27}, ball(c, 8.3)), 2, 0.01, 0.15},
+      {label_volume({27, 26, 27}, 2, [&](const Vec3d& p) { return length(p - c) < 8.3; }), 2, 0.02, 0.6},
+      {sectors(), 1, 0.04, 0},
+      {sectors(), 2, 0.04, 0}};
+  for (const auto& [volume, order, share, off] : cases) {
+    const auto seeds = [&](double cells_per_voxel, bool seeds_only) {
+      const std::size_t mark = exec.arena().mark();
+      const Embedding e = embedding_of(exec, volume, {}, cells_per_voxel, seeds_only);
+      const SeededPlaces found = seeds_of(exec, e, SeedsFrom::embedding, order, 1);
+      exec.arena().rewind(mark);
+      return found;
+    };
+    const double wanted = seeds(2, false).expected;
+    for (const double cells_per_voxel : {0.6, 1.0, 2.0}) {
+      const SeededPlaces found = seeds(cells_per_voxel, true);
+      EXPECT_NEAR(found.expected, wanted, share * wanted) << order << ' ' << off << ' ' << cells_per_voxel;
+      EXPECT_NEAR(double(found.position.size()), found.expected, 0.01 * found.expected + 2);
+      for (const Float4& p : found.position) {
+        if (off == 0) break;
+        ASSERT_NEAR(length(Vec3f(p.x, p.y, p.z) - in_fields(c)), 8.3, off) << cells_per_voxel;
+      }
+    }
+  }
+}
+
 template <class Backend>
 void AsManyAsTheSizingFieldAsksFor(Executor<Backend>& exec) {
   const Vec3d c(13.2, 12.7, 13.1);
@@ -177,6 +214,7 @@ void CubesFindEveryInterface(Executor<Backend>& exec) {
 NACRE_DEVICE_TEST(Seed, CubesFindEveryInterface)
 NACRE_DEVICE_TEST(Seed, AnotherSeedIsAnotherStart)
 NACRE_DEVICE_TEST(Seed, NoTwoAtOnePlaceOfAFlatInterface)
+NACRE_DEVICE_TEST(Seed, SeedsNeedNoExactEmbedding)
 NACRE_DEVICE_TEST(Seed, AsManyAsTheSizingFieldAsksFor)
 NACRE_DEVICE_TEST(Seed, EveryComponentGetsParticles)
 NACRE_DEVICE_TEST(Seed, CurvesAreSeededByTheirLength)

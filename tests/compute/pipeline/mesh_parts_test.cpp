@@ -168,22 +168,28 @@ TEST(Relaxation, AsManyStandAtRimsAfterAQuarter) {
   EXPECT_NEAR(count[2], count[0], 0.03 * count[0]);
 }
 
-/// Both ways back onto the interfaces lead to the same particles, as far as numbers and energies tell.
+/// Both ways back onto the interfaces lead to the same particles, as far as numbers and energies tell: of one run these
+/// vary by two percent, so it is means that are compared.
 TEST(Relaxation, ByTheFieldsAndByTheEmbeddingEndAlike) {
   const MeshVolume volume = sliced_ball();
-  Parts fields(volume), embedding(volume);
-  for (Parts* parts : {&fields, &embedding}) {
-    parts->parameters = {};
-    parts->parameters.coarse_iterations = 0;
-    parts->parameters.projection = parts == &fields ? "fields" : "embedding";
-    parts->build();
-    parts->make_room();
-    parts->relaxation.run(parts->parameters, silent, parts->info);
+  double fields_energy = 0, embedding_energy = 0;
+  for (const std::uint32_t seed : {1, 2, 3, 4}) {
+    Parts fields(volume), embedding(volume);
+    for (Parts* parts : {&fields, &embedding}) {
+      parts->parameters = {};
+      parts->parameters.coarse_iterations = 0;
+      parts->parameters.projection = parts == &fields ? "fields" : "embedding";
+      parts->parameters.seed = seed;
+      parts->build();
+      parts->make_room();
+      parts->relaxation.run(parts->parameters, silent, parts->info);
+    }
+    const double count = double(fields.particles.count());
+    EXPECT_NEAR(double(fields.info.seeded), double(embedding.info.seeded), 0.005 * count);
+    EXPECT_NEAR(double(embedding.particles.count()), count, 0.01 * count);
+    fields_energy += fields.info.final_energy / 4, embedding_energy += embedding.info.final_energy / 4;
   }
-  const double count = double(fields.particles.count());
-  EXPECT_NEAR(double(fields.info.seeded), double(embedding.info.seeded), 0.005 * count);
-  EXPECT_NEAR(double(embedding.particles.count()), count, 0.01 * count);
-  EXPECT_NEAR(embedding.info.final_energy, fields.info.final_energy, 0.02 * fields.info.final_energy);
+  EXPECT_NEAR(embedding_energy, fields_energy, 0.015 * fields_energy);
 }
 
 /// Stopped among a quarter of the particles: the others are made all the same.
