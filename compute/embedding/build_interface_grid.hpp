@@ -203,13 +203,15 @@ struct EmbedInterface {
   }
 
   /// The foot of a point on the plane through the nearest known point of its surface: as good as the closest point for
-  /// a seed to begin at. False where the known point is farther from there than a voxel, or a third material is near.
+  /// a seed to begin at. False where the surface bends away from the plane by more than Newton's last step, where the
+  /// known point is farther from there than a voxel, and where a third material is near.
   NACRE_HD bool find_foot(const Junction& j, std::uint32_t known, const Vec3f& p, JunctionPoint& at) const {
+    const Float4& n = distance.point[known].normal;  // w: the larger curvature
     const Vec3f normal = normal_at(known), r = p - distance.position(known);
-    const float height = dot(r, normal);
+    const float height = dot(r, normal), aside = dot(r, r) - height * height;
     at.p = p - normal * height;
     at.direction = normal;
-    return dot(r, r) - height * height <= 1 && field.inside(at.p, 3) && !has_others(field, j, at.p);
+    return aside <= 1 && 0.5f * std::fabs(n.w) * aside <= 0.04f && field.inside(at.p, 3) && !has_others(field, j, at.p);
   }
 
   /// Newton's method onto the junction, from beside a known point if there is one (not `none`), and from there to the

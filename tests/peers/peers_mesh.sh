@@ -1,4 +1,4 @@
-# Nacre: the peers that mesh label images or fill surfaces: Mesh_3, surface nets, TetGen. Sourced by run.sh.
+# Nacre: the peers that mesh label images or fill surfaces: Mesh_3, surface nets, TetGen, fTetWild. Sourced by run.sh.
 
 phantoms=${PEERS_PHANTOMS-torso:64 nested-shells:64} # of surfaces
 spheres="10,14,18 23.5 23.5 23.5" # of nested-shells: the radii and the centre in the world
@@ -133,4 +133,23 @@ peer_tetgen() {
     row tetgen "our surface of torso 48 filled, -$switches" seconds "$our_median" "$their_median"
     cell_rows tetgen "our surface of torso 48 filled, -$switches" "$out/theirs-run.txt"
   done
+}
+
+# Fills our surface; its cells keep near the surface, and need not keep its triangles. A small one: the torso of 48 voxels
+# takes longer than five minutes.
+peer_ftetwild() {
+  local python=${PEERS_PYTHON:-python3} labels=$out/nested-shells-20.nrrd work="our surface of nested-shells 20 filled, near it"
+  "$python" -c 'import pytetwild' 2>/dev/null ||
+    { skip ftetwild "no python with the wheel pytetwild (and pyvista; name the python by PEERS_PYTHON)"; return 0; }
+  sample nested-shells 20
+  ours "$out/ours.off" "$out/ours.json" "$labels"
+  ftetwild_ours() { ours "$out/ours.vtu" "$out/ours.json" "$labels" && our_seconds "$out/ours.json" tetrahedra; }
+  ftetwild_theirs() {
+    "${prefix[@]}" "$python" "$here/ftetwild.py" "$out/ours.off" "$threads" | tee "$out/theirs-run.txt" |
+      awk '$1 == "seconds" { print $2 }'
+  }
+  pairs ftetwild_ours ftetwild_theirs || return 0
+  version "ftetwild: $(value "$out/theirs-run.txt" version)"
+  row ftetwild "$work" seconds "$our_median" "$their_median"
+  cell_rows ftetwild "$work" "$out/theirs-run.txt"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Nacre: runs our program and each peer that is installed on the same work, in pairs, and prints one table.
-# Usage: run.sh [PEER...], of mesh_3 surface_nets tetgen openvdb embree surface_lic; all without a word.
-# Environment: NACRE_BUILD (build folder; else build/release or build/cpu), PEERS_PYTHON (a python that has the wheel vtk),
+# Usage: run.sh [PEER...], of mesh_3 surface_nets tetgen ftetwild openvdb embree surface_lic; all without a word.
+# Environment: NACRE_BUILD (build folder; else build/release or build/cpu), PEERS_PYTHON (a python that has the wheels vtk and pytetwild),
 # PVPYTHON (ParaView's), PEERS_PHANTOMS (surfaces of which, as torso:64), PEERS_LABELS (other label images for mesh_3, as
 # liver=FILE:4.1, the last is the size of triangles in their unit), PEERS_RUNS (pairs of each, default 3),
 # PEERS_THREADS (default 2), PEERS_PREFIX (words before each command that is timed, such as "chrt -f 1"), PEERS_SECONDS
@@ -87,7 +87,7 @@ surface_rows() {
 
 for part in mesh band texture; do source "$here/peers_$part.sh"; done
 
-all=(mesh_3 surface_nets tetgen openvdb embree surface_lic)
+all=(mesh_3 surface_nets tetgen ftetwild openvdb embree surface_lic)
 for peer in "${@:-${all[@]}}"; do
   [[ " ${all[*]} " == *" $peer "* ]] || { echo "run.sh: no peer '$peer'; choose from ${all[*]}" >&2; exit 2; }
   "peer_$peer"

@@ -86,6 +86,23 @@ void SeedsNeedNoExactEmbedding(Executor<Backend>& exec) {
   }
 }
 
+/// On a tube that is thin beside the cells, planes at known points would make too many.
+template <class Backend>
+void AThinTubeGetsNoMoreSeedsFromPlanes(Executor<Backend>& exec) {
+  const MeshVolume tube =
+      scalar_volume({40, 20, 20}, [](const Vec3d& p) { return 1.4 - std::hypot(p.y - 9.6, p.z - 10.3); });
+  for (const double cells_per_voxel : {1.0, 2.0}) {
+    double number[2];
+    for (const bool seeds_only : {false, true}) {
+      const std::size_t mark = exec.arena().mark();
+      const Embedding e = embedding_of(exec, tube, {}, cells_per_voxel, seeds_only);
+      number[seeds_only] = seeds_of(exec, e, SeedsFrom::embedding, 2, 1).expected;
+      exec.arena().rewind(mark);
+    }
+    EXPECT_NEAR(number[1], number[0], 0.01 * number[0]) << cells_per_voxel;
+  }
+}
+
 template <class Backend>
 void AsManyAsTheSizingFieldAsksFor(Executor<Backend>& exec) {
   const Vec3d c(13.2, 12.7, 13.1);
@@ -215,6 +232,7 @@ NACRE_DEVICE_TEST(Seed, CubesFindEveryInterface)
 NACRE_DEVICE_TEST(Seed, AnotherSeedIsAnotherStart)
 NACRE_DEVICE_TEST(Seed, NoTwoAtOnePlaceOfAFlatInterface)
 NACRE_DEVICE_TEST(Seed, SeedsNeedNoExactEmbedding)
+NACRE_DEVICE_TEST(Seed, AThinTubeGetsNoMoreSeedsFromPlanes)
 NACRE_DEVICE_TEST(Seed, AsManyAsTheSizingFieldAsksFor)
 NACRE_DEVICE_TEST(Seed, EveryComponentGetsParticles)
 NACRE_DEVICE_TEST(Seed, CurvesAreSeededByTheirLength)
