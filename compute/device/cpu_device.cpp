@@ -115,8 +115,8 @@ void CpuDevice::copy_to_host(void* host, const void* from, std::size_t bytes) {
 void CpuDevice::fill(void* to, unsigned char value, std::size_t bytes) {
   Recording::forbid("a fill at once");
   Access access(*this);
-  constexpr std::size_t piece = std::size_t(2)
-                                << 20;  // a huge page, which is cleared when it is written for the first time
+  // By all threads: what is written for the first time is cleared before, huge page by huge page.
+  constexpr std::size_t piece = std::size_t(2) << 20;
   if (bytes < 2 * piece) {
     if (bytes) std::memset(to, value, bytes);
     return;

@@ -17,7 +17,6 @@ class CellWindow {
 
   NACRE_HD Int3 low() const { return at(0); }
   NACRE_HD Int3 high() const { return at(6); }
-  NACRE_HD bool holds(const Int3& cell) const { return max(low(), cell) == cell && min(high(), cell) == cell; }
   NACRE_HD CellWindow with(const Int3& cell) const { return {min(low(), cell), max(high(), cell)}; }
 
  private:

@@ -67,11 +67,14 @@ struct MaterialBricksView {
 
   /// Materials of the eight voxels of a block from `v` on, the first of a row.
   NACRE_HD void row_of_block(const Int3& v, std::uint16_t* material) const {
-    const Int3 b(v.x / block_size, v.y / block_size, v.z / block_size);
-    const std::uint32_t content = block_content[block_number(b.x, b.y, b.z)];
+    const std::uint32_t content = block_content[block_number(v.x / block_size, v.y / block_size, v.z / block_size)];
+    if (content & one_material) {
+      for (int k = 0; k < block_size; ++k) material[k] = std::uint16_t(content);
+      return;
+    }
     const std::uint16_t* row = voxel_material + std::size_t(brick_voxels) * content +
                                (v.z % block_size * block_size + v.y % block_size) * block_size;
-    for (int k = 0; k < block_size; ++k) material[k] = content & one_material ? std::uint16_t(content) : row[k];
+    for (int k = 0; k < block_size; ++k) material[k] = row[k];
   }
 
   /// visit(material) for the voxels from `low` to before `high`, x fastest, until it returns false; once for several

@@ -81,17 +81,6 @@ struct LabelSlopes {
     return r + f > 0 ? min(max((0.5f * (f - r) - bend) / (r + f), -0.5f), 0.5f) : 0;
   }
 
-  /// The same of one face alone, between voxel `v` and the next one; 0 where both are of one material.
-  NACRE_HD float offset(const Int3& v, int axis) const {
-    Int3 up{};
-    up[axis] = 1;
-    const auto label = [&](const Int3& at) { return field.material(at); };
-    if (label(v) == label(v + up)) return 0;
-    End end[ends_of_face];
-    for (int k = 0; k < 2; ++k) find_ends(label, 1, v, axis, (axis + 1 + k) % 3, 1, end + k, end + k + 2);
-    return offset(end, 1, axis);
-  }
-
  private:
   static constexpr int highest_step = 3;  ///< anything higher is a wall
 

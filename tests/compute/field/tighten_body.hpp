@@ -161,7 +161,13 @@ struct ShareAtTop {
   int top;
   float* share;
   NACRE_HD void operator()(std::int64_t x) const {
-    share[x] = -slopes.offset(Int3(int(x), 8, top) + Int3(volume_padding), 2);
+    const Int3 v = Int3(int(x), 8, top) + Int3(volume_padding);
+    const auto label = [&](const Int3& at) { return slopes.field.material(at); };
+    share[x] = 0;
+    if (label(v) == label(v + Int3(0, 0, 1))) return;
+    LabelSlopes::End end[LabelSlopes::ends_of_face];
+    for (int axis = 0; axis < 2; ++axis) slopes.find_ends(label, 1, v, 2, axis, 1, end + axis, end + axis + 2);
+    share[x] = -slopes.offset(end, 1, 2);
   }
 };
 
