@@ -179,8 +179,10 @@ struct EmbedInterface {
   }
 
  private:
+  static constexpr float close = 0.04f;  ///< as near to a surface as seeds need to be, voxels
+
   /// Steps end here: what is left then is less than WENO makes of such cells.
-  NACRE_HD float last_step() const { return 0.04f / min(cells_per_voxel, 1.0f); }
+  NACRE_HD float last_step() const { return close / min(cells_per_voxel, 1.0f); }
 
   /// How far Newton's steps may lead.
   NACRE_HD float reach() const { return (seeds_only ? 2 : 5) / cells_per_voxel; }
@@ -203,15 +205,15 @@ struct EmbedInterface {
   }
 
   /// The foot of a point on the plane through the nearest known point of its surface: as good as the closest point for
-  /// a seed to begin at. False where the surface bends away from the plane by more than Newton's last step, where the
-  /// known point is farther from there than a voxel, and where a third material is near.
+  /// a seed to begin at. False where the surface bends away from the plane by more than `close`, where the known point
+  /// is farther from there than a voxel, and where a third material is near.
   NACRE_HD bool find_foot(const Junction& j, std::uint32_t known, const Vec3f& p, JunctionPoint& at) const {
     const Float4& n = distance.point[known].normal;  // w: the larger curvature
     const Vec3f normal = normal_at(known), r = p - distance.position(known);
     const float height = dot(r, normal), aside = dot(r, r) - height * height;
     at.p = p - normal * height;
     at.direction = normal;
-    return aside <= 1 && 0.5f * std::fabs(n.w) * aside <= 0.04f && field.inside(at.p, 3) && !has_others(field, j, at.p);
+    return aside <= 1 && 0.5f * std::fabs(n.w) * aside <= close && field.inside(at.p, 3) && !has_others(field, j, at.p);
   }
 
   /// Newton's method onto the junction, from beside a known point if there is one (not `none`), and from there to the

@@ -105,13 +105,18 @@ struct ShareAlongSlopes {
                           int across, int line, LabelSlopes::End* end) const {
     const int stride = across == 0 ? 1 : block_size;
     const int face = across == 0 ? line * block_size : line / block_size * layer + line % block_size;
-    unsigned bits = 0;
-    for (int k = 0; across == 1 && k < block_size; ++k)
-      bits |= unsigned(boundary[line / block_size * block_size + k] >> line % block_size & 1) << k;
-    if (across == 0) bits = boundary[line];
+    const unsigned bits =
+        across == 0 ? boundary[line] : column(boundary + line / block_size * block_size, line % block_size);
     if (bits == 0) return;
     slopes.find_ends(material, bits, voxel_below(low, axis, face), axis, (axis + 1 + across) % 3, stride,
                      end + across * faces + face, end + (across + 2) * faces + face);
+  }
+
+  /// One bit of each of the eight lines of a layer.
+  NACRE_HD static unsigned column(const std::uint8_t* boundary, int bit) {
+    unsigned bits = 0;
+    for (int k = 0; k < block_size; ++k) bits |= unsigned(boundary[k] >> bit & 1) << k;
+    return bits;
   }
 
   NACRE_HD void share(const LabelTile& material, std::uint32_t block, const Int3& low, const float* offset,

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Nacre: fTetWild fills a surface mesh, such as one of ours, for run.sh.
 
-ftetwild.py SURFACE.off [THREADS=2] [EDGE=0]
+ftetwild.py SURFACE.off [THREADS=2]
 
-EDGE: length of the edges that it aims at, in the unit of the surface; 0: the mean edge of the surface. Its cells need not
-keep the surface's triangles: they stay within an envelope of a thousandth of the bounding box's diagonal, as by default.
-Results are lines of words; reading is not in the seconds.
+It aims at edges as long as the surface's are in the mean. Its cells need not keep the surface's triangles: they stay within
+an envelope of a thousandth of the bounding box's diagonal, as by default. Results are lines of words; reading is not in the
+seconds.
 """
 import importlib.metadata
+import os
 import sys
+import tempfile
 import time
 
 import numpy
@@ -39,13 +41,15 @@ def dihedral_degrees(points, cells):
     return numpy.degrees(numpy.arccos(numpy.clip(cosines, -1, 1)))
 
 
-def main(path, threads="2", edge="0"):
+def main(path, threads="2"):
     points, triangles = read_off(path)
     mean = numpy.linalg.norm(points[triangles] - points[numpy.roll(triangles, 1, axis=1)], axis=2).mean()
-    started = time.perf_counter()
-    vertices, cells = pytetwild.tetrahedralize(points, triangles, edge_length_abs=float(edge) or mean,
-                                               num_threads=int(threads))
-    seconds = time.perf_counter() - started
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)  # it leaves its surface where it runs
+        started = time.perf_counter()
+        vertices, cells = pytetwild.tetrahedralize(points, triangles, edge_length_abs=mean, num_threads=int(threads))
+        seconds = time.perf_counter() - started
+        os.chdir("/")
     angles = dihedral_degrees(vertices, cells)
     good = ((angles.min(axis=0) >= 10) & (angles.max(axis=0) <= 160)).mean()
     print(f"version fTetWild (pytetwild {importlib.metadata.version('pytetwild')})")
@@ -55,6 +59,6 @@ def main(path, threads="2", edge="0"):
 
 
 if __name__ == "__main__":
-    if not 2 <= len(sys.argv) <= 4:
+    if not 2 <= len(sys.argv) <= 3:
         sys.exit(__doc__)
     main(*sys.argv[1:])
