@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 
 #include "compute/meshing/incidence.hpp"
@@ -206,6 +209,7 @@ class Filling {
     if (side) return 0;
     const std::uint32_t a = hole_.loop[i], b = hole_.loop[j];
     if (a == b || is_there(a, b)) return taken;
+    if (!again_[i] && !again_[j]) return 0;
     for (std::size_t k = 0; k < n_; ++k) {  // two sides of the same loop
       const std::uint32_t s = hole_.loop[k], t = hole_.loop[(k + 1) % n_];
       if ((s == a && t == b) || (s == b && t == a)) return taken;
@@ -213,7 +217,15 @@ class Filling {
     return 0;
   }
 
+  /// Which items the loop passes more than once.
+  std::vector<bool> passed_again() const {
+    std::vector<bool> again(n_);
+    for (std::size_t k = 0; k < n_; ++k) again[k] = std::ranges::count(hole_.loop, hole_.loop[k]) > 1;
+    return again;
+  }
+
   bool triangulate_loop() {
+    again_ = passed_again();
     std::vector<double> cost(n_ * n_, 0);
     std::vector<std::uint32_t> apex(n_ * n_, 0);
     for (std::size_t span = 2; span < n_; ++span)
@@ -270,7 +282,7 @@ class Filling {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       const auto [a, b, c] = std::array{triangles_[t].a, triangles_[t].b, triangles_[t].c};
-      const double worst = std::max({price(a, b, v), price(b, c, v), price(c, a, v)});
+      const double worst = std::max({price(a, b, v, least), price(b, c, v, least), price(c, a, v, least)});
       if (worst < least) least = worst, best = t;
     }
     if (least >= fold) return false;
@@ -284,12 +296,23 @@ class Filling {
 
   /// Exchanges diagonals while that is cheaper.
   void improve() {
+    std::vector<std::uint64_t> corners;  // of each triangle: a bit for each, two of which may be the same
+    std::ranges::transform(triangles_, std::back_inserter(corners), corner_bits);
     for (int round = 0; round < 50; ++round) {
       bool changed = false;
       for (std::size_t s = 0; s < triangles_.size(); ++s)
-        for (std::size_t t = s + 1; t < triangles_.size(); ++t) changed = flip(triangles_[s], triangles_[t]) || changed;
+        for (std::size_t t = s + 1; t < triangles_.size(); ++t) {
+          const int same = std::popcount(corners[s] & corners[t]), own = std::popcount(corners[s]);
+          if (same + (3 - own) < 2 || !flip(triangles_[s], triangles_[t])) continue;  // most have no edge in common
+          corners[s] = corner_bits(triangles_[s]), corners[t] = corner_bits(triangles_[t]);
+          changed = true;
+        }
       if (!changed) return;
     }
+  }
+
+  static std::uint64_t corner_bits(const Triangle& t) {
+    return std::uint64_t(1) << t.a % 64 | std::uint64_t(1) << t.b % 64 | std::uint64_t(1) << t.c % 64;
   }
 
   bool flip(Triangle& s, Triangle& t) const {
@@ -315,6 +338,7 @@ class Filling {
   std::span<const Star> stars_;
   const StarHole& hole_;
   std::size_t n_;
+  std::vector<bool> again_;  // whether the loop passes this item of it more than once
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> used_;  // items of these
 };
