@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <span>
 #include <tuple>
 
+#include "compute/meshing/incidence.hpp"
 #include "compute/meshing/quality.hpp"
 #include "compute/meshing/star_chords.hpp"
 #include "compute/meshing/star_holes.hpp"
@@ -80,6 +83,64 @@ TEST(StarFilling, AHoleIsNotFilledWhereThatWouldCutOffWhatGoesOn) {
     const std::vector<Triangle> filling = fill_hole(items.items(), std::vector<Star>(5), {{0, 1, 2, 3}, {4}});
     EXPECT_EQ(filling.size(), aside > 1 ? 0U : 2U) << aside;
   }
+}
+
+/// Flat items, of which number k is the `apart` * k-th, and a filling of those that the loop and its middle have.
+std::vector<Triangle> flat_filling(const std::vector<Vec3d>& points, std::uint32_t apart, StarHole hole) {
+  OwnItems items;
+  items.materials = {{0, 1}};
+  const std::size_t count = apart * points.size();
+  items.position.resize(count), items.normal.assign(count, {0, 0, 1}), items.size.assign(count, 1);
+  items.next.assign(count, none), items.previous.assign(count, none);
+  for (std::size_t k = 0; k < points.size(); ++k) items.position[apart * k] = points[k];
+  for (auto* list : {&hole.loop, &hole.within})
+    for (std::uint32_t& i : *list) i *= apart;
+  std::vector<Triangle> filling = fill_hole(items.items(), std::vector<Star>(count), hole);
+  for (Triangle& t : filling) t = {t.a / apart, t.b / apart, t.c / apart};
+  return filling;
+}
+
+TEST(StarFilling, AFillingDoesNotDependOnTheNumbersOfItems) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> random(-1, 1);
+  std::vector<Vec3d> points;
+  StarHole hole;
+  for (std::uint32_t k = 0; k < 14; ++k) {
+    const double angle = 2 * M_PI * (k + 0.2 * random(generator)) / 14;
+    points.emplace_back(2.5 * std::cos(angle), 2.5 * std::sin(angle), 0);
+    hole.loop.push_back(k);
+  }
+  while (points.size() < 30) {
+    const Vec3d p(2 * random(generator), 2 * random(generator), 0);
+    if (std::ranges::any_of(points, [&](const Vec3d& q) { return length(p - q) < 0.5; }) || length(p) > 2) continue;
+    hole.within.push_back(std::uint32_t(points.size()));
+    points.push_back(p);
+  }
+  const std::vector<Triangle> filling = flat_filling(points, 1, hole);
+  EXPECT_EQ(filling.size(), 14u + 2 * 16 - 2);
+  for (const std::uint32_t apart : {3u, 32u, 64u}) EXPECT_EQ(flat_filling(points, apart, hole), filling) << apart;
+}
+
+/// Where a hole's loop passes an item twice, an edge across the hole may be one of its sides already.
+TEST(StarFilling, NoEdgeOfAFillingIsASideOfItsHole) {
+  std::mt19937 generator(6);
+  std::uniform_real_distribution<double> random(-2, 2);
+  int filled = 0;
+  for (int round = 0; round < 300; ++round) {
+    std::vector<Vec3d> points(8);
+    for (Vec3d& p : points) p = {random(generator), random(generator), 0};
+    StarHole hole{{0, 1, 2, 3, 4, 5, 6, 7}, {}};
+    hole.loop.insert(hole.loop.begin() + 5 + round % 3, 1 + std::uint32_t(round % 2));  // again
+    const std::vector<Triangle> filling = flat_filling(points, 1, hole);
+    if (filling.empty()) continue;
+    ++filled;
+    for (std::size_t k = 0; k < hole.loop.size(); ++k) {
+      const std::uint32_t a = hole.loop[k], b = hole.loop[(k + 1) % hole.loop.size()];
+      const auto has_side = [&](const Triangle& t) { return has_corner(t, a) && has_corner(t, b); };
+      EXPECT_EQ(std::ranges::count_if(filling, has_side), 1) << round;
+    }
+  }
+  EXPECT_GT(filled, 100);
 }
 
 TEST(StarFilling, ATriangleAloneBoundsNothing) {
