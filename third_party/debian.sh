@@ -7,11 +7,14 @@ required_packages=(
   ffmpeg fonts-dejavu-core
 )
 optional_packages=(ccache)
+qhull_packages=(libqhull-dev)
 viewer_packages=(libglfw3-dev libglew-dev libegl-dev libglm-dev libimgui-dev libgl1-mesa-dri xvfb xauth xdotool)
 vtk_packages=(libvtk9-dev)
 dicom_packages=(libgdcm-dev)
 hdf5_packages=(libhdf5-dev)
 mpi_packages=(libopenmpi-dev openmpi-bin)
+every_package=("${required_packages[@]}" "${optional_packages[@]}" "${qhull_packages[@]}" "${viewer_packages[@]}"
+  "${vtk_packages[@]}" "${dicom_packages[@]}" "${hdf5_packages[@]}" "${mpi_packages[@]}")  # of a build
 check_packages=(clang-format clang-tidy)
 
 apt_options=(-y -q --no-install-recommends --no-remove -o DPkg::Lock::Timeout=120

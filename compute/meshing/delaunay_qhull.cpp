@@ -178,7 +178,9 @@ DelaunayCells Delaunay::cells(std::span<const Vec3d> points, const std::atomic<b
   check_thickness(points);
   const std::vector<std::uint32_t> number = distinct(points);
   if (number.size() == 4) {  // one cell: Qhull asks for five points
-    DelaunayCells one{.vertices = {{number[0], number[1], number[2], number[3]}}, .neighbours = {{-1, -1, -1, -1}}};
+    DelaunayCells one;
+    one.vertices = {{number[0], number[1], number[2], number[3]}};
+    one.neighbours = {{-1, -1, -1, -1}};
     turn_outwards(one, points);
     return in_canonical_order(one, points, stop);
   }
