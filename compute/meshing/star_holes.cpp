@@ -296,14 +296,13 @@ class Filling {
 
   /// Exchanges diagonals while that is cheaper.
   void improve() {
-    std::vector<std::uint64_t> corners;  // of each triangle: a bit for each, two of which may be the same
+    std::vector<std::uint64_t> corners;  // of each triangle
     std::ranges::transform(triangles_, std::back_inserter(corners), corner_bits);
     for (int round = 0; round < 50; ++round) {
       bool changed = false;
       for (std::size_t s = 0; s < triangles_.size(); ++s)
         for (std::size_t t = s + 1; t < triangles_.size(); ++t) {
-          const int same = std::popcount(corners[s] & corners[t]), own = std::popcount(corners[s]);
-          if (same + (3 - own) < 2 || !flip(triangles_[s], triangles_[t])) continue;  // most have no edge in common
+          if (!may_share_an_edge(corners[s], corners[t]) || !flip(triangles_[s], triangles_[t])) continue;
           corners[s] = corner_bits(triangles_[s]), corners[t] = corner_bits(triangles_[t]);
           changed = true;
         }
@@ -311,6 +310,12 @@ class Filling {
     }
   }
 
+  /// Most pairs of triangles are told apart by this alone. Corners of one triangle may have the same bit.
+  static bool may_share_an_edge(std::uint64_t corners, std::uint64_t others) {
+    return std::popcount(corners & others) + (3 - std::popcount(corners)) >= 2;
+  }
+
+  /// A bit for each corner.
   static std::uint64_t corner_bits(const Triangle& t) {
     return std::uint64_t(1) << t.a % 64 | std::uint64_t(1) << t.b % 64 | std::uint64_t(1) << t.c % 64;
   }

@@ -85,7 +85,7 @@ TEST(StarFilling, AHoleIsNotFilledWhereThatWouldCutOffWhatGoesOn) {
   }
 }
 
-/// Flat items, of which number k is the `apart` * k-th, and a filling of those that the loop and its middle have.
+/// Fills a hole between flat items. Item k is made with the number apart * k; hole and filling have k.
 std::vector<Triangle> flat_filling(const std::vector<Vec3d>& points, std::uint32_t apart, StarHole hole) {
   OwnItems items;
   items.materials = {{0, 1}};
